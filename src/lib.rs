@@ -1,0 +1,56 @@
+//! Every outcome of the rigid frictional impact of a planar legged robot.
+//!
+//! A foot strikes the ground. Simulators assume that it sticks and print one answer. For some states no sticking answer
+//! exists and the other foot slides whatever the friction; for others several outcomes are equally valid. This crate reads
+//! a robot's URDF and a state just before the impact, and finds all of them: modes, impulses, velocities, and whether the
+//! answer is unique, ambiguous or absent.
+//!
+//! # The way of the data
+//!
+//! A newcomer reads this page, then [`pipeline`], then follows its calls. Modules stand in the order of the data; each uses
+//! only those above it.
+//!
+//! ```text
+//!     URDF text --[description]--> links and joints, checked --[robot]--> Robot: planar floating-base tree
+//!     JSON state --[state]-------> q, v and Scene (ground, friction, restitution, held joints, applied impulses)
+//!     Robot + held joints --[plan]--> Plan: flat arrays for the hot path
+//!     Plan + q --[dynamics]--> poses, mass matrix M, contact Jacobian J, Delassus matrix G = J M^-1 J^T
+//!     poses + ground --[contact]--> closed contacts
+//!     G, c, friction, restitution --[impact]--> every outcome, verdict
+//!     all of it --[pipeline]--> Impact --[report]--> JSON, text
+//! ```
+//!
+//! # The impact
+//!
+//! ```text
+//!     M (v+ - v-) = J^T L          c = J v          c+ = c- + G L
+//! ```
+//!
+//! | symbol | JSON | meaning | unit |
+//! | --- | --- | --- | --- |
+//! | q | `position` | x, z, pitch of the root link, then the joints in the file's order | m, rad |
+//! | v | `velocity` | dq/dt, entry by entry | m/s, rad/s |
+//! | M | `mass_matrix` | joint-space inertia | kg, kg m, kg m^2 |
+//! | J | `contact_jacobian` | two rows per contact: tangential, normal | |
+//! | G | `delassus` | inverse inertia seen by the contacts | 1/kg |
+//! | c | `velocity_before`, `velocity_after` | contact velocity, [tangential, normal] | m/s |
+//! | L | `impulse` | contact impulse, [tangential, normal] | N s |
+//! | mu | `friction` | Coulomb coefficient, 0 to infinite | |
+//! | e | `restitution` | Newton's coefficient, 0 to 1 | |
+//!
+//! Each contact separates, sticks, slides along +t or slides along -t; every consistent combination is an outcome
+//! (C. D. Remy, "Ambiguous collision outcomes and sliding with infinite friction in models of legged systems", IJRR 2017,
+//! called "the paper" throughout; "Featherstone 2008" is his *Rigid Body Dynamics Algorithms*).
+//!
+//! # Frames and signs
+//!
+//! `x` points forward along the ground, `z` up. `pitch` and the angles of bodies are right-handed about the plane's normal
+//! n = up x forward (+y): a positive pitch dips the nose. Joint coordinates keep the URDF's own sign. A contact's normal
+//! points from the ground to the robot, its tangent t is the normal turned clockwise: +x on level ground. [`planar`] is the
+//! one place where this handedness is written as code.
+
+pub mod error;
+pub mod scalar;
+pub mod planar;
+
+pub use error::{Error, Reason, Result};
