@@ -52,5 +52,6 @@
 pub mod error;
 pub mod scalar;
 pub mod planar;
+pub mod impact;
 
 pub use error::{Error, Reason, Result};

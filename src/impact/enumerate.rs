@@ -1,0 +1,264 @@
+//! Every combination of modes, as numbers.
+//!
+//! ```text
+//!     c = c_free + G L           xi_n = c_n + bounce
+//!     separate  L = 0            stick  c_t = xi_n = 0            slide+-  xi_n = 0,  L = lambda (-+a, b)
+//! ```
+//!
+//! Contacts are decided one after the other. Deciding one eliminates its impulses from a tableau that expresses everything
+//! by the impulses of the contacts not yet decided, so that combinations share their beginnings: a tree of Schur
+//! complements. The friction cone a L_n >= b |L_t| is a homogeneous pair, which makes zero, finite and infinite friction
+//! one case. The product of the pivots is det A (paper, section 2); no number is compared with another here.
+//!
+//! Cost: 4^n leaves (2^k 4^(n-k) where k contacts are frictionless: their modes share one elimination), each O(n).
+
+use super::mode::{Friction, Mode};
+use super::problem::ContactProblem;
+use crate::planar::Vector;
+use crate::scalar::Real;
+
+/// Scratch of the enumeration; it is reused from problem to problem and then allocates nothing.
+#[derive(Debug, Clone)]
+pub struct Tableau<T> {
+    contacts: usize,
+    friction: Vec<Friction>,
+    /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns of
+    /// decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and lambda where
+    /// it slides; L_t and L_n where it sticks.
+    depths: Vec<Vec<T>>,
+    modes: Vec<Mode>,
+    pivots: Vec<T>,
+}
+
+/// One combination of modes and the numbers that it leads to.
+#[derive(Debug)]
+pub struct Leaf<'a, T> {
+    /// One mode per contact; a closed frictionless contact is always given as [`Mode::Stick`]: its tangential velocity
+    /// alone tells its mode.
+    pub modes: &'a [Mode],
+    /// One pivot per contact; their product is det A, its sign the index. A separating contact's is one.
+    pub pivots: &'a [T],
+    tableau: &'a [T],
+    friction: &'a [Friction],
+}
+
+impl<T: Real> Tableau<T> {
+    /// Scratch without a problem.
+    pub fn new() -> Self {
+        Self { contacts: 0, friction: Vec::new(), depths: Vec::new(), modes: Vec::new(), pivots: Vec::new() }
+    }
+
+    /// Takes over a problem.
+    pub fn load(&mut self, problem: &ContactProblem<T>) {
+        let n = problem.contacts();
+        let width = 2 * n + 1;
+        self.contacts = n;
+        self.friction.clear();
+        self.friction.extend_from_slice(problem.friction());
+        self.depths.resize_with(n + 1, Vec::new);
+        for depth in &mut self.depths {
+            depth.resize(2 * n * width, T::zero());
+        }
+        self.modes.clear();
+        self.modes.resize(n, Mode::Separate);
+        self.pivots.clear();
+        self.pivots.resize(n, T::one());
+        for row in 0..2 * n {
+            for column in 0..2 * n {
+                self.depths[0][row * width + column] = problem.delassus(row, column);
+            }
+            let (contact, normal) = (row / 2, row % 2);
+            let free = problem.velocity_free()[contact][normal];
+            self.depths[0][row * width + 2 * n] = if normal == 1 { free + problem.bounce(contact) } else { free };
+        }
+    }
+
+    /// Visits every combination, in the order of [`Mode::ALL`] with the last contact changing fastest.
+    pub fn visit(&mut self, mut visitor: impl FnMut(Leaf<'_, T>)) {
+        self.descend(0, 0, &mut visitor);
+    }
+
+    /// The numbers of a single combination.
+    pub fn leaf(&mut self, modes: &[Mode]) -> Leaf<'_, T> {
+        let mut source = 0;
+        for (contact, &mode) in modes.iter().enumerate() {
+            let mode = if self.friction[contact].is_zero() && mode.slides() { Mode::Stick } else { mode };
+            self.modes[contact] = mode;
+            source = self.decide(contact, mode, source);
+        }
+        self.at(source)
+    }
+
+    fn at(&self, depth: usize) -> Leaf<'_, T> {
+        Leaf { modes: &self.modes, pivots: &self.pivots, tableau: &self.depths[depth], friction: &self.friction }
+    }
+
+    fn descend(&mut self, contact: usize, source: usize, visitor: &mut impl FnMut(Leaf<'_, T>)) {
+        if contact == self.contacts {
+            visitor(self.at(source));
+            return;
+        }
+        let modes = if self.friction[contact].is_zero() { &Mode::ALL[..2] } else { &Mode::ALL[..] };
+        for &mode in modes {
+            self.modes[contact] = mode;
+            let depth = self.decide(contact, mode, source);
+            self.descend(contact + 1, depth, visitor);
+        }
+    }
+
+    /// Eliminates the contact's impulses and returns the depth that holds the tableau then.
+    fn decide(&mut self, contact: usize, mode: Mode, source: usize) -> usize {
+        let n = self.contacts;
+        let width = 2 * n + 1;
+        let (tangential, normal) = (2 * contact, 2 * contact + 1);
+        if mode == Mode::Separate {
+            // L = 0: its columns are simply not read any more.
+            self.pivots[contact] = T::one();
+            return source;
+        }
+        let (before, after) = self.depths.split_at_mut(contact + 1);
+        let (old, new) = (&before[source], &mut after[0]);
+        let entry = |row: usize, column: usize| old[row * width + column];
+        let columns = normal + 1..width;
+        if mode.slides() || self.friction[contact].is_zero() {
+            let (a, b) = self.friction[contact].pair();
+            let ray = [T::from_f64(-mode.direction() * a), T::from_f64(b)];
+            let along = |row: usize| ray[0] * entry(row, tangential) + ray[1] * entry(row, normal);
+            let pivot = along(normal);
+            self.pivots[contact] = pivot;
+            for column in columns.clone() {
+                new[normal * width + column] = -entry(normal, column) / pivot;
+            }
+            for row in (0..2 * n).filter(|&row| row != normal) {
+                let factor = along(row);
+                for column in columns.clone() {
+                    new[row * width + column] = entry(row, column) + factor * new[normal * width + column];
+                }
+            }
+        } else {
+            let [g_tt, g_tn] = [entry(tangential, tangential), entry(tangential, normal)];
+            let [g_nt, g_nn] = [entry(normal, tangential), entry(normal, normal)];
+            let determinant = g_tt * g_nn - g_tn * g_nt;
+            self.pivots[contact] = determinant;
+            for column in columns.clone() {
+                let (c_t, c_n) = (entry(tangential, column), entry(normal, column));
+                new[tangential * width + column] = (g_tn * c_n - g_nn * c_t) / determinant;
+                new[normal * width + column] = (g_nt * c_t - g_tt * c_n) / determinant;
+            }
+            for row in (0..2 * n).filter(|&row| row / 2 != contact) {
+                let (by_t, by_n) = (entry(row, tangential), entry(row, normal));
+                for column in columns.clone() {
+                    new[row * width + column] = entry(row, column)
+                        + by_t * new[tangential * width + column]
+                        + by_n * new[normal * width + column];
+                }
+            }
+        }
+        contact + 1
+    }
+}
+
+impl<T: Real> Default for Tableau<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Real> Leaf<'_, T> {
+    fn constant(&self, row: usize) -> T {
+        let columns = 2 * self.modes.len();
+        self.tableau[row * (columns + 1) + columns]
+    }
+
+    /// The two numbers of a contact: `[c_t, xi_n]` where it separates, `[c_t, lambda]` where it slides or is frictionless
+    /// (L = lambda (-+a, b)), `[L_t, L_n]` where it sticks.
+    pub fn numbers(&self, contact: usize) -> Vector<T> {
+        [self.constant(2 * contact), self.constant(2 * contact + 1)]
+    }
+
+    /// Impulse of a contact, [tangential, normal] \[N s\].
+    pub fn impulse(&self, contact: usize) -> Vector<T> {
+        let [first, second] = self.numbers(contact);
+        let mode = self.modes[contact];
+        if mode == Mode::Separate {
+            return [T::zero(); 2];
+        }
+        if mode == Mode::Stick && !self.friction[contact].is_zero() {
+            return [first, second];
+        }
+        let (a, b) = self.friction[contact].pair();
+        [T::from_f64(-mode.direction() * a) * second, T::from_f64(b) * second]
+    }
+
+    /// Velocity of a contact as `[c_t, xi_n]` \[m/s\]; c_n = xi_n - bounce.
+    pub fn velocity(&self, contact: usize) -> Vector<T> {
+        let [first, second] = self.numbers(contact);
+        match self.modes[contact] {
+            Mode::Separate => [first, second],
+            Mode::Stick if !self.friction[contact].is_zero() => [T::zero(); 2],
+            _ => [first, T::zero()],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The paper's section 4: G = [[2, 1], [1, 2]], so M_c = 1/3 [[2, -1], [-1, 2]].
+    fn body(friction: Friction, before: Vector<f64>) -> ContactProblem {
+        ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![friction], vec![0.0]).unwrap()
+    }
+
+    #[test]
+    fn each_mode_of_one_contact_by_hand() {
+        let mut tableau = Tableau::<f64>::new();
+        tableau.load(&body(Friction::Finite(6.0), [1.0, -1.0]));
+        let mut seen = Vec::new();
+        tableau.visit(|leaf| seen.push((leaf.modes[0], leaf.impulse(0), leaf.velocity(0), leaf.pivots[0])));
+        assert_eq!(
+            seen,
+            [
+                (Mode::Separate, [0.0, 0.0], [1.0, -1.0], 1.0),
+                (Mode::Stick, [-1.0, 1.0], [0.0, 0.0], 3.0),
+                // G_nn -+ mu G_nt = 2 -+ 6.
+                (Mode::SlidePlus, [1.5, -0.25], [3.75, 0.0], -4.0),
+                (Mode::SlideMinus, [0.75, 0.125], [2.625, 0.0], 8.0),
+            ]
+        );
+    }
+
+    #[test]
+    fn infinite_friction_slides_without_normal_impulse() {
+        let mut tableau = Tableau::<f64>::new();
+        tableau.load(&body(Friction::Infinite, [1.0, -1.0]));
+        let leaf = tableau.leaf(&[Mode::SlidePlus]);
+        // c_n = -1 + G_nt L_t = 0.
+        assert_eq!(leaf.impulse(0), [1.0, 0.0]);
+        assert_eq!(leaf.velocity(0), [3.0, 0.0]);
+    }
+
+    #[test]
+    fn a_single_leaf_equals_the_visited_one() {
+        let delassus = vec![3.0, 0.5, 0.25, 0.0, 0.5, 2.0, 0.0, -0.5, 0.25, 0.0, 4.0, 1.0, 0.0, -0.5, 1.0, 3.0];
+        let problem = ContactProblem::new(
+            delassus,
+            vec![[0.5, -1.0], [-0.25, -0.5]],
+            vec![Friction::ZERO, Friction::Finite(0.5)],
+            vec![0.0, 0.5],
+        )
+        .unwrap();
+        let (mut all, mut one) = (Tableau::<f64>::new(), Tableau::<f64>::new());
+        all.load(&problem);
+        one.load(&problem);
+        let mut visited = 0;
+        all.visit(|leaf| {
+            visited += 1;
+            let single = one.leaf(leaf.modes);
+            for contact in 0..2 {
+                assert_eq!(leaf.numbers(contact), single.numbers(contact));
+            }
+        });
+        assert_eq!(visited, 2 * 4);
+    }
+}

@@ -1,0 +1,174 @@
+//! What an analysis says: outcomes, rejections, the verdict. Data only; [`super::analysis`] computes them.
+
+use super::mode::Mode;
+use crate::planar::Vector;
+use serde::Serialize;
+
+/// The answer in one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Exactly one outcome.
+    Unique,
+    /// Several outcomes are equally valid.
+    Ambiguous,
+    /// No outcome is consistent; impossible for a regular Delassus matrix (paper, the index theorem).
+    None,
+    /// Some combination's signs could not be told from zero.
+    Undecided,
+    /// The only outcome has zero impulse.
+    NoImpact,
+    /// Nothing touches the ground.
+    NoContact,
+}
+
+/// A consistent combination of modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// One mode per contact.
+    pub modes: Vec<Mode>,
+    /// Contact impulses, [tangential, normal] per contact \[N s\].
+    pub impulse: Vec<Vector<f64>>,
+    /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
+    pub velocity_after: Vec<Vector<f64>>,
+    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative where Newton's law with friction gains.
+    pub energy_loss: f64,
+    /// False where other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
+    pub impulse_unique: bool,
+    /// |L_t| / L_n of each sticking contact with L_n > 0; none for others.
+    pub friction_needed: Vec<Option<f64>>,
+    /// Sign of det A (paper, section 2); none where it is not defined.
+    pub index: Option<i8>,
+    /// The smallest slack of the outcome's inequalities, free of units; none where there is no inequality.
+    pub margin: Option<f64>,
+    /// True where an error bound shows every sign.
+    pub proven: bool,
+    /// False where a sign lies within its rounding: the combination is not excluded, but neither shown.
+    pub decided: bool,
+}
+
+/// Impulses and velocities of a combination, [tangential, normal] per contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Contact impulses \[N s\].
+    pub impulse: Vec<Vector<f64>>,
+    /// Contact velocities after the impact \[m/s\].
+    pub velocity_after: Vec<Vector<f64>>,
+}
+
+/// A combination of modes that is not an outcome, and what it would have been.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rejection {
+    /// One mode per contact.
+    pub modes: Vec<Mode>,
+    /// Why it is none.
+    pub because: Because,
+    /// The smallest slack, negative and free of units; none where the combination has no solution at all.
+    pub margin: Option<f64>,
+    /// What it would have needed and led to; none where its equations have no solution.
+    pub motion: Option<Motion>,
+}
+
+/// The inequality that excludes a combination most clearly; `contact` counts from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Because {
+    /// A closed contact with L_n < 0.
+    Pulled {
+        /// The contact.
+        contact: usize,
+    },
+    /// A separating contact with xi_n < 0.
+    Penetrates {
+        /// The contact.
+        contact: usize,
+    },
+    /// A sticking contact with |L_t| > mu L_n.
+    NeedsFriction {
+        /// The contact.
+        contact: usize,
+    },
+    /// A sliding contact whose velocity after points against its mode.
+    SlidesBackward {
+        /// The contact.
+        contact: usize,
+    },
+    /// With infinite friction: a sliding contact whose friction impulse would drive the slide.
+    FrictionPushes {
+        /// The contact.
+        contact: usize,
+    },
+    /// A frictionless contact that would stick although it moves along the ground.
+    NothingHolds {
+        /// The contact.
+        contact: usize,
+    },
+    /// The equations of the modes contradict each other (det A = 0).
+    NoSolution,
+    /// The velocity belongs to another list of modes, because contacts depend on each other (det A = 0).
+    RedundantTwin,
+}
+
+impl Because {
+    /// The reason as a clause about the contacts' names, as in `left_foot is pulled toward the ground`.
+    pub fn describe(&self, names: &[String]) -> String {
+        match *self {
+            Because::Pulled { contact } => format!("{} is pulled toward the ground", names[contact]),
+            Because::Penetrates { contact } => format!("{} moves into the ground", names[contact]),
+            Because::NeedsFriction { contact } => format!("{} needs more friction than there is", names[contact]),
+            Because::SlidesBackward { contact } => {
+                format!("{} moves against its own sliding direction", names[contact])
+            }
+            Because::FrictionPushes { contact } => format!("friction at {} drives the slide", names[contact]),
+            Because::NothingHolds { contact } => format!("{} slides and has no friction to stop it", names[contact]),
+            Because::NoSolution => "no solution".to_owned(),
+            Because::RedundantTwin => "covered by a redundant twin".to_owned(),
+        }
+    }
+}
+
+/// The paper's section 4 for each contact: the body as seen from it while all other contacts stick.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explanation {
+    /// Angle of the impulse that a purely tangential velocity change needs, atan(M_nt / M_tt) \[rad\].
+    pub beta: Vec<f64>,
+    /// Angle of the impulse that the contact takes over from the rest, atan2(X_n, X_t) \[rad\].
+    pub gamma: Vec<f64>,
+    /// What infinite friction does there.
+    pub region: Vec<Region>,
+}
+
+/// The paper's regions of the plane of gamma and beta, for infinite friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+pub enum Region {
+    /// Lift-off.
+    A,
+    /// Slides, whatever the friction.
+    B,
+    /// Stays.
+    C,
+    /// Three outcomes are valid.
+    E,
+}
+
+/// Everything that is known about a contact problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Analysis {
+    /// The answer in one word.
+    pub verdict: Verdict,
+    /// True where every combination's signs are shown by an error bound.
+    pub proven: bool,
+    /// Every outcome; with [`Verdict::Undecided`] also the combinations that are not excluded.
+    pub outcomes: Vec<Outcome>,
+    /// Every other combination, if asked for.
+    pub rejected: Vec<Rejection>,
+    /// Sum of the outcomes' indices; none where one of them has none.
+    pub index_sum: Option<i32>,
+    /// Rank of the Delassus matrix.
+    pub rank: usize,
+    /// Condition number of the Delassus matrix scaled to a unit diagonal; none where it is singular.
+    pub condition: Option<f64>,
+    /// Whether some outcome has no sliding contact.
+    pub no_slip_consistent: bool,
+    /// The paper's section 4 for each contact, if asked for; none for a singular Delassus matrix.
+    pub explanation: Option<Explanation>,
+}

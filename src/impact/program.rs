@@ -1,0 +1,239 @@
+//! The two small convex programs that free impulses ask for (the only user of clarabel).
+//!
+//! The points are y; every slack is affine in y: `slack = constant + coefficients . y`.
+//!
+//! ```text
+//!     widest slack     max_y min_i slack_i(y)
+//!     least impulse    min_y |L0 + D y|^2   with   slack_i(y) >= 0
+//! ```
+
+use super::basis::{Agreement, Basis, dot, solve};
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+
+/// An affine function of y.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Affine {
+    /// Its value at y = 0.
+    pub constant: f64,
+    /// One coefficient per entry of y.
+    pub coefficients: Vec<f64>,
+}
+
+impl Affine {
+    /// Its value at `y`.
+    pub fn at(&self, y: &[f64]) -> f64 {
+        self.constant + dot(&self.coefficients, y)
+    }
+}
+
+/// The point whose smallest slack is the greatest, and that slack, at most `cap` (without a cap an unbounded set of
+/// impulses would have no answer). None where the program fails numerically.
+pub fn widest_slack(slacks: &[Affine], dimension: usize, cap: f64) -> Option<(Vec<f64>, f64)> {
+    // x = (y, s): -coefficients . y + s <= constant, s <= cap; least -s.
+    let rows = slacks.len() + 1;
+    let mut entries = Triplets::default();
+    let mut right = Vec::with_capacity(rows);
+    for (row, slack) in slacks.iter().enumerate() {
+        for (column, &coefficient) in slack.coefficients.iter().enumerate() {
+            entries.push(row, column, -coefficient);
+        }
+        entries.push(row, dimension, 1.0);
+        right.push(slack.constant);
+    }
+    entries.push(slacks.len(), dimension, 1.0);
+    right.push(cap);
+    let mut cost = vec![0.0; dimension + 1];
+    cost[dimension] = -1.0;
+    let quadratic = CscMatrix::zeros((dimension + 1, dimension + 1));
+    let mut x = minimize(&quadratic, &cost, &entries.matrix(rows, dimension + 1), &right)?;
+    x.truncate(dimension);
+    let least = slacks.iter().map(|slack| slack.at(&x)).fold(cap, f64::min);
+    Some((x, least))
+}
+
+/// Whether some y other than 0 has no negative slack, for slacks without a constant.
+pub fn opens(slacks: &[Affine], dimension: usize) -> bool {
+    let rows: Vec<&[f64]> = slacks.iter().map(|slack| slack.coefficients.as_slice()).collect();
+    let mut basis = Basis::new(dimension);
+    basis.extend(&rows);
+    if basis.rank() < dimension {
+        return true;
+    }
+    // The sum of all slacks vanishes at y = 0 alone; can it be one?
+    let mut entries = Triplets::default();
+    let mut sum = vec![0.0; dimension];
+    for (row, slack) in slacks.iter().enumerate() {
+        for (column, &coefficient) in slack.coefficients.iter().enumerate() {
+            entries.push(row, column, -coefficient);
+            sum[column] += coefficient;
+        }
+    }
+    for (column, &coefficient) in sum.iter().enumerate() {
+        entries.push(slacks.len(), column, coefficient);
+    }
+    let mut right = vec![0.0; slacks.len() + 1];
+    right[slacks.len()] = 1.0;
+    let cost: Vec<f64> = sum.iter().map(|entry| -entry).collect();
+    let none = CscMatrix::zeros((dimension, dimension));
+    minimize(&none, &cost, &entries.matrix(slacks.len() + 1, dimension), &right).is_none_or(|y| dot(&sum, &y) > 0.5)
+}
+
+/// The y that makes |L0 + D y| least among those with no negative slack; `directions` are the columns of D. None where
+/// the program fails numerically.
+pub fn least_impulse(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine]) -> Option<Vec<f64>> {
+    let dimension = directions.len();
+    let size = dot(origin, origin).sqrt().max(f64::MIN_POSITIVE);
+    let free = polished(origin, directions, slacks, |_| false)?;
+    let violated = |y: &[f64]| slacks.iter().any(|slack| slack.at(y) < -ADMISSIBLE);
+    if !violated(&free) {
+        return Some(free);
+    }
+    let mut hessian = Triplets::default();
+    for i in 0..dimension {
+        for j in i..dimension {
+            hessian.push(i, j, dot(&directions[i], &directions[j]) / (size * size));
+        }
+    }
+    let cost: Vec<f64> = directions.iter().map(|direction| dot(direction, origin) / (size * size)).collect();
+    let mut entries = Triplets::default();
+    for (row, slack) in slacks.iter().enumerate() {
+        for (column, &coefficient) in slack.coefficients.iter().enumerate() {
+            entries.push(row, column, -coefficient);
+        }
+    }
+    let right: Vec<f64> = slacks.iter().map(|slack| slack.constant).collect();
+    let quadratic = hessian.matrix(dimension, dimension);
+    let near = minimize(&quadratic, &cost, &entries.matrix(slacks.len(), dimension), &right)?;
+    // The interior point names the active slacks; on their face the answer is a projection, exact to rounding.
+    let sharp = polished(origin, directions, slacks, |slack| slack.at(&near).abs() < ACTIVE);
+    Some(sharp.filter(|y| !violated(y)).unwrap_or(near))
+}
+
+/// A slack may be negative by this much of its scale and still count as zero.
+const ADMISSIBLE: f64 = 1e-11;
+/// An interior-point solution leaves an active slack about this far from zero.
+const ACTIVE: f64 = 1e-7;
+
+/// The shortest L0 + D y with the chosen slacks at zero.
+fn polished(
+    origin: &[f64],
+    directions: &[Vec<f64>],
+    slacks: &[Affine],
+    active: impl Fn(&Affine) -> bool,
+) -> Option<Vec<f64>> {
+    let dimension = directions.len();
+    let chosen: Vec<&Affine> = slacks.iter().filter(|slack| active(slack)).collect();
+    let rows: Vec<&[f64]> = chosen.iter().map(|slack| slack.coefficients.as_slice()).collect();
+    let right: Vec<f64> = chosen.iter().map(|slack| -slack.constant).collect();
+    let (mut y, basis, agreement) = solve(dimension, &rows, &right);
+    if agreement == Agreement::Fails {
+        return None;
+    }
+    // Along the face: L = start + E z with E = D (complement); shortest where L is orthogonal to every column of E.
+    let along: Vec<(Vec<f64>, Vec<f64>)> =
+        basis.complement().rows().map(|z| (z.to_vec(), combination(directions, z, origin.len()))).collect();
+    let start: Vec<f64> = origin.iter().zip(combination(directions, &y, origin.len())).map(|(a, b)| a + b).collect();
+    // Normal equations are fine here: the columns are orthonormal combinations of few directions.
+    let gram: Vec<Vec<f64>> = along.iter().map(|a| along.iter().map(|b| dot(&a.1, &b.1)).collect()).collect();
+    let load: Vec<f64> = along.iter().map(|a| -dot(&a.1, &start)).collect();
+    let largest = gram.iter().flatten().fold(f64::MIN_POSITIVE, |most: f64, entry| most.max(entry.abs()));
+    let unit: Vec<Vec<f64>> = gram.iter().map(|row| row.iter().map(|entry| entry / largest).collect()).collect();
+    let load: Vec<f64> = load.iter().map(|entry| entry / largest).collect();
+    let (z, _, _) = solve(along.len(), &unit.iter().map(Vec::as_slice).collect::<Vec<_>>(), &load);
+    for ((direction, _), factor) in along.iter().zip(&z) {
+        for (entry, part) in y.iter_mut().zip(direction) {
+            *entry += factor * part;
+        }
+    }
+    Some(y)
+}
+
+fn combination(columns: &[Vec<f64>], factors: &[f64], length: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; length];
+    for (column, factor) in columns.iter().zip(factors) {
+        for (entry, part) in sum.iter_mut().zip(column) {
+            *entry += factor * part;
+        }
+    }
+    sum
+}
+
+/// Entries of a sparse matrix in any order.
+#[derive(Default)]
+struct Triplets {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Triplets {
+    fn push(&mut self, row: usize, column: usize, value: f64) {
+        if value != 0.0 {
+            self.rows.push(row);
+            self.columns.push(column);
+            self.values.push(value);
+        }
+    }
+
+    fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
+        CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values)
+    }
+}
+
+/// x that makes 1/2 x.P x + q.x least with A x <= b.
+fn minimize(p: &CscMatrix<f64>, q: &[f64], a: &CscMatrix<f64>, b: &[f64]) -> Option<Vec<f64>> {
+    let settings = DefaultSettings {
+        verbose: false,
+        tol_gap_abs: 1e-12,
+        tol_gap_rel: 1e-12,
+        tol_feas: 1e-12,
+        ..DefaultSettings::default()
+    };
+    let cones = [SupportedConeT::NonnegativeConeT(b.len())];
+    let mut solver = DefaultSolver::new(p, q, a, b, &cones, settings).ok()?;
+    solver.solve();
+    // The last digits may be out of reach; every use checks the point it gets.
+    let usable = matches!(
+        solver.solution.status,
+        SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
+    );
+    usable.then(|| solver.solution.x.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn affine(constant: f64, coefficients: &[f64]) -> Affine {
+        Affine { constant, coefficients: coefficients.to_vec() }
+    }
+
+    #[test]
+    fn the_widest_slack_is_in_the_middle() {
+        // 0 <= y <= 3.
+        let (y, slack) = widest_slack(&[affine(0.0, &[1.0]), affine(3.0, &[-1.0])], 1, 10.0).unwrap();
+        // The interior-point method's own tolerance.
+        assert!((y[0] - 1.5).abs() < 1e-9 && (slack - 1.5).abs() < 1e-9);
+        let (_, slack) = widest_slack(&[affine(0.0, &[1.0]), affine(-2.0, &[-1.0])], 1, 10.0).unwrap();
+        assert!((slack + 1.0).abs() < 1e-9, "an empty set has a negative slack");
+        assert_eq!(widest_slack(&[affine(0.0, &[1.0])], 1, 10.0).unwrap().1.round(), 10.0);
+    }
+
+    #[test]
+    fn a_pointed_cone_that_meets_the_plane_at_its_tip_does_not_open() {
+        // |y| <= mu s and s = 0, against a half line.
+        assert!(!opens(&[affine(0.0, &[1.0]), affine(0.0, &[-1.0])], 1));
+        assert!(opens(&[affine(0.0, &[1.0]), affine(0.0, &[2.0])], 1));
+        assert!(opens(&[affine(0.0, &[1.0, 0.0])], 2), "a direction that no slack sees");
+    }
+
+    #[test]
+    fn the_least_impulse_lies_on_the_face_that_binds() {
+        // L = (1 - y, y); free optimum y = 1/2, but y <= 1/4.
+        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.25, &[-1.0])]).unwrap();
+        assert!((found[0] - 0.25).abs() < 1e-14, "exact on the face: {found:?}");
+        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.75, &[-1.0])]).unwrap();
+        assert!((found[0] - 0.5).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,101 @@
+//! The signs of all inequalities of a combination as one.
+
+use super::enumerate::Leaf;
+use super::mode::{Friction, Mode};
+use super::outcome::Because;
+use super::problem::ContactProblem;
+use super::sign::{Scale, Sign, Slack, slacks};
+use crate::scalar::{Ball, Real};
+
+/// What the slacks of a combination say.
+pub struct Reading {
+    /// Valid, rejected or not told; never zero.
+    pub sign: Sign,
+    /// Why not, where rejected.
+    pub because: Because,
+    /// The smallest slack, free of units.
+    pub margin: Option<f64>,
+    /// An impulse inequality is exactly zero.
+    pub border: bool,
+}
+
+/// Reads a leaf's f64 numbers, each scaled one known to `rounding`.
+pub fn read_f64(
+    leaf: &Leaf<'_, f64>,
+    modes: &[Mode],
+    problem: &ContactProblem,
+    scale: &Scale,
+    rounding: f64,
+    explain: bool,
+) -> Reading {
+    let factor = |slack: &Slack<f64>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
+    let speed = |contact: usize, c_t: f64| Sign::within(c_t / (scale.speed * scale.mobility[2 * contact]), rounding);
+    read(leaf, modes, problem.friction(), explain, speed, |slack| {
+        let scaled = slack.number * factor(slack);
+        (Sign::within(scaled, rounding), scaled)
+    })
+}
+
+/// Reads a leaf whose numbers know their error.
+pub fn read_ball(leaf: &Leaf<'_, Ball>, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Reading {
+    let factor = |slack: &Slack<Ball>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
+    read(
+        leaf,
+        modes,
+        problem.friction(),
+        true,
+        |_, c_t| Sign::from(c_t),
+        |slack| (Sign::from(slack.number), slack.number.mid * factor(slack)),
+    )
+}
+
+/// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one.
+fn read<T: Real>(
+    leaf: &Leaf<'_, T>,
+    modes: &[Mode],
+    friction: &[Friction],
+    explain: bool,
+    speed: impl Fn(usize, T) -> Sign,
+    slack: impl Fn(&Slack<T>) -> (Sign, f64),
+) -> Reading {
+    let mut reading = Reading { sign: Sign::Positive, because: Because::NoSolution, margin: None, border: false };
+    for (contact, &mode) in modes.iter().enumerate() {
+        if mode == Mode::Stick && friction[contact].is_zero() {
+            match speed(contact, leaf.numbers(contact)[0]) {
+                Sign::Zero => {}
+                Sign::Undecided => reading.sign = Sign::Undecided,
+                Sign::Positive | Sign::Negative => {
+                    // Two equations for one impulse: no slack measures how far they are from agreeing.
+                    return Reading { sign: Sign::Negative, because: Because::NothingHolds { contact }, ..reading };
+                }
+            }
+        }
+    }
+    let mut done = false;
+    slacks(leaf, modes, friction, |entry| {
+        if done {
+            return;
+        }
+        let (sign, scaled) = slack(&entry);
+        let violated = match sign {
+            Sign::Negative => Some(entry.kind.violation(entry.contact)),
+            Sign::Zero if entry.kind.is_strict() => Some(Because::RedundantTwin),
+            _ => None,
+        };
+        let least = reading.margin.is_none_or(|margin| scaled < margin);
+        if let Some(because) = violated {
+            if reading.sign != Sign::Negative || least {
+                reading.because = because;
+            }
+            reading.sign = Sign::Negative;
+            done = !explain;
+        } else if sign == Sign::Undecided && reading.sign == Sign::Positive {
+            reading.sign = Sign::Undecided;
+        }
+        reading.border |= sign == Sign::Zero;
+        if least {
+            reading.margin = Some(scaled);
+        }
+    });
+    reading
+}

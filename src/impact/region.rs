@@ -1,0 +1,102 @@
+//! Why a contact does what it does: the paper's section 4, for infinite friction and restitution 0.
+//!
+//! ```text
+//!     M_c c+ = L + X      M_c: the contact's block of G^-1,   X: its rows of G^-1 c_free
+//!     beta  = atan(M_nt / M_tt)       angle of the impulse that a purely tangential velocity needs
+//!     gamma = atan2(X_n, X_t)         angle of what the contact takes over from the rest
+//! ```
+//!
+//! All other contacts stick.
+
+use super::outcome::{Explanation, Region};
+use super::problem::ContactProblem;
+use super::sign::Scale;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
+
+/// beta, gamma and region of each contact; none for a singular Delassus matrix.
+pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanation> {
+    let rows = 2 * problem.contacts();
+    let mobility = &scale.mobility;
+    // A unit diagonal makes the factorization indifferent to units.
+    let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
+    let cholesky = scaled.cholesky()?;
+    let free = DVector::from_fn(rows, |i, _| problem.velocity_free()[i / 2][i % 2] / mobility[i]);
+    let taken = cholesky.solve(&free);
+    let inverse = cholesky.inverse();
+    let mut explanation = Explanation { beta: Vec::new(), gamma: Vec::new(), region: Vec::new() };
+    for contact in 0..problem.contacts() {
+        let (t, n) = (2 * contact, 2 * contact + 1);
+        let mass_tt = inverse[(t, t)] / (mobility[t] * mobility[t]);
+        let mass_nt = inverse[(n, t)] / (mobility[n] * mobility[t]);
+        let beta = (mass_nt / mass_tt).atan();
+        let gamma = (taken[n] / mobility[n]).atan2(taken[t] / mobility[t]);
+        explanation.beta.push(beta);
+        explanation.gamma.push(gamma);
+        explanation.region.push(region(beta, gamma));
+    }
+    Some(explanation)
+}
+
+/// The region of the paper's figure 10 for beta < 0, and its mirror image for beta > 0.
+fn region(beta: f64, gamma: f64) -> Region {
+    let (beta, gamma) = if beta <= 0.0 { (beta, gamma) } else { (-beta, mirrored(gamma)) };
+    if beta < gamma && gamma < 0.0 {
+        Region::E
+    } else if 0.0 < gamma && gamma < PI + beta {
+        Region::A
+    } else if PI + beta < gamma && gamma < PI {
+        Region::B
+    } else {
+        Region::C
+    }
+}
+
+/// The angle of the vector with its tangential part reversed, in -pi..pi.
+fn mirrored(gamma: f64) -> f64 {
+    if gamma >= 0.0 { PI - gamma } else { -PI - gamma }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::Friction;
+
+    /// The paper's body: m = 1, CoG at (-1, 1), j = 1; beta = -26.565 degrees.
+    fn explain(taken: [f64; 2]) -> (f64, f64, Region) {
+        // c = G X.
+        let before = [2.0 * taken[0] + taken[1], taken[0] + 2.0 * taken[1]];
+        let problem =
+            ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![Friction::Infinite], vec![0.0]).unwrap();
+        let mut scale = Scale::default();
+        scale.measure(&problem);
+        let found = explanation(&problem, &scale).unwrap();
+        (found.beta[0], found.gamma[0], found.region[0])
+    }
+
+    #[test]
+    fn the_paper_s_body_has_its_regions() {
+        let beta = (-0.5_f64).atan();
+        for (gamma, expected) in [
+            (beta / 2.0, Region::E),
+            (beta - 0.1, Region::C),
+            (1.0, Region::A),
+            (PI + beta - 0.01, Region::A),
+            (PI + beta + 0.01, Region::B),
+            (-PI + 0.1, Region::C),
+        ] {
+            let (found_beta, found_gamma, region) = explain([gamma.cos(), gamma.sin()]);
+            assert_eq!(region, expected, "gamma {gamma}");
+            // A few roundings of numbers of order one.
+            assert!((found_beta - beta).abs() < 1e-14 && (found_gamma - gamma).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_mirrored_body_has_the_mirrored_regions() {
+        for gamma in [-3.0, -1.5, -0.2, 0.2, 1.5, 2.9] {
+            assert_eq!(region(-0.4, gamma), region(0.4, mirrored(gamma)));
+        }
+        assert_eq!(region(0.4, 0.2), Region::B);
+    }
+}

@@ -1,0 +1,227 @@
+//! From numbers to signs: the slacks of a combination's inequalities and what they say.
+//!
+//! ```text
+//!     separate  xi_n > 0      stick  L_n >= 0,  a L_n -+ b L_t >= 0      slide+-  +-c_t > 0,  lambda >= 0
+//! ```
+//!
+//! This is the only place of the impact module that compares a number with zero. A [`Sign`] is told only where the
+//! number's error bound allows it.
+
+use super::enumerate::Leaf;
+use super::mode::{Friction, Mode};
+use super::outcome::Because;
+use super::problem::ContactProblem;
+use crate::planar::Vector;
+use crate::scalar::{Ball, Real};
+
+/// The sign of a number that may be known inexactly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sign {
+    /// Less than zero.
+    Negative,
+    /// Exactly zero.
+    Zero,
+    /// Greater than zero.
+    Positive,
+    /// Zero lies within the error.
+    Undecided,
+}
+
+impl Sign {
+    /// The sign of a number with an absolute error of at most `error`.
+    pub fn within(number: f64, error: f64) -> Self {
+        if number > error {
+            Sign::Positive
+        } else if number < -error {
+            Sign::Negative
+        } else if number == 0.0 && error == 0.0 {
+            Sign::Zero
+        } else {
+            Sign::Undecided
+        }
+    }
+}
+
+impl From<Ball> for Sign {
+    fn from(ball: Ball) -> Self {
+        Sign::within(ball.mid, ball.radius)
+    }
+}
+
+/// What an inequality is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SlackKind {
+    /// xi_n of a separating contact; must be positive.
+    Separation,
+    /// L_n of a closed contact.
+    Pressure,
+    /// a L_n - b |L_t| of a sticking contact, as two slacks.
+    Cone,
+    /// +-c_t of a sliding contact; must be positive.
+    Slip,
+    /// With infinite friction: -+L_t of a sliding contact.
+    Drag,
+}
+
+/// One inequality of a combination: `number >= 0`, or `> 0` where it is strict.
+#[derive(Debug, Clone, Copy)]
+pub struct Slack<T> {
+    /// The contact, from 0.
+    pub contact: usize,
+    /// What it is about.
+    pub kind: SlackKind,
+    /// Its value, with its unit.
+    pub number: T,
+}
+
+impl SlackKind {
+    /// Whether the strict modes exclude zero (a velocity of zero belongs to another list of modes).
+    pub fn is_strict(self) -> bool {
+        matches!(self, SlackKind::Separation | SlackKind::Slip)
+    }
+
+    /// What a negative slack means.
+    pub fn violation(self, contact: usize) -> Because {
+        match self {
+            SlackKind::Separation => Because::Penetrates { contact },
+            SlackKind::Pressure => Because::Pulled { contact },
+            SlackKind::Cone => Because::NeedsFriction { contact },
+            SlackKind::Slip => Because::SlidesBackward { contact },
+            SlackKind::Drag => Because::FrictionPushes { contact },
+        }
+    }
+}
+
+/// Calls `visitor` with every slack of the combination `modes` (frictionless contacts have their own mode here, not the
+/// leaf's common one). A frictionless contact that sticks has the equality c_t = 0, which is no slack.
+pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], friction: &[Friction], mut visitor: impl FnMut(Slack<T>)) {
+    for (contact, (&mode, &friction)) in modes.iter().zip(friction).enumerate() {
+        let [first, second] = leaf.numbers(contact);
+        let mut tell = |kind, number| visitor(Slack { contact, kind, number });
+        match mode {
+            Mode::Separate => tell(SlackKind::Separation, second),
+            Mode::Stick => {
+                tell(SlackKind::Pressure, second);
+                if let Friction::Finite(mu) = friction
+                    && mu > 0.0
+                {
+                    let reach = T::from_f64(mu) * second;
+                    tell(SlackKind::Cone, reach - first);
+                    tell(SlackKind::Cone, reach + first);
+                }
+            }
+            Mode::SlidePlus | Mode::SlideMinus => {
+                let kind = if friction == Friction::Infinite { SlackKind::Drag } else { SlackKind::Pressure };
+                tell(kind, second);
+                tell(SlackKind::Slip, if mode == Mode::SlidePlus { first } else { -first });
+            }
+        }
+    }
+}
+
+/// The problem's own magnitudes, which make slacks free of units.
+///
+/// With S = max |c_free| / sqrt(G_ii) \[sqrt J\]: a velocity counts c_i / (S sqrt(G_ii)), an impulse L_i sqrt(G_ii) / S, a
+/// cone (a L_n - b |L_t|) / (S sqrt(a^2 / G_nn + b^2 / G_tt)).
+#[derive(Debug, Clone, Default)]
+pub struct Scale {
+    /// S \[sqrt J\]; 1 where nothing moves.
+    pub speed: f64,
+    /// Nothing moves: c_free and every bounce are exactly zero.
+    pub at_rest: bool,
+    /// sqrt(G_ii) of every row \[1/sqrt(kg)\]; of a row that nothing moves the largest of the others.
+    pub mobility: Vec<f64>,
+}
+
+impl Scale {
+    /// Takes the magnitudes of a problem, reusing the memory.
+    pub fn measure(&mut self, problem: &ContactProblem) {
+        let rows = 2 * problem.contacts();
+        self.mobility.clear();
+        self.mobility.extend((0..rows).map(|row| problem.delassus(row, row).max(0.0).sqrt()));
+        let largest = self.mobility.iter().copied().fold(0.0, f64::max);
+        let fallback = if largest > 0.0 { largest } else { 1.0 };
+        for mobility in &mut self.mobility {
+            if *mobility <= 0.0 {
+                *mobility = fallback;
+            }
+        }
+        let entries = problem.velocity_free().iter().flatten().zip(&self.mobility);
+        self.speed = entries.map(|(c, mobility)| c.abs() / mobility).fold(0.0, f64::max);
+        let bounces = (0..problem.contacts()).map(|i| problem.bounce(i).abs() / self.mobility[2 * i + 1]);
+        if self.speed == 0.0 {
+            // An applied impulse may cancel c- exactly and leave the bounce alone.
+            self.speed = bounces.fold(0.0, f64::max);
+        }
+        self.at_rest = self.speed == 0.0;
+        if self.at_rest {
+            self.speed = 1.0;
+        }
+    }
+
+    /// What a slack of this kind is multiplied by to be free of units.
+    pub fn factor(&self, kind: SlackKind, contact: usize, friction: Friction) -> f64 {
+        let (d_t, d_n) = (self.mobility[2 * contact], self.mobility[2 * contact + 1]);
+        match kind {
+            SlackKind::Separation => 1.0 / (self.speed * d_n),
+            SlackKind::Slip => 1.0 / (self.speed * d_t),
+            SlackKind::Pressure => d_n / self.speed,
+            SlackKind::Drag => d_t / self.speed,
+            SlackKind::Cone => {
+                let (a, b) = friction.pair();
+                1.0 / (self.speed * (a / d_n).hypot(b / d_t))
+            }
+        }
+    }
+
+    /// Whether two lists of contact velocities differ by no more than the programs' tolerance.
+    pub fn same_velocity(&self, a: &[Vector<f64>], b: &[Vector<f64>]) -> bool {
+        let differences = a.iter().flatten().zip(b.iter().flatten()).zip(&self.mobility);
+        differences.map(|((a, b), mobility)| (a - b).abs() / (mobility * self.speed)).all(|far| far < 1e-8)
+    }
+
+    /// How far the scaled numbers of a leaf may be off by rounding: the elimination loses what its pivots are smaller
+    /// than the rows they came from. An estimate that errs on the safe side, not a proof.
+    pub fn rounding(&self, leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> f64 {
+        let mut growth: f64 = 1.0;
+        let mut largest: f64 = 1.0;
+        for (contact, (&mode, &pivot)) in leaf.modes.iter().zip(leaf.pivots).enumerate() {
+            let (d_t, d_n) = (self.mobility[2 * contact], self.mobility[2 * contact + 1]);
+            let friction = problem.friction()[contact];
+            if mode != Mode::Separate {
+                let (a, b) = friction.pair();
+                let size = if mode.slides() {
+                    d_n * (a * d_t + b * d_n)
+                } else if friction.is_zero() {
+                    d_n * d_n
+                } else {
+                    (d_t * d_n).powi(2)
+                };
+                growth *= (size / pivot.abs()).max(1.0);
+            }
+            let [l_t, l_n] = leaf.impulse(contact);
+            let [c_t, xi_n] = leaf.velocity(contact);
+            for scaled in [l_t * d_t, l_n * d_n, c_t / d_t, xi_n / d_n] {
+                largest = largest.max(scaled.abs() / self.speed);
+            }
+        }
+        let rounding = 16.0 * leaf.modes.len() as f64 * f64::EPSILON * growth * largest;
+        if rounding.is_nan() { f64::INFINITY } else { rounding }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sign_is_told_only_outside_the_error() {
+        assert_eq!(Sign::within(1e-3, 1e-4), Sign::Positive);
+        assert_eq!(Sign::within(-1e-3, 1e-4), Sign::Negative);
+        assert_eq!(Sign::within(1e-5, 1e-4), Sign::Undecided);
+        assert_eq!(Sign::within(0.0, 1e-4), Sign::Undecided);
+        assert_eq!(Sign::within(0.0, 0.0), Sign::Zero);
+        assert_eq!(Sign::within(f64::NAN, 0.0), Sign::Undecided);
+        assert_eq!(Sign::from(Ball { mid: 1.0, radius: f64::INFINITY }), Sign::Undecided);
+    }
+}
