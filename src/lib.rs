@@ -52,6 +52,9 @@
 pub mod error;
 pub mod scalar;
 pub mod planar;
+pub mod description;
+pub mod robot;
 pub mod impact;
 
 pub use error::{Error, Reason, Result};
+pub use robot::Robot;

@@ -1,0 +1,414 @@
+//! XML elements -> names, places, references, and a strict copy of all values for urdf-rs.
+//!
+//! The strict copy is URDF text that holds numbers, joint types and shapes alone: each checked, each element where urdf-rs
+//! wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
+//! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
+
+use super::xml::{self, Cursor};
+use super::{Ignored, JointKind, joint_place, link_place};
+use crate::error::{Location, Reason, Result, finite};
+use roxmltree::Node;
+use std::collections::HashMap;
+
+/// The most links that are accepted.
+const MOST_LINKS: usize = 500_000;
+/// The links or joints in one part of the strict copy; parts bound the memory that urdf-rs needs.
+const PART: usize = 1000;
+/// How a part of the strict copy begins.
+const OPENING: &str = "<robot name=\"\">";
+/// How a part of the strict copy ends.
+const CLOSING: &str = "</robot>";
+
+/// All that is known of a file before its values are read.
+pub(super) struct Draft {
+    pub(super) name: String,
+    pub(super) links: Vec<Link>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) ignored: Vec<Ignored>,
+    /// The strict copy, in parts that are URDF texts of their own: first all of `links`, then all of `joints`, in order.
+    pub(super) strict: Vec<String>,
+}
+
+/// A link without its values.
+pub(super) struct Link {
+    pub(super) name: String,
+    pub(super) location: Location,
+    pub(super) inertial: Stated,
+    pub(super) shapes: Vec<Shape>,
+}
+
+/// How much of an inertia the file states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stated {
+    /// No `<inertial>`.
+    Nothing,
+    /// `<inertial>` without `<inertia>`.
+    Mass,
+    /// Both.
+    Everything,
+}
+
+/// What urdf-rs is not asked about a shape.
+pub(super) enum Shape {
+    /// A shape whose sizes are all there is to know.
+    Simple,
+    /// A mesh and its file.
+    Mesh(String),
+    /// A shape of this tag, which URDF does not have; a mesh stands in its place in the strict copy.
+    Unknown(String),
+}
+
+/// A joint without its values.
+pub(super) struct Joint {
+    pub(super) name: String,
+    pub(super) location: Location,
+    pub(super) kind: JointKind,
+    pub(super) parent: usize,
+    pub(super) child: usize,
+    pub(super) mimic: Option<usize>,
+}
+
+/// Which numbers an attribute may hold.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Range {
+    Any,
+    NotNegative,
+}
+
+/// Reads and checks `text`; see [`super::Description::from_urdf`] for what is refused.
+pub(super) fn read(text: &str) -> Result<Draft> {
+    let document = xml::parse(text)?;
+    let robot = document.root_element();
+    require_urdf(robot)?;
+
+    let mut cursor = Cursor::new(text);
+    let (mut links, mut joints) = (Named::new("link"), Named::new("joint"));
+    let mut ignored = Tally::default();
+    for element in robot.children().filter(Node::is_element) {
+        let location = cursor.locate(element.range().start);
+        match tag(robot, element) {
+            Some("link") => links.push(element, location)?,
+            Some("joint") => joints.push(element, location)?,
+            Some("material") => {}
+            _ => ignored.count("robot", element)?,
+        }
+    }
+    if links.elements.is_empty() {
+        return Err(xml::refuse(robot, Reason::Missing("a <link>".into())));
+    }
+    if links.elements.len() > MOST_LINKS {
+        let reason = format!("a robot of more than {MOST_LINKS} links is not accepted");
+        return Err(xml::refuse(robot, Reason::Unsupported(reason)));
+    }
+
+    let mut strict = Vec::new();
+    let mut draft_links = Vec::with_capacity(links.elements.len());
+    for part in links.elements.chunks(PART) {
+        let mut copy = String::from(OPENING);
+        for &(name, element, location) in part {
+            let link = read_link(name, element, location, &mut ignored, &mut copy);
+            draft_links.push(link.map_err(|error| error.at(link_place(name)))?);
+        }
+        copy.push_str(CLOSING);
+        strict.push(copy);
+    }
+    let mut draft_joints = Vec::with_capacity(joints.elements.len());
+    for part in joints.elements.chunks(PART) {
+        let mut copy = String::from(OPENING);
+        for &(name, element, location) in part {
+            let joint = JointElement { name, element, location };
+            let joint = joint.read(&links, &joints, &mut ignored, &mut copy);
+            draft_joints.push(joint.map_err(|error| error.at(joint_place(name)))?);
+        }
+        copy.push_str(CLOSING);
+        strict.push(copy);
+    }
+
+    let name = robot.attribute("name").unwrap_or_default().to_owned();
+    Ok(Draft { name, links: draft_links, joints: draft_joints, ignored: ignored.kinds, strict })
+}
+
+fn require_urdf(root: Node<'_, '_>) -> Result<()> {
+    let tag = root.tag_name().name();
+    if tag == "robot" {
+        return Ok(());
+    }
+    let error = xml::refuse(root, Reason::Missing("<robot>".into())).at(format!("<{tag}>"));
+    Err(match tag {
+        "sdf" => error.hint("this is an SDF file; convert it to URDF"),
+        "mujoco" => error.hint("this is a MuJoCo model; convert it to URDF"),
+        _ => error.hint("the outermost element of a URDF file is <robot>"),
+    })
+}
+
+/// The tag of a child of `robot`, if it is of the same namespace.
+fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
+    (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
+}
+
+/// Elements of one kind by name.
+struct Named<'a, 'input> {
+    what: &'static str,
+    elements: Vec<(&'a str, Node<'a, 'input>, Location)>,
+    by_name: HashMap<&'a str, usize>,
+}
+
+impl<'a, 'input> Named<'a, 'input> {
+    fn new(what: &'static str) -> Self {
+        Self { what, elements: Vec::new(), by_name: HashMap::new() }
+    }
+
+    fn push(&mut self, element: Node<'a, 'input>, location: Location) -> Result<()> {
+        let name = xml::required_attribute(element, "name")?;
+        if self.by_name.insert(name, self.elements.len()).is_some() {
+            return Err(xml::refuse(element, Reason::Duplicate { what: self.what, name: name.into() }));
+        }
+        self.elements.push((name, element, location));
+        Ok(())
+    }
+
+    /// The index of the thing that `attribute` of `element` names.
+    fn find(&self, element: Node<'_, '_>, attribute: &str) -> Result<usize> {
+        let name = xml::required_attribute(element, attribute)?;
+        self.by_name.get(name).copied().ok_or_else(|| {
+            let error = xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() });
+            if name == "world" {
+                return error.hint("add <link name=\"world\"/> to the file");
+            }
+            error.did_you_mean(name, self.elements.iter().map(|(name, ..)| *name))
+        })
+    }
+}
+
+/// Counts elements that are passed over.
+#[derive(Default)]
+struct Tally {
+    kinds: Vec<Ignored>,
+    by_tag: HashMap<(&'static str, String), usize>,
+}
+
+impl Tally {
+    fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
+        if element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro")) {
+            let reason = format!("<xacro:{}> is not URDF", element.tag_name().name());
+            return Err(xml::refuse(element, Reason::Unsupported(reason))
+                .hint("expand the file first: xacro FILE > robot.urdf"));
+        }
+        let tag = element.tag_name().name();
+        let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
+        match self.kinds.get_mut(kind) {
+            Some(known) => known.count += 1,
+            None => self.kinds.push(Ignored { parent, tag: tag.into(), count: 1 }),
+        }
+        Ok(())
+    }
+}
+
+fn read_link(
+    name: &str,
+    element: Node<'_, '_>,
+    location: Location,
+    ignored: &mut Tally,
+    strict: &mut String,
+) -> Result<Link> {
+    strict.push_str("<link name=\"\">");
+    let inertial = match xml::child(element, "inertial")? {
+        Some(inertial) => read_inertial(inertial, strict)?,
+        None => Stated::Nothing,
+    };
+    let mut shapes = Vec::new();
+    for child in element.children().filter(Node::is_element) {
+        match tag(element, child) {
+            Some("collision") => shapes.push(read_collision(child, strict)?),
+            Some("inertial" | "visual") => {}
+            _ => ignored.count("link", child)?,
+        }
+    }
+    strict.push_str("</link>");
+    Ok(Link { name: name.into(), location, inertial, shapes })
+}
+
+fn read_inertial(element: Node<'_, '_>, strict: &mut String) -> Result<Stated> {
+    strict.push_str("<inertial>");
+    copy_origin(element, strict)?;
+    let mass = xml::required_child(element, "mass")?;
+    strict.push_str("<mass");
+    copy_required(mass, "value", 1, Range::NotNegative, strict)?;
+    strict.push_str("/><inertia");
+    let inertia = xml::child(element, "inertia")?;
+    for moment in ["ixx", "iyy", "izz"] {
+        match inertia {
+            Some(inertia) => copy_required(inertia, moment, 1, Range::Any, strict)?,
+            None => write_attribute(moment, "0", strict),
+        }
+    }
+    for product in ["ixy", "ixz", "iyz"] {
+        // A file that leaves out the products of inertia means that there are none.
+        let given = inertia.map_or(Ok(false), |inertia| copy(inertia, product, 1, Range::Any, strict))?;
+        if !given {
+            write_attribute(product, "0", strict);
+        }
+    }
+    strict.push_str("/></inertial>");
+    Ok(if inertia.is_some() { Stated::Everything } else { Stated::Mass })
+}
+
+fn read_collision(element: Node<'_, '_>, strict: &mut String) -> Result<Shape> {
+    strict.push_str("<collision>");
+    copy_origin(element, strict)?;
+    let geometry = xml::required_child(element, "geometry")?;
+    let mut shapes = geometry.children().filter(Node::is_element);
+    let shape = shapes.next().ok_or_else(|| xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into())))?;
+    if let Some(second) = shapes.next() {
+        let reason = format!("<{}> is a second shape in one <geometry>", second.tag_name().name());
+        return Err(xml::refuse(second, Reason::Inconsistent(reason)).hint("give each shape a <collision> of its own"));
+    }
+
+    strict.push_str("<geometry><");
+    let (tag, sizes): (&str, &[(&str, usize)]) = match shape.tag_name().name() {
+        "box" => ("box", &[("size", 3)]),
+        "sphere" => ("sphere", &[("radius", 1)]),
+        "cylinder" => ("cylinder", &[("radius", 1), ("length", 1)]),
+        "capsule" => ("capsule", &[("radius", 1), ("length", 1)]),
+        _ => ("mesh", &[]),
+    };
+    strict.push_str(tag);
+    for &(size, count) in sizes {
+        copy_required(shape, size, count, Range::NotNegative, strict)?;
+    }
+    let shape = match shape.tag_name().name() {
+        "mesh" => {
+            copy(shape, "scale", 3, Range::Any, strict)?;
+            Shape::Mesh(xml::required_attribute(shape, "filename")?.into())
+        }
+        unknown if tag == "mesh" => Shape::Unknown(unknown.into()),
+        _ => Shape::Simple,
+    };
+    if tag == "mesh" {
+        write_attribute("filename", "-", strict);
+    }
+    strict.push_str("/></geometry></collision>");
+    Ok(shape)
+}
+
+/// A joint's element, about to be read.
+struct JointElement<'a, 'input> {
+    name: &'a str,
+    element: Node<'a, 'input>,
+    location: Location,
+}
+
+impl JointElement<'_, '_> {
+    fn read(self, links: &Named, joints: &Named, ignored: &mut Tally, strict: &mut String) -> Result<Joint> {
+        let Self { name, element, location } = self;
+        let (word, kind) = joint_kind(element)?;
+        let parent = links.find(xml::required_child(element, "parent")?, "link")?;
+        let child = links.find(xml::required_child(element, "child")?, "link")?;
+
+        strict.push_str(&format!("<joint name=\"\" type=\"{word}\">"));
+        copy_origin(element, strict)?;
+        strict.push_str("<parent link=\"\"/><child link=\"\"/>");
+        if let Some(axis) = xml::child(element, "axis")? {
+            copy_axis(axis, kind, strict)?;
+        }
+        let mut mimic = None;
+        if let Some(follower) = xml::child(element, "mimic")? {
+            let master = joints.find(follower, "joint")?;
+            strict.push_str("<mimic joint=\"\"");
+            copy(follower, "multiplier", 1, Range::Any, strict)?;
+            copy(follower, "offset", 1, Range::Any, strict)?;
+            strict.push_str("/>");
+            mimic = Some(master);
+        }
+        strict.push_str("</joint>");
+
+        for child in element.children().filter(Node::is_element) {
+            match tag(element, child) {
+                Some("origin" | "parent" | "child" | "axis" | "mimic") => {}
+                _ => ignored.count("joint", child)?,
+            }
+        }
+        Ok(Joint { name: name.into(), location, kind, parent, child, mimic })
+    }
+}
+
+/// The joint's type and the file's word for it.
+fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
+    const KINDS: [(&str, JointKind); 7] = [
+        ("fixed", JointKind::Fixed),
+        ("revolute", JointKind::Revolute),
+        ("continuous", JointKind::Continuous),
+        ("prismatic", JointKind::Prismatic),
+        ("planar", JointKind::Planar),
+        ("floating", JointKind::Floating),
+        ("spherical", JointKind::Spherical),
+    ];
+    let word = xml::required_attribute(element, "type")?;
+    match KINDS.iter().find(|(known, _)| *known == word) {
+        Some(&(_, kind)) => Ok((word, kind)),
+        None => Err(xml::refuse(element, Reason::Unsupported(format!("unknown joint type \"{word}\"")))
+            .did_you_mean(word, KINDS.map(|(known, _)| known))),
+    }
+}
+
+fn copy_axis(axis: Node<'_, '_>, kind: JointKind, strict: &mut String) -> Result<()> {
+    let begin = strict.len();
+    strict.push_str("<axis");
+    if !copy(axis, "xyz", 3, Range::Any, strict)? {
+        // <axis/> means what no <axis> means.
+        strict.truncate(begin);
+        return Ok(());
+    }
+    strict.push_str("/>");
+    let components = axis.attribute("xyz").unwrap_or_default().split_whitespace();
+    if kind.has_axis() && components.flat_map(str::parse::<f64>).all(|component| component == 0.0) {
+        let reason = "xyz of <axis> is zero, so the joint has no direction".into();
+        return Err(xml::refuse(axis, Reason::Inconsistent(reason)));
+    }
+    Ok(())
+}
+
+fn copy_origin(parent: Node<'_, '_>, strict: &mut String) -> Result<()> {
+    let Some(origin) = xml::child(parent, "origin")? else { return Ok(()) };
+    if origin.has_attribute("quat_xyzw") {
+        let reason = "quat_xyzw of <origin> is not handled".into();
+        return Err(xml::refuse(origin, Reason::Unsupported(reason)).hint("give the turn as rpy"));
+    }
+    strict.push_str("<origin");
+    copy(origin, "xyz", 3, Range::Any, strict)?;
+    copy(origin, "rpy", 3, Range::Any, strict)?;
+    strict.push_str("/>");
+    Ok(())
+}
+
+fn copy_required(element: Node<'_, '_>, name: &str, count: usize, range: Range, strict: &mut String) -> Result<()> {
+    xml::required_attribute(element, name)?;
+    copy(element, name, count, range, strict).map(|_| ())
+}
+
+/// Copies an attribute that must hold `count` numbers of `range`; tells whether it is there.
+fn copy(element: Node<'_, '_>, name: &str, count: usize, range: Range, strict: &mut String) -> Result<bool> {
+    let Some(value) = element.attribute(name) else { return Ok(false) };
+    let what = || format!("{name} of <{}>", element.tag_name().name());
+    let numbers: Vec<&str> = value.split_whitespace().collect();
+    let parsed: Vec<f64> = numbers.iter().flat_map(|number| number.parse()).collect();
+    if numbers.len() != count || parsed.len() != count {
+        let expected = if count == 1 { "a number".into() } else { format!("{count} numbers") };
+        let error = xml::refuse(element, Reason::Syntax(format!("{} must be {expected}, not \"{value}\"", what())));
+        let is_xacro = value.contains("${");
+        return Err(if is_xacro { error.hint("expand the file first: xacro FILE > robot.urdf") } else { error });
+    }
+    for number in parsed {
+        finite(number, what).map_err(|error| xml::refuse(element, error.reason().clone()))?;
+        if range == Range::NotNegative && number < 0.0 {
+            let reason = Reason::OutOfRange { what: what(), allowed: "at least 0", value: number };
+            return Err(xml::refuse(element, reason));
+        }
+    }
+    write_attribute(name, &numbers.join(" "), strict);
+    Ok(true)
+}
+
+fn write_attribute(name: &str, value: &str, strict: &mut String) {
+    strict.push_str(&format!(" {name}=\"{value}\""));
+}

@@ -1,0 +1,350 @@
+//! URDF text -> checked description: links and joints as the file gives them, in three dimensions, forming one tree
+//! (the only user of urdf-rs and roxmltree).
+//!
+//! ```text
+//!     text --xml--> elements --draft--> names, places, strict copy --urdf-rs--> values --tree--> Description
+//! ```
+//!
+//! urdf-rs alone is too trusting and too strict: it drops what is no number out of a vector, takes a missing `<inertial>`
+//! for a mass of zero, and refuses a `<limit>` that nobody needs. So [`draft`] checks every element with its place in the
+//! text, writes what the analysis uses into a strict copy, and urdf-rs reads the values from that. Nothing here opens a
+//! file or starts a process, nothing recurses, and time and memory grow linearly with the text.
+
+mod draft;
+mod pose;
+mod tree;
+mod values;
+mod xml;
+
+pub use pose::{Matrix, Pose, apply, product};
+
+use crate::error::{Error, Location, Result};
+
+/// A robot as its file gives it: checked, and joined into one tree.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Description {
+    /// The robot's name; empty where the file gives none.
+    pub name: String,
+    /// The links in the file's order; at least one, no name twice.
+    pub links: Vec<Link>,
+    /// The joints in the file's order; no name twice, but a joint may be named like a link.
+    pub joints: Vec<Joint>,
+    /// The link that is no joint's child (an index into [`Description::links`]); all others hang on it.
+    pub root: usize,
+    /// Elements that were passed over, in the order in which they first occur.
+    pub ignored: Vec<Ignored>,
+}
+
+/// A link of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Link {
+    /// Its name.
+    pub name: String,
+    /// Its inertia; none where the file has no `<inertial>`, which is not the same as a mass of zero.
+    pub inertial: Option<Inertial>,
+    /// Its collision shapes in the file's order.
+    pub collisions: Vec<Collision>,
+    /// The joint it hangs on (an index into [`Description::joints`]); none for the root.
+    pub joint: Option<usize>,
+    /// Where its element begins.
+    pub location: Location,
+}
+
+/// Mass, CoG and inertia of a link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inertial {
+    /// The CoG and the axes of the inertia, in the link's frame.
+    pub origin: Pose,
+    /// Mass \[kg\], never negative.
+    pub mass: f64,
+    /// Inertia about the CoG in the axes of `origin`, symmetric \[kg m^2\]; none where the file has no `<inertia>`.
+    /// Finite, but otherwise as the file has it: many files give one that no body can have.
+    pub inertia: Option<Matrix>,
+}
+
+/// A collision shape of a link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collision {
+    /// The shape's frame in the link's frame.
+    pub origin: Pose,
+    /// The shape.
+    pub geometry: Geometry,
+}
+
+/// A shape about the origin of its own frame; all sizes are finite and none is negative.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Geometry {
+    /// A box.
+    Box {
+        /// Whole lengths of its sides along x, y and z \[m\].
+        size: [f64; 3],
+    },
+    /// A cylinder about the z axis.
+    Cylinder {
+        /// Radius \[m\].
+        radius: f64,
+        /// Length along z \[m\].
+        length: f64,
+    },
+    /// A cylinder about the z axis with a half ball on each end.
+    Capsule {
+        /// Radius \[m\].
+        radius: f64,
+        /// Length along z without the half balls \[m\].
+        length: f64,
+    },
+    /// A ball; a radius of 0 is a point.
+    Sphere {
+        /// Radius \[m\].
+        radius: f64,
+    },
+    /// A mesh, which is not read here.
+    Mesh {
+        /// The file's name as given.
+        file: String,
+        /// Factors along x, y and z; a negative one mirrors.
+        scale: [f64; 3],
+    },
+    /// A shape that URDF does not know.
+    Unknown {
+        /// The element's tag.
+        tag: String,
+    },
+}
+
+/// A joint of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// How it moves.
+    pub kind: JointKind,
+    /// The link that it hangs on (an index into [`Description::links`]).
+    pub parent: usize,
+    /// The link that it moves; its frame is the joint's.
+    pub child: usize,
+    /// The joint's frame in the parent link's frame, at coordinate zero.
+    pub origin: Pose,
+    /// Its axis in the joint's frame, of any length; not zero where `kind` has an axis. (1, 0, 0) where the file has none.
+    pub axis: [f64; 3],
+    /// The joint that it follows, if it does.
+    pub mimic: Option<Mimic>,
+    /// Where its element begins.
+    pub location: Location,
+}
+
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointKind {
+    /// Not at all.
+    Fixed,
+    /// It turns about its axis, between limits.
+    Revolute,
+    /// It turns about its axis without limits.
+    Continuous,
+    /// It slides along its axis.
+    Prismatic,
+    /// It slides and turns in the plane normal to its axis.
+    Planar,
+    /// It does not hold its child at all.
+    Floating,
+    /// It turns about every axis (a later addition to URDF).
+    Spherical,
+}
+
+impl JointKind {
+    /// True where the joint's motion depends on its axis.
+    pub fn has_axis(self) -> bool {
+        match self {
+            Self::Revolute | Self::Continuous | Self::Prismatic | Self::Planar => true,
+            Self::Fixed | Self::Floating | Self::Spherical => false,
+        }
+    }
+}
+
+/// A joint's coordinate given by another's: `multiplier` times that one plus `offset`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mimic {
+    /// The joint that is followed (an index into [`Description::joints`]).
+    pub joint: usize,
+    /// The factor, 1 where the file has none; in m, rad and their quotients.
+    pub multiplier: f64,
+    /// What is added, 0 where the file has none \[rad or m\].
+    pub offset: f64,
+}
+
+/// Elements of one kind that were passed over.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ignored {
+    /// The tag of the element that they stand in: `robot`, `link` or `joint`.
+    pub parent: &'static str,
+    /// Their tag.
+    pub tag: String,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Description {
+    /// Reads and checks the text of a URDF file.
+    ///
+    /// Elements that are no part of URDF's mechanics (`gazebo`, `transmission`, `limit`, ...) are passed over and counted
+    /// in [`Description::ignored`]; `visual` and `material` are passed over in silence. URDF elements are those of the
+    /// namespace of `<robot>`, whichever it is.
+    ///
+    /// # Errors
+    /// With line, column and name of the element: text that is no XML; a document type definition; elements nested deeper
+    /// than 200, with more than 100 attributes, or more than 500,000 links; another root than `<robot>`, or xacro elements;
+    /// no link; a name that is missing or given twice; a joint of unknown type or with an unknown link; anything but one
+    /// tree; text where a number belongs, or one that is not finite; a negative mass or size; a zero axis.
+    pub fn from_urdf(text: &str) -> Result<Self> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let draft = draft::read(text)?;
+        let mut description = values::join(draft)?;
+        description.root = tree::hang(&mut description.links, &description.joints)?;
+        Ok(description)
+    }
+}
+
+/// A link as errors name it.
+pub(crate) fn link_place(name: &str) -> String {
+    format!("link \"{name}\"")
+}
+
+/// A joint as errors name it.
+pub(crate) fn joint_place(name: &str) -> String {
+    format!("joint \"{name}\"")
+}
+
+impl Link {
+    /// `error` at this link.
+    pub(crate) fn refuse(&self, error: impl Into<Error>) -> Error {
+        error.into().at(link_place(&self.name)).on(self.location.line, self.location.column)
+    }
+}
+
+impl Joint {
+    /// `error` at this joint.
+    pub(crate) fn refuse(&self, error: impl Into<Error>) -> Error {
+        error.into().at(joint_place(&self.name)).on(self.location.line, self.location.column)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Reason;
+
+    fn read(body: &str) -> Description {
+        Description::from_urdf(&format!("<robot name=\"r\">{body}</robot>")).expect("a description")
+    }
+
+    #[test]
+    fn missing_inertial_is_not_zero_mass() {
+        let zero = "<inertial><mass value=\"0\"/><inertia ixx=\"0\" iyy=\"0\" izz=\"0\"/></inertial>";
+        assert_eq!(read("<link name=\"a\"/>").links[0].inertial, None);
+        let stated = read(&format!("<link name=\"a\">{zero}</link>"));
+        let inertial = stated.links[0].inertial.as_ref().expect("stated");
+        assert_eq!((inertial.mass, inertial.inertia), (0.0, Some([[0.0; 3]; 3])));
+        let mass = read("<link name=\"a\"><inertial><mass value=\"2\"/></inertial></link>");
+        assert_eq!(
+            mass.links[0].inertial.as_ref().map(|inertial| (inertial.mass, inertial.inertia)),
+            Some((2.0, None))
+        );
+    }
+
+    #[test]
+    fn all_values_arrive_in_their_places() {
+        let text = r#"
+            <link name="a">
+              <inertial>
+                <inertia ixx="1" ixy="2" ixz="3" iyy="4" iyz="5" izz="6"/>
+                <mass value=" 7.25 "/>
+                <origin rpy="0.1 0.2 0.3" xyz=" 1e-3  +.5
+                  -2. "/>
+              </inertial>
+              <collision><geometry><box size="1 2 3"/></geometry></collision>
+              <visual><geometry><sphere radius="nonsense"/></geometry></visual>
+              <collision><origin xyz="4 5 6"/><geometry><cylinder radius="0.5" length="2"/></geometry></collision>
+              <collision><geometry><capsule radius="0.5" length="2"/></geometry></collision>
+              <collision><geometry><sphere radius="0"/></geometry></collision>
+              <collision><geometry><mesh filename="a &amp; b.stl" scale="1 -1 1"/></geometry></collision>
+              <collision><geometry><plane normal="0 0 1"/></geometry></collision>
+            </link>
+            <joint name="j" type="prismatic"><child link="b"/><parent link="a"/><axis xyz="0 0 -3"/></joint>
+            <joint name="k" type="revolute"><parent link="b"/><child link="c"/><mimic joint="j" multiplier="-2"/></joint>
+            <link name="b"/><link name="c"/>"#;
+        let robot = read(text);
+        let link = &robot.links[0];
+        let origin = Pose { xyz: [1e-3, 0.5, -2.0], rpy: [0.1, 0.2, 0.3] };
+        let inertia = Some([[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]]);
+        assert_eq!(link.inertial, Some(Inertial { origin, mass: 7.25, inertia }));
+        let shapes: Vec<&Geometry> = link.collisions.iter().map(|collision| &collision.geometry).collect();
+        let expected = [
+            &Geometry::Box { size: [1.0, 2.0, 3.0] },
+            &Geometry::Cylinder { radius: 0.5, length: 2.0 },
+            &Geometry::Capsule { radius: 0.5, length: 2.0 },
+            &Geometry::Sphere { radius: 0.0 },
+            &Geometry::Mesh { file: "a & b.stl".into(), scale: [1.0, -1.0, 1.0] },
+            &Geometry::Unknown { tag: "plane".into() },
+        ];
+        assert_eq!(shapes, expected);
+        assert_eq!(link.collisions[1].origin, Pose { xyz: [4.0, 5.0, 6.0], rpy: [0.0; 3] });
+
+        let [j, k] = robot.joints.as_slice() else { panic!("two joints") };
+        assert_eq!((j.kind, j.parent, j.child, j.axis), (JointKind::Prismatic, 0, 1, [0.0, 0.0, -3.0]));
+        assert_eq!(
+            (k.axis, k.mimic.clone()),
+            ([1.0, 0.0, 0.0], Some(Mimic { joint: 0, multiplier: -2.0, offset: 0.0 }))
+        );
+        assert_eq!((robot.root, robot.links[0].joint, robot.links[2].joint), (0, None, Some(1)));
+    }
+
+    #[test]
+    fn untidy_files_are_read() {
+        // No name, a default namespace, CRLF, a byte order mark, a foreign tag inside, a limit without velocity.
+        let text = "\u{feff}<?xml version=\"1.0\"?>\r\n<robot xmlns=\"http://drake.mit.edu\" xmlns:d=\"d\" version=\"1.2\">\r\n\
+            <d:link name=\"not one\"/><gazebo reference=\"x\"><link name=\"nor this\"/></gazebo><gazebo/>\r\n\
+            <link name=\"Rad é 1\"><collision><geometry><sphere radius=\"0\"/></geometry></collision></link>\r\n\
+            <link name=\"j\"/><joint name=\"j\" type=\"revolute\"><parent link=\"Rad é 1\"/><child link=\"j\"/>\
+            <limit effort=\"x\"/></joint></robot>";
+        let robot = Description::from_urdf(text).expect("a description");
+        assert_eq!((robot.name.as_str(), robot.links[0].name.as_str(), robot.links.len()), ("", "Rad é 1", 2));
+        assert_eq!((robot.links[0].location, robot.joints[0].location.line), (Location { line: 4, column: 1 }, 5));
+        let ignored: Vec<_> =
+            robot.ignored.iter().map(|Ignored { parent, tag, count }| (*parent, tag.as_str(), *count)).collect();
+        assert_eq!(ignored, [("robot", "link", 1), ("robot", "gazebo", 2), ("joint", "limit", 1)]);
+    }
+
+    #[test]
+    fn a_chain_of_100_000_links_is_read_without_recursion() {
+        let link = |k: usize| format!("<link name=\"l{k}\"/>");
+        let joint = |k: usize| {
+            let parent = k - 1;
+            format!("<joint name=\"j{k}\" type=\"fixed\"><parent link=\"l{parent}\"/><child link=\"l{k}\"/></joint>")
+        };
+        let count = 100_000;
+        let text: String = (0..count).map(link).chain((1..count).map(joint)).collect();
+        let robot = read(&text);
+        assert_eq!((robot.links.len(), robot.joints.len(), robot.root), (count, count - 1, 0));
+    }
+
+    #[test]
+    fn hostile_texts_are_refused_in_bounded_time() {
+        let deep = format!("<robot>{}{}</robot>", "<a>".repeat(1_000_000), "</a>".repeat(1_000_000));
+        let reason = Description::from_urdf(&deep).expect_err("deep").reason().clone();
+        assert_eq!(reason, Reason::Unsupported("elements nested more than 200 deep are not accepted".into()));
+
+        let attributes: String = (0..1_000_000).map(|k| format!(" a{k} = 'x'")).collect();
+        let error = Description::from_urdf(&format!("<robot>\n <link{attributes}/></robot>")).expect_err("wide");
+        assert_eq!(error.to_string(), "2:2: an element with more than 100 attributes is not accepted");
+
+        let laughs = "<!DOCTYPE robot [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;\">]>\n<robot>&b;</robot>";
+        let error = Description::from_urdf(laughs).expect_err("entities");
+        assert_eq!(error.to_string(), "1:1: a document type definition is not accepted");
+
+        let links: String = (0..500_001).map(|k| format!("<link name=\"{k}\"/>")).collect();
+        let error = Description::from_urdf(&format!("<robot>{links}</robot>")).expect_err("many");
+        assert_eq!(error.to_string(), "1:1: a robot of more than 500000 links is not accepted");
+    }
+}

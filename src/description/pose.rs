@@ -1,0 +1,82 @@
+//! Poses in three dimensions, as URDF writes them.
+
+/// A 3 x 3 matrix, row by row.
+pub type Matrix = [[f64; 3]; 3];
+
+/// A frame in another one: moved by `xyz` and turned by `rpy`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pose {
+    /// The frame's origin in the outer frame \[m\].
+    pub xyz: [f64; 3],
+    /// Roll, pitch and yaw \[rad\]: turns about the outer frame's fixed x, y and z axes, in this order.
+    pub rpy: [f64; 3],
+}
+
+impl Pose {
+    /// The matrix that takes vectors of this frame into the outer frame's axes: Rz(yaw) Ry(pitch) Rx(roll).
+    ///
+    /// Angles of zero give exact ones and zeros, and the digits are the same on every platform.
+    pub fn rotation(&self) -> Matrix {
+        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.map(libm::sincos);
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            // 0 - sp and not -sp, which would be a negative zero.
+            [0.0 - sp, cp * sr, cp * cr],
+        ]
+    }
+}
+
+/// `matrix` times `vector`; the identity keeps every digit.
+pub fn apply(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
+    matrix.map(|row| row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2])
+}
+
+/// `a` times `b`; the identity keeps every digit.
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    a.map(|row| [0, 1, 2].map(|column| row[0] * b[0][column] + row[1] * b[1][column] + row[2] * b[2][column]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    fn assert_close(a: [f64; 3], b: [f64; 3]) {
+        for (a, b) in a.into_iter().zip(b) {
+            assert!((a - b).abs() < 4.0 * f64::EPSILON, "{a} is not {b}");
+        }
+    }
+
+    #[test]
+    fn no_turn_is_the_identity_bit_for_bit() {
+        let turn = Pose::default().rotation();
+        assert_eq!(turn.map(|row| row.map(f64::to_bits)), IDENTITY.map(|row| row.map(f64::to_bits)));
+        let vector = [0.1, -1e-300, 0.073265];
+        assert_eq!(apply(&turn, vector).map(f64::to_bits), vector.map(f64::to_bits));
+        let other = Pose { xyz: [0.0; 3], rpy: [0.3, -1.0, 2.0] }.rotation();
+        assert_eq!(product(&turn, &other), other);
+        assert_eq!(product(&other, &turn), other);
+    }
+
+    #[test]
+    fn each_angle_turns_about_its_own_axis_by_the_right_hand() {
+        let turn = |rpy| Pose { xyz: [0.0; 3], rpy }.rotation();
+        assert_close(apply(&turn([FRAC_PI_2, 0.0, 0.0]), [0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
+        assert_close(apply(&turn([0.0, FRAC_PI_2, 0.0]), [0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]);
+        assert_close(apply(&turn([0.0, 0.0, FRAC_PI_2]), [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn roll_comes_first_and_yaw_last_about_fixed_axes() {
+        let [roll, pitch, yaw] = [0.4, -0.7, 1.9];
+        let single = |rpy| Pose { xyz: [0.0; 3], rpy }.rotation();
+        let by_parts =
+            product(&single([0.0, 0.0, yaw]), &product(&single([0.0, pitch, 0.0]), &single([roll, 0.0, 0.0])));
+        for (row, expected) in single([roll, pitch, yaw]).into_iter().zip(by_parts) {
+            assert_close(row, expected);
+        }
+    }
+}

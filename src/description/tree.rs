@@ -1,0 +1,67 @@
+//! Joints -> one tree of links.
+
+use super::{Joint, Link};
+use crate::error::{Reason, Result};
+
+/// Notes in each link the joint that it hangs on, and returns the root.
+///
+/// Linear in links and joints.
+///
+/// # Errors
+/// A link with two parents, more than one root, or a cycle.
+pub(super) fn hang(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
+    for (index, joint) in joints.iter().enumerate() {
+        if let Some(first) = links[joint.child].joint {
+            let reason = format!(
+                "link \"{}\" would have two parents: it is the child of joint \"{}\" too",
+                links[joint.child].name, joints[first].name
+            );
+            return Err(joint.refuse(Reason::NotATree(reason)).hint("cut the loop open: a link hangs on one joint"));
+        }
+        links[joint.child].joint = Some(index);
+    }
+
+    let mut roots = (0..links.len()).filter(|&link| links[link].joint.is_none());
+    let root = roots.next();
+    if let (Some(root), Some(other)) = (root, roots.next()) {
+        let reason = format!("links \"{}\" and \"{}\" are both roots", links[root].name, links[other].name);
+        return Err(links[other].refuse(Reason::NotATree(reason)).hint("make one of them the child of a joint"));
+    }
+
+    match (root, first_in_cycle(links, joints)) {
+        (Some(root), None) => Ok(root),
+        (_, Some(link)) => Err(cycle(links, joints, link)),
+        // Without a root every link hangs on a joint, so there is a cycle; without links there was nothing to join.
+        (None, None) => Err(Reason::Missing("a <link>".into()).into()),
+    }
+}
+
+/// A link whose line of ancestors comes back to it, if there is one.
+fn first_in_cycle(links: &[Link], joints: &[Joint]) -> Option<usize> {
+    // The walk toward the root in which a link was first met, counted from 1.
+    let mut met = vec![0; links.len()];
+    for start in 0..links.len() {
+        let (walk, mut at) = (start + 1, start);
+        while met[at] == 0 {
+            met[at] = walk;
+            match links[at].joint {
+                Some(joint) => at = joints[joint].parent,
+                None => break,
+            }
+        }
+        if met[at] == walk && links[at].joint.is_some() {
+            return Some(at);
+        }
+    }
+    None
+}
+
+/// The refusal of the cycle through `link`.
+fn cycle(links: &[Link], joints: &[Joint], link: usize) -> crate::error::Error {
+    let name = &links[link].name;
+    let reason = Reason::NotATree(format!("link \"{name}\" hangs on itself: the joints form a cycle"));
+    match links[link].joint {
+        Some(joint) => joints[joint].refuse(reason).hint("cut the cycle open: one link must be no joint's child"),
+        None => links[link].refuse(reason),
+    }
+}

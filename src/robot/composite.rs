@@ -1,0 +1,145 @@
+//! Inertias of welded links -> that of their body.
+//!
+//! ```text
+//!     m = sum m_i,   c = sum m_i c_i / m,   I = sum (n' R_i I_i R_i' n + m_i |c_i - c|^2)
+//! ```
+//!
+//! with distances in the plane alone and the normal n = +y (Featherstone 2008, sections 2.8 and 2.13).
+
+use crate::description::Matrix;
+use crate::error::Reason;
+use crate::planar::{Vector, difference, dot};
+
+/// Below this share of its terms a negative moment is rounding of a turned inertia.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The inertia that a link brings to its body, in the body's frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Part {
+    /// Mass \[kg\].
+    mass: f64,
+    /// CoG \[m\].
+    com: Vector<f64>,
+    /// Moment about the normal through the CoG \[kg m^2\].
+    moment: f64,
+}
+
+impl Part {
+    /// The part with the three-dimensional `inertia` about its CoG, whose axes are the columns of `rotation` in the body's
+    /// frame; a point mass without one.
+    ///
+    /// # Errors
+    /// A negative moment about the normal.
+    pub(super) fn projected(
+        mass: f64,
+        com: Vector<f64>,
+        inertia: Option<&Matrix>,
+        rotation: &Matrix,
+    ) -> Result<Self, Reason> {
+        // The middle row of R is n' R.
+        let normal = rotation[1];
+        let (mut moment, mut size) = (0.0, 0.0);
+        for (row, left) in inertia.into_iter().flatten().zip(normal) {
+            for (entry, right) in row.iter().zip(normal) {
+                let term = left * entry * right;
+                moment += term;
+                size += term.abs();
+            }
+        }
+        if moment < -ROUNDING * size {
+            let what = "the moment of inertia about the plane's normal".into();
+            return Err(Reason::OutOfRange { what, allowed: "at least 0", value: moment });
+        }
+        Ok(Self { mass, com, moment: f64::max(moment, 0.0) })
+    }
+}
+
+/// Mass, CoG and moment about the CoG of all `parts` as one; a single one with mass keeps its digits.
+pub(super) fn composite(parts: &[Part]) -> (f64, Vector<f64>, f64) {
+    let mass = parts.iter().map(|part| part.mass).sum();
+    let mut massive = parts.iter().filter(|part| part.mass > 0.0);
+    let com = match (massive.next(), massive.next()) {
+        (None, _) => [0.0; 2],
+        (Some(single), None) => single.com,
+        _ => [0, 1].map(|k| parts.iter().map(|part| part.mass * part.com[k]).sum::<f64>() / mass),
+    };
+    let moment = parts.iter().map(|part| {
+        let arm = difference(part.com, com);
+        if part.mass > 0.0 { part.moment + part.mass * dot(arm, arm) } else { part.moment }
+    });
+    (mass, com, moment.sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::Pose;
+
+    fn part(mass: f64, com: Vector<f64>, moment: f64) -> Part {
+        Part { mass, com, moment }
+    }
+
+    fn projected(inertia: Matrix, rpy: [f64; 3]) -> Result<f64, Reason> {
+        let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
+        Part::projected(1.0, [0.0; 2], Some(&inertia), &rotation).map(|part| part.moment)
+    }
+
+    const INERTIA: Matrix = [[0.3, 0.01, -0.02], [0.01, 0.1, 0.03], [-0.02, 0.03, 0.25]];
+
+    #[test]
+    fn unturned_inertia_gives_its_middle_entry_bit_for_bit() {
+        assert_eq!(projected(INERTIA, [0.0; 3]), Ok(0.1));
+    }
+
+    #[test]
+    fn turned_inertia_gives_the_moment_about_the_normal() {
+        // Rolled by a: n in the link's axes is (0, cos a, -sin a).
+        let (sin, cos) = libm::sincos(0.4);
+        let expected = 0.1 * cos * cos - 2.0 * 0.03 * cos * sin + 0.25 * sin * sin;
+        assert!((projected(INERTIA, [0.4, 0.0, 0.0]).expect("positive") - expected).abs() < 1e-16);
+        // Yawed by a: n is (sin a, cos a, 0). Pitch does not move n.
+        let expected = 0.3 * sin * sin + 2.0 * 0.01 * sin * cos + 0.1 * cos * cos;
+        assert!((projected(INERTIA, [0.0, 0.0, 0.4]).expect("positive") - expected).abs() < 1e-16);
+        assert_eq!(projected(INERTIA, [0.0, 0.4, 0.0]), Ok(0.1));
+    }
+
+    #[test]
+    fn negative_moment_about_the_normal_is_refused_but_not_one_beside_it() {
+        let inertia = |ixx, iyy| [[ixx, 0.0, 0.0], [0.0, iyy, 0.0], [0.0, 0.0, 0.0]];
+        assert_eq!(projected(inertia(-1.0, 0.5), [0.0; 3]), Ok(0.5));
+        let refused = projected(inertia(0.5, -1e-30), [0.0; 3]).expect_err("negative");
+        assert_eq!(
+            refused.to_string(),
+            "the moment of inertia about the plane's normal must be at least 0, not -0.000000000000000000000000000001"
+        );
+    }
+
+    #[test]
+    fn a_thin_rod_along_the_normal_has_no_moment_and_is_no_error() {
+        // (1, 1, 1) / sqrt(3) is this rod's direction; the turn takes it to the normal, and rounding may leave less than 0.
+        let third = 1.0 / 3.0;
+        let rod = [[2.0 * third, -third, -third], [-third, 2.0 * third, -third], [-third, -third, 2.0 * third]];
+        let length = 3.0_f64.sqrt().recip();
+        let rotation = [[0.0; 3], [length; 3], [0.0; 3]];
+        let part = Part::projected(1.0, [0.0; 2], Some(&rod), &rotation).expect("no error");
+        assert!((0.0..1e-15).contains(&part.moment));
+    }
+
+    #[test]
+    fn welded_masses_add_by_steiner() {
+        // 1 kg at x = 0 and 3 kg at x = 4: CoG at 3, distances 3 and 1.
+        let whole = composite(&[part(1.0, [0.0, 2.0], 0.5), part(3.0, [4.0, 2.0], 0.25)]);
+        assert_eq!(whole, (4.0, [3.0, 2.0], 0.5 + 9.0 + 0.25 + 3.0));
+    }
+
+    #[test]
+    fn a_single_massive_part_keeps_its_digits_beside_massless_ones() {
+        let whole = composite(&[
+            part(0.0, [7.0, 7.0], 0.0),
+            part(0.7887, [0.1, -0.019399], 0.00221),
+            part(0.0, [1.0, 0.0], 0.5),
+        ]);
+        assert_eq!(whole, (0.7887, [0.1, -0.019399], 0.00221 + 0.5));
+        assert_eq!(composite(&[]), (0.0, [0.0; 2], 0.0));
+    }
+}

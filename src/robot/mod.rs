@@ -1,0 +1,180 @@
+//! The reduced robot: an immutable planar floating-base tree of rigid bodies.
+//!
+//! ```text
+//!     Description (links and joints of the file, 3-D) --reduce--> Robot (bodies and joints, planar)
+//! ```
+//!
+//! Links joined by fixed joints are one [`Body`]. A body's frame has its origin at its joint's origin (the root body: at
+//! the root link's origin) and, at zero joint coordinates, the axes of the root link; so no constant rotation stands
+//! between a body and its parent, and where the file turns nothing its numbers are kept bit for bit. Bodies are numbered so
+//! that a parent comes before its children; joints, and with them the coordinates, keep the file's order.
+
+mod composite;
+mod outline;
+mod reduce;
+
+use crate::planar::Vector;
+use parry2d::shape::SharedShape;
+
+/// How the root body is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Base {
+    /// It moves freely: q = [x, z, pitch, joints...].
+    Floating,
+    /// It is bolted to the world: q = [joints...].
+    Fixed,
+}
+
+/// A robot reduced to its plane. It never changes; threads share it.
+#[derive(Debug, Clone)]
+pub struct Robot {
+    /// The robot's name in the file.
+    pub name: String,
+    /// How the root is held.
+    pub base: Base,
+    /// Rigid bodies; a parent comes before its children, the root is 0.
+    pub bodies: Vec<Body>,
+    /// Moving joints in the file's order: joint `k` is coordinate `base_dofs + k`.
+    pub joints: Vec<Joint>,
+    /// All links of the file, in its order.
+    pub links: Vec<Link>,
+    /// What of the file does not enter the analysis, and why.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// Links that no moving joint separates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// The link that carries the body's frame.
+    pub name: String,
+    /// The joint that moves the body (an index into [`Robot::joints`]); none for the root.
+    pub joint: Option<usize>,
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// CoG in the body's frame \[m\].
+    pub com: Vector<f64>,
+    /// Moment of inertia about the plane's normal through the CoG \[kg m^2\].
+    pub moment: f64,
+}
+
+/// A joint that moves in the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Name in the file.
+    pub name: String,
+    /// The body it hangs on (an index into [`Robot::bodies`]).
+    pub parent: usize,
+    /// The body it moves.
+    pub child: usize,
+    /// Its origin in the parent body's frame, at coordinate zero \[m\].
+    pub origin: Vector<f64>,
+    /// Its motion.
+    pub axis: Axis,
+}
+
+/// The motion of a joint for a coordinate that grows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Axis {
+    /// It turns the child about the plane's normal; `sign` is +1 where the URDF's axis points along the normal, -1 where
+    /// against it.
+    Turn {
+        /// +1 or -1.
+        sign: f64,
+    },
+    /// It moves the child along a unit vector of the parent body's frame.
+    Slide {
+        /// The direction, of length one.
+        direction: Vector<f64>,
+    },
+}
+
+/// A link of the file and its place in the reduced tree.
+#[derive(Debug, Clone)]
+pub struct Link {
+    /// Name in the file.
+    pub name: String,
+    /// The body it belongs to.
+    pub body: usize,
+    /// The plane's two rows of the link's pose in the body's frame: `[rotation row (3), translation]` for forward and up.
+    pub pose: [[f64; 4]; 2],
+    /// Collision shapes in the body's frame.
+    pub shapes: Vec<FootShape>,
+    /// True where the file gives the link an `<inertial>`.
+    pub has_inertial: bool,
+}
+
+/// A collision shape in the plane, rigid in its body's frame.
+#[derive(Debug, Clone)]
+pub enum FootShape {
+    /// A disc: it touches at centre - radius * normal.
+    Disc {
+        /// Centre in the body's frame \[m\].
+        centre: Vector<f64>,
+        /// Radius \[m\], 0 for a point.
+        radius: f64,
+    },
+    /// A convex polygon with its corners in the body's frame \[m\]; a flat shape is a line and has two.
+    Polygon {
+        /// The corners, counter-clockwise seen with forward to the right and up upward.
+        corners: Vec<Vector<f64>>,
+        /// The same polygon (of two corners: the segment) for parry.
+        shape: SharedShape,
+    },
+}
+
+/// Something of the file that does not enter the analysis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// What, as in `joint "left_ankle"`.
+    pub what: String,
+    /// Why, as in `fixed: welded into left_shank`.
+    pub why: String,
+}
+
+impl Link {
+    /// A point of the link's own 3-D frame in its body's planar frame \[m\]; the component along the normal is dropped.
+    pub fn point(&self, offset: [f64; 3]) -> Vector<f64> {
+        self.pose.map(|[a, b, c, d]| {
+            // Unturned links keep the given digits: adding a product with zero changes nothing.
+            a * offset[0] + b * offset[1] + c * offset[2] + d
+        })
+    }
+}
+
+impl Robot {
+    /// Number of coordinates of the base: 3 if it floats, else 0.
+    pub fn base_dofs(&self) -> usize {
+        match self.base {
+            Base::Floating => 3,
+            Base::Fixed => 0,
+        }
+    }
+
+    /// Number of coordinates.
+    pub fn dofs(&self) -> usize {
+        self.base_dofs() + self.joints.len()
+    }
+
+    /// Names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the file's order.
+    pub fn coordinates(&self) -> impl Iterator<Item = &str> {
+        ["x", "z", "pitch"]
+            .into_iter()
+            .take(self.base_dofs())
+            .chain(self.joints.iter().map(|joint| joint.name.as_str()))
+    }
+
+    /// Total mass \[kg\].
+    pub fn mass(&self) -> f64 {
+        self.bodies.iter().map(|body| body.mass).sum()
+    }
+
+    /// The link of that name.
+    pub fn link(&self, name: &str) -> Option<usize> {
+        self.links.iter().position(|link| link.name == name)
+    }
+
+    /// The moving joint of that name.
+    pub fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+}

@@ -1,0 +1,615 @@
+//! URDF text -> robot: what is read, to which digits, what is welded, skipped or refused, and with which words.
+//!
+//! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
+
+use heelstrike::description::Description;
+use heelstrike::robot::{Axis, Base, FootShape, LeftOut, Robot};
+use serde::Deserialize;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+fn model(name: &str) -> Robot {
+    let path = format!("{}/urdf/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
+    load(&std::fs::read_to_string(path).expect("a file"))
+}
+
+fn load(text: &str) -> Robot {
+    Robot::from_urdf(text).expect("a robot")
+}
+
+/// A robot of these elements, on the line after its first tag.
+fn robot(body: &str) -> String {
+    format!("<robot name=\"r\">\n{body}\n</robot>")
+}
+
+fn inertial(mass: f64, com: &str, iyy: f64) -> String {
+    format!(
+        "<inertial><origin xyz=\"{com}\"/><mass value=\"{mass}\"/><inertia ixx=\"1\" iyy=\"{iyy}\" izz=\"1\"/></inertial>"
+    )
+}
+
+/// A massive link `a`, this joint element's inside, and a massive link `b`.
+fn two_links(kind: &str, joint: &str) -> String {
+    let inertial = inertial(1.0, "0 0 0", 1.0);
+    robot(&format!(
+        "<link name=\"a\">{inertial}</link>\n<link name=\"b\">{inertial}</link>\n\
+         <joint name=\"j\" type=\"{kind}\"><parent link=\"a\"/><child link=\"b\"/>{joint}</joint>"
+    ))
+}
+
+fn left_out(what: &str, why: &str) -> LeftOut {
+    LeftOut { what: what.into(), why: why.into() }
+}
+
+// The models of the paper.
+
+#[test]
+fn ramone_keeps_the_digits_of_table_1() {
+    for (name, shank) in [("ramone", -0.165235), ("ramone_paper", -0.073265)] {
+        let ramone = model(name);
+        assert_eq!(ramone.base, Base::Floating);
+        assert_eq!(ramone.name, name);
+        let coordinates: Vec<&str> = ramone.coordinates().collect();
+        assert_eq!(coordinates, ["x", "z", "pitch", "left_hip", "left_knee", "right_hip", "right_knee"]);
+
+        let bodies: Vec<_> =
+            ramone.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com, body.moment)).collect();
+        let thigh = (0.7887, [0.0, -0.019399], 0.00221);
+        let expected = [
+            ("torso", 7.9026, [0.0, 0.0], 0.0800),
+            ("left_thigh", thigh.0, thigh.1, thigh.2),
+            ("left_shank", 0.510, [0.0, shank], 0.00652),
+            ("right_thigh", thigh.0, thigh.1, thigh.2),
+            ("right_shank", 0.510, [0.0, shank], 0.00652),
+        ];
+        assert_eq!(bodies, expected);
+
+        let joints: Vec<_> = ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin)).collect();
+        let (hip, knee) = ([0.0, -0.137675], [0.0, -0.200]);
+        assert_eq!(joints, [(0, 1, hip), (1, 2, knee), (0, 3, hip), (3, 4, knee)]);
+        assert!(ramone.joints.iter().all(|joint| joint.axis == Axis::Turn { sign: -1.0 }));
+
+        for foot in ["left_foot", "right_foot"] {
+            let foot = &ramone.links[ramone.link(foot).expect("a foot")];
+            assert!(!foot.has_inertial);
+            let [FootShape::Disc { centre, radius }] = foot.shapes[..] else { panic!("one disc") };
+            assert_eq!((centre, radius), ([0.0, -0.2385], 0.02815));
+            assert_eq!(foot.point([0.001, 0.5, 0.0]), [0.001, -0.2385]);
+        }
+        assert_eq!(ramone.links.iter().filter(|link| !link.shapes.is_empty()).count(), 2);
+        let welds = [
+            left_out("joint \"left_ankle\"", "fixed: welded into left_shank"),
+            left_out("joint \"right_ankle\"", "fixed: welded into right_shank"),
+        ];
+        assert_eq!(ramone.left_out, welds);
+    }
+}
+
+#[test]
+fn walkers_hang_from_the_hip_with_point_feet() {
+    for (name, along, moment) in [("minimalistic", 0.5, 0.0), ("pdw", 0.4, 0.04)] {
+        let walker = model(name);
+        assert_eq!(walker.coordinates().collect::<Vec<_>>(), ["x", "z", "pitch", "hip"]);
+        assert_eq!((walker.bodies[0].name.as_str(), walker.bodies[1].name.as_str()), ("left_leg", "right_leg"));
+        for body in &walker.bodies {
+            assert_eq!((body.mass, body.com, body.moment), (1.0, [0.0, -along], moment));
+        }
+        assert_eq!((walker.joints[0].origin, walker.joints[0].axis), ([0.0, 0.0], Axis::Turn { sign: -1.0 }));
+        for link in &walker.links {
+            let [FootShape::Disc { centre, radius }] = link.shapes[..] else { panic!("one point") };
+            assert_eq!((centre, radius), ([0.0, -1.0], 0.0));
+        }
+        assert_eq!(walker.left_out, []);
+    }
+}
+
+#[test]
+fn block_is_one_body_on_one_point() {
+    let block = model("block");
+    assert_eq!((block.bodies.len(), block.dofs()), (1, 3));
+    assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, [-1.0, 1.0], 1.0));
+    let [FootShape::Disc { centre, radius }] = block.links[0].shapes[..] else { panic!("one point") };
+    assert_eq!((centre, radius), ([0.0, 0.0], 0.0));
+}
+
+// Robots of others.
+
+#[derive(Deserialize)]
+struct Reference {
+    variants: Variants,
+}
+
+#[derive(Deserialize)]
+struct Variants {
+    default: Model,
+}
+
+#[derive(Deserialize)]
+struct Model {
+    coordinates: Vec<String>,
+    joints: Vec<ReferenceJoint>,
+    bodies: Vec<ReferenceBody>,
+    total_mass: f64,
+}
+
+#[derive(Deserialize)]
+struct ReferenceJoint {
+    name: String,
+    parent_body: usize,
+    child_body: usize,
+    origin_zero: [f64; 2],
+    axis_sign_y: f64,
+}
+
+#[derive(Deserialize)]
+struct ReferenceBody {
+    link: String,
+    merged_links: Vec<String>,
+    mass: f64,
+    com_zero: [f64; 2],
+    #[serde(rename = "Iyy_com")]
+    moment: f64,
+}
+
+#[test]
+fn robots_of_others_equal_the_values_of_pinocchio() {
+    for (folder, file) in [("rabbit", "five_link_walker"), ("upkie", "upkie"), ("solo8", "solo")] {
+        let read = |name: String| {
+            let path = format!("{}/tests/data/robots/{folder}/{name}", env!("CARGO_MANIFEST_DIR"));
+            std::fs::read_to_string(path).expect("a file")
+        };
+        let robot = load(&read(format!("{file}.urdf")));
+        let reference: Reference = serde_json::from_str(&read("reference.json".into())).expect("a reference");
+        let expected = reference.variants.default;
+        assert_eq!(robot.coordinates().collect::<Vec<_>>(), expected.coordinates, "{folder}");
+        assert_eq!(robot.bodies.len(), expected.bodies.len(), "{folder}");
+        close(robot.mass(), expected.total_mass);
+
+        // Body origins at zero in the root's frame.
+        let mut origins = vec![[0.0; 2]; robot.bodies.len()];
+        for (index, body) in robot.bodies.iter().enumerate().skip(1) {
+            let joint = &robot.joints[body.joint.expect("all but the root have a joint")];
+            assert_eq!(joint.child, index);
+            origins[index] = [0, 1].map(|k| origins[joint.parent][k] + joint.origin[k]);
+        }
+
+        let body = |name: &str| robot.bodies.iter().position(|body| body.name == name).expect("the body");
+        for expected in &expected.bodies {
+            let index = body(&expected.link);
+            let reduced = &robot.bodies[index];
+            close(reduced.mass, expected.mass);
+            close(reduced.moment, expected.moment);
+            for k in [0, 1] {
+                close(origins[index][k] + reduced.com[k], expected.com_zero[k]);
+            }
+            for link in &expected.merged_links {
+                assert_eq!(robot.links[robot.link(link).expect("the link")].body, index, "{link}");
+            }
+        }
+        for (joint, reference) in robot.joints.iter().zip(&expected.joints) {
+            assert_eq!(joint.name, reference.name);
+            assert_eq!(joint.parent, body(&expected.bodies[reference.parent_body].link));
+            assert_eq!(joint.child, body(&expected.bodies[reference.child_body].link));
+            assert_eq!(joint.axis, Axis::Turn { sign: reference.axis_sign_y });
+            for k in [0, 1] {
+                close(origins[joint.child][k], reference.origin_zero[k]);
+            }
+        }
+    }
+}
+
+/// Equal to 1e-12: all lengths are below 1 m and all masses below 50 kg.
+fn close(value: f64, reference: f64) {
+    assert!((value - reference).abs() <= 1e-12 * reference.abs().max(1.0), "{value} is not {reference}");
+}
+
+#[test]
+fn wheels_of_upkie_are_discs_and_meshes_of_solo_are_told() {
+    let upkie = load(include_str!("data/robots/upkie/upkie.urdf"));
+    let tire = &upkie.links[upkie.link("left_wheel_tire").expect("a tire")];
+    let [FootShape::Disc { radius, .. }] = tire.shapes[..] else { panic!("one disc") };
+    assert_eq!(radius, 0.05);
+
+    let solo = load(include_str!("data/robots/solo8/solo.urdf"));
+    assert!(solo.links.iter().all(|link| link.shapes.is_empty()));
+    let foot = "collision mesh \"package://example-robot-data/robots/solo_description/meshes/obj/with_foot/solo_foot.obj\" \
+                of link \"FL_FOOT\"";
+    assert!(solo.left_out.contains(&left_out(foot, "meshes are not handled yet")), "{:?}", solo.left_out);
+    assert!(solo.left_out.contains(&left_out("12 <limit> in <joint>", "joint limits do not enter an impact")));
+}
+
+// Joints.
+
+#[test]
+fn an_axis_may_have_either_sign_and_any_length() {
+    for (axis, sign) in
+        [("0 1 0", 1.0), ("0 -1 0", -1.0), ("0 1e300 0", 1.0), ("0 -1e-310 0", -1.0), ("0.0009 1 0", 1.0)]
+    {
+        for kind in ["revolute", "continuous"] {
+            let robot = load(&two_links(kind, &format!("<axis xyz=\"{axis}\"/>")));
+            assert_eq!(robot.joints[0].axis, Axis::Turn { sign }, "{axis}");
+        }
+    }
+}
+
+#[test]
+fn an_axis_is_turned_by_all_origins_before_it() {
+    // The frame of b is rolled by a quarter turn, so its z axis is the root's -y.
+    let robot = load(&two_links("revolute", &format!("<origin rpy=\"{FRAC_PI_2} 0 0\"/><axis xyz=\"0 0 1\"/>")));
+    assert_eq!(robot.joints[0].axis, Axis::Turn { sign: -1.0 });
+    assert_eq!(robot.left_out, []);
+}
+
+#[test]
+fn an_axis_slightly_off_is_brought_into_line_and_told() {
+    let robot = load(&two_links("revolute", "<axis xyz=\"0 1 5e-4\"/>"));
+    let why = "its axis is 5.0e-4 rad off the plane's normal (y): taken as exactly on it";
+    assert_eq!(robot.left_out, [left_out("joint \"j\"", why)]);
+}
+
+#[test]
+fn a_slide_has_its_direction_in_the_roots_axes_at_length_one() {
+    let direction = |joint: &str| match load(&two_links("prismatic", joint)).joints[0].axis {
+        Axis::Slide { direction } => direction,
+        Axis::Turn { .. } => panic!("it turns"),
+    };
+    assert_eq!(direction("<axis xyz=\"0 0 -2\"/>"), [0.0, -1.0]);
+    assert_eq!(direction("<axis xyz=\"0.6 0 0.8\"/>"), [0.6, 0.8]);
+    assert_eq!(direction(""), [1.0, 0.0]);
+    // Pitched by a: x points down by sin a.
+    let [x, z] = direction("<origin rpy=\"0 0.3 0\"/>");
+    assert!((x - 0.3_f64.cos()).abs() < 1e-16 && (z + 0.3_f64.sin()).abs() < 1e-16);
+}
+
+#[test]
+fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
+    let inertial = inertial(1.0, "0 0 0", 1.0);
+    let link = |name: &str| format!("<link name=\"{name}\">{inertial}</link>");
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+             <axis xyz=\"0 1 0\"/></joint>"
+        )
+    };
+    let text = robot(
+        &[
+            joint("ankle", "shank", "foot"),
+            link("foot"),
+            joint("knee", "thigh", "shank"),
+            link("shank"),
+            link("thigh"),
+            link("root"),
+            joint("hip", "root", "thigh"),
+            joint("tail", "root", "tip"),
+            link("tip"),
+        ]
+        .concat(),
+    );
+    let robot = load(&text);
+    assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
+    let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
+    assert_eq!(bodies, [("root", None), ("thigh", Some(2)), ("shank", Some(1)), ("foot", Some(0)), ("tip", Some(3))]);
+    assert_eq!(robot.links.iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
+}
+
+// Welding.
+
+#[test]
+fn fixed_links_are_welded_with_their_turned_inertia() {
+    let text = robot(&format!(
+        "<link name=\"a\">{}</link>\n\
+         <link name=\"b\"><inertial><origin xyz=\"0 7 1\"/><mass value=\"3\"/>\
+         <inertia ixx=\"0.2\" ixy=\"0\" ixz=\"0\" iyy=\"9\" iyz=\"0\" izz=\"0.1\"/></inertial>\
+         <collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n<link name=\"c\">{}</link>\n\
+         <joint name=\"weld\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>\
+         <origin xyz=\"2 5 0\" rpy=\"0 {FRAC_PI_2} {FRAC_PI_2}\"/></joint>\n\
+         <joint name=\"hinge\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/><axis xyz=\"1 0 0\"/>\
+         <origin xyz=\"0 0 1\" rpy=\"0 -{FRAC_PI_2} 0\"/></joint>",
+        inertial(1.0, "0 0 4", 0.5),
+        inertial(1.0, "0 0 0", 1.0)
+    ));
+    // The weld turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment izz.
+    let robot = load(&text);
+    let body = &robot.bodies[0];
+    assert_eq!((robot.bodies.len(), body.mass), (2, 4.0));
+    // CoG (-5 * 3 / 4, 4 / 4), arms (3.75, 3) and (-1.25, -1).
+    let expected = [-3.75, 1.0, 0.5 + 3.75 * 3.75 + 9.0 + 0.1 + 3.0 * (1.25 * 1.25 + 1.0)];
+    for (value, expected) in [body.com[0], body.com[1], body.moment].into_iter().zip(expected) {
+        assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");
+    }
+    // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
+    let [x, z] = robot.links[1].point([1.0, 2.0, 3.0]);
+    assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15);
+    let [FootShape::Disc { centre, radius }] = robot.links[1].shapes[..] else { panic!("one disc") };
+    assert_eq!((centre, radius, robot.links[1].body), ([2.0, 0.0], 0.1, 0));
+    // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
+    let [x, z] = robot.joints[0].origin;
+    assert!((x - 2.0).abs() < 1e-15 && z.abs() < 1e-15);
+    assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Turn { sign: 1.0 }));
+}
+
+#[test]
+fn a_box_foot_keeps_its_exact_corners_through_a_weld() {
+    let text = robot(&format!(
+        "<link name=\"a\">{}</link><link name=\"foot\"><collision><origin xyz=\"0.05 0 0\"/><geometry>\
+         <box size=\"0.2 0.1 0.04\"/></geometry></collision></link><joint name=\"j\" type=\"fixed\">\
+         <parent link=\"a\"/><child link=\"foot\"/><origin xyz=\"0 0 -0.3\"/></joint>",
+        inertial(1.0, "0 0 0", 1.0)
+    ));
+    let robot = load(&text);
+    let [FootShape::Polygon { corners, .. }] = &robot.links[1].shapes[..] else { panic!("one polygon") };
+    let (rear, front, low, high) = (0.05 - 0.1, 0.05 + 0.1, -0.3 - 0.02, -0.3 + 0.02);
+    assert_eq!(corners, &[[rear, low], [front, low], [front, high], [rear, high]]);
+}
+
+#[test]
+fn a_link_without_inertial_weighs_nothing_and_a_missing_inertia_is_told() {
+    let text = robot(
+        "<link name=\"a\"><inertial><origin xyz=\"0.1 0 0\"/><mass value=\"2\"/></inertial></link><link name=\"b\"/>\
+         <joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>",
+    );
+    let robot = load(&text);
+    assert_eq!((robot.bodies[0].mass, robot.bodies[0].com, robot.bodies[0].moment), (2.0, [0.1, 0.0], 0.0));
+    assert_eq!(robot.links.iter().map(|link| link.has_inertial).collect::<Vec<_>>(), [true, false]);
+    let expected = [
+        left_out("joint \"j\"", "fixed: welded into a"),
+        left_out("link \"a\"", "its <inertial> has no <inertia>: taken as a point mass"),
+    ];
+    assert_eq!(robot.left_out, expected);
+}
+
+#[test]
+fn skipped_shapes_are_told_one_by_one() {
+    let shape = |geometry: &str| format!("<collision><geometry>{geometry}</geometry></collision>");
+    let text = robot(&format!(
+        "<link name=\"a\">{}{}{}{}</link>",
+        inertial(1.0, "0 0 0", 1.0),
+        shape("<capsule radius=\"1\" length=\"1\"/>"),
+        shape("<plane/>"),
+        format_args!(
+            "<collision><origin rpy=\"{FRAC_PI_4} 0 0\"/><geometry><cylinder radius=\"1\" length=\"1\"/></geometry></collision>"
+        )
+    ));
+    let robot = load(&text);
+    assert!(robot.links[0].shapes.is_empty());
+    let expected = [
+        left_out("collision capsule of link \"a\"", "capsules are not handled yet"),
+        left_out("collision <plane> of link \"a\"", "no shape of URDF"),
+        left_out(
+            "collision cylinder of link \"a\"",
+            "its axis is 45.0 degrees off the plane's normal: not handled yet",
+        ),
+    ];
+    assert_eq!(robot.left_out, expected);
+}
+
+#[test]
+fn a_long_chain_is_reduced_without_recursion() {
+    let count = 100_000;
+    let inertial = inertial(1.0, "0 0 -0.5", 0.1);
+    let mut body = format!("<link name=\"l0\">{inertial}</link>");
+    for k in 1..count {
+        let parent = k - 1;
+        let kind = if k % 2 == 0 { "fixed" } else { "continuous" };
+        body += &format!(
+            "<link name=\"l{k}\">{inertial}</link><joint name=\"j{k}\" type=\"{kind}\"><parent link=\"l{parent}\"/>\
+             <child link=\"l{k}\"/><origin xyz=\"0 0 -1\"/><axis xyz=\"0 1 0\"/></joint>"
+        );
+    }
+    let robot = load(&robot(&body));
+    assert_eq!((robot.bodies.len(), robot.joints.len()), (count / 2 + 1, count / 2));
+    assert_eq!(robot.bodies[1].com, [0.0, -1.0]);
+}
+
+// The base.
+
+#[test]
+fn a_fixed_base_leaves_the_joints_alone() {
+    let description = Description::from_urdf(&two_links("revolute", "<axis xyz=\"0 1 0\"/>")).expect("a description");
+    let robot = Robot::reduce(&description, Some(Base::Fixed)).expect("a robot");
+    assert_eq!((robot.base, robot.dofs()), (Base::Fixed, 1));
+    assert_eq!(Robot::reduce(&description, None).expect("a robot").base, Base::Floating);
+
+    let still = Description::from_urdf(&two_links("fixed", "")).expect("a description");
+    let refused = Robot::reduce(&still, Some(Base::Fixed)).expect_err("nothing moves");
+    assert_eq!(refused.to_string(), "robot: nothing that moves has mass");
+}
+
+// Refusals.
+
+fn refused(text: &str) -> (String, Option<String>) {
+    let error = Robot::from_urdf(text).expect_err("a refusal");
+    (error.to_string(), error.remedy().map(String::from))
+}
+
+#[track_caller]
+fn assert_refused(text: &str, message: &str, hint: Option<&str>) {
+    assert_eq!(refused(text), (message.into(), hint.map(String::from)), "of {text}");
+}
+
+#[test]
+fn what_is_no_urdf_is_refused() {
+    assert_refused("", "the text holds no XML element", Some("give the text of a URDF file, which begins with <robot"));
+    assert_refused(
+        "<robot>\n<link name=\"a\">\n </lnik></robot>",
+        "3:2: not well-formed XML: expected 'link' tag, not 'lnik'",
+        None,
+    );
+    assert_refused("<robot><link", "1:1: not well-formed XML: the root node was opened but never closed", None);
+    let outermost = Some("the outermost element of a URDF file is <robot>");
+    assert_refused("<roboter/>", "1:1: <roboter>: <robot> is missing", outermost);
+    assert_refused("<sdf/>", "1:1: <sdf>: <robot> is missing", Some("this is an SDF file; convert it to URDF"));
+    assert_refused("<robot/>", "1:1: a <link> is missing", None);
+    let expand = Some("expand the file first: xacro FILE > robot.urdf");
+    assert_refused(
+        "<robot xmlns:xacro=\"http://ros.org/wiki/xacro\">\n  <xacro:leg/></robot>",
+        "2:3: <xacro:leg> is not URDF",
+        expand,
+    );
+    assert_refused(
+        &two_links("revolute", "<origin xyz=\"0 ${l} 0\"/>"),
+        "4:68: joint \"j\": xyz of <origin> must be 3 numbers, not \"0 ${l} 0\"",
+        expand,
+    );
+}
+
+#[test]
+fn names_given_twice_unknown_or_missing_are_refused() {
+    let twice = robot("<link name=\"a\"/>\n<link name=\"a\"/>");
+    assert_refused(&twice, "3:1: link \"a\" is given twice", None);
+    let joint = "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>";
+    let twice = robot(&format!("<link name=\"a\"/><link name=\"b\"/>\n{joint}\n{joint}"));
+    assert_refused(&twice, "4:1: joint \"j\" is given twice", None);
+    assert_refused(&robot("<link/>"), "2:1: the attribute name of <link> is missing", None);
+
+    let unknown = two_links("fixed", "").replace("<child link=\"b\"/>", "<child link=\"bb\"/>");
+    assert_refused(&unknown, "4:48: joint \"j\": the robot has no link named \"bb\"", Some("did you mean b?"));
+    let world = two_links("fixed", "").replace("<parent link=\"a\"/>", "<parent link=\"world\"/>");
+    assert_refused(
+        &world,
+        "4:30: joint \"j\": the robot has no link named \"world\"",
+        Some("add <link name=\"world\"/> to the file"),
+    );
+    let childless = two_links("fixed", "").replace("<child link=\"b\"/>", "");
+    assert_refused(&childless, "4:1: joint \"j\": <child> is missing", None);
+    assert_refused(
+        &two_links("revolut", ""),
+        "4:1: joint \"j\": unknown joint type \"revolut\"",
+        Some("did you mean revolute?"),
+    );
+}
+
+#[test]
+fn what_is_no_tree_is_refused() {
+    let links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!("\n<joint name=\"{name}\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint>")
+    };
+    let tree = |joints: &[String]| robot(&format!("{links}{}", joints.concat()));
+    assert_refused(
+        &tree(&[joint("i", "a", "c"), joint("j", "b", "c")]),
+        "4:1: joint \"j\": link \"c\" would have two parents: it is the child of joint \"i\" too",
+        Some("cut the loop open: a link hangs on one joint"),
+    );
+    assert_refused(
+        &tree(&[joint("i", "a", "c")]),
+        "2:17: link \"b\": links \"a\" and \"b\" are both roots",
+        Some("make one of them the child of a joint"),
+    );
+    let cut = Some("cut the cycle open: one link must be no joint's child");
+    assert_refused(
+        &tree(&[joint("i", "b", "c"), joint("j", "c", "b")]),
+        "4:1: joint \"j\": link \"b\" hangs on itself: the joints form a cycle",
+        cut,
+    );
+    assert_refused(
+        &tree(&[joint("i", "a", "b"), joint("j", "b", "c"), joint("k", "c", "a")]),
+        "5:1: joint \"k\": link \"a\" hangs on itself: the joints form a cycle",
+        cut,
+    );
+    let itself = robot(&format!("<link name=\"a\"/>{}", joint("i", "a", "a")));
+    assert_refused(&itself, "3:1: joint \"i\": link \"a\" hangs on itself: the joints form a cycle", cut);
+}
+
+#[test]
+fn bad_numbers_are_refused() {
+    let mass = |value: &str| {
+        robot(&format!(
+            "<link name=\"a\"><inertial>\n  <mass value=\"{value}\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial></link>"
+        ))
+    };
+    assert_refused(&mass("-1"), "3:3: link \"a\": value of <mass> must be at least 0, not -1", None);
+    assert_refused(&mass("NaN"), "3:3: link \"a\": value of <mass> must be a finite number, not NaN", None);
+    assert_refused(&mass("1e999"), "3:3: link \"a\": value of <mass> must be a finite number, not inf", None);
+    assert_refused(&mass("1,5"), "3:3: link \"a\": value of <mass> must be a number, not \"1,5\"", None);
+    assert_refused(&mass(""), "3:3: link \"a\": the attribute value of <mass> is missing", None);
+    let massless = mass("1").replace("<mass value=\"1\"/>", "");
+    assert_refused(&massless, "2:16: link \"a\": <mass> is missing", None);
+    let negative = mass("1").replace("iyy=\"1\"", "iyy=\"-0.5\"");
+    assert_refused(
+        &negative,
+        "2:1: link \"a\": the moment of inertia about the plane's normal must be at least 0, not -0.5",
+        None,
+    );
+
+    // urdf-rs alone would read the first as 1 2 3.
+    let origin = |xyz: &str| two_links("fixed", &format!("<origin xyz=\"{xyz}\"/>"));
+    assert_refused(&origin("1 2 x 3"), "4:65: joint \"j\": xyz of <origin> must be 3 numbers, not \"1 2 x 3\"", None);
+    assert_refused(&origin("1 2"), "4:65: joint \"j\": xyz of <origin> must be 3 numbers, not \"1 2\"", None);
+    assert_refused(
+        &two_links("revolute", "<axis xyz=\"0 -0 0\"/>"),
+        "4:68: joint \"j\": xyz of <axis> is zero, so the joint has no direction",
+        None,
+    );
+    let shape =
+        |shape: &str| robot(&format!("<link name=\"a\"><collision><geometry>{shape}</geometry></collision></link>"));
+    assert_refused(
+        &shape("<sphere radius=\"-1\"/>"),
+        "2:37: link \"a\": radius of <sphere> must be at least 0, not -1",
+        None,
+    );
+    assert_refused(
+        &shape("<box size=\"1 -2 3\"/>"),
+        "2:37: link \"a\": size of <box> must be at least 0, not -2",
+        None,
+    );
+    assert_refused(
+        &shape("<cylinder radius=\"1\"/>"),
+        "2:37: link \"a\": the attribute length of <cylinder> is missing",
+        None,
+    );
+    assert_refused(&shape(""), "2:27: link \"a\": a shape in <geometry> is missing", None);
+    assert_refused(
+        &shape("<box size=\"1 1 1\"/><sphere radius=\"1\"/>"),
+        "2:56: link \"a\": <sphere> is a second shape in one <geometry>",
+        Some("give each shape a <collision> of its own"),
+    );
+    let twice = two_links("fixed", "<origin/>\n<origin/>");
+    assert_refused(&twice, "5:1: joint \"j\": element \"origin\" is given twice", None);
+    let quaternion = two_links("fixed", "<origin quat_xyzw=\"0 0 0 1\"/>");
+    assert_refused(
+        &quaternion,
+        "4:65: joint \"j\": quat_xyzw of <origin> is not handled",
+        Some("give the turn as rpy"),
+    );
+}
+
+#[test]
+fn joints_that_leave_the_plane_are_refused_with_their_angle() {
+    let fixed = Some("make it fixed to hold it at zero");
+    let off = |angle: &str| {
+        format!("4:1: joint \"j\": its axis is {angle} degrees off the plane's normal (y): not handled yet")
+    };
+    assert_refused(&two_links("revolute", "<axis xyz=\"1 0 0\"/>"), &off("90.00"), fixed);
+    assert_refused(&two_links("continuous", "<axis xyz=\"0 -1 0.0787\"/>"), &off("4.50"), fixed);
+    assert_refused(&two_links("revolute", "<axis xyz=\"0 1 0.0011\"/>"), &off("0.06"), fixed);
+    let tilted = format!("<origin rpy=\"{FRAC_PI_4} 0 0\"/><axis xyz=\"0 1 0\"/>");
+    assert_refused(&two_links("revolute", &tilted), &off("45.00"), fixed);
+    assert_refused(
+        &two_links("prismatic", "<axis xyz=\"0 1 0\"/>"),
+        "4:1: joint \"j\": its axis is 90.00 degrees off the plane (x-z): not handled yet",
+        fixed,
+    );
+    let replace = Some("make it fixed, or replace it by revolute and prismatic joints");
+    for kind in ["planar", "floating", "spherical"] {
+        let message = format!("4:1: joint \"j\": {kind} joints are not handled yet");
+        assert_refused(&two_links(kind, ""), &message, replace);
+    }
+    assert_refused(
+        &two_links("revolute", "<axis xyz=\"0 1 0\"/><mimic joint=\"j\"/>"),
+        "4:1: joint \"j\": mimic joints are not handled yet",
+        Some("remove <mimic> to let the joint move freely, or make it fixed"),
+    );
+}
+
+#[test]
+fn a_robot_without_mass_or_beyond_f64_is_refused() {
+    assert_refused(
+        &robot("<link name=\"a\"/>"),
+        "robot: nothing that moves has mass",
+        Some("give the links <inertial> elements with a mass"),
+    );
+    let heavy = two_links("fixed", "").replace("<mass value=\"1\"/>", "<mass value=\"1e308\"/>");
+    assert_refused(&heavy, "link \"a\": the inertia of the welded body must be a finite number, not inf", None);
+    let far = two_links("fixed", "<origin xyz=\"1e300 0 0\"/>");
+    assert_refused(&far, "link \"a\": the inertia of the welded body must be a finite number, not inf", None);
+}
