@@ -54,6 +54,8 @@ pub mod scalar;
 pub mod planar;
 pub mod description;
 pub mod robot;
+pub mod plan;
+pub mod dynamics;
 pub mod impact;
 
 pub use error::{Error, Reason, Result};

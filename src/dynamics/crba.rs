@@ -1,0 +1,78 @@
+//! The joint-space inertia matrix M by composite rigid bodies.
+//!
+//! ```text
+//!     I^c_i = I_i + sum of children's I^c        M_ij = S_i^T I^c_j S_j  for i on the way from j to the root
+//! ```
+//!
+//! Source: Featherstone 2008, section 6.2. Inertias are kept about each body's own origin in world axes, so that moving
+//! one to the parent is a shift without a turn. Cost: O(nb + nv depth).
+
+use super::workspace::Workspace;
+use crate::plan::{Motion, Plan};
+use crate::planar::{Inertia, Vector, dot, scaled, turned};
+use crate::scalar::Real;
+
+/// Computes M (nv x nv, columns of the plan; kg, kg m, kg m^2) from the kinematics.
+pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
+    let nv = plan.columns();
+    let Workspace { rotation, arm, direction, composite, mass_matrix, .. } = workspace;
+    composite.clear();
+    composite.extend(
+        plan.bodies
+            .iter()
+            .zip(rotation.iter())
+            .map(|(body, turn)| Inertia { first: turn.apply(body.inertia.first), ..body.inertia }),
+    );
+    mass_matrix.clear();
+    mass_matrix.resize(nv * nv, T::zero());
+    for (index, body) in plan.bodies.iter().enumerate().rev() {
+        let own = composite[index];
+        if let Some(parent) = body.parent {
+            composite[parent] = composite[parent].with(own.seen_from(arm[index]));
+        }
+        let Some(column) = body.column else { continue };
+        let momentum = match body.motion {
+            Motion::Root => {
+                let [x, z] = [[T::one(), T::zero()], [T::zero(), T::one()]];
+                let pitch = Momentum { linear: turned(own.first), angular: own.second };
+                mass_matrix[0] = own.mass;
+                mass_matrix[nv + 1] = own.mass;
+                mass_matrix[column * nv] = dot(x, pitch.linear);
+                mass_matrix[column * nv + 1] = dot(z, pitch.linear);
+                mass_matrix[column * nv + column] = pitch.angular;
+                continue;
+            }
+            Motion::Turn { sign } => Momentum { linear: scaled(sign, turned(own.first)), angular: sign * own.second },
+            Motion::Slide { .. } => Momentum {
+                linear: scaled(own.mass, direction[index]),
+                angular: dot(turned(own.first), direction[index]),
+            },
+        };
+        // `momentum` is that of a unit rate of this joint; the walk to the root projects it on every joint below.
+        let along = |at: usize, momentum: Momentum<T>| match plan.bodies[at].motion {
+            Motion::Root => momentum.angular,
+            Motion::Turn { sign } => sign * momentum.angular,
+            Motion::Slide { .. } => dot(direction[at], momentum.linear),
+        };
+        mass_matrix[column * nv + column] = along(index, momentum) + body.rotor;
+        let (mut at, mut momentum) = (index, momentum);
+        while let Some(parent) = plan.bodies[at].parent {
+            momentum.angular = momentum.angular + dot(turned(arm[at]), momentum.linear);
+            at = parent;
+            if let Some(other) = plan.bodies[at].column {
+                mass_matrix[column * nv + other] = along(at, momentum);
+            }
+        }
+        if plan.floating {
+            mass_matrix[column * nv] = momentum.linear[0];
+            mass_matrix[column * nv + 1] = momentum.linear[1];
+        }
+    }
+}
+
+/// Linear momentum and angular momentum about a body's origin, of a unit rate of one joint.
+#[derive(Clone, Copy)]
+struct Momentum<T> {
+    linear: Vector<T>,
+    angular: T,
+}

@@ -1,0 +1,30 @@
+//! Kinetic energy, body by body; independent of the mass matrix, which tests check against it.
+//!
+//! ```text
+//!     T = sum of 1/2 (m u.u + 2 omega u.turned(h) + I omega^2) + 1/2 rotor rate^2
+//! ```
+//!
+//! with u the velocity of a body's origin, h and I its first and second moments about it.
+
+use super::jacobian::{point_velocity, spin};
+use super::workspace::Workspace;
+use crate::plan::Plan;
+use crate::planar::{dot, turned};
+use crate::scalar::Real;
+
+/// Kinetic energy \[J\] for `velocity` (dq/dt by coordinate, held joints included), after `kinematics`.
+pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> T {
+    let mut twice = T::zero();
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let rate = spin(plan, index, velocity);
+        let origin = point_velocity(plan, index, [T::zero(); 2], velocity, workspace);
+        let first = workspace.rotation[index].apply(body.inertia.first);
+        let cross = rate * dot(origin, turned(first));
+        twice = twice + body.inertia.mass * dot(origin, origin) + cross + cross + body.inertia.second * rate * rate;
+        if body.parent.is_some() {
+            let own = velocity[body.coordinate];
+            twice = twice + body.rotor * own * own;
+        }
+    }
+    T::from_f64(0.5) * twice
+}

@@ -1,0 +1,141 @@
+//! Contact Jacobian at the material points, and the contact velocities c = J v.
+//!
+//! A column is the velocity of the contact point for a unit rate of one joint: turned(r) of a revolute joint at distance r,
+//! the direction of a prismatic one. r is summed from the contact inward, so that no large positions are subtracted.
+//! Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
+
+use super::workspace::Workspace;
+use crate::plan::{Motion, Plan};
+use crate::planar::{Rotation, Vector, difference, dot, scaled, sum, turned};
+use crate::scalar::Real;
+
+/// A material point in touch with the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint<T = f64> {
+    /// The body, an index into the plan's bodies (those of [`Robot::bodies`](crate::Robot)).
+    pub body: usize,
+    /// The point, or the centre of the circle, in the body's frame \[m\].
+    pub centre: Vector<T>,
+    /// Radius of the circle \[m\]: the point is at centre - radius * normal.
+    pub radius: T,
+    /// Turn from the world's axes to the ground's (tangent, normal) at the contact.
+    pub ground: Rotation<T>,
+}
+
+impl<T: Real> ContactPoint<T> {
+    /// The ground's unit tangent and normal in the world's axes.
+    pub fn axes(&self) -> [Vector<T>; 2] {
+        [[T::one(), T::zero()], [T::zero(), T::one()]].map(|axis| self.ground.apply(axis))
+    }
+
+    /// The point from its body's origin, in the world's axes \[m\].
+    pub fn arm(&self, workspace: &Workspace<T>) -> Vector<T> {
+        let [_, normal] = self.axes();
+        difference(workspace.rotation[self.body].apply(self.centre), scaled(self.radius, normal))
+    }
+}
+
+/// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity` (dq/dt by coordinate).
+///
+/// With a `stance` (an index into `contacts`) that contact is exactly at rest, and so are further contacts of a body that
+/// does not turn: base velocities are taken as the ones that make it so.
+pub fn contact_jacobian<T: Real>(
+    plan: &Plan<T>,
+    contacts: &[ContactPoint<T>],
+    velocity: &[T],
+    stance: Option<usize>,
+    workspace: &mut Workspace<T>,
+) {
+    let nv = plan.columns();
+    let mut jacobian = std::mem::take(&mut workspace.contact_jacobian);
+    let mut speeds = std::mem::take(&mut workspace.contact_velocity);
+    jacobian.clear();
+    jacobian.resize(2 * contacts.len() * nv, T::zero());
+    speeds.clear();
+    for (index, contact) in contacts.iter().enumerate() {
+        let axes = contact.axes();
+        let arm = contact.arm(workspace);
+        let (rows_t, rows_n) = jacobian[2 * index * nv..2 * (index + 1) * nv].split_at_mut(nv);
+        let speed = walk(plan, contact.body, arm, velocity, workspace, |column, unit| {
+            rows_t[column] = dot(axes[0], unit);
+            rows_n[column] = dot(axes[1], unit);
+        });
+        speeds.push(axes.map(|axis| dot(axis, speed)));
+    }
+    if let Some(stance) = stance {
+        let rest = contacts[stance];
+        let origin = rest.arm(workspace);
+        let spin = spin(plan, rest.body, velocity);
+        for (contact, speed) in contacts.iter().zip(&mut speeds).filter(|(contact, _)| contact.body == rest.body) {
+            let across = scaled(spin, turned(difference(contact.arm(workspace), origin)));
+            *speed = contact.axes().map(|axis| dot(axis, across));
+        }
+        speeds[stance] = [T::zero(); 2];
+    }
+    workspace.contact_jacobian = jacobian;
+    workspace.contact_velocity = speeds;
+}
+
+/// Velocity of the point at `arm` from the origin of `body`, in the world's axes \[m/s\].
+pub fn point_velocity<T: Real>(
+    plan: &Plan<T>,
+    body: usize,
+    arm: Vector<T>,
+    velocity: &[T],
+    workspace: &Workspace<T>,
+) -> Vector<T> {
+    walk(plan, body, arm, velocity, workspace, |_, _| {})
+}
+
+/// Walks from a point to the root: tells the velocity of the point for a unit rate of every column, and returns the
+/// velocity for all rates, held joints' included.
+pub(super) fn walk<T: Real>(
+    plan: &Plan<T>,
+    body: usize,
+    arm: Vector<T>,
+    velocity: &[T],
+    workspace: &Workspace<T>,
+    mut tell: impl FnMut(usize, Vector<T>),
+) -> Vector<T> {
+    let (mut at, mut arm) = (body, arm);
+    let mut speed = [T::zero(); 2];
+    loop {
+        let body = &plan.bodies[at];
+        let unit = match body.motion {
+            Motion::Root => break,
+            Motion::Turn { sign } => scaled(sign, turned(arm)),
+            Motion::Slide { .. } => workspace.direction[at],
+        };
+        if let Some(column) = body.column {
+            tell(column, unit);
+        }
+        speed = sum(speed, scaled(velocity[body.coordinate], unit));
+        arm = sum(arm, workspace.arm[at]);
+        match body.parent {
+            Some(parent) => at = parent,
+            None => break,
+        }
+    }
+    if plan.floating {
+        let units = [[T::one(), T::zero()], [T::zero(), T::one()], turned(arm)];
+        for (column, unit) in units.into_iter().enumerate() {
+            tell(column, unit);
+            speed = sum(speed, scaled(velocity[column], unit));
+        }
+    }
+    speed
+}
+
+/// Rate at which a body turns about the plane's normal \[rad/s\].
+pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
+    let mut rate = if plan.floating { velocity[2] } else { T::zero() };
+    let mut at = Some(body);
+    while let Some(index) = at {
+        let body = &plan.bodies[index];
+        if let Motion::Turn { sign } = body.motion {
+            rate = rate + sign * velocity[body.coordinate];
+        }
+        at = body.parent;
+    }
+    rate
+}

@@ -1,0 +1,42 @@
+//! Where the bodies are: R_i = R_p R(q_i), and the arms from origin to origin.
+//!
+//! Source: Featherstone 2008, section 4.1, in world axes. Cost: O(nb).
+
+use super::workspace::Workspace;
+use crate::plan::{Motion, Plan, Posture};
+use crate::planar::{Rotation, scaled, sum};
+use crate::scalar::Real;
+
+/// Computes every body's rotation and arm for a posture (cos, sin and displacement per coordinate).
+///
+/// Only differences of position enter the dynamics, so the base's x and z are not read.
+pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut Workspace<T>) {
+    let Workspace { rotation, arm, direction, .. } = workspace;
+    rotation.clear();
+    arm.clear();
+    direction.clear();
+    for body in &plan.bodies {
+        let Some(parent) = body.parent else {
+            rotation.push(if plan.floating { posture.turn(2) } else { Rotation::identity() });
+            arm.push([T::zero(); 2]);
+            direction.push([T::zero(); 2]);
+            continue;
+        };
+        let base = rotation[parent];
+        match body.motion {
+            Motion::Root => {}
+            Motion::Turn { sign } => {
+                let Rotation { cos, sin } = posture.turn(body.coordinate);
+                rotation.push(base.then(Rotation { cos, sin: sign * sin }));
+                arm.push(base.apply(body.origin));
+                direction.push([T::zero(); 2]);
+            }
+            Motion::Slide { direction: along } => {
+                let displaced = sum(body.origin, scaled(posture.displacement[body.coordinate], along));
+                rotation.push(base);
+                arm.push(base.apply(displaced));
+                direction.push(base.apply(along));
+            }
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Rigid-body dynamics of the planar tree, written once over [`Real`](crate::scalar::Real).
+//!
+//! ```text
+//!     kinematics --> crba (M) --> ltl (M = L^T D L) ──┐
+//!          └──────── jacobian (J, c = J v) ───────────┴──> delassus (G = J M^-1 J^T), effect of impulses on v
+//! ```
+//!
+//! Every function reads a [`Plan`](crate::plan::Plan) and writes into a [`Workspace`].
+
+mod crba;
+mod delassus;
+mod energy;
+mod jacobian;
+mod kinematics;
+mod ltl;
+mod workspace;
+
+pub use crba::mass_matrix;
+pub use delassus::{add_impulse, delassus, factor_rows};
+pub use energy::kinetic_energy;
+pub use jacobian::{ContactPoint, contact_jacobian, point_velocity};
+pub use kinematics::kinematics;
+pub use ltl::factorize;
+pub use workspace::Workspace;
+
+#[cfg(test)]
+mod tests {
+    //! Each algorithm against an independent one, on random branching trees with revolute and prismatic joints.
+
+    use super::*;
+    use crate::plan::{Plan, Posture};
+    use crate::planar::{Rotation, Vector, dot};
+    use crate::robot::{Axis, Base, Body, Joint, Robot};
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    fn body(joint: Option<usize>, mass: f64, com: Vector<f64>, moment: f64) -> Body {
+        Body { name: String::new(), joint, mass, com, moment }
+    }
+
+    prop_compose! {
+        fn joint_and_body()(
+            parent in any::<prop::sample::Index>(),
+            origin in prop::array::uniform2(-1.0..1.0f64),
+            slides in prop::bool::weighted(0.2),
+            angle in -3.0..3.0f64,
+            mass in 0.01..2.0f64,
+            com in prop::array::uniform2(-0.5..0.5f64),
+            moment in 0.0..0.1f64,
+        ) -> (prop::sample::Index, Vector<f64>, Axis, f64, Vector<f64>, f64) {
+            let axis = if slides {
+                Axis::Slide { direction: [angle.cos(), angle.sin()] }
+            } else {
+                Axis::Turn { sign: angle.signum() }
+            };
+            (parent, origin, axis, mass, com, moment)
+        }
+    }
+
+    prop_compose! {
+        fn tree()(parts in prop::collection::vec(joint_and_body(), 1..8), bolted in prop::bool::weighted(0.2)) -> Robot {
+            let mut robot = Robot {
+                name: "tree".into(),
+                base: if bolted { Base::Fixed } else { Base::Floating },
+                bodies: vec![body(None, 1.0, [0.1, -0.2], 0.05)],
+                joints: Vec::new(),
+                links: Vec::new(),
+                left_out: Vec::new(),
+            };
+            for (parent, origin, axis, mass, com, moment) in parts {
+                let parent = parent.index(robot.bodies.len());
+                robot.bodies.push(body(Some(robot.joints.len()), mass, com, moment));
+                robot.joints.push(Joint { name: String::new(), parent, child: robot.bodies.len() - 1, origin, axis });
+            }
+            robot
+        }
+    }
+
+    /// A tree, a configuration and two velocities, all of order one.
+    fn case() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>)> {
+        tree().prop_flat_map(|robot| {
+            let dofs = robot.dofs();
+            let numbers = || prop::collection::vec(-3.0..3.0f64, dofs);
+            (Just(robot), numbers(), numbers())
+        })
+    }
+
+    fn computed(robot: &Robot, q: &[f64], held: &[usize], rotors: &[f64]) -> (Plan, Workspace) {
+        let (plan, mut posture, mut workspace) =
+            (Plan::new(robot, held, rotors), Posture::default(), Workspace::default());
+        posture.set(q);
+        kinematics(&plan, &posture, &mut workspace);
+        mass_matrix(&plan, &mut workspace);
+        factorize(&plan, &mut workspace);
+        (plan, workspace)
+    }
+
+    fn dense(plan: &Plan, lower: &[f64]) -> DMatrix<f64> {
+        let nv = plan.columns();
+        DMatrix::from_fn(nv, nv, |i, j| lower[i.max(j) * nv + i.min(j)])
+    }
+
+    /// v by column of the plan.
+    fn by_column(plan: &Plan, v: &[f64]) -> DVector<f64> {
+        DVector::from_iterator(plan.columns(), plan.coordinates().iter().map(|&coordinate| v[coordinate]))
+    }
+
+    proptest! {
+        #[test]
+        fn mass_matrix_gives_the_kinetic_energy_of_the_bodies((robot, q, v) in case()) {
+            let rotors = vec![0.25; robot.joints.len()];
+            let (plan, workspace) = computed(&robot, &q, &[], &rotors);
+            let column = by_column(&plan, &v);
+            let by_matrix = 0.5 * column.dot(&(dense(&plan, &workspace.mass_matrix) * &column));
+            let by_bodies = kinetic_energy(&plan, &v, &workspace);
+            // Both sum up to some hundred terms of the energy's own size.
+            prop_assert!((by_matrix - by_bodies).abs() <= 1e3 * f64::EPSILON * by_bodies.max(1.0), "{by_matrix} {by_bodies}");
+        }
+
+        #[test]
+        fn factor_multiplies_back_to_the_mass_matrix((robot, q, _) in case()) {
+            let (plan, workspace) = computed(&robot, &q, &[], &[]);
+            let nv = plan.columns();
+            let entry = |i: usize, j: usize| workspace.factor[i * nv + j];
+            let lower = DMatrix::from_fn(nv, nv, |i, j| if i == j { 1.0 } else if j < i { entry(i, j) } else { 0.0 });
+            let diagonal = DMatrix::from_fn(nv, nv, |i, j| if i == j { entry(i, i) } else { 0.0 });
+            let mass = dense(&plan, &workspace.mass_matrix);
+            let back = lower.transpose() * diagonal * lower;
+            // Backward error of the factorization: a few eps of the largest entry per column.
+            prop_assert!((&back - &mass).amax() <= 64.0 * f64::EPSILON * mass.amax(), "{back} {mass}");
+        }
+
+        #[test]
+        fn delassus_is_the_answer_to_unit_impulses(
+            (robot, q, v) in case(),
+            centres in prop::collection::vec((any::<prop::sample::Index>(), prop::array::uniform2(-1.0..1.0f64)), 1..4),
+            slope in -1.0..1.0f64,
+        ) {
+            let (plan, mut workspace) = computed(&robot, &q, &[], &[]);
+            let ground = Rotation::by(-slope);
+            let contacts: Vec<ContactPoint> = centres
+                .iter()
+                .map(|(body, centre)| ContactPoint {
+                    body: body.index(robot.bodies.len()), centre: *centre, radius: 0.1, ground,
+                })
+                .collect();
+            contact_jacobian(&plan, &contacts, &v, None, &mut workspace);
+            delassus(&plan, &mut workspace);
+            let (nv, rows) = (plan.columns(), 2 * contacts.len());
+            let jacobian = DMatrix::from_row_slice(rows, nv, &workspace.contact_jacobian);
+            let inverse = dense(&plan, &workspace.mass_matrix).cholesky().expect("positive definite").inverse();
+            let by_matrices = &jacobian * &inverse * jacobian.transpose();
+            let found = DMatrix::from_row_slice(rows, rows, &workspace.delassus);
+            let condition = {
+                let values = dense(&plan, &workspace.mass_matrix).symmetric_eigenvalues();
+                values.max() / values.min()
+            };
+            // The dense inverse loses the condition of M.
+            let tolerance = 1e2 * f64::EPSILON * condition * by_matrices.amax().max(1.0);
+            prop_assert!((&found - &by_matrices).amax() <= tolerance, "{found} {by_matrices}");
+            for (index, contact) in contacts.iter().enumerate() {
+                for (row, axis) in contact.axes().into_iter().enumerate() {
+                    let mut change = vec![0.0; v.len()];
+                    let point = (contact.body, contact.arm(&workspace));
+                    add_impulse(&plan, &workspace, point, axis, &mut Vec::new(), &mut change);
+                    let at = point_velocity(&plan, contact.body, point.1, &change, &workspace);
+                    let own = workspace.delassus[(2 * index + row) * rows + 2 * index + row];
+                    prop_assert!((dot(axis, at) - own).abs() <= tolerance);
+                }
+            }
+            let speeds = &jacobian * by_column(&plan, &v);
+            for (index, speed) in workspace.contact_velocity.iter().enumerate() {
+                // A sum of at most eleven products of order ten.
+                prop_assert!((speeds[2 * index] - speed[0]).abs() < 1e4 * f64::EPSILON);
+                prop_assert!((speeds[2 * index + 1] - speed[1]).abs() < 1e4 * f64::EPSILON);
+            }
+        }
+
+        #[test]
+        fn a_held_joint_keeps_its_rate_and_drops_its_row((robot, q, v) in case(), index in any::<prop::sample::Index>()) {
+            let held = index.index(robot.joints.len());
+            let (whole, free) = computed(&robot, &q, &[], &[]);
+            let (plan, workspace) = computed(&robot, &q, &[held], &[]);
+            let full = dense(&whole, &free.mass_matrix);
+            let place = |coordinate: usize| whole.coordinates().iter().position(|&own| own == coordinate).unwrap();
+            let kept: Vec<usize> = plan.coordinates().iter().map(|&coordinate| place(coordinate)).collect();
+            prop_assert_eq!(kept.len() + 1, whole.columns());
+            let mass = dense(&plan, &workspace.mass_matrix);
+            for (i, &row) in kept.iter().enumerate() {
+                for (j, &column) in kept.iter().enumerate() {
+                    prop_assert_eq!(mass[(i, j)], full[(row, column)]);
+                }
+            }
+            let origin = [0.0; 2];
+            let tip = robot.bodies.len() - 1;
+            prop_assert_eq!(
+                point_velocity(&plan, tip, origin, &v, &workspace),
+                point_velocity(&whole, tip, origin, &v, &free)
+            );
+        }
+    }
+}

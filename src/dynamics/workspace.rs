@@ -1,0 +1,57 @@
+//! Memory of the dynamics, reused from state to state.
+
+use crate::planar::{Inertia, Rotation, Vector};
+
+/// Everything that the dynamics of one state computes; nb bodies, nv columns of the plan, n contacts.
+#[derive(Debug, Clone)]
+pub struct Workspace<T = f64> {
+    // Computed by `kinematics`.
+    /// Turn of each body from the world's axes. nb
+    pub rotation: Vec<Rotation<T>>,
+    /// Position of each body's origin from its parent's, in the world's axes \[m\]. nb
+    pub arm: Vec<Vector<T>>,
+    /// Direction of each sliding joint in the world's axes; of no meaning for others. nb
+    pub direction: Vec<Vector<T>>,
+
+    // Computed by `mass_matrix`.
+    /// Inertia of each body and all that it carries, about its origin in the world's axes. nb
+    pub composite: Vec<Inertia<T>>,
+    /// M by rows, its lower triangle along the tree's branches; the rest is zero. nv x nv
+    pub mass_matrix: Vec<T>,
+
+    // Computed by `factorize`.
+    /// L below the diagonal (its own diagonal is one) and D on it, of M = L^T D L. nv x nv
+    pub factor: Vec<T>,
+
+    // Computed by `contact_jacobian`.
+    /// J by rows, tangential and normal of each contact. 2n x nv
+    pub contact_jacobian: Vec<T>,
+    /// Contact velocities c = J v, held joints' rates included \[m/s\]. n
+    pub contact_velocity: Vec<Vector<T>>,
+
+    // Computed by `delassus`.
+    /// Y = L^-T J^T by columns, so that G = Y^T D^-1 Y. 2n x nv
+    pub half: Vec<T>,
+    /// D^-1 Y by columns. 2n x nv
+    pub half_by_d: Vec<T>,
+    /// G by rows \[1/kg\]. 2n x 2n
+    pub delassus: Vec<T>,
+}
+
+impl<T> Default for Workspace<T> {
+    fn default() -> Self {
+        Self {
+            rotation: Vec::new(),
+            arm: Vec::new(),
+            direction: Vec::new(),
+            composite: Vec::new(),
+            mass_matrix: Vec::new(),
+            factor: Vec::new(),
+            contact_jacobian: Vec::new(),
+            contact_velocity: Vec::new(),
+            half: Vec::new(),
+            half_by_d: Vec::new(),
+            delassus: Vec::new(),
+        }
+    }
+}
