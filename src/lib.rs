@@ -48,15 +48,41 @@
 //! n = up x forward (+y): a positive pitch dips the nose. Joint coordinates keep the URDF's own sign. A contact's normal
 //! points from the ground to the robot, its tangent t is the normal turned clockwise: +x on level ground. [`planar`] is the
 //! one place where this handedness is written as code.
+//!
+//! # Example
+//!
+//! ```
+//! use heelstrike::{pipeline::{Options, Pipeline}, state::{Defaults, State}, Robot};
+//!
+//! # fn main() -> heelstrike::Result<()> {
+//! let urdf = r#"<robot name="ball"><link name="ball">
+//!     <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+//!     <collision><geometry><sphere radius="0.5"/></geometry></collision>
+//! </link></robot>"#;
+//! let robot = Robot::from_urdf(urdf)?;
+//! let state = r#"{"position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1.0}}, "friction": 0.8}"#;
+//! let state = State::from_json(state, &robot, &Defaults::default())?;
+//! let impact = Pipeline::new(&robot, Options::default()).impact(&state)?;
+//! let outcomes = impact.analysis?.outcomes;
+//! assert_eq!(outcomes.len(), 1);
+//! assert_eq!(outcomes[0].impulse, [[0.0, 2.0]]);
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod error;
 pub mod scalar;
 pub mod planar;
 pub mod description;
 pub mod robot;
+pub mod scene;
+mod json;
+pub mod state;
 pub mod plan;
 pub mod dynamics;
+pub mod contact;
 pub mod impact;
+pub mod pipeline;
 
 pub use error::{Error, Reason, Result};
 pub use robot::Robot;

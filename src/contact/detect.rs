@@ -1,0 +1,241 @@
+//! Feet against the ground line: which points touch, and where the base must be for a foot to stand.
+//!
+//! parry's contact manifolds (ground as half space first, the order in which they are right) say which corners of a shape
+//! are within the tolerance; the corner itself, its gap and its velocity are those of the exact material point.
+
+use super::Contact;
+use super::feet::{Feet, Foot};
+use crate::dynamics::{ContactPoint, Workspace};
+use crate::error::{Error, Reason, Result};
+use crate::plan::Plan;
+use crate::planar::{Rotation, Vector, difference, dot, scaled, sum};
+use crate::robot::{FootShape, Robot};
+use crate::scene::NamedContact;
+use parry2d::math::{Pose, Vector as ParryVector};
+use parry2d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
+use parry2d::shape::{Ball, HalfSpace, Shape};
+
+/// Where the bodies and the ground are.
+#[derive(Debug, Clone)]
+pub struct Placement {
+    /// Origin of each body in the world \[m\].
+    origins: Vec<Vector<f64>>,
+    /// Pitch of each body as a turn.
+    turns: Vec<Rotation<f64>>,
+    /// Turn from the world's axes to the ground's.
+    ground: Rotation<f64>,
+}
+
+impl Placement {
+    /// The bodies after `kinematics`, with the root's origin at `base` \[m\], over the ground line through the world's
+    /// origin.
+    pub fn new(plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>, ground: Rotation<f64>) -> Self {
+        let mut origins: Vec<Vector<f64>> = Vec::with_capacity(plan.bodies.len());
+        for (body, &arm) in plan.bodies.iter().zip(&workspace.arm) {
+            origins.push(body.parent.map_or(base, |parent| sum(origins[parent], arm)));
+        }
+        Self { origins, turns: workspace.rotation.clone(), ground }
+    }
+
+    fn tangent(&self) -> Vector<f64> {
+        self.ground.apply([1.0, 0.0])
+    }
+
+    fn normal(&self) -> Vector<f64> {
+        self.ground.apply([0.0, 1.0])
+    }
+
+    /// The world's point of a circle (or, with radius 0, a point) of a body that is lowest along the normal.
+    fn lowest(&self, point: Point) -> Vector<f64> {
+        let centre = sum(self.origins[point.body], self.turns[point.body].apply(point.centre));
+        difference(centre, scaled(point.radius, self.normal()))
+    }
+
+    fn height(&self, point: Point) -> f64 {
+        dot(self.normal(), self.lowest(point))
+    }
+
+    fn pose(&self, body: usize, local: Vector<f64>) -> Pose {
+        let Rotation { cos, sin } = self.turns[body];
+        let [x, z] = sum(self.origins[body], self.turns[body].apply(local));
+        // parry turns counter-clockwise, a positive pitch clockwise.
+        Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
+    }
+
+    fn contact(&self, link: usize, point: Point) -> Contact {
+        Contact {
+            link,
+            name: String::new(),
+            body: point.body,
+            centre: point.centre,
+            radius: point.radius,
+            point: self.lowest(point),
+            normal: self.normal(),
+            gap: self.height(point),
+        }
+    }
+}
+
+/// A circle, or with radius 0 a point, rigid on a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Point {
+    body: usize,
+    centre: Vector<f64>,
+    radius: f64,
+}
+
+impl Contact {
+    /// The contact for the dynamics.
+    pub fn point_of(&self, ground: Rotation<f64>) -> ContactPoint {
+        ContactPoint { body: self.body, centre: self.centre, radius: self.radius, ground }
+    }
+}
+
+/// The points of a foot that can touch.
+fn points(foot: &Foot) -> Vec<Point> {
+    let point = |centre, radius| Point { body: foot.body, centre, radius };
+    match &foot.outline {
+        FootShape::Disc { centre, radius } => vec![point(*centre, *radius)],
+        FootShape::Polygon { corners, .. } => corners.iter().map(|&corner| point(corner, 0.0)).collect(),
+    }
+}
+
+/// The point of the link that stands: its lowest along the normal, of several within `tolerance` \[m\] the one with the
+/// smallest t; of the `named` contacts of the link if it has any, else of its feet.
+///
+/// # Errors
+/// [`Reason::Missing`] where the link has no foot.
+pub fn stance_foot(
+    robot: &Robot,
+    feet: &Feet,
+    named: Option<&[NamedContact]>,
+    link: usize,
+    placement: &Placement,
+    tolerance: f64,
+) -> Result<Contact> {
+    let body = robot.links[link].body;
+    let candidates: Vec<Point> = match named {
+        Some(named) => named
+            .iter()
+            .filter(|contact| contact.link == link)
+            .map(|contact| Point { body, centre: robot.links[link].point(contact.offset), radius: contact.radius })
+            .collect(),
+        None => feet.iter().filter(|foot| foot.link == link).flat_map(points).collect(),
+    };
+    let lowest = candidates.iter().map(|&point| placement.height(point)).fold(f64::INFINITY, f64::min);
+    let along = |point: Point| dot(placement.tangent(), placement.lowest(point));
+    candidates
+        .into_iter()
+        .filter(|&point| placement.height(point) <= lowest + tolerance)
+        .min_by(|&a, &b| along(a).total_cmp(&along(b)))
+        .map(|point| placement.contact(link, point))
+        .ok_or_else(|| {
+            let name = &robot.links[link].name;
+            Error::new(Reason::Missing(format!("a collision shape or named contact of link \"{name}\"")))
+                .at("stance")
+                .hint("name a link with a foot, or give its point in `contacts`")
+        })
+}
+
+/// The root's origin that puts the standing point at the world's origin \[m\], `foot` found with the root at zero.
+pub fn place(foot: &Contact) -> Vector<f64> {
+    foot.point.map(|entry| -entry)
+}
+
+/// All closed contacts: the `named` ones whatever their height, else every point of a foot within `tolerance` \[m\] of the
+/// ground, in the order of the links and along t within a link.
+///
+/// # Errors
+/// [`Reason::Penetration`] for a detected one that is deeper than the tolerance.
+pub fn detect(
+    robot: &Robot,
+    feet: &Feet,
+    named: Option<&[NamedContact]>,
+    placement: &Placement,
+    tolerance: f64,
+) -> Result<Vec<Contact>> {
+    let mut contacts = match named {
+        Some(named) => named
+            .iter()
+            .map(|contact| {
+                let link = &robot.links[contact.link];
+                let point = Point { body: link.body, centre: link.point(contact.offset), radius: contact.radius };
+                placement.contact(contact.link, point)
+            })
+            .collect(),
+        None => detected(robot, feet, placement, tolerance)?,
+    };
+    name_contacts(robot, &mut contacts);
+    Ok(contacts)
+}
+
+fn detected(robot: &Robot, feet: &Feet, placement: &Placement, tolerance: f64) -> Result<Vec<Contact>> {
+    let mut contacts: Vec<Contact> = Vec::new();
+    for foot in feet.iter() {
+        for point in touching(foot, placement, tolerance) {
+            let contact = placement.contact(foot.link, point);
+            if contact.gap < -tolerance {
+                return Err(Error::new(Reason::Penetration {
+                    link: robot.links[foot.link].name.clone(),
+                    depth: -contact.gap,
+                    tolerance,
+                })
+                .hint("raise the base, correct the pose, or accept it by a greater --contact-tolerance"));
+            }
+            // Shapes of a link may share a corner; it is one point all the same.
+            let known = |other: &Contact| {
+                other.link == contact.link && (other.centre, other.radius) == (contact.centre, contact.radius)
+            };
+            if !contacts.iter().any(known) {
+                contacts.push(contact);
+            }
+        }
+    }
+    let along = |contact: &Contact| dot(placement.tangent(), contact.point);
+    contacts.sort_by(|a, b| a.link.cmp(&b.link).then(along(a).total_cmp(&along(b))));
+    Ok(contacts)
+}
+
+/// The points of a foot that parry finds within `tolerance` of the ground or below it.
+fn touching(foot: &Foot, placement: &Placement, tolerance: f64) -> Vec<Point> {
+    let [x, z] = placement.normal();
+    let ground = HalfSpace::new(ParryVector::new(x, z));
+    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let mut collide = |pose: Pose, shape: &dyn Shape| {
+        // Every pair of a half space with one of our convex shapes is supported; were it not, nothing touched.
+        let _ = DefaultQueryDispatcher.contact_manifolds(&pose, &ground, shape, tolerance, &mut manifolds, &mut None);
+        manifolds.iter().flat_map(|manifold| &manifold.points).map(|point| (point.local_p2, point.dist)).collect()
+    };
+    match &foot.outline {
+        FootShape::Disc { centre, radius } => {
+            let found: Vec<_> = collide(placement.pose(foot.body, *centre), &Ball::new(*radius));
+            let near = found.iter().any(|&(_, distance)| distance <= tolerance);
+            near.then_some(Point { body: foot.body, centre: *centre, radius: *radius }).into_iter().collect()
+        }
+        FootShape::Polygon { corners, shape } => {
+            let found: Vec<_> = collide(placement.pose(foot.body, [0.0; 2]), &*shape.0);
+            let mut points: Vec<Point> = Vec::new();
+            for (at, _) in found.into_iter().filter(|&(_, distance)| distance <= tolerance) {
+                let far = |corner: &Vector<f64>| libm::hypot(corner[0] - at.x, corner[1] - at.y);
+                let nearest = corners.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+                let point = nearest.map(|&centre| Point { body: foot.body, centre, radius: 0.0 });
+                points.extend(point.filter(|point| !points.contains(point)));
+            }
+            points
+        }
+    }
+}
+
+/// A contact is named after its link, and numbered where the link has several.
+fn name_contacts(robot: &Robot, contacts: &mut [Contact]) {
+    let mut counts = vec![(0, 0); robot.links.len()];
+    for contact in contacts.iter() {
+        counts[contact.link].0 += 1;
+    }
+    for contact in contacts {
+        let name = &robot.links[contact.link].name;
+        let (all, next) = &mut counts[contact.link];
+        contact.name = if *all == 1 { name.clone() } else { format!("{name}/{next}") };
+        *next += 1;
+    }
+}

@@ -1,0 +1,71 @@
+//! The robot's shapes that may touch, compiled once.
+
+use crate::planar::{Vector, sum};
+use crate::robot::{FootShape, Robot};
+use crate::scene::NamedContact;
+
+/// One shape that may touch the ground.
+#[derive(Debug, Clone)]
+pub struct Foot {
+    /// The link that carries it (an index into [`Robot::links`]).
+    pub link: usize,
+    /// The body that it is rigid on.
+    pub body: usize,
+    /// Its outline in the body's frame.
+    pub outline: FootShape,
+}
+
+/// All shapes that may touch, in the order of the robot's links, and the robot's size.
+#[derive(Debug, Clone)]
+pub struct Feet {
+    feet: Vec<Foot>,
+    size: f64,
+}
+
+impl Feet {
+    /// The feet of a robot: its collision shapes, and `named` ones that are detected like them.
+    pub fn new(robot: &Robot, named: &[NamedContact]) -> Self {
+        let mut feet = Vec::new();
+        for (index, link) in robot.links.iter().enumerate() {
+            let own = named
+                .iter()
+                .filter(|contact| contact.link == index)
+                .map(|contact| FootShape::Disc { centre: link.point(contact.offset), radius: contact.radius });
+            let outlines = link.shapes.iter().cloned().chain(own);
+            feet.extend(outlines.map(|outline| Foot { link: index, body: link.body, outline }));
+        }
+        let size = size(robot, &feet);
+        Self { feet, size }
+    }
+
+    /// The shapes.
+    pub fn iter(&self) -> impl Iterator<Item = &Foot> {
+        self.feet.iter()
+    }
+
+    /// The greatest distance from the root's origin to a foot or CoG with all joints at zero \[m\].
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+}
+
+fn size(robot: &Robot, feet: &[Foot]) -> f64 {
+    let mut origins = vec![[0.0; 2]; robot.bodies.len()];
+    for (index, body) in robot.bodies.iter().enumerate() {
+        if let Some(joint) = body.joint.map(|joint| &robot.joints[joint]) {
+            origins[index] = sum(origins[joint.parent], joint.origin);
+        }
+    }
+    let distance = |body: usize, point: Vector<f64>| {
+        let [x, z] = sum(origins[body], point);
+        libm::hypot(x, z)
+    };
+    let centres = robot.bodies.iter().enumerate().map(|(index, body)| distance(index, body.com));
+    let soles = feet.iter().map(|foot| match &foot.outline {
+        FootShape::Disc { centre, radius } => distance(foot.body, *centre) + radius,
+        FootShape::Polygon { corners, .. } => {
+            corners.iter().map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max)
+        }
+    });
+    centres.chain(soles).fold(0.0, f64::max)
+}

@@ -1,0 +1,34 @@
+//! Where the robot touches the ground (the only user of parry).
+//!
+//! ```text
+//!     body poses + feet + ground --> closed contacts
+//! ```
+
+mod detect;
+mod feet;
+
+pub use detect::{Placement, detect, place, stance_foot};
+pub use feet::{Feet, Foot};
+
+use crate::planar::Vector;
+
+/// A closed contact of one state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact {
+    /// The URDF link that carries the shape, also after welding (an index into [`Robot::links`](crate::Robot)).
+    pub link: usize,
+    /// The link's name, or link/0, link/1 ... where a link has several contacts.
+    pub name: String,
+    /// The body that it is rigid on.
+    pub body: usize,
+    /// The point, or the centre of the circle, in the body's frame \[m\].
+    pub centre: Vector<f64>,
+    /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
+    pub radius: f64,
+    /// The contact point in the world \[m\].
+    pub point: Vector<f64>,
+    /// Unit normal of the ground in the world, toward the robot.
+    pub normal: Vector<f64>,
+    /// Height above the ground along the normal \[m\], negative below it.
+    pub gap: f64,
+}

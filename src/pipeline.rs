@@ -1,0 +1,355 @@
+//! One state end to end: the only place where all stages meet.
+//!
+//! ```text
+//!     State --> posture --> kinematics --> stance, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
+//! ```
+
+use crate::contact::{self, Contact, Feet, Placement};
+use crate::dynamics::{
+    ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factor_rows, factorize, kinematics,
+    kinetic_energy, mass_matrix, point_velocity,
+};
+use crate::error::{Error, Reason, Result};
+use crate::impact::problem::Factor;
+use crate::impact::{Analysis, ContactProblem, Friction, Scratch};
+use crate::plan::{Plan, Posture};
+use crate::planar::{Vector, dot, scaled, sum};
+use crate::robot::Robot;
+use crate::scene::{NamedContact, Scene};
+use crate::state::State;
+
+/// What the pipeline is asked for beside the outcomes.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// How far from the ground a foot may be and still touch \[m\]; by default [`CONTACT_TOLERANCE`] times the robot's size.
+    pub contact_tolerance: Option<f64>,
+    /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 snaps nothing.
+    pub resting_speed: f64,
+    /// Feet beside the robot's shapes, detected by their height like them.
+    pub feet: Vec<NamedContact>,
+    /// List every rejected combination, and beta, gamma and the region of each contact.
+    pub explain: bool,
+    /// Keep the matrices.
+    pub matrices: bool,
+}
+
+/// The default contact tolerance, as part of the robot's size (see [`Feet::size`]).
+pub const CONTACT_TOLERANCE: f64 = 1e-6;
+
+/// The answer for one state.
+#[derive(Debug, Clone)]
+pub struct Impact {
+    /// The closed contacts, in the order of all lists per contact.
+    pub contacts: Vec<Contact>,
+    /// Contact velocities before the impact, [tangential, normal] \[m/s\].
+    pub velocity_before: Vec<Vector<f64>>,
+    /// Kinetic energy before the impact \[J\].
+    pub kinetic_energy: f64,
+    /// Every outcome and the verdict, or why the outcomes cannot be told.
+    pub analysis: Result<Analysis>,
+    /// v after each outcome of the analysis, in the order of q \[m/s, rad/s\].
+    pub velocity_after: Vec<Vec<f64>>,
+    /// The matrices, if asked for.
+    pub matrices: Option<Matrices>,
+    /// What a reader should know, in whole sentences.
+    pub notes: Vec<String>,
+}
+
+/// The matrices behind an answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matrices {
+    /// Names of the moving coordinates in the order of q: rows and columns of M, columns of J (held joints have none).
+    pub coordinates: Vec<String>,
+    /// M, one row per coordinate.
+    pub mass_matrix: Vec<Vec<f64>>,
+    /// J, two rows (tangential, normal) per contact, one column per coordinate.
+    pub contact_jacobian: Vec<Vec<f64>>,
+    /// G = J M^-1 J^T, two rows and columns per contact.
+    pub delassus: Vec<Vec<f64>>,
+}
+
+/// Answers states of one robot, one after the other, in memory that it keeps.
+#[derive(Debug)]
+pub struct Pipeline<'r> {
+    robot: &'r Robot,
+    options: Options,
+    feet: Feet,
+    /// The plan of the last state, and what it was compiled for.
+    plan: Plan,
+    held: Vec<usize>,
+    rotor_inertia: Vec<f64>,
+    posture: Posture,
+    workspace: Workspace,
+    scratch: Scratch,
+    points: Vec<ContactPoint>,
+    column: Vec<f64>,
+}
+
+impl<'r> Pipeline<'r> {
+    /// A pipeline for states of `robot`.
+    pub fn new(robot: &'r Robot, options: Options) -> Self {
+        Self {
+            robot,
+            feet: Feet::new(robot, &options.feet),
+            options,
+            plan: Plan::new(robot, &[], &[]),
+            held: Vec::new(),
+            rotor_inertia: Vec::new(),
+            posture: Posture::default(),
+            workspace: Workspace::default(),
+            scratch: Scratch::default(),
+            points: Vec::new(),
+            column: Vec::new(),
+        }
+    }
+
+    /// Every outcome of one state.
+    ///
+    /// # Errors
+    /// [`Reason::Singular`] for a coordinate without inertia, [`Reason::Penetration`] for a foot deep in the ground,
+    /// [`Reason::Missing`] for a contact without friction or a stance without a foot.
+    pub fn impact(&mut self, state: &State) -> Result<Impact> {
+        let scene = &state.scene;
+        self.compile(scene);
+        self.posture.set(&state.position);
+        kinematics(&self.plan, &self.posture, &mut self.workspace);
+        mass_matrix(&self.plan, &mut self.workspace);
+        factorize(&self.plan, &mut self.workspace);
+        self.check_inertia()?;
+
+        let mut notes = Vec::new();
+        let (base, velocity, stance) = self.stand(state)?;
+        let contacts = self.contacts(scene, base)?;
+        let stance = stance.and_then(|foot| contacts.iter().position(|contact| same_point(contact, &foot)));
+        self.points.clear();
+        self.points.extend(contacts.iter().map(|contact| contact.point_of(scene.ground())));
+        contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
+        self.rest(&contacts, &velocity, &mut notes);
+        delassus(&self.plan, &mut self.workspace);
+
+        let free = self.applied(scene, &velocity);
+        let problem = self.problem(scene, &contacts, &velocity, &free)?;
+        let analysis = self.scratch.analyse(&problem, self.options.explain);
+        let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
+        let velocity_after = outcomes.iter().map(|outcome| self.struck(&free, &outcome.impulse)).collect();
+        Ok(Impact {
+            velocity_before: problem.velocity_before().to_vec(),
+            kinetic_energy: kinetic_energy(&self.plan, &velocity, &self.workspace),
+            velocity_after,
+            matrices: self.options.matrices.then(|| self.matrices()),
+            analysis,
+            contacts,
+            notes,
+        })
+    }
+
+    /// The contact problem of contacts given by hand, at a posture whose cosines and sines the caller knows better than
+    /// their angle tells; `velocity` is dq/dt by coordinate. Level ground, restitution and friction per contact.
+    ///
+    /// # Errors
+    /// [`Reason::Singular`] for a coordinate without inertia, and lengths that do not fit.
+    pub fn contact_problem(
+        &mut self,
+        posture: &Posture,
+        velocity: &[f64],
+        contacts: &[NamedContact],
+        friction: Vec<Friction>,
+        restitution: Vec<f64>,
+    ) -> Result<ContactProblem> {
+        self.compile(&Scene::default());
+        kinematics(&self.plan, posture, &mut self.workspace);
+        mass_matrix(&self.plan, &mut self.workspace);
+        factorize(&self.plan, &mut self.workspace);
+        self.check_inertia()?;
+        self.points.clear();
+        self.points.extend(contacts.iter().map(|contact| {
+            let link = &self.robot.links[contact.link];
+            ContactPoint {
+                body: link.body,
+                centre: link.point(contact.offset),
+                radius: contact.radius,
+                ground: Scene::default().ground(),
+            }
+        }));
+        contact_jacobian(&self.plan, &self.points, velocity, None, &mut self.workspace);
+        delassus(&self.plan, &mut self.workspace);
+        let before = self.workspace.contact_velocity.clone();
+        Ok(self.assemble(before.clone(), before, friction, restitution))
+    }
+
+    /// Compiles the plan, unless the last one was for the same held joints and rotors.
+    fn compile(&mut self, scene: &Scene) {
+        if self.held != scene.held || self.rotor_inertia != scene.rotor_inertia {
+            self.plan = Plan::new(self.robot, &scene.held, &scene.rotor_inertia);
+            self.held.clone_from(&scene.held);
+            self.rotor_inertia.clone_from(&scene.rotor_inertia);
+        }
+    }
+
+    /// Refuses a coordinate whose inertia, once all that hangs on it may move, is zero to rounding.
+    fn check_inertia(&self) -> Result<()> {
+        let nv = self.plan.columns();
+        for column in (0..nv).rev() {
+            let (whole, rest) =
+                (self.workspace.mass_matrix[column * nv + column], self.workspace.factor[column * nv + column]);
+            // Each of up to nv eliminations loses at most a few units in the last place of the whole.
+            if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {
+                let coordinate = self.plan.coordinates()[column];
+                let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
+                let joint = coordinate >= self.robot.base_dofs();
+                let (what, remedy) = if joint {
+                    (format!("joint \"{name}\""), "name the joint in `held`, or give it a `rotor_inertia`")
+                } else {
+                    (format!("the base along {name}"), "give a link that moves with the base a mass")
+                };
+                return Err(Error::new(Reason::Singular(what)).hint(remedy));
+            }
+        }
+        Ok(())
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
+    }
+
+    /// The root's origin and the velocity by coordinate; with a stance both are such that its foot stands, and the foot.
+    fn stand(&self, state: &State) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
+        let mut velocity = state.velocity.clone();
+        if !self.plan.floating {
+            return Ok(([0.0; 2], velocity, None));
+        }
+        let Some(link) = state.scene.stance else {
+            return Ok(([state.position[0], state.position[1]], velocity, None));
+        };
+        let ground = state.scene.ground();
+        let at_zero = Placement::new(&self.plan, &self.workspace, [0.0; 2], ground);
+        let named = state.scene.contacts.as_deref();
+        let foot = contact::stance_foot(self.robot, &self.feet, named, link, &at_zero, self.tolerance())?;
+        velocity[..2].fill(0.0);
+        let arm = foot.point_of(ground).arm(&self.workspace);
+        let moving = point_velocity(&self.plan, foot.body, arm, &velocity, &self.workspace);
+        velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
+        Ok((contact::place(&foot), velocity, Some(foot)))
+    }
+
+    fn contacts(&self, scene: &Scene, base: Vector<f64>) -> Result<Vec<Contact>> {
+        let placement = Placement::new(&self.plan, &self.workspace, base, scene.ground());
+        contact::detect(self.robot, &self.feet, scene.contacts.as_deref(), &placement, self.tolerance())
+    }
+
+    /// Takes slow contacts as resting where asked to, and tells of speeds that are no more than rounding.
+    fn rest(&mut self, contacts: &[Contact], velocity: &[f64], notes: &mut Vec<String>) {
+        let fastest = velocity.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        let reach = fastest * self.feet.size().max(1.0);
+        for (contact, speed) in contacts.iter().zip(&mut self.workspace.contact_velocity) {
+            let slow = libm::hypot(speed[0], speed[1]);
+            if slow == 0.0 {
+                continue;
+            }
+            if slow < self.options.resting_speed {
+                *speed = [0.0; 2];
+                notes.push(format!(
+                    "{} moves at {slow:.1e} m/s and is taken as exactly at rest (resting speed {} m/s)",
+                    contact.name, self.options.resting_speed
+                ));
+            } else if slow <= 16.0 * f64::EPSILON * reach {
+                notes.push(format!(
+                    "{} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, say so by \
+                     `stance` or --resting-speed",
+                    contact.name
+                ));
+            }
+        }
+    }
+
+    /// The velocity by coordinate after the applied impulses.
+    fn applied(&mut self, scene: &Scene, velocity: &[f64]) -> Vec<f64> {
+        let mut free = velocity.to_vec();
+        for applied in &scene.impulses {
+            let link = &self.robot.links[applied.link];
+            let arm = self.workspace.rotation[link.body].apply(link.point(applied.offset));
+            let Self { plan, workspace, column, .. } = self;
+            add_impulse(plan, workspace, (link.body, arm), applied.vector, column, &mut free);
+        }
+        free
+    }
+
+    /// The velocity by coordinate after contact impulses, from the one without them.
+    fn struck(&mut self, free: &[f64], impulse: &[Vector<f64>]) -> Vec<f64> {
+        let mut after = free.to_vec();
+        let Self { plan, workspace, points, column, .. } = self;
+        for (point, &[tangential, normal]) in points.iter().zip(impulse) {
+            let axes = point.axes();
+            let vector = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
+            add_impulse(plan, workspace, (point.body, point.arm(workspace)), vector, column, &mut after);
+        }
+        after
+    }
+
+    fn problem(
+        &mut self,
+        scene: &Scene,
+        contacts: &[Contact],
+        velocity: &[f64],
+        free: &[f64],
+    ) -> Result<ContactProblem> {
+        let mut friction = Vec::with_capacity(contacts.len());
+        for contact in contacts {
+            friction.push(scene.friction.of(contact.link).ok_or_else(|| {
+                let name = &self.robot.links[contact.link].name;
+                Error::new(Reason::Missing(format!("the friction of link \"{name}\", which touches the ground,")))
+                    .at("friction")
+                    .hint("add \"friction\": 0.8 to the state, or --friction 0.8 (or infinite)")
+            })?);
+        }
+        let restitution = contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect();
+        let before = self.workspace.contact_velocity.clone();
+        let mut unbraked = before.clone();
+        if !scene.impulses.is_empty() {
+            // Only the change goes through J, so that a contact at rest before stays exactly so without an impulse.
+            let change: Vec<f64> = free.iter().zip(velocity).map(|(after, before)| after - before).collect();
+            for (point, speed) in self.points.iter().zip(&mut unbraked) {
+                let more = point_velocity(&self.plan, point.body, point.arm(&self.workspace), &change, &self.workspace);
+                *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));
+            }
+        }
+        Ok(self.assemble(before, unbraked, friction, restitution))
+    }
+
+    fn assemble(
+        &self,
+        before: Vec<Vector<f64>>,
+        free: Vec<Vector<f64>>,
+        friction: Vec<Friction>,
+        restitution: Vec<f64>,
+    ) -> ContactProblem {
+        let mut rows = Vec::new();
+        factor_rows(&self.plan, &self.workspace, &mut rows);
+        let factor = Factor { rows, columns: self.plan.columns() };
+        ContactProblem::from_parts(self.workspace.delassus.clone(), factor, before, free, friction, restitution)
+    }
+
+    fn matrices(&self) -> Matrices {
+        let nv = self.plan.columns();
+        // Columns of the plan run outward from the root, the user's coordinates in the file's order.
+        let mut order: Vec<usize> = (0..nv).collect();
+        order.sort_by_key(|&column| self.plan.coordinates()[column]);
+        let names: Vec<&str> = self.robot.coordinates().collect();
+        let mass = &self.workspace.mass_matrix;
+        let entry = |i: usize, j: usize| mass[i.max(j) * nv + i.min(j)];
+        let rows = self.workspace.contact_velocity.len() * 2;
+        Matrices {
+            coordinates: order.iter().map(|&column| names[self.plan.coordinates()[column]].to_owned()).collect(),
+            mass_matrix: order.iter().map(|&i| order.iter().map(|&j| entry(i, j)).collect()).collect(),
+            contact_jacobian: (0..rows)
+                .map(|row| order.iter().map(|&column| self.workspace.contact_jacobian[row * nv + column]).collect())
+                .collect(),
+            delassus: (0..rows).map(|row| self.workspace.delassus[row * rows..(row + 1) * rows].to_vec()).collect(),
+        }
+    }
+}
+
+/// Whether two contacts are the same material point.
+fn same_point(a: &Contact, b: &Contact) -> bool {
+    (a.link, a.body, a.centre, a.radius) == (b.link, b.body, b.centre, b.radius)
+}

@@ -1,0 +1,256 @@
+//! The fields of a state, one function for each shape of value.
+
+use super::{Defaults, State};
+use crate::impact::Friction;
+use crate::json::Node;
+use crate::robot::Base;
+use crate::scene::{AppliedImpulse, ByLink, NamedContact};
+use crate::{Error, Reason, Result, Robot};
+use std::f64::consts::FRAC_PI_2;
+
+/// All fields of a state, for hints.
+const FIELDS: [&str; 13] = [
+    "id",
+    "position",
+    "velocity",
+    "friction",
+    "restitution",
+    "ground",
+    "stance",
+    "held",
+    "rotor_inertia",
+    "contacts",
+    "loops",
+    "uncertainty",
+    "impulse",
+];
+
+/// The entries of a floating base in the order of q.
+const BASE: [&str; 3] = ["x", "z", "pitch"];
+
+/// Reads a whole state.
+pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
+    let dofs = robot.dofs();
+    let mut state = State { position: vec![0.0; dofs], velocity: vec![0.0; dofs], ..State::default() };
+    let scene = &mut state.scene;
+
+    for field in root.fields("field")? {
+        match field.key() {
+            "id" => state.id = Some(field.id()?),
+            "position" => coordinates(field, robot, &mut state.position)?,
+            "velocity" => coordinates(field, robot, &mut state.velocity)?,
+            "friction" => scene.friction = by_link(field, robot, friction)?,
+            "restitution" => scene.restitution = by_link(field, robot, restitution)?,
+            "ground" => scene.slope = slope(field)?,
+            "stance" => scene.stance = Some(stance(field, robot)?),
+            "held" => scene.held = held(field, robot)?,
+            "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
+            "contacts" => scene.contacts = Some(contacts(field, robot)?),
+            "impulse" => scene.impulses = impulses(field, robot)?,
+            "loops" => return Err(not_yet(field, "loops are")),
+            "uncertainty" => return Err(not_yet(field, "uncertainty is")),
+            _ => return Err(field.unknown_field(&FIELDS)),
+        }
+    }
+    if scene.stance.is_some() {
+        refuse_a_placed_base(root)?;
+    }
+    scene.friction.default = scene.friction.default.or(defaults.friction);
+    Ok(state)
+}
+
+/// `{"base": {"x", "z", "pitch"}, "joints": {name: number}}` into the order of q.
+fn coordinates(field: Node, robot: &Robot, into: &mut [f64]) -> Result<()> {
+    let (base, joints) = into.split_at_mut(robot.base_dofs());
+    for part in field.fields("field")? {
+        match part.key() {
+            "base" if robot.base == Base::Fixed => {
+                let reason =
+                    Reason::Inconsistent("the robot is bolted to the world, its base has no coordinates".into());
+                return Err(part.refuse(reason).hint("leave it out, or give --base floating"));
+            }
+            "base" => {
+                for entry in part.fields("base entry")? {
+                    match BASE.iter().position(|name| *name == entry.key()) {
+                        Some(at) => base[at] = entry.number()?,
+                        None => return Err(entry.unknown_field(&BASE)),
+                    }
+                }
+            }
+            "joints" => {
+                for entry in part.fields("joint")? {
+                    joints[joint(entry, entry.key(), robot)?] = entry.number()?;
+                }
+            }
+            _ => return Err(part.unknown_field(&["base", "joints"])),
+        }
+    }
+    Ok(())
+}
+
+/// A stance places the base and gives its velocity: both given is one too many.
+fn refuse_a_placed_base(root: Node) -> Result<()> {
+    for field in root.fields("field")?.filter(|field| matches!(field.key(), "position" | "velocity")) {
+        for base in field.fields("field")?.filter(|part| part.key() == "base") {
+            if let Some(entry) = base.fields("base entry")?.find(|entry| matches!(entry.key(), "x" | "z")) {
+                let reason = Reason::Inconsistent(format!("the stance already gives the base's {}", entry.key()));
+                return Err(entry.refuse(reason).hint("leave out either the stance or the base's x and z"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn stance(field: Node, robot: &Robot) -> Result<usize> {
+    let link = link(field, field.text()?, robot)?;
+    match robot.base {
+        Base::Floating => Ok(link),
+        Base::Fixed => {
+            let reason = Reason::Inconsistent("the robot is bolted to the world, a stance cannot place it".into());
+            Err(field.refuse(reason).hint("leave it out, or give --base floating"))
+        }
+    }
+}
+
+/// A value for all links, or an object of values by link with an optional `default`.
+fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>) -> Result<ByLink<T>> {
+    if !field.is_object() {
+        return Ok(ByLink::everywhere(read(field)?));
+    }
+    let mut values = ByLink { default: None, links: Vec::new() };
+    for entry in field.fields("link")? {
+        match entry.key() {
+            "default" => values.default = Some(read(entry)?),
+            name => values.links.push((link(entry, name, robot)?, read(entry)?)),
+        }
+    }
+    Ok(values)
+}
+
+/// A number from 0 on, or "infinite".
+pub(crate) fn friction(node: Node) -> Result<Friction> {
+    match node.as_text() {
+        Some("infinite") => Ok(Friction::Infinite),
+        Some(_) => Err(node.expected("a number or \"infinite\"").did_you_mean(node.text()?, ["infinite"])),
+        None => from_zero(node, "friction").map(Friction::Finite),
+    }
+}
+
+/// A number from 0 to 1.
+pub(crate) fn restitution(node: Node) -> Result<f64> {
+    let value = node.number()?;
+    if (0.0..=1.0).contains(&value) {
+        return Ok(value);
+    }
+    Err(node.refuse(Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
+}
+
+/// `{"slope": radians}`.
+fn slope(field: Node) -> Result<f64> {
+    let mut slope = 0.0;
+    for entry in field.fields("field")? {
+        match entry.key() {
+            "slope" => slope = entry.number()?,
+            "profile" => return Err(not_yet(entry, "a ground profile is")),
+            _ => return Err(entry.unknown_field(&["slope", "profile"])),
+        }
+        if slope.abs() >= FRAC_PI_2 {
+            let what = "slope".into();
+            return Err(entry.refuse(Reason::OutOfRange { what, allowed: "between -pi/2 and pi/2", value: slope }));
+        }
+    }
+    Ok(slope)
+}
+
+/// A list of different joints.
+fn held(field: Node, robot: &Robot) -> Result<Vec<usize>> {
+    let mut held = Vec::new();
+    for entry in field.entries()? {
+        let name = entry.text()?;
+        let joint = joint(entry, name, robot)?;
+        if held.contains(&joint) {
+            return Err(entry.refuse(Reason::Duplicate { what: "joint", name: name.to_owned() }));
+        }
+        held.push(joint);
+    }
+    Ok(held)
+}
+
+/// An object of inertias by joint, for every joint of the robot.
+fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
+    let mut inertia = vec![0.0; robot.joints.len()];
+    for entry in field.fields("joint")? {
+        inertia[joint(entry, entry.key(), robot)?] = from_zero(entry, "rotor inertia")?;
+    }
+    Ok(inertia)
+}
+
+/// A list of `{"link", "offset", "radius"}`.
+fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
+    let mut contacts = Vec::new();
+    for entry in field.entries()? {
+        let (mut named, mut offset, mut radius) = (None, [0.0; 3], 0.0);
+        for part in entry.fields("field")? {
+            match part.key() {
+                "link" => named = Some(link(part, part.text()?, robot)?),
+                "offset" => offset = part.numbers("a list of 3 numbers")?,
+                "radius" => radius = from_zero(part, "radius")?,
+                _ => return Err(part.unknown_field(&["link", "offset", "radius"])),
+            }
+        }
+        let link = named.ok_or_else(|| missing(entry, "link"))?;
+        contacts.push(NamedContact { link, offset, radius });
+    }
+    Ok(contacts)
+}
+
+/// A list of `{"link", "offset", "vector"}`.
+fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
+    let mut impulses = Vec::new();
+    for entry in field.entries()? {
+        let (mut named, mut offset, mut applied) = (None, [0.0; 3], None);
+        for part in entry.fields("field")? {
+            match part.key() {
+                "link" => named = Some(link(part, part.text()?, robot)?),
+                "offset" => offset = part.numbers("a list of 3 numbers")?,
+                "vector" => applied = Some(part.numbers("a list of 2 numbers, [x, z]")?),
+                _ => return Err(part.unknown_field(&["link", "offset", "vector"])),
+            }
+        }
+        let link = named.ok_or_else(|| missing(entry, "link"))?;
+        let vector = applied.ok_or_else(|| missing(entry, "vector"))?;
+        impulses.push(AppliedImpulse { link, offset, vector });
+    }
+    Ok(impulses)
+}
+
+/// A number from 0 on.
+fn from_zero(node: Node, what: &str) -> Result<f64> {
+    let value = node.number()?;
+    if value >= 0.0 {
+        return Ok(value);
+    }
+    Err(node.refuse(Reason::OutOfRange { what: what.to_owned(), allowed: "0 or more", value }))
+}
+
+fn link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
+    let known = || robot.links.iter().map(|link| link.name.as_str());
+    robot.link(name).ok_or_else(|| unknown_name(node, "link", name, known()))
+}
+
+fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
+    let known = || robot.joints.iter().map(|joint| joint.name.as_str());
+    robot.joint(name).ok_or_else(|| unknown_name(node, "joint", name, known()))
+}
+
+fn unknown_name<'a>(node: Node, what: &'static str, name: &str, known: impl Iterator<Item = &'a str>) -> Error {
+    node.refuse_name(name, Reason::UnknownName { what, name: name.to_owned() }).did_you_mean(name, known)
+}
+
+fn missing(node: Node, what: &str) -> Error {
+    node.refuse(Reason::Missing(format!("\"{what}\"")))
+}
+
+fn not_yet(node: Node, what: &str) -> Error {
+    node.refuse(Reason::Unsupported(format!("{what} not supported by this version"))).hint("leave it out")
+}
