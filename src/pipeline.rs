@@ -200,7 +200,9 @@ impl<'r> Pipeline<'r> {
                 let (what, remedy) = if joint {
                     (format!("joint \"{name}\""), "name the joint in `held`, or give it a `rotor_inertia`")
                 } else {
-                    (format!("the base along {name}"), "give a link that moves with the base a mass")
+                    let remedy = "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of \
+                                  them, or give it a `rotor_inertia`";
+                    (format!("the base along {name}"), remedy)
                 };
                 return Err(Error::new(Reason::Singular(what)).hint(remedy));
             }

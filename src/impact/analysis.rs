@@ -112,17 +112,29 @@ fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
     }
 }
 
-/// Condition number of a regular G scaled to a unit diagonal.
+/// Condition number of a regular G scaled to a unit diagonal; by the rows of its factor where G itself is too ill
+/// conditioned to tell and they are known.
 fn condition(problem: &ContactProblem, scale: &Scale) -> Option<f64> {
     let rows = 2 * problem.contacts();
     if rows == 0 {
         return None;
     }
-    let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (scale.mobility[i] * scale.mobility[j]));
+    let mobility = &scale.mobility;
+    let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
     let values = scaled.symmetric_eigenvalues();
     let condition = values.max() / values.min();
-    (condition.is_finite() && condition > 0.0).then_some(condition)
+    if (0.0..SQUARED_CONDITION_LIMIT).contains(&condition) {
+        return Some(condition);
+    }
+    let factor = problem.factor()?;
+    let entry = |i: usize, j: usize| factor.rows[i * factor.columns + j] / mobility[i];
+    let lengths = DMatrix::from_fn(rows, factor.columns, entry).singular_values();
+    let ratio = lengths.max() / lengths.min();
+    (ratio * ratio).is_finite().then_some(ratio * ratio)
 }
+
+/// Beyond this the least eigenvalue of G has lost half of its digits.
+const SQUARED_CONDITION_LIMIT: f64 = 1e8;
 
 /// The sign of the product of the pivots.
 fn index(pivots: &[f64]) -> i8 {
@@ -271,7 +283,10 @@ impl Found {
 
 /// A decided outcome with a unique impulse; index and margin are the caller's.
 fn outcome(modes: &[Mode], problem: &ContactProblem, motion: Motion) -> Outcome {
-    let Motion { impulse, velocity_after } = motion;
+    // Adding zero turns a negative zero into the one that people expect to read.
+    let unsigned = |list: Vec<Vector<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
+    let (impulse, velocity_after): (Vec<Vector<f64>>, Vec<Vector<f64>>) =
+        (unsigned(motion.impulse), unsigned(motion.velocity_after));
     let before = problem.velocity_before();
     let work: f64 = impulse
         .iter()

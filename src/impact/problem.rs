@@ -305,7 +305,7 @@ impl ContactProblem {
             let indefinite = (0..rows).find(|&i| rest[(i, i)] < -rounding);
             let coupled = || (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j)));
             let stray = (rest[(pivot, pivot)] <= rounding)
-                .then(|| coupled().find(|&(i, j)| rest[(i, j)].abs() > rounding.sqrt() * largest.sqrt()))
+                .then(|| coupled().find(|&(i, j)| rest[(i, j)].abs() > 4.0 * rounding))
                 .flatten();
             if let Some((i, j)) = indefinite.map(|i| (i, i)).or(stray) {
                 return Err(Error::new(Reason::Inconsistent(
