@@ -83,6 +83,9 @@ pub mod dynamics;
 pub mod contact;
 pub mod impact;
 pub mod pipeline;
+pub mod report;
+pub mod documents;
+pub mod batch;
 
 pub use error::{Error, Reason, Result};
 pub use robot::Robot;

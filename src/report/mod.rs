@@ -1,0 +1,45 @@
+//! What is written: the JSON contract, and text for people.
+//!
+//! ```text
+//!     Impact (a robot's state)  ──┐
+//!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
+//!                                         └────> text for people        text.rs
+//!     Robot ──> Inspection ──> JSON, text                               inspection.rs
+//! ```
+
+mod inspection;
+mod problem;
+mod result;
+mod table;
+mod text;
+
+pub use inspection::Inspection;
+pub use problem::Problem;
+pub use result::{
+    Brief, Contact, ErrorObject, Explained, LeftOut, NamedVelocities, Outcome, OutcomeInBrief, Refused, Rejected,
+    Report,
+};
+pub use text::{Palette, Subject, text};
+
+use serde::Serialize;
+
+/// How much of a result is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Detail {
+    /// Also why every other combination fails.
+    pub explain: bool,
+    /// Also the matrices.
+    pub matrices: bool,
+    /// Only the verdict and each outcome's modes, index and margin.
+    pub brief: bool,
+}
+
+/// Appends `value` to `out` as one line of JSON.
+pub fn append_line<T: Serialize>(out: &mut Vec<u8>, value: &T) {
+    let start = out.len();
+    // Writing into memory cannot fail, and no report has keys that are not strings; should one ever, nothing is left.
+    match serde_json::to_writer(&mut *out, value) {
+        Ok(()) => out.push(b'\n'),
+        Err(_) => out.truncate(start),
+    }
+}

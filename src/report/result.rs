@@ -1,0 +1,412 @@
+//! The JSON contract: these structs are what is written, field by field and in this order.
+//!
+//! Fields that do not apply are absent; fields that apply but have no value (the index on a border, the condition of a
+//! singular matrix) are null. Numbers are written with every digit.
+
+use super::{Detail, Problem};
+use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, outcome};
+use crate::pipeline::{Impact, Matrices};
+use crate::planar::Vector;
+use crate::state::State;
+use crate::{Error, Result, Robot, contact};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
+use serde_json::Value;
+use std::borrow::Cow;
+
+/// The result of a state or of a contact problem.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report<'a> {
+    /// What the user calls it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub id: Option<&'a Value>,
+    /// The answer in one word; absent beside an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
+    /// Every combination is decided by an error bound: the list is complete and right; absent beside an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proven: Option<bool>,
+    /// The closed contacts, in the order of all lists per contact.
+    pub contacts: Vec<Contact<'a>>,
+    /// Every outcome; absent beside an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outcomes: Option<Vec<Outcome<'a>>>,
+    /// Every other combination, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rejected: Option<Vec<Rejected<'a>>>,
+    /// Kinetic energy before the impact \[J\]; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kinetic_energy: Option<f64>,
+    /// Whether some outcome has no sliding contact; absent beside an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_slip_consistent: Option<bool>,
+    /// The paper's section 4 for each contact, if asked for; null for a singular Delassus matrix.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explain: Option<Option<Explained<'a>>>,
+    /// Sum of the outcomes' indices; null where one of them has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub index_sum: Option<Option<i32>>,
+    /// Condition number of the Delassus matrix scaled to a unit diagonal; null where it is singular.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub condition: Option<Option<f64>>,
+    /// Rank of the Delassus matrix.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rank: Option<usize>,
+    /// What of the robot's file does not enter the analysis; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<Vec<LeftOut<'a>>>,
+    /// What a reader should know, in whole sentences.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    pub notes: &'a [String],
+    /// Names of the kept coordinates in the order of q, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coordinates: Option<&'a [String]>,
+    /// M, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_matrix: Option<&'a [Vec<f64>]>,
+    /// J, rows tangential and normal per contact, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_jacobian: Option<&'a [Vec<f64>]>,
+    /// G = J M^-1 J^T, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delassus: Option<Cow<'a, [Vec<f64>]>>,
+    /// Why there are no outcomes although the matrices are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorObject<'a>>,
+}
+
+/// A closed contact.
+#[derive(Debug, Clone, Serialize)]
+pub struct Contact<'a> {
+    /// The URDF link that carries the shape; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub link: Option<&'a str>,
+    /// Its name, which is its link's, or link/0, link/1 ... where a link has several.
+    pub name: &'a str,
+    /// The contact point in the world \[m\]; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point: Option<Vector<f64>>,
+    /// Unit normal of the ground, toward the robot; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal: Option<Vector<f64>>,
+    /// Height above the ground along the normal \[m\]; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
+    /// Its velocity before the impact, [tangential, normal] \[m/s\].
+    pub velocity_before: Vector<f64>,
+}
+
+/// A consistent combination of modes.
+#[derive(Debug, Clone, Serialize)]
+pub struct Outcome<'a> {
+    /// One mode per contact.
+    pub modes: &'a [Mode],
+    /// Contact impulses, [tangential, normal] per contact \[N s\].
+    pub impulse: &'a [Vector<f64>],
+    /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
+    pub velocity_after: &'a [Vector<f64>],
+    /// Velocity of the base after the impact; of a robot that is not bolted to the world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_velocity_after: Option<NamedVelocities<'a>>,
+    /// Rates of the joints after the impact, held ones too; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_velocity_after: Option<NamedVelocities<'a>>,
+    /// Kinetic energy that the contacts took \[J\].
+    pub energy_loss: f64,
+    /// False where other impulses give the same velocities.
+    pub impulse_unique: bool,
+    /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others.
+    pub friction_needed: &'a [Option<f64>],
+    /// Sign of det A.
+    pub index: Option<i8>,
+    /// The smallest slack of the outcome's inequalities, free of units.
+    pub margin: Option<f64>,
+    /// Every sign is shown by an error bound.
+    pub proven: bool,
+}
+
+/// Something of the robot's file that does not enter the analysis.
+#[derive(Debug, Clone, Serialize)]
+pub struct LeftOut<'a> {
+    /// What, as in `joint "left_ankle"`.
+    pub what: &'a str,
+    /// Why, as in `fixed: welded into left_shank`.
+    pub why: &'a str,
+}
+
+impl<'a> LeftOut<'a> {
+    /// All that was left out of `robot`.
+    pub fn all(robot: &'a Robot) -> Vec<Self> {
+        robot.left_out.iter().map(|left| Self { what: &left.what, why: &left.why }).collect()
+    }
+}
+
+/// Velocities by name, written as an object in the order of q.
+#[derive(Debug, Clone)]
+pub struct NamedVelocities<'a>(pub Vec<(&'a str, f64)>);
+
+impl Serialize for NamedVelocities<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, velocity) in &self.0 {
+            map.serialize_entry(name, velocity)?;
+        }
+        map.end()
+    }
+}
+
+/// A combination of modes that is not an outcome.
+#[derive(Debug, Clone, Serialize)]
+pub struct Rejected<'a> {
+    /// One mode per contact.
+    pub modes: &'a [Mode],
+    /// Why it is none, with the contact's name.
+    pub because: String,
+    /// The smallest slack, negative; null where the combination has no solution at all.
+    pub margin: Option<f64>,
+    /// The impulses that it would have needed \[N s\].
+    pub impulse: Option<&'a [Vector<f64>]>,
+    /// The contact velocities that it would have led to \[m/s\].
+    pub velocity_after: Option<&'a [Vector<f64>]>,
+}
+
+/// The paper's section 4, one entry per contact.
+#[derive(Debug, Clone, Serialize)]
+pub struct Explained<'a> {
+    /// Angle of the impulse of a pure slide \[rad\].
+    pub beta: &'a [f64],
+    /// Angle of the impulse that the contact takes over from the rest \[rad\].
+    pub gamma: &'a [f64],
+    /// What infinite friction does there.
+    pub region: &'a [Region],
+}
+
+/// The result in brief.
+#[derive(Debug, Clone, Serialize)]
+pub struct Brief<'a> {
+    /// What the user calls it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub id: Option<&'a Value>,
+    /// The answer in one word.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
+    /// Every combination is decided by an error bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proven: Option<bool>,
+    /// Every outcome.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
+    /// Why there are no outcomes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorObject<'a>>,
+}
+
+/// An outcome in brief.
+#[derive(Debug, Clone, Serialize)]
+pub struct OutcomeInBrief<'a> {
+    /// One mode per contact.
+    pub modes: &'a [Mode],
+    /// Sign of det A.
+    pub index: Option<i8>,
+    /// The smallest slack of the outcome's inequalities, free of units.
+    pub margin: Option<f64>,
+}
+
+/// What stands in place of the result of a refused input.
+#[derive(Debug, Clone, Serialize)]
+pub struct Refused<'a> {
+    /// What the user calls it, where that can be read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub id: Option<Value>,
+    /// The line on which the input begins, from 1.
+    pub line: usize,
+    /// Why it was refused.
+    pub error: ErrorObject<'a>,
+}
+
+/// A refusal; it names no file, so that a file, a pipe and standard input give the same bytes.
+#[derive(Debug, Clone, Serialize)]
+pub struct ErrorObject<'a> {
+    /// Why.
+    pub message: String,
+    /// Where inside the input, as in `position.joints.left_hip`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<&'a str>,
+    /// What to do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hint: Option<&'a str>,
+}
+
+impl<'a> Refused<'a> {
+    /// The refusal of the input that begins on `line`.
+    pub fn new(id: Option<Value>, line: usize, error: &'a Error) -> Self {
+        Self { id, line, error: ErrorObject::new(error) }
+    }
+}
+
+impl<'a> ErrorObject<'a> {
+    /// The error without its file, line and column.
+    pub fn new(error: &'a Error) -> Self {
+        Self { message: error.reason().to_string(), place: error.place(), hint: error.remedy() }
+    }
+}
+
+impl<'a> Report<'a> {
+    /// The result of a state. Where the outcomes were refused it has an `error`, beside the matrices if they were asked for.
+    ///
+    /// # Errors
+    /// The refusal of the outcomes, where there are no matrices that could stand beside it.
+    pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> Result<Self> {
+        let analysis = match &impact.analysis {
+            Err(error) if impact.matrices.is_none() => return Err(error.clone()),
+            analysis => analysis.as_ref(),
+        };
+        let contacts = impact.contacts.iter().zip(&impact.velocity_before);
+        let contacts = contacts.map(|(contact, velocity)| Contact::of_robot(robot, contact, *velocity)).collect();
+        let mut report = Self {
+            id: state.id.as_ref(),
+            kinetic_energy: Some(impact.kinetic_energy),
+            left_out: Some(LeftOut::all(robot)),
+            notes: &impact.notes,
+            ..Self::of_analysis(contacts, analysis, detail)
+        };
+        for (outcome, velocity) in report.outcomes.iter_mut().flatten().zip(&impact.velocity_after) {
+            outcome.set_velocity_after(robot, velocity);
+        }
+        if let Some(Matrices { coordinates, mass_matrix, contact_jacobian, delassus }) = &impact.matrices {
+            report.coordinates = Some(coordinates);
+            report.mass_matrix = Some(mass_matrix);
+            report.contact_jacobian = Some(contact_jacobian);
+            report.delassus = Some(Cow::Borrowed(delassus));
+        }
+        Ok(report)
+    }
+
+    /// The result of a contact problem without a robot.
+    pub fn of_problem(problem: &'a Problem, analysis: &'a Analysis, detail: Detail) -> Self {
+        let contacts = problem.names.iter().zip(problem.contact.velocity_before());
+        let contacts = contacts.map(|(name, velocity)| Contact::of_problem(name, *velocity)).collect();
+        Self {
+            id: problem.id.as_ref(),
+            delassus: detail.matrices.then(|| Cow::Owned(problem.delassus())),
+            ..Self::of_analysis(contacts, Ok(analysis), detail)
+        }
+    }
+
+    /// What robots and matrices have in common.
+    fn of_analysis(
+        contacts: Vec<Contact<'a>>,
+        analysis: std::result::Result<&'a Analysis, &'a Error>,
+        detail: Detail,
+    ) -> Self {
+        let known = analysis.ok();
+        let explained = known.filter(|_| detail.explain);
+        let rejected = explained.map(|analysis| {
+            let names: Vec<String> = contacts.iter().map(|contact| contact.name.to_owned()).collect();
+            analysis.rejected.iter().map(|rejection| Rejected::new(rejection, &names)).collect()
+        });
+        Self {
+            id: None,
+            verdict: known.map(|analysis| analysis.verdict),
+            proven: known.map(|analysis| analysis.proven),
+            outcomes: known.map(|analysis| analysis.outcomes.iter().map(Outcome::new).collect()),
+            rejected,
+            kinetic_energy: None,
+            no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
+            explain: explained.map(|analysis| analysis.explanation.as_ref().map(Explained::new)),
+            index_sum: known.map(|analysis| analysis.index_sum),
+            condition: known.map(|analysis| analysis.condition),
+            rank: known.map(|analysis| analysis.rank),
+            left_out: None,
+            notes: &[],
+            coordinates: None,
+            mass_matrix: None,
+            contact_jacobian: None,
+            delassus: None,
+            error: analysis.err().map(ErrorObject::new),
+            contacts,
+        }
+    }
+
+    /// The same in brief.
+    pub fn brief(&self) -> Brief<'a> {
+        let brief = |outcome: &Outcome<'a>| OutcomeInBrief {
+            modes: outcome.modes,
+            index: outcome.index,
+            margin: outcome.margin,
+        };
+        Brief {
+            id: self.id,
+            verdict: self.verdict,
+            proven: self.proven,
+            outcomes: self.outcomes.as_ref().map(|outcomes| outcomes.iter().map(brief).collect()),
+            error: self.error.clone(),
+        }
+    }
+
+    /// Appends the result to `out` as one line of JSON, whole or in brief.
+    pub fn append_json(&self, detail: Detail, out: &mut Vec<u8>) {
+        if detail.brief { super::append_line(out, &self.brief()) } else { super::append_line(out, self) }
+    }
+}
+
+impl<'a> Contact<'a> {
+    fn of_robot(robot: &'a Robot, contact: &'a contact::Contact, velocity_before: Vector<f64>) -> Self {
+        Self {
+            link: robot.links.get(contact.link).map(|link| link.name.as_str()),
+            name: &contact.name,
+            point: Some(contact.point),
+            normal: Some(contact.normal),
+            gap: Some(contact.gap),
+            velocity_before,
+        }
+    }
+
+    fn of_problem(name: &'a str, velocity_before: Vector<f64>) -> Self {
+        Self { link: None, name, point: None, normal: None, gap: None, velocity_before }
+    }
+}
+
+impl<'a> Outcome<'a> {
+    fn new(outcome: &'a outcome::Outcome) -> Self {
+        Self {
+            modes: &outcome.modes,
+            impulse: &outcome.impulse,
+            velocity_after: &outcome.velocity_after,
+            base_velocity_after: None,
+            joint_velocity_after: None,
+            energy_loss: outcome.energy_loss,
+            impulse_unique: outcome.impulse_unique,
+            friction_needed: &outcome.friction_needed,
+            index: outcome.index,
+            margin: outcome.margin,
+            proven: outcome.proven,
+        }
+    }
+
+    /// Names the entries of v after the impact.
+    fn set_velocity_after(&mut self, robot: &'a Robot, velocity: &[f64]) {
+        let mut named = robot.coordinates().zip(velocity.iter().copied());
+        let base: Vec<_> = named.by_ref().take(robot.base_dofs()).collect();
+        self.base_velocity_after = (!base.is_empty()).then_some(NamedVelocities(base));
+        self.joint_velocity_after = Some(NamedVelocities(named.collect()));
+    }
+}
+
+impl<'a> Rejected<'a> {
+    fn new(rejection: &'a outcome::Rejection, names: &[String]) -> Self {
+        Self {
+            modes: &rejection.modes,
+            because: rejection.because.describe(names),
+            margin: rejection.margin,
+            impulse: rejection.motion.as_ref().map(|motion| motion.impulse.as_slice()),
+            velocity_after: rejection.motion.as_ref().map(|motion| motion.velocity_after.as_slice()),
+        }
+    }
+}
+
+impl<'a> Explained<'a> {
+    fn new(explanation: &'a Explanation) -> Self {
+        Self { beta: &explanation.beta, gamma: &explanation.gamma, region: &explanation.region }
+    }
+}

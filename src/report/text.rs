@@ -1,0 +1,461 @@
+//! A result as text: what touched, what happens, why nothing else does.
+
+use super::result::{Contact, Outcome, Report};
+use super::table::{Table, is_residue, number, scale};
+use super::{Detail, Problem};
+use crate::Robot;
+use crate::impact::{Analysis, Because, Friction, Mode, Region, Verdict};
+use crate::pipeline::Impact;
+use crate::robot::{Axis, Base};
+use crate::state::State;
+use std::fmt::Write;
+
+/// What marks the important and the unimportant; empty for plain text, escape sequences for a terminal.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Palette {
+    /// Begins what matters most.
+    pub strong: &'static str,
+    /// Begins what may be passed over.
+    pub faint: &'static str,
+    /// Ends both.
+    pub plain: &'static str,
+}
+
+/// What a text tells beside the report itself.
+#[derive(Debug)]
+pub struct Subject<'a> {
+    /// What the report is about, as in `ramone`.
+    title: String,
+    /// Friction of each contact, where it is known.
+    friction: Vec<Option<Friction>>,
+    /// The unit of each entry of v.
+    units: Vec<&'static str>,
+    analysis: Option<&'a Analysis>,
+}
+
+impl<'a> Subject<'a> {
+    /// A robot's state.
+    pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
+        let base = match robot.base {
+            Base::Floating => ["m/s", "m/s", "rad/s"].as_slice(),
+            Base::Fixed => &[],
+        };
+        let joints = robot.joints.iter().map(|joint| match joint.axis {
+            Axis::Turn { .. } => "rad/s",
+            Axis::Slide { .. } => "m/s",
+        });
+        Self {
+            title: titled(&robot.name, &state.id),
+            friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
+            units: base.iter().copied().chain(joints).collect(),
+            analysis: impact.analysis.as_ref().ok(),
+        }
+    }
+
+    /// A contact problem without a robot.
+    pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
+        Self {
+            title: titled("contact problem", &problem.id),
+            friction: problem.contact.friction().iter().copied().map(Some).collect(),
+            units: Vec::new(),
+            analysis: Some(analysis),
+        }
+    }
+}
+
+fn titled(name: &str, id: &Option<serde_json::Value>) -> String {
+    match id {
+        Some(serde_json::Value::String(id)) => format!("{name} ({id})"),
+        Some(id) => format!("{name} ({id})"),
+        None => name.to_owned(),
+    }
+}
+
+/// The report as text, with a line break at its end.
+pub fn text(report: &Report, subject: &Subject, detail: Detail, palette: &Palette) -> String {
+    let mut writer = Writer { out: String::new(), report, subject, palette };
+    // Writing into a string cannot fail.
+    let _ = writer.write(detail);
+    writer.out
+}
+
+struct Writer<'w> {
+    out: String,
+    report: &'w Report<'w>,
+    subject: &'w Subject<'w>,
+    palette: &'w Palette,
+}
+
+impl<'w> Writer<'w> {
+    fn write(&mut self, detail: Detail) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *self.palette;
+        writeln!(self.out, "{strong}{}{plain}: {}", self.subject.title, touching(&self.report.contacts))?;
+        if let Some(energy) = self.report.kinetic_energy {
+            writeln!(self.out, "Kinetic energy before the impact: {} J.", number(energy))?;
+        }
+        if !detail.brief && !self.report.contacts.is_empty() {
+            self.out.push('\n');
+            self.contacts();
+        }
+        self.out.push('\n');
+        self.verdict()?;
+        let outcomes = self.report.outcomes.as_deref().unwrap_or_default();
+        if detail.brief {
+            for (at, outcome) in outcomes.iter().enumerate() {
+                writeln!(self.out, "  {}  {}{}", at + 1, self.in_words(outcome.modes), graded(outcome))?;
+            }
+            return Ok(());
+        }
+        for (at, outcome) in outcomes.iter().enumerate() {
+            self.outcome(at + 1, outcome)?;
+        }
+        self.velocities(outcomes);
+        self.why_nothing_else(outcomes.len())?;
+        self.rejected();
+        self.regions();
+        self.matrices()?;
+        self.closing()
+    }
+
+    fn names(&self) -> impl Iterator<Item = &'w str> + use<'w> {
+        self.report.contacts.iter().map(|contact| contact.name)
+    }
+
+    /// The fastest contact velocity before or after.
+    fn speeds(&self) -> f64 {
+        let before = self.report.contacts.iter().map(|contact| contact.velocity_before);
+        let after = self.report.outcomes.iter().flatten().flat_map(|outcome| outcome.velocity_after.iter().copied());
+        scale(before.chain(after).flatten())
+    }
+
+    /// Where the contacts are and how they move.
+    fn contacts(&mut self) {
+        let contacts = &self.report.contacts;
+        let mut table = Table::default().text("contact", self.names());
+        let lengths = scale(contacts.iter().filter_map(|contact| contact.point).flatten());
+        if contacts.iter().all(|contact| contact.point.is_some()) {
+            let point = |axis: usize| contacts.iter().map(move |contact| contact.point.map(|point| point[axis]));
+            table = table.numbers("x [m]", lengths, point(0)).numbers("z [m]", lengths, point(1));
+        }
+        let gaps = contacts.iter().map(|contact| contact.gap);
+        if gaps.clone().flatten().any(|gap| gap != 0.0 && !is_residue(gap, lengths)) {
+            table = table.numbers("gap [m]", lengths, gaps);
+        }
+        let speeds = self.speeds();
+        let before = |axis: usize| contacts.iter().map(move |contact| contact.velocity_before[axis]);
+        let friction = self.subject.friction.iter().map(|friction| friction.map_or("-".into(), |mu| mu.to_string()));
+        table
+            .numbers("before: t [m/s]", speeds, before(0))
+            .numbers("n [m/s]", speeds, before(1))
+            .text("friction", friction.collect::<Vec<String>>())
+            .write(&mut self.out);
+        let Palette { faint, plain, .. } = *self.palette;
+        self.out.extend(["  ", faint, "t: along the ground, forward; n: away from the ground", plain, "\n"]);
+    }
+
+    fn verdict(&mut self) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *self.palette;
+        let sentence = match (self.report.verdict, &self.report.outcomes) {
+            (Some(verdict), Some(outcomes)) => verdict_sentence(verdict, outcomes.len()),
+            _ => "No outcomes are known.".to_owned(),
+        };
+        writeln!(self.out, "{strong}{sentence}{plain}")?;
+        if let Some(error) = &self.report.error {
+            writeln!(self.out, "{}", error.message)?;
+        }
+        Ok(())
+    }
+
+    fn outcome(&mut self, count: usize, outcome: &Outcome) -> std::fmt::Result {
+        if outcome.modes.is_empty() {
+            return Ok(());
+        }
+        let Palette { strong, plain, .. } = *self.palette;
+        let words = self.in_words(outcome.modes);
+        let decided = self.subject.analysis.and_then(|analysis| analysis.outcomes.get(count - 1));
+        let open = if decided.is_some_and(|outcome| !outcome.decided) { ", not excluded" } else { "" };
+        writeln!(self.out, "\n{strong}{count}  {words}{open}{plain}{}", graded(outcome))?;
+
+        let (impulses, speeds) = (scale(outcome.impulse.iter().copied().flatten()), self.speeds());
+        let mut table = Table::default()
+            .text("contact", self.names())
+            .text("mode", outcome.modes.iter().map(Mode::to_string))
+            .numbers("impulse: t [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[0]))
+            .numbers("n [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[1]))
+            .numbers("after: t [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[0]))
+            .numbers("n [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[1]));
+        if outcome.friction_needed.iter().any(Option::is_some) {
+            table = table.numbers("friction needed", 1.0, outcome.friction_needed.iter().copied());
+        }
+        table.write(&mut self.out);
+        self.energy(outcome)?;
+        if !outcome.impulse_unique {
+            self.out.push_str("  other impulses give the same velocities; these are the least\n");
+        }
+        Ok(())
+    }
+
+    fn energy(&mut self, outcome: &Outcome) -> std::fmt::Result {
+        let loss = outcome.energy_loss;
+        if loss == 0.0 {
+            return writeln!(self.out, "  no energy is lost");
+        }
+        let verb = if loss < 0.0 { "gives" } else { "takes" };
+        write!(self.out, "  the ground {verb} {} J", number(loss.abs()))?;
+        if let Some(energy) = self.report.kinetic_energy.filter(|&energy| energy > 0.0 && loss > 0.0) {
+            write!(self.out, ", {:.1} % of the kinetic energy", 100.0 * loss / energy)?;
+        }
+        self.out.push('\n');
+        Ok(())
+    }
+
+    /// v after the impact, one column per outcome.
+    fn velocities(&mut self, outcomes: &[Outcome]) {
+        let Some(first) = outcomes.first().map(named_velocities).filter(|named| !named.is_empty()) else {
+            return;
+        };
+        let mut table = Table::default()
+            .text("velocity after", first.iter().map(|(name, _)| *name))
+            .text("", self.subject.units.iter().copied());
+        let velocities = scale(outcomes.iter().flat_map(named_velocities).map(|(_, velocity)| velocity));
+        for (at, outcome) in outcomes.iter().enumerate() {
+            let head = if outcomes.len() == 1 { String::new() } else { format!("{}", at + 1) };
+            table =
+                table.numbers(&head, velocities, named_velocities(outcome).into_iter().map(|(_, velocity)| velocity));
+        }
+        self.out.push('\n');
+        table.write(&mut self.out);
+    }
+
+    /// One line: how many other combinations there are, and what is wrong with them.
+    fn why_nothing_else(&mut self, outcomes: usize) -> std::fmt::Result {
+        let contacts = self.report.contacts.len();
+        if contacts == 0 || self.report.verdict.is_none() {
+            return Ok(());
+        }
+        // 4^n; the number of contacts is bounded long before this overflows.
+        let others = 4usize.saturating_pow(contacts as u32).saturating_sub(outcomes);
+        let nothing = if outcomes == 0 { "" } else { "Nothing else: " };
+        let fail = if others == 1 { "the other combination of modes fails" } else { "combinations of modes fail" };
+        match (others, outcomes) {
+            (0, _) => return Ok(()),
+            (1, _) => write!(self.out, "\n{nothing}{fail}")?,
+            (_, 0) => write!(self.out, "\nAll {others} {fail}")?,
+            _ => write!(self.out, "\n{nothing}the other {others} {fail}")?,
+        }
+        let reasons = self.counted_reasons();
+        let listed: Vec<String> = match &reasons[..] {
+            [(_, reason)] => vec![format!("because {reason}")],
+            reasons => reasons.iter().map(|(count, reason)| format!("{count} because {reason}")).collect(),
+        };
+        let joint = match reasons.len() {
+            0 => "",
+            1 => " ",
+            _ => ": ",
+        };
+        writeln!(self.out, "{joint}{}.", listed.join(", "))
+    }
+
+    /// What is wrong with the rejected combinations, the most frequent first.
+    fn counted_reasons(&self) -> Vec<(usize, &'static str)> {
+        let mut reasons: Vec<(usize, &str)> = Vec::new();
+        for rejection in self.subject.analysis.map_or(&[][..], |analysis| &analysis.rejected) {
+            let reason = in_general(rejection.because);
+            match reasons.iter_mut().find(|(_, known)| *known == reason) {
+                Some((count, _)) => *count += 1,
+                None => reasons.push((1, reason)),
+            }
+        }
+        reasons.sort_by_key(|&(count, _)| std::cmp::Reverse(count));
+        reasons
+    }
+
+    /// Every rejected combination with what it would have been.
+    fn rejected(&mut self) {
+        let Some(rejected) = self.report.rejected.as_ref().filter(|rejected| !rejected.is_empty()) else {
+            return;
+        };
+        let mut table = Table::default();
+        for (contact, name) in self.names().enumerate() {
+            table = table.text(name, rejected.iter().map(|rejection| rejection.modes[contact].to_string()));
+        }
+        table = table
+            .numbers("margin", 1.0, rejected.iter().map(|rejection| rejection.margin))
+            .text("fails, because", rejected.iter().map(|rejection| rejection.because.as_str()));
+        self.out.push('\n');
+        table.write(&mut self.out);
+
+        self.out.push_str("\n  what each would have been\n");
+        let impulses = scale(rejected.iter().filter_map(|rejection| rejection.impulse).flatten().copied().flatten());
+        let after = rejected.iter().filter_map(|rejection| rejection.velocity_after).flatten().copied().flatten();
+        let speeds = scale(after).max(self.speeds());
+        for (contact, name) in self.names().enumerate() {
+            let impulse = |axis: usize| rejected.iter().map(move |r| r.impulse.map(|list| list[contact][axis]));
+            let after = |axis: usize| rejected.iter().map(move |r| r.velocity_after.map(|list| list[contact][axis]));
+            self.out.push('\n');
+            Table::default()
+                .text(name, rejected.iter().map(|rejection| modes_listed(rejection.modes)))
+                .numbers("impulse: t [N s]", impulses, impulse(0))
+                .numbers("n [N s]", impulses, impulse(1))
+                .numbers("after: t [m/s]", speeds, after(0))
+                .numbers("n [m/s]", speeds, after(1))
+                .write(&mut self.out);
+        }
+    }
+
+    /// The paper's section 4 for each contact.
+    fn regions(&mut self) {
+        match &self.report.explain {
+            None => {}
+            Some(None) if self.report.contacts.is_empty() => {}
+            Some(None) => self.out.push_str("\nNo beta, gamma and region: the contacts depend on each other.\n"),
+            Some(Some(explained)) => {
+                self.out.push_str("\nWith infinite friction, while all other contacts stick:\n");
+                Table::default()
+                    .text("contact", self.report.contacts.iter().map(|contact| contact.name))
+                    .numbers("beta [rad]", 1.0, explained.beta.iter().copied())
+                    .numbers("gamma [rad]", 1.0, explained.gamma.iter().copied())
+                    .text("region", explained.region.iter().map(|region| described(*region)))
+                    .write(&mut self.out);
+            }
+        }
+    }
+
+    fn matrices(&mut self) -> std::fmt::Result {
+        if let Some(coordinates) = self.report.coordinates {
+            writeln!(self.out, "\ncoordinates: {}", coordinates.join(", "))?;
+        }
+        let matrices = [
+            ("mass matrix", self.report.mass_matrix),
+            ("contact Jacobian, rows t and n per contact", self.report.contact_jacobian),
+            ("Delassus matrix, rows and columns t and n per contact", self.report.delassus.as_deref()),
+        ];
+        for (name, matrix) in matrices {
+            let Some(rows) = matrix.filter(|rows| !rows.is_empty()) else { continue };
+            writeln!(self.out, "\n{name}")?;
+            Table::matrix(rows).write_body(&mut self.out);
+        }
+        Ok(())
+    }
+
+    /// What else a reader should know before trusting the answer.
+    fn closing(&mut self) -> std::fmt::Result {
+        let follows_tables = self.report.explain.is_some() || self.report.delassus.is_some();
+        if follows_tables && self.report.verdict.is_some() {
+            self.out.push('\n');
+        }
+        let struck = !self.report.contacts.is_empty();
+        if struck && self.report.no_slip_consistent == Some(false) && self.report.verdict != Some(Verdict::None) {
+            let infinite = |friction: &Option<Friction>| *friction == Some(Friction::Infinite);
+            self.out.push_str(if self.subject.friction.iter().all(infinite) {
+                "No outcome in which every contact sticks or lifts off exists: it slides whatever the friction.\n"
+            } else {
+                "In every outcome some contact slides.\n"
+            });
+        }
+        if let (true, Some(rank)) = (struck, self.report.rank) {
+            match self.report.condition.flatten() {
+                Some(condition) => write!(self.out, "Contacts: rank {rank}, condition {}", number(condition))?,
+                None => write!(self.out, "Contacts: rank {rank} of {}, redundant", 2 * self.report.contacts.len())?,
+            }
+            let sum = self.report.index_sum.flatten();
+            let sum = sum.map_or("unknown".to_owned(), |sum| sum.to_string());
+            let proven = if self.report.proven == Some(true) { "proven" } else { "not proven" };
+            writeln!(self.out, "; sum of indices {sum}; {proven}.")?;
+        }
+        for note in self.report.notes {
+            writeln!(self.out, "Note: {note}")?;
+        }
+        if let Some(left_out) = self.report.left_out.as_ref().filter(|left_out| !left_out.is_empty()) {
+            let Palette { faint, plain, .. } = *self.palette;
+            let what = left_out.iter().map(|left| left.what).collect::<Vec<_>>().join(", ");
+            writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {what}.{plain}")?;
+        }
+        Ok(())
+    }
+
+    /// `left_foot lifts off, right_foot sticks`.
+    fn in_words(&self, modes: &[Mode]) -> String {
+        let clauses = self.names().zip(modes).map(|(name, mode)| format!("{name} {}", verb(*mode)));
+        clauses.collect::<Vec<_>>().join(", ")
+    }
+}
+
+fn touching(contacts: &[Contact]) -> String {
+    match contacts {
+        [] => "nothing touches the ground.".to_owned(),
+        [contact] => format!("{} touches the ground.", contact.name),
+        [.., last] => {
+            let names: Vec<&str> = contacts[..contacts.len() - 1].iter().map(|contact| contact.name).collect();
+            format!("{} and {} touch the ground.", names.join(", "), last.name)
+        }
+    }
+}
+
+fn verdict_sentence(verdict: Verdict, outcomes: usize) -> String {
+    match verdict {
+        Verdict::Unique => "Exactly one outcome.".to_owned(),
+        Verdict::Ambiguous => format!("{} outcomes are equally valid.", counted(outcomes)),
+        Verdict::None => "No outcome is consistent.".to_owned(),
+        Verdict::Undecided => {
+            "Undecided: some sign lies within its rounding; what it leaves open is listed.".to_owned()
+        }
+        Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.".to_owned(),
+        Verdict::NoContact => "No contact: the velocities stay as they are.".to_owned(),
+    }
+}
+
+fn counted(number: usize) -> String {
+    const WORDS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
+    WORDS.get(number).map_or_else(|| number.to_string(), |word| (*word).to_owned())
+}
+
+fn verb(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Separate => "lifts off",
+        Mode::Stick => "sticks",
+        Mode::SlidePlus => "slides forward",
+        Mode::SlideMinus => "slides backward",
+    }
+}
+
+/// `: margin 0.0130, index +1`, as far as there are any.
+fn graded(outcome: &Outcome) -> String {
+    let margin = outcome.margin.map(|margin| format!("margin {}", number(margin)));
+    let index = outcome.index.map(|index| format!("index {index:+}"));
+    let grades: Vec<String> = margin.into_iter().chain(index).collect();
+    if grades.is_empty() { String::new() } else { format!("   ({})", grades.join(", ")) }
+}
+
+/// v after an outcome, base and joints.
+fn named_velocities<'a>(outcome: &Outcome<'a>) -> Vec<(&'a str, f64)> {
+    let parts = [&outcome.base_velocity_after, &outcome.joint_velocity_after];
+    parts.into_iter().flatten().flat_map(|part| part.0.iter().copied()).collect()
+}
+
+fn modes_listed(modes: &[Mode]) -> String {
+    modes.iter().map(Mode::to_string).collect::<Vec<_>>().join(", ")
+}
+
+/// A reason without its contact, to stand after `because`.
+fn in_general(because: Because) -> &'static str {
+    match because {
+        Because::Pulled { .. } => "the ground would have to pull",
+        Because::Penetrates { .. } => "a contact would move into the ground",
+        Because::NeedsFriction { .. } => "sticking would need more friction",
+        Because::SlidesBackward { .. } => "a contact would slide against its own direction",
+        Because::FrictionPushes { .. } => "friction would drive the slide",
+        Because::NothingHolds { .. } => "a contact would stick without friction",
+        Because::NoSolution => "the conditions contradict each other",
+        Because::RedundantTwin => "a redundant twin already has that velocity",
+    }
+}
+
+fn described(region: Region) -> &'static str {
+    match region {
+        Region::A => "A: lifts off",
+        Region::B => "B: slides whatever the friction",
+        Region::C => "C: stays",
+        Region::E => "E: three outcomes are valid",
+    }
+}
