@@ -1,0 +1,113 @@
+//! One RAMone state (7 coordinates, 2 contacts) from (q, v) to its outcomes, stage by stage.
+//!
+//! `cargo bench` prints times; compare stages within one run, not runs with each other.
+
+use divan::{Bencher, black_box};
+use heelstrike::Robot;
+use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
+use heelstrike::impact::{ContactProblem, Friction, Mode, Scratch, enumerate::Tableau};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::plan::{Plan, Posture};
+use heelstrike::planar::Rotation;
+use heelstrike::scene::NamedContact;
+use heelstrike::state::{Defaults, State};
+
+const STATE: &str = r#"{"position": {"base": {"z": 0.4, "pitch": 0.05},
+    "joints": {"left_hip": 1.2, "left_knee": -1.5, "right_hip": 0.3, "right_knee": -1.6}},
+  "velocity": {"base": {"x": 0.4, "z": -0.3, "pitch": 0.5}, "joints": {"left_hip": -0.4, "right_knee": 0.7}},
+  "contacts": [{"link": "left_foot", "offset": [0, 0, 0], "radius": 0.02815},
+               {"link": "right_foot", "offset": [0, 0, 0], "radius": 0.02815}],
+  "friction": 0.8}"#;
+
+fn main() {
+    divan::main();
+}
+
+fn ramone() -> Robot {
+    Robot::from_urdf(include_str!("../urdf/ramone.urdf")).expect("a good robot")
+}
+
+fn state(robot: &Robot) -> State {
+    State::from_json(STATE, robot, &Defaults::default()).expect("a good state")
+}
+
+fn points(robot: &Robot, state: &State) -> Vec<ContactPoint> {
+    let contacts: &[NamedContact] = state.scene.contacts.as_deref().expect("named contacts");
+    let point = |contact: &NamedContact| {
+        let link = &robot.links[contact.link];
+        let ground = Rotation { cos: 1.0, sin: 0.0 };
+        ContactPoint { body: link.body, centre: link.point(contact.offset), radius: contact.radius, ground }
+    };
+    contacts.iter().map(point).collect()
+}
+
+fn problem(robot: &Robot, state: &State) -> ContactProblem {
+    let (friction, restitution) = (vec![Friction::Finite(0.8); 2], vec![0.0; 2]);
+    let contacts = state.scene.contacts.as_deref().expect("named contacts");
+    let mut posture = Posture::default();
+    posture.set(&state.position);
+    Pipeline::new(robot, Options::default())
+        .contact_problem(&posture, &state.velocity, contacts, friction, restitution)
+        .expect("a good problem")
+}
+
+/// q to cos and sin, to M, J, G and c.
+#[divan::bench]
+fn dynamics(bencher: Bencher) {
+    let robot = ramone();
+    let state = state(&robot);
+    let points = points(&robot, &state);
+    let (plan, mut posture, mut workspace) = (Plan::new(&robot, &[], &[]), Posture::default(), Workspace::default());
+    bencher.bench_local(move || {
+        posture.set(black_box(&state.position));
+        kinematics(&plan, &posture, &mut workspace);
+        mass_matrix(&plan, &mut workspace);
+        factorize(&plan, &mut workspace);
+        contact_jacobian(&plan, &points, &state.velocity, None, &mut workspace);
+        delassus(&plan, &mut workspace);
+        workspace.delassus[0]
+    });
+}
+
+/// The numbers of all 16 combinations.
+#[divan::bench]
+fn enumeration(bencher: Bencher) {
+    let robot = ramone();
+    let problem = problem(&robot, &state(&robot));
+    let mut tableau = Tableau::new();
+    bencher.bench_local(move || {
+        tableau.load(black_box(&problem));
+        let mut sum = 0.0;
+        tableau.visit(|leaf| sum += leaf.numbers(0)[0] + f64::from(u8::from(leaf.modes[1] == Mode::Stick)));
+        sum
+    });
+}
+
+/// A contact problem to its analysis.
+#[divan::bench]
+fn analysis(bencher: Bencher) {
+    let robot = ramone();
+    let problem = problem(&robot, &state(&robot));
+    let mut scratch = Scratch::default();
+    bencher.bench_local(move || scratch.analyse(black_box(&problem), false));
+}
+
+/// A state as numbers to its whole answer.
+#[divan::bench]
+fn whole_state(bencher: Bencher) {
+    let robot = ramone();
+    let state = state(&robot);
+    let mut pipeline = Pipeline::new(&robot, Options::default());
+    bencher.bench_local(|| pipeline.impact(black_box(&state)));
+}
+
+/// A state as JSON text to its whole answer.
+#[divan::bench]
+fn whole_state_from_json(bencher: Bencher) {
+    let robot = ramone();
+    let mut pipeline = Pipeline::new(&robot, Options::default());
+    bencher.bench_local(|| {
+        let state = State::from_json(black_box(STATE), &robot, &Defaults::default())?;
+        pipeline.impact(&state)
+    });
+}

@@ -1,0 +1,98 @@
+//! The commands, one file each; the only user of clap.
+//!
+//! Standard output carries results alone, standard error what is wrong and how to mend it. Exit status: 0 all answered,
+//! 1 some input was refused, 2 wrong usage.
+
+mod batch;
+mod complaint;
+mod impact;
+mod input;
+mod inspect;
+mod options;
+mod output;
+mod robot;
+mod solve;
+mod stream;
+
+use clap::{Parser, Subcommand};
+use complaint::complain;
+use std::io;
+use std::process::ExitCode;
+
+/// Every rigid frictional impact outcome of a planar legged robot: which contact sticks, slides or lifts off, and whether
+/// that is the only possibility.
+#[derive(Debug, Parser)]
+#[command(name = "heelstrike", version, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = "Example:\n  heelstrike impact urdf/ramone.urdf examples/ramone.json")]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Inspect(inspect::Args),
+    Impact(impact::Args),
+    Batch(batch::Args),
+    Solve(solve::Args),
+}
+
+/// Why a command ended early.
+enum Failure {
+    /// Input that nothing can be done without, such as the robot's file.
+    Refused(heelstrike::Error),
+    /// An option's value that does not fit the robot.
+    Usage(heelstrike::Error),
+    /// The output could not be written.
+    Output(io::Error),
+}
+
+impl From<heelstrike::Error> for Failure {
+    fn from(error: heelstrike::Error) -> Self {
+        Self::Refused(error)
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+/// Whether every input was answered, or why the command ended early.
+type Outcome = Result<Answered, Failure>;
+
+/// How a command ended that went through all of its input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Answered {
+    All,
+    NotAll,
+}
+
+/// Runs the command and tells the exit status.
+pub fn run(cli: Cli) -> ExitCode {
+    let outcome = match cli.command {
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Impact(args) => impact::run(&args),
+        Command::Batch(args) => batch::run(&args),
+        Command::Solve(args) => solve::run(&args),
+    };
+    match outcome {
+        Ok(Answered::All) => ExitCode::SUCCESS,
+        Ok(Answered::NotAll) => ExitCode::from(1),
+        // Whoever reads has seen enough, as with `| head`.
+        Err(Failure::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(Failure::Output(error)) => {
+            complain(&heelstrike::Reason::Io(format!("the output cannot be written: {error}")).into());
+            ExitCode::from(1)
+        }
+        Err(Failure::Refused(error)) => {
+            complain(&error);
+            ExitCode::from(1)
+        }
+        Err(Failure::Usage(error)) => {
+            complain(&error);
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Options of the analysis.
+
+use heelstrike::impact::Friction;
+use heelstrike::pipeline;
+use heelstrike::report::Detail;
+use heelstrike::scene::NamedContact;
+use heelstrike::state::Defaults;
+
+/// What a state may leave open.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Scene")]
+pub(super) struct SceneOptions {
+    /// Friction where the input gives none: a number from 0 on, or "infinite"
+    #[arg(long, value_name = "MU", value_parser = friction, allow_hyphen_values = true)]
+    pub friction: Option<Friction>,
+}
+
+impl SceneOptions {
+    pub fn defaults(&self) -> Defaults {
+        Defaults { friction: self.friction }
+    }
+}
+
+/// How contacts are found.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Scene")]
+pub(super) struct ContactOptions {
+    /// How far from the ground a foot may be and still touch, in metres [default: 1e-6 of the robot's size]
+    #[arg(long, value_name = "DISTANCE", value_parser = from_zero, allow_hyphen_values = true)]
+    pub contact_tolerance: Option<f64>,
+    /// Take contacts that are slower than this before the impact, in m/s, as exactly at rest
+    #[arg(long, value_name = "SPEED", value_parser = from_zero, allow_hyphen_values = true, default_value_t = 0.0)]
+    pub resting_speed: f64,
+}
+
+/// How much is told.
+#[derive(Debug, Clone, Copy, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct DetailOptions {
+    /// Tell why every other combination of modes fails; beta, gamma and region of each contact
+    #[arg(long)]
+    pub explain: bool,
+    /// Add the matrices: mass matrix, contact Jacobian, Delassus matrix
+    #[arg(long)]
+    pub matrices: bool,
+    /// Tell only the verdict and each outcome's modes, index and margin
+    #[arg(long, conflicts_with_all = ["explain", "matrices"])]
+    pub brief: bool,
+}
+
+impl DetailOptions {
+    pub fn detail(self) -> Detail {
+        Detail { explain: self.explain, matrices: self.matrices, brief: self.brief }
+    }
+}
+
+/// The pipeline's options.
+pub(super) fn pipeline_options(
+    contacts: &ContactOptions,
+    feet: Vec<NamedContact>,
+    detail: DetailOptions,
+) -> pipeline::Options {
+    pipeline::Options {
+        feet,
+        contact_tolerance: contacts.contact_tolerance,
+        resting_speed: contacts.resting_speed,
+        explain: detail.explain,
+        matrices: detail.matrices,
+    }
+}
+
+fn friction(text: &str) -> Result<Friction, String> {
+    if text == "infinite" {
+        return Ok(Friction::Infinite);
+    }
+    match text.parse() {
+        Ok(mu) if f64::is_finite(mu) && mu >= 0.0 => Ok(Friction::Finite(mu)),
+        _ => Err("expected a number from 0 on, or \"infinite\"".to_owned()),
+    }
+}
+
+fn from_zero(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if f64::is_finite(number) && number >= 0.0 => Ok(number),
+        _ => Err("expected a number from 0 on".to_owned()),
+    }
+}

@@ -1,0 +1,109 @@
+//! Standard output or a file, as text or JSON.
+
+use heelstrike::report::Palette;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Where results go and in what form.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct OutputOptions {
+    /// Text for people, or JSON, one line per result [default: by the output's ending, else text]
+    #[arg(long, value_enum)]
+    pub format: Option<Format>,
+    /// Write to this file, which is replaced; .json and .ndjson mean JSON
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// The form of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Format {
+    /// For people
+    Text,
+    /// One line per result
+    Json,
+}
+
+impl OutputOptions {
+    /// The form that is asked for by option or by the output's ending, if it is.
+    pub fn chosen(&self) -> Option<Format> {
+        let by_ending = |path: &PathBuf| match path.extension()?.to_str()? {
+            "json" | "ndjson" | "jsonl" => Some(Format::Json),
+            "txt" => Some(Format::Text),
+            _ => None,
+        };
+        self.format.or_else(|| self.output.as_ref().and_then(by_ending))
+    }
+
+    /// Opens the output.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being created.
+    pub fn open(&self) -> io::Result<Output> {
+        Output::open(self.output.as_deref())
+    }
+}
+
+/// A buffered output; standard output takes colours if it is a terminal that wants them.
+pub(super) struct Output {
+    writer: BufWriter<Box<dyn Write>>,
+    palette: Palette,
+}
+
+impl Output {
+    /// Opens `path`, or standard output.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being created.
+    pub fn open(path: Option<&Path>) -> io::Result<Self> {
+        let (writer, palette): (Box<dyn Write>, _) = match path {
+            Some(path) => (Box::new(File::create(path).map_err(|error| named(path, error))?), Palette::default()),
+            None => {
+                let stdout = io::stdout();
+                let palette = match anstream::AutoStream::choice(&stdout) {
+                    anstream::ColorChoice::Never => Palette::default(),
+                    _ => COLOURS,
+                };
+                (Box::new(stdout.lock()), palette)
+            }
+        };
+        Ok(Self { writer: BufWriter::with_capacity(1 << 16, writer), palette })
+    }
+
+    /// How text is marked here.
+    pub fn palette(&self) -> &Palette {
+        &self.palette
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+/// Bold and faint; a test keeps the sequences equal to anstyle's.
+const COLOURS: Palette = Palette { strong: "\x1b[1m", faint: "\x1b[2m", plain: "\x1b[0m" };
+
+fn named(path: &Path, error: io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anstyle::Style;
+
+    #[test]
+    fn colours_are_those_of_anstyle() {
+        let strong = Style::new().bold();
+        assert_eq!(COLOURS.strong, strong.render().to_string());
+        assert_eq!(COLOURS.faint, Style::new().dimmed().render().to_string());
+        assert_eq!(COLOURS.plain, strong.render_reset().to_string());
+    }
+}

@@ -1,0 +1,126 @@
+//! The robot and the options that shape it.
+
+use super::{Failure, input};
+use clap::ValueEnum;
+use heelstrike::description::Description;
+use heelstrike::documents::utf8;
+use heelstrike::robot;
+use heelstrike::scene::NamedContact;
+use heelstrike::{Error, Reason, Robot};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// The robot's file and what is added to it.
+#[derive(Debug, clap::Args)]
+pub(super) struct RobotOptions {
+    /// The robot's URDF file
+    #[arg(value_name = "ROBOT.urdf")]
+    pub robot: PathBuf,
+    /// Whether the root link moves freely or is bolted to the world
+    #[arg(long, value_enum, help_heading = "Robot")]
+    pub base: Option<Base>,
+    /// Add a foot: a point of a link, or a circle about it [repeatable]
+    #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", allow_hyphen_values = true, help_heading = "Robot")]
+    pub contact: Vec<Foot>,
+}
+
+/// How the root link is held.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Base {
+    /// It is bolted to the world
+    Fixed,
+    /// It moves freely
+    Floating,
+}
+
+impl From<Base> for robot::Base {
+    fn from(base: Base) -> Self {
+        match base {
+            Base::Fixed => Self::Fixed,
+            Base::Floating => Self::Floating,
+        }
+    }
+}
+
+/// A foot that is given by `--contact`; it touches where its height says so, like a shape of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Foot {
+    link: String,
+    offset: [f64; 3],
+    radius: f64,
+}
+
+impl FromStr for Foot {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let shape = || "expected LINK:X,Y,Z or LINK:X,Y,Z:RADIUS, as in left_foot:0,0,-0.5:0.03".to_owned();
+        // From the right, because a link's name may hold colons.
+        let (head, tail) = text.rsplit_once(':').ok_or_else(shape)?;
+        let (link, offset, radius) = if tail.contains(',') {
+            (head, tail, 0.0)
+        } else {
+            let (link, offset) = head.rsplit_once(':').ok_or_else(shape)?;
+            (link, offset, finite(tail)?)
+        };
+        if radius < 0.0 {
+            return Err(format!("the radius must be 0 or more, not {radius}"));
+        }
+        let offset: Vec<f64> = offset.split(',').map(finite).collect::<Result<_, _>>()?;
+        let offset = offset.try_into().map_err(|_| shape())?;
+        Ok(Self { link: link.to_owned(), offset, radius })
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| format!("\"{text}\" is not a finite number"))
+}
+
+impl RobotOptions {
+    /// Reads the robot.
+    pub fn load(&self) -> Result<Robot, Failure> {
+        let located = |error: Error| match error.file() {
+            Some(_) => error,
+            None => error.in_file(input::name(&self.robot)),
+        };
+        Ok(self.read().map_err(located)?)
+    }
+
+    /// The feet that are given by `--contact`.
+    pub fn feet(&self, robot: &Robot) -> Result<Vec<NamedContact>, Failure> {
+        let foot = |foot: &Foot| {
+            let link = robot.link(&foot.link).ok_or_else(|| {
+                let reason = Reason::UnknownName { what: "link", name: foot.link.clone() };
+                let known = robot.links.iter().map(|link| link.name.as_str());
+                Failure::Usage(Error::new(reason).at("--contact").did_you_mean(&foot.link, known))
+            })?;
+            Ok(NamedContact { link, offset: foot.offset, radius: foot.radius })
+        };
+        self.contact.iter().map(foot).collect()
+    }
+
+    fn read(&self) -> heelstrike::Result<Robot> {
+        let bytes = input::bytes(&self.robot)?;
+        Robot::reduce(&Description::from_urdf(utf8(&bytes)?)?, self.base.map(Into::into))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn feet_are_read_from_the_right() {
+        let foot = |link: &str, offset, radius| Ok(Foot { link: link.to_owned(), offset, radius });
+        assert_eq!("foot:0,-1,2".parse(), foot("foot", [0.0, -1.0, 2.0], 0.0));
+        assert_eq!("ns:foot:0,0,-0.5:0.03".parse(), foot("ns:foot", [0.0, 0.0, -0.5], 0.03));
+    }
+
+    #[test]
+    fn what_is_no_foot_is_refused() {
+        for text in ["foot", "foot:1", "foot:1,2", "foot:1,2,3,4", "foot:1,2,nan", "foot:1,2,3:-1", "foot:1,2,3:inf"] {
+            assert!(text.parse::<Foot>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! `heelstrike solve`: every outcome of a contact problem that is given as matrices.
+
+use super::options::{DetailOptions, SceneOptions};
+use super::output::{Format, OutputOptions};
+use super::stream::{Answers, SUMMED_UP, answer_all};
+use super::{Outcome, input};
+use heelstrike::impact::analyse;
+use heelstrike::report::{Detail, Palette, Problem, Report, Subject, text};
+use heelstrike::state::Defaults;
+use heelstrike::{Error, Result};
+use std::path::PathBuf;
+
+/// Find every outcome of a contact problem given as matrices, without a robot
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  heelstrike solve examples/problems/rod.json
+  echo '{\"delassus\": [[2, 1], [1, 2]], \"velocity_before\": [[0.5, -1]], \"friction\": 0.8}' | heelstrike solve -")]
+pub struct Args {
+    /// The problem, or several after each other or in a list; "-" reads standard input
+    #[arg(value_name = "PROBLEM.json")]
+    problem: PathBuf,
+    #[command(flatten)]
+    scene: SceneOptions,
+    #[command(flatten)]
+    detail: DetailOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+pub(super) fn run(args: &Args) -> Outcome {
+    let to_a_file_or_lines = args.output.output.is_some() || input::is_ndjson(&args.problem);
+    let otherwise = if to_a_file_or_lines { Format::Json } else { Format::Text };
+    let format = args.output.chosen().unwrap_or(otherwise);
+    let mut problems = Problems { defaults: args.scene.defaults(), detail: args.detail.detail() };
+    answer_all(&mut problems, &args.problem, format, &args.output)
+}
+
+struct Problems {
+    defaults: Defaults,
+    detail: Detail,
+}
+
+impl Answers for Problems {
+    const WHAT: &'static str = "problem";
+
+    fn json(&mut self, problem: &str, out: &mut Vec<u8>) -> Result<Option<Error>> {
+        let problem = Problem::from_json(problem, &self.defaults)?;
+        let analysis = analyse(&problem.contact, self.detail.explain)?;
+        Report::of_problem(&problem, &analysis, self.detail).append_json(self.detail, out);
+        Ok(None)
+    }
+
+    fn text(&mut self, problem: &str, palette: &Palette) -> Result<(String, Option<Error>)> {
+        let problem = Problem::from_json(problem, &self.defaults)?;
+        let summed_up = !self.detail.brief && problem.contact.contacts() <= SUMMED_UP;
+        let analysis = analyse(&problem.contact, self.detail.explain || summed_up)?;
+        let report = Report::of_problem(&problem, &analysis, self.detail);
+        Ok((text(&report, &Subject::of_problem(&problem, &analysis), self.detail, palette), None))
+    }
+}

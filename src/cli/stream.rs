@@ -1,0 +1,65 @@
+//! One object after the other: answered or refused, as text or JSON, in order.
+
+use super::complaint::complain;
+use super::output::{Format, OutputOptions};
+use super::{Answered, Outcome, input};
+use heelstrike::documents::{documents, utf8};
+use heelstrike::report::{self, Palette, Refused};
+use heelstrike::state::State;
+use heelstrike::{Error, Reason, Result};
+use std::io::Write;
+use std::path::Path;
+
+/// Up to so many contacts the rejected combinations are summed up for people, asked for or not: 4^6 are told at once.
+pub(super) const SUMMED_UP: usize = 6;
+
+/// What turns the text of an object into an answer.
+pub(super) trait Answers {
+    /// What an object is, for messages.
+    const WHAT: &'static str;
+
+    /// Appends the answer as one line of JSON; gives the error that stands in it beside the matrices, if any.
+    fn json(&mut self, object: &str, out: &mut Vec<u8>) -> Result<Option<Error>>;
+
+    /// The answer as text, and the error that stands in it, if any.
+    fn text(&mut self, object: &str, palette: &Palette) -> Result<(String, Option<Error>)>;
+}
+
+/// Answers every object of a file.
+pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Format, options: &OutputOptions) -> Outcome {
+    let name = input::name(path);
+    let bytes = input::bytes(path)?;
+    let whole = utf8(&bytes).map_err(|error| error.in_file(&name))?;
+    if whole.trim_ascii().is_empty() {
+        let missing = Reason::Missing(format!("a {}", A::WHAT));
+        return Err(Error::new(missing).in_file(name).hint("the input is empty").into());
+    }
+
+    let mut output = options.open()?;
+    let mut answered = Answered::All;
+    for (at, document) in documents(whole).enumerate() {
+        let mut out = Vec::new();
+        let answer = match format {
+            Format::Json => answers.json(document.text, &mut out),
+            Format::Text => answers.text(document.text, output.palette()).map(|(text, beside)| {
+                if at > 0 {
+                    out.push(b'\n');
+                }
+                out.extend_from_slice(text.as_bytes());
+                beside
+            }),
+        };
+        if let (Err(error), Format::Json) = (&answer, format) {
+            report::append_line(&mut out, &Refused::new(State::id_in(document.text), document.line, error));
+        }
+        output.write_all(&out)?;
+        if let Err(error) | Ok(Some(error)) = answer {
+            answered = Answered::NotAll;
+            // What is already answered stands before the complaint also where both go to one terminal.
+            output.flush()?;
+            complain(&document.locate(error).in_file(&name));
+        }
+    }
+    output.flush()?;
+    Ok(answered)
+}
