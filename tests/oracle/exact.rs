@@ -1,0 +1,156 @@
+//! Rational numbers and exact linear algebra: Gauss on rationals, Bareiss on whole numbers.
+
+use dashu::base::{Gcd, Sign};
+use dashu::integer::{IBig, UBig};
+use dashu::rational::{RBig, Relaxed};
+
+/// Rows of rationals.
+pub type Matrix = Vec<Vec<RBig>>;
+
+/// `numerator / denominator`.
+pub fn ratio(numerator: i64, denominator: i64) -> RBig {
+    RBig::from_parts_signed(IBig::from(numerator), IBig::from(denominator))
+}
+
+/// The f64 nearest to `value`; for a dyadic of few digits it is `value` itself.
+pub fn to_f64(value: &RBig) -> f64 {
+    value.to_f64().value()
+}
+
+/// The f64 nearest to `numerator / denominator`.
+pub fn quotient(numerator: &IBig, denominator: &IBig) -> f64 {
+    Relaxed::from_parts_signed(numerator.clone(), denominator.clone()).to_f64().value()
+}
+
+/// -1, 0 or 1.
+pub fn sign(value: &IBig) -> i8 {
+    match (value.is_zero(), value.sign()) {
+        (true, _) => 0,
+        (_, Sign::Positive) => 1,
+        (_, Sign::Negative) => -1,
+    }
+}
+
+pub fn zeros(rows: usize, columns: usize) -> Matrix {
+    vec![vec![RBig::ZERO; columns]; rows]
+}
+
+pub fn dot(a: &[RBig], b: &[RBig]) -> RBig {
+    let mut sum = RBig::ZERO;
+    for (x, y) in a.iter().zip(b) {
+        if !x.is_zero() && !y.is_zero() {
+            sum += x * y;
+        }
+    }
+    sum
+}
+
+pub fn times(matrix: &Matrix, vector: &[RBig]) -> Vec<RBig> {
+    matrix.iter().map(|row| dot(row, vector)).collect()
+}
+
+pub fn transposed(matrix: &Matrix) -> Matrix {
+    (0..matrix[0].len()).map(|column| matrix.iter().map(|row| row[column].clone()).collect()).collect()
+}
+
+/// X with `matrix` X = `right`, by Gauss and Jordan; none where `matrix` is singular.
+pub fn solve(matrix: &Matrix, right: &Matrix) -> Option<Matrix> {
+    let n = matrix.len();
+    let mut rows: Matrix = matrix.iter().zip(right).map(|(a, b)| a.iter().chain(b).cloned().collect()).collect();
+    for column in 0..n {
+        let pivot = (column..n).find(|&row| !rows[row][column].is_zero())?;
+        rows.swap(column, pivot);
+        let divisor = rows[column][column].clone();
+        let pivot_row: Vec<RBig> = rows[column].iter().map(|entry| entry / &divisor).collect();
+        for row in rows.iter_mut() {
+            let factor = row[column].clone();
+            if !factor.is_zero() {
+                for (entry, above) in row.iter_mut().zip(&pivot_row).skip(column) {
+                    *entry -= &factor * above;
+                }
+            }
+        }
+        rows[column] = pivot_row;
+    }
+    Some(rows.into_iter().map(|row| row[n..].to_vec()).collect())
+}
+
+/// Rank of a matrix.
+pub fn rank(matrix: &Matrix) -> usize {
+    let mut rows = matrix.clone();
+    let mut rank = 0;
+    for column in 0..matrix.first().map_or(0, Vec::len) {
+        let Some(pivot) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else { continue };
+        rows.swap(rank, pivot);
+        let (above, below) = rows.split_at_mut(rank + 1);
+        for row in below {
+            let factor = &row[column] / &above[rank][column];
+            for (entry, over) in row.iter_mut().zip(&above[rank]) {
+                *entry -= &factor * over;
+            }
+        }
+        rank += 1;
+    }
+    rank
+}
+
+/// The least whole number that makes whole numbers of all `values`.
+pub fn common_denominator<'a>(values: impl IntoIterator<Item = &'a RBig>) -> UBig {
+    values.into_iter().fold(UBig::ONE, |common, value| {
+        let denominator = value.denominator();
+        let shared = (&common).gcd(denominator);
+        common / shared * denominator
+    })
+}
+
+/// `scale * value`, which must be whole.
+pub fn whole(value: &RBig, scale: &UBig) -> IBig {
+    value.numerator() * IBig::from(scale / value.denominator())
+}
+
+/// The solution of a square system of whole numbers: x = numerators / determinant.
+pub struct Cramer {
+    pub determinant: IBig,
+    pub numerators: Vec<IBig>,
+}
+
+/// Solves `rows` = [A | b] without a fraction (Bareiss 1968); none where det A = 0.
+pub fn cramer(mut rows: Vec<Vec<IBig>>) -> Option<Cramer> {
+    let n = rows.len();
+    let mut previous = IBig::ONE;
+    let mut odd = false;
+    for k in 0..n {
+        let pivot = (k..n).find(|&row| !rows[row][k].is_zero())?;
+        if pivot != k {
+            rows.swap(k, pivot);
+            odd = !odd;
+        }
+        let (above, below) = rows.split_at_mut(k + 1);
+        let pivot_row = &above[k];
+        for row in below {
+            let factor = row[k].clone();
+            for (entry, over) in row.iter_mut().zip(pivot_row).skip(k) {
+                let mut minor = &*entry * &pivot_row[k];
+                if !factor.is_zero() && !over.is_zero() {
+                    minor -= &factor * over;
+                }
+                *entry = minor / &previous;
+            }
+        }
+        previous = pivot_row[k].clone();
+    }
+    // Up to its sign the last pivot is det A; every numerator is det A times an unknown, whole by Cramer's rule.
+    let last = previous;
+    let mut numerators = vec![IBig::ZERO; n];
+    for row in (0..n).rev() {
+        let mut sum = &rows[row][n] * &last;
+        for column in row + 1..n {
+            sum -= &rows[row][column] * &numerators[column];
+        }
+        numerators[row] = sum / &rows[row][row];
+    }
+    if odd {
+        numerators.iter_mut().for_each(|numerator| *numerator = -std::mem::take(numerator));
+    }
+    Some(Cramer { determinant: if odd { -last } else { last }, numerators })
+}

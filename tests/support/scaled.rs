@@ -1,0 +1,51 @@
+//! Comparison to a reference, relative to a stated size, that gathers every difference before it fails.
+
+use nalgebra::DMatrix;
+
+/// Every difference found so far.
+#[derive(Debug, Default)]
+pub struct Differences(Vec<String>);
+
+impl Differences {
+    /// Notes a difference that is no number.
+    pub fn note(&mut self, place: &str, what: impl std::fmt::Display) {
+        self.0.push(format!("{place}: {what}"));
+    }
+
+    /// Compares number by number; `tolerance` is absolute: the factor times the size it refers to.
+    pub fn compare(&mut self, place: &str, is: &[f64], should: &[f64], tolerance: f64) {
+        if is.len() != should.len() {
+            return self.note(place, format!("{} numbers instead of {}", is.len(), should.len()));
+        }
+        // A NaN is within no tolerance.
+        if !is.iter().zip(should).all(|(is, should)| (is - should).abs() <= tolerance) {
+            let off = largest(&is.iter().zip(should).map(|(is, should)| is - should).collect::<Vec<_>>());
+            self.note(place, format!("off by {off:.3e} of {tolerance:.3e}\n  is     {is:?}\n  should {should:?}"));
+        }
+    }
+
+    /// Compares two matrices to `factor` of the reference's largest entry.
+    #[allow(dead_code, reason = "not every test file has matrices to compare")]
+    pub fn compare_matrix(&mut self, place: &str, is: &[Vec<f64>], should: &DMatrix<f64>, factor: f64) {
+        if is.len() != should.nrows() || is.iter().any(|row| row.len() != should.ncols()) {
+            return self.note(place, format!("not {} x {}: {is:?}", should.nrows(), should.ncols()));
+        }
+        let should: Vec<f64> = should.row_iter().flat_map(|row| row.iter().copied().collect::<Vec<_>>()).collect();
+        self.compare(place, &is.concat(), &should, factor * largest(&should));
+    }
+
+    /// Fails with all differences, if there are any.
+    pub fn finish(self) {
+        assert!(self.0.is_empty(), "{} differences:\n{}", self.0.len(), self.0.join("\n"));
+    }
+}
+
+/// Largest magnitude.
+pub fn largest(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |size, number| size.max(number.abs()))
+}
+
+/// The rows as a matrix.
+pub fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
+}
