@@ -6,7 +6,7 @@
 //! ```
 //!
 //! urdf-rs alone is too trusting and too strict: it drops what is no number out of a vector, takes a missing `<inertial>`
-//! for a mass of zero, and refuses a `<limit>` that nobody needs. So [`draft`] checks every element with its place in the
+//! for a mass of zero, and refuses a `<limit>` that nobody needs. So `draft` checks every element with its place in the
 //! text, writes what the analysis uses into a strict copy, and urdf-rs reads the values from that. Nothing here opens a
 //! file or starts a process, nothing recurses, and time and memory grow linearly with the text.
 

@@ -6,7 +6,7 @@
 //!
 //! Each combination is first read in f64 with an estimate of its rounding; what lies within it is read again in
 //! [`Ball`] arithmetic, which knows exact zeros; what is still open (vanishing pivots, contacts that depend on each other)
-//! goes to [`super::redundant`]. What none of them tells is undecided, and nothing is guessed.
+//! goes to the redundant stage. What none of them tells is undecided, and nothing is guessed.
 
 use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
