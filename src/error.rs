@@ -3,6 +3,7 @@
 //! Physics is a value, refusal is an error: "no outcome" or "on the border" are data, and an [`Error`] always means that
 //! an input was not accepted. Every error names its place and, where one is known, the remedy.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// Shorthand for results of this crate.
@@ -13,13 +14,13 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[non_exhaustive]
 pub enum Reason {
     /// The text is not well-formed XML, JSON or the like.
-    #[error("{0}")]
+    #[error("{}", short(.0))]
     Syntax(String),
     /// A field that the format does not have.
-    #[error("unknown field \"{0}\"")]
+    #[error("unknown field \"{}\"", short(.0))]
     UnknownField(String),
     /// A link, joint or other thing that the robot does not have.
-    #[error("the robot has no {what} named \"{name}\"")]
+    #[error("the robot has no {what} named \"{}\"", short(.name))]
     UnknownName {
         /// The kind of thing, such as `link`.
         what: &'static str,
@@ -27,7 +28,7 @@ pub enum Reason {
         name: String,
     },
     /// A name or key that stands twice.
-    #[error("{what} \"{name}\" is given twice")]
+    #[error("{what} \"{}\" is given twice", short(.name))]
     Duplicate {
         /// The kind of thing, such as `joint`.
         what: &'static str,
@@ -43,7 +44,7 @@ pub enum Reason {
         found: &'static str,
     },
     /// Something required is not there.
-    #[error("{0} is missing")]
+    #[error("{} is missing", short(.0))]
     Missing(String),
     /// A number that is NaN or infinite.
     #[error("{what} must be a finite number, not {value}")]
@@ -54,7 +55,7 @@ pub enum Reason {
         value: f64,
     },
     /// A number outside its range.
-    #[error("{what} must be {allowed}, not {value}")]
+    #[error("{what} must be {allowed}, not {}", brief(*.value))]
     OutOfRange {
         /// The quantity.
         what: String,
@@ -64,20 +65,21 @@ pub enum Reason {
         value: f64,
     },
     /// Two inputs that contradict each other, or an array of the wrong shape.
-    #[error("{0}")]
+    #[error("{}", short(.0))]
     Inconsistent(String),
     /// Joints that form no tree: two roots, two parents, a cycle, an unknown link.
-    #[error("{0}")]
+    #[error("{}", short(.0))]
     NotATree(String),
     /// A well-formed input that this version does not handle.
-    #[error("{0}")]
+    #[error("{}", short(.0))]
     Unsupported(String),
     /// A coordinate without inertia, so that the mass matrix is singular.
-    #[error("the mass matrix is singular: nothing resists a motion of {0}")]
+    #[error("the mass matrix is singular: nothing resists a motion of {}", short(.0))]
     Singular(String),
     /// A shape that is deeper in the ground than the tolerance.
     #[error(
-        "link \"{link}\" is {depth:.3e} m deep in the ground, more than the contact tolerance of {tolerance:.3e} m"
+        "link \"{}\" is {depth:.3e} m deep in the ground, more than the contact tolerance of {tolerance:.3e} m",
+        short(.link)
     )]
     Penetration {
         /// The URDF link.
@@ -92,6 +94,22 @@ pub enum Reason {
     TooManyContacts {
         /// The number of closed contacts.
         contacts: usize,
+        /// The most that is accepted.
+        limit: usize,
+    },
+    /// More contacts than matrices are formed for.
+    #[error("{contacts} contacts are closed, and matrices are formed for {limit} at most")]
+    MatricesTooLarge {
+        /// The number of closed contacts.
+        contacts: usize,
+        /// The most that is accepted.
+        limit: usize,
+    },
+    /// More of a thing than a robot may have.
+    #[error("more than {limit} {what} are not accepted")]
+    TooMany {
+        /// The kind of thing, such as `links`.
+        what: &'static str,
         /// The most that is accepted.
         limit: usize,
     },
@@ -130,7 +148,7 @@ impl Error {
 
     /// Names the place inside the input, as in `position.joints.left_hip` or `link "shank"`.
     pub fn at(mut self, place: impl Into<String>) -> Self {
-        self.0.place = Some(place.into());
+        self.0.place = Some(short(&place.into()).into_owned());
         self
     }
 
@@ -148,7 +166,7 @@ impl Error {
 
     /// Tells what to do.
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.0.hint = Some(hint.into());
+        self.0.hint = Some(short(&hint.into()).into_owned());
         self
     }
 
@@ -218,14 +236,38 @@ impl From<Reason> for Error {
     }
 }
 
+/// The most characters of a name that is compared with others: the comparison takes the product of their lengths.
+const LONGEST_NAME: usize = 200;
+
 /// The known name most like `name`, if any is like it at all.
 fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let comparable = |name: &str| name.len() <= LONGEST_NAME;
     known
         .into_iter()
+        .filter(|candidate| comparable(name) && comparable(candidate))
         .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.8)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)
+}
+
+/// The text, without its middle if a hostile name makes it long: a refusal of a line of 1 MB stays short.
+fn short(text: &str) -> Cow<'_, str> {
+    const LONGEST: usize = 400;
+    const HEAD: usize = 80;
+    const TAIL: usize = 40;
+    if text.len() <= LONGEST {
+        return Cow::Borrowed(text);
+    }
+    let head: String = text.chars().take(HEAD).collect();
+    let tail = text.char_indices().nth_back(TAIL - 1).map_or(text, |(start, _)| &text[start..]);
+    Cow::Owned(format!("{head}...{tail}"))
+}
+
+/// The number in the shorter of its two forms: 0.5 and 1e-300.
+fn brief(value: f64) -> String {
+    let (plain, scientific) = (value.to_string(), format!("{value:e}"));
+    if plain.len() <= scientific.len().max(18) { plain } else { scientific }
 }
 
 /// `value`, unless it is NaN or infinite.
@@ -244,6 +286,15 @@ mod tests {
     fn display_names_the_place_from_the_outside_in() {
         let error = Error::new(Reason::Missing("friction".into())).at("state").on(3, 7).in_file("a.json");
         assert_eq!(error.to_string(), "a.json:3:7: state: friction is missing");
+    }
+
+    #[test]
+    fn a_refusal_of_a_long_name_stays_short() {
+        let name = "é".repeat(1_000_000);
+        let reason = Reason::UnknownName { what: "joint", name: name.clone() };
+        let error = Error::new(reason).at(format!("position.joints.{name}")).did_you_mean(&name, [name.as_str()]);
+        assert!(error.to_string().len() < 700, "{error}");
+        assert_eq!(error.remedy(), None);
     }
 
     #[test]

@@ -9,12 +9,12 @@
 //! root costs nothing until an [`Error`] has to be told.
 
 mod read;
+mod syntax;
 
 pub(crate) use read::id_in;
 
 use crate::{Error, Reason, Result};
 use serde_json::Number;
-use serde_path_to_error::Segment;
 use std::borrow::Cow;
 
 /// A JSON value that borrows its text.
@@ -34,7 +34,7 @@ impl<'t> Value<'t> {
     /// # Errors
     /// [`Reason::Syntax`] with place, line and column, also for numbers beyond f64's range such as 1e999.
     pub(crate) fn parse(text: &'t str) -> Result<Self> {
-        serde_json::from_str(text).map_err(|error| syntax_error(text, &error))
+        serde_json::from_str(text).map_err(|error| syntax::refusal(text, &error))
     }
 
     /// The kind of value, as in `found a string`.
@@ -224,6 +224,12 @@ impl<'n> Node<'n> {
         self.refuse_name(self.as_text().unwrap_or_default(), reason)
     }
 
+    /// Puts an error that was found later at this value's line and column.
+    pub(crate) fn locate(&self, error: Error) -> Error {
+        let (line, column) = self.location("");
+        error.on(line, column)
+    }
+
     /// Refuses `name`, which is the value or its key.
     pub(crate) fn refuse_name(&self, name: &str, reason: Reason) -> Error {
         let mut place = String::new();
@@ -300,39 +306,6 @@ fn second_of_its_name<'v>(fields: &'v [(Cow<'_, str>, Value<'_>)]) -> Option<&'v
     // The sort is stable: of equal keys the later one stays behind.
     keys.sort();
     keys.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[1])
-}
-
-/// serde_json's error in our words; the place is looked for only now, by reading once more.
-fn syntax_error(text: &str, error: &serde_json::Error) -> Error {
-    let (line, byte) = (error.line().max(1), error.column());
-    let start: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
-    let (_, column) = line_and_column(text, start + byte.saturating_sub(1));
-
-    let told = error.to_string();
-    let message = told.split(" at line ").next().unwrap_or_default();
-    let refused = Error::new(Reason::Syntax(message.to_owned())).on(line, column);
-
-    let mut reader = serde_json::Deserializer::from_str(text);
-    let place =
-        serde_path_to_error::deserialize::<_, Value>(&mut reader).err().map(|tracked| known_part(tracked.path()));
-    match place {
-        Some(place) if !place.is_empty() => refused.at(place),
-        _ => refused,
-    }
-}
-
-/// The path as far as its keys were read.
-fn known_part(path: &serde_path_to_error::Path) -> String {
-    let mut place = String::new();
-    for segment in path {
-        match segment {
-            Segment::Seq { index } => place.push_str(&format!("[{index}]")),
-            Segment::Map { key } if place.is_empty() => place.push_str(key),
-            Segment::Map { key } => place.extend([".", key]),
-            Segment::Enum { .. } | Segment::Unknown => break,
-        }
-    }
-    place
 }
 
 #[cfg(test)]

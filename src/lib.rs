@@ -18,6 +18,7 @@
 //!     poses + ground --[contact]--> closed contacts
 //!     G, c, friction, restitution --[impact]--> every outcome, verdict
 //!     all of it --[pipeline]--> Impact --[report]--> JSON, text
+//!     CSV --[table]--> many states; of a recording --[touchdown]--> those in which a foot strikes; results --[table]--> CSV
 //! ```
 //!
 //! # The impact
@@ -85,6 +86,8 @@ pub mod impact;
 pub mod pipeline;
 pub mod report;
 pub mod documents;
+pub mod table;
+pub mod touchdown;
 pub mod batch;
 
 pub use error::{Error, Reason, Result};

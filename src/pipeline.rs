@@ -9,8 +9,8 @@ use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factor_rows, factorize, kinematics,
     kinetic_energy, mass_matrix, point_velocity,
 };
-use crate::error::{Error, Reason, Result};
-use crate::impact::problem::Factor;
+use crate::error::{Error, Reason, Result, finite};
+use crate::impact::problem::{Factor, check_matrix_size};
 use crate::impact::{Analysis, ContactProblem, Friction, Scratch};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Vector, dot, scaled, sum};
@@ -107,7 +107,8 @@ impl<'r> Pipeline<'r> {
     ///
     /// # Errors
     /// [`Reason::Singular`] for a coordinate without inertia, [`Reason::Penetration`] for a foot deep in the ground,
-    /// [`Reason::Missing`] for a contact without friction or a stance without a foot.
+    /// [`Reason::Missing`] for a contact without friction or a stance without a foot, [`Reason::MatricesTooLarge`] for
+    /// hundreds of contacts, [`Reason::NotFinite`] for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
         let scene = &state.scene;
         self.compile(scene);
@@ -120,12 +121,14 @@ impl<'r> Pipeline<'r> {
         let mut notes = Vec::new();
         let (base, velocity, stance) = self.stand(state)?;
         let contacts = self.contacts(scene, base)?;
+        check_matrix_size(contacts.len())?;
         let stance = stance.and_then(|foot| contacts.iter().position(|contact| same_point(contact, &foot)));
         self.points.clear();
         self.points.extend(contacts.iter().map(|contact| contact.point_of(scene.ground())));
         contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
         self.rest(&contacts, &velocity, &mut notes);
         delassus(&self.plan, &mut self.workspace);
+        let kinetic_energy = self.energy_in_range(&velocity)?;
 
         let free = self.applied(scene, &velocity);
         let problem = self.problem(scene, &contacts, &velocity, &free)?;
@@ -134,7 +137,7 @@ impl<'r> Pipeline<'r> {
         let velocity_after = outcomes.iter().map(|outcome| self.struck(&free, &outcome.impulse)).collect();
         Ok(Impact {
             velocity_before: problem.velocity_before().to_vec(),
-            kinetic_energy: kinetic_energy(&self.plan, &velocity, &self.workspace),
+            kinetic_energy,
             velocity_after,
             matrices: self.options.matrices.then(|| self.matrices()),
             analysis,
@@ -208,6 +211,17 @@ impl<'r> Pipeline<'r> {
             }
         }
         Ok(())
+    }
+
+    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything.
+    fn energy_in_range(&self, velocity: &[f64]) -> Result<f64> {
+        let too_large =
+            |error: Error| error.hint("positions and velocities are too large for f64: are they in SI units?");
+        for &entry in &self.workspace.delassus {
+            finite(entry, || "an entry of the Delassus matrix".into()).map_err(too_large)?;
+        }
+        let energy = kinetic_energy(&self.plan, velocity, &self.workspace);
+        finite(energy, || "the kinetic energy".into()).map_err(too_large)
     }
 
     fn tolerance(&self) -> f64 {

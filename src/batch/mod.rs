@@ -1,60 +1,217 @@
-//! Many states, one line each.
+//! Many states: one line or row each.
 //!
-//! Nothing here opens a file: lines come in, lines go out.
+//! ```text
+//!     lines, CSV --[chunk]--> chunks of records --[run]--> Batch, one per thread --> blocks of answers, in order
+//!                                                            └──[summary]--> Summary of all
+//! ```
+//!
+//! Nothing here opens a file, and threads are started by [`run`] alone, where it is told to.
+
+mod chunk;
+mod recording;
+mod run;
+mod summary;
+
+pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
+pub use recording::{Landing, Origin, Recorded, Recording, samples};
+pub use run::{Block, Broken, Form, Sink, Source, run};
+pub use summary::{ModeCount, MoreFriction, Nearest, Needed, Place, Summary, Verdicts};
 
 use crate::documents::utf8;
+use crate::impact::{Analysis, Friction, Mode, Outcome, Verdict};
 use crate::pipeline::{Options, Pipeline};
-use crate::report::{self, Detail, Refused, Report};
+use crate::report::{self, CarriedFields, Detail, Refused, Report};
+use crate::scene::ByLink;
 use crate::state::{Defaults, State};
-use crate::{Error, Result, Robot};
+use crate::table::{Carried, Columns, Header, Rows};
+use crate::touchdown::{At, Touching};
+use crate::{Error, Reason, Result, Robot};
+use serde_json::Value;
 
-/// Answers lines of NDJSON, one state each, one after the other.
-#[derive(Debug)]
-pub struct Batch<'r> {
-    robot: &'r Robot,
-    pipeline: Pipeline<'r>,
-    defaults: Defaults,
-    detail: Detail,
-}
-
-/// What became of a line.
+/// What is asked of every state of a batch.
 #[derive(Debug, Clone)]
-pub enum Answer {
-    /// It is blank and has no line in the output.
-    Blank,
-    /// Its result was written.
-    Result,
-    /// An object with the error was written in its place, or the matrices and the error; a line and column in the error are those of the line alone.
-    Refused(Error),
+pub struct Question<'r> {
+    /// The robot.
+    pub robot: &'r Robot,
+    /// How contacts are found and what is computed.
+    pub options: Options,
+    /// What states take from elsewhere.
+    pub defaults: Defaults,
+    /// How much of a result is written.
+    pub detail: Detail,
+    /// The columns of the table that states come from; none where they are lines of JSON.
+    pub header: Option<&'r Header>,
+    /// The columns of the table that results go to; none where they are lines of JSON.
+    pub columns: Option<&'r Columns>,
+    /// How touchdowns are found, where they alone are answered.
+    pub touchdowns: Option<(At, Touching)>,
 }
 
-impl<'r> Batch<'r> {
-    /// A batch of states of `robot`.
-    pub fn new(robot: &'r Robot, options: Options, defaults: Defaults, detail: Detail) -> Self {
-        Self { robot, pipeline: Pipeline::new(robot, options), defaults, detail }
+/// Answers records in memory that it keeps.
+pub struct Batch<'q> {
+    question: &'q Question<'q>,
+    pipeline: Pipeline<'q>,
+    rows: Option<Rows<'q>>,
+}
+
+/// What stands around a state in its input.
+#[derive(Debug, Clone, Copy)]
+struct Around<'a> {
+    line: usize,
+    carried: Option<&'a Carried>,
+    touchdown: Option<&'a Landing>,
+}
+
+impl<'q> Batch<'q> {
+    /// A batch that asks `question`.
+    pub fn new(question: &'q Question<'q>) -> Self {
+        let pipeline = Pipeline::new(question.robot, question.options.clone());
+        Self { question, pipeline, rows: question.header.map(Header::rows) }
     }
 
-    /// Answers one line and appends the answer, a line of JSON, to `out`; `number` counts from 1.
-    pub fn line(&mut self, number: usize, line: &[u8], out: &mut Vec<u8>) -> Answer {
-        if line.trim_ascii().is_empty() {
-            return Answer::Blank;
+    /// Answers a line of JSON; a blank one has no answer.
+    fn line(&mut self, line: usize, record: &[u8], block: &mut Block) {
+        if record.trim_ascii().is_empty() {
+            return;
         }
-        match utf8(line).and_then(|text| self.result(text, out)) {
-            Ok(None) => Answer::Result,
-            Ok(Some(error)) => Answer::Refused(error),
-            Err(error) => {
-                let id = std::str::from_utf8(line).ok().and_then(State::id_in);
-                report::append_line(out, &Refused::new(id, number, &error));
-                Answer::Refused(error)
+        let Question { robot, defaults, .. } = self.question;
+        let state = utf8(record).and_then(|text| State::from_json(text, robot, defaults));
+        // The error's place is that in its line alone.
+        let state = state.map_err(|error| {
+            let column = error.location().map_or(1, |location| location.column);
+            error.on(line, column)
+        });
+        let unread = || std::str::from_utf8(record).ok().and_then(State::id_in);
+        self.answer(state, unread, Around { line, carried: None, touchdown: None }, block);
+    }
+
+    /// Answers a row of a table; a blank one has no answer.
+    fn row(&mut self, rows: &mut Rows, line: usize, record: &[u8], block: &mut Block) {
+        let Question { robot, defaults, .. } = self.question;
+        match rows.row(record, line) {
+            Ok(None) => {}
+            Ok(Some(row)) => {
+                let carried = row.carried();
+                let around = Around { line, carried: Some(&carried), touchdown: None };
+                self.answer(row.state(robot, defaults), || row.id(), around, block);
+            }
+            Err(error) => self.refuse(error, None, Around { line, carried: None, touchdown: None }, block),
+        }
+    }
+
+    /// Answers a state, or what should have been one and is called what `unread` finds.
+    fn answer(
+        &mut self,
+        state: Result<State>,
+        unread: impl FnOnce() -> Option<Value>,
+        around: Around<'_>,
+        block: &mut Block,
+    ) {
+        match state {
+            Ok(mut state) => {
+                if let Err(error) = self.result(&mut state, around, block) {
+                    self.refuse(error, state.id, around, block);
+                }
+            }
+            Err(error) => self.refuse(error, unread(), around, block),
+        }
+    }
+
+    /// Appends the result of a state.
+    fn result(&mut self, state: &mut State, around: Around<'_>, block: &mut Block) -> Result<()> {
+        let Question { robot, detail, header, columns, .. } = *self.question;
+        let impact = self.pipeline.impact(state)?;
+        let mut report = Report::of_state(robot, state, &impact, detail)?;
+        report.touchdown = around.touchdown.zip(self.question.touchdowns).map(|(landing, choice)| landing.told(choice));
+        if let Some(columns) = columns {
+            columns.append_result(&report, around.carried, &mut block.out)?;
+        } else {
+            let carried = header.zip(around.carried).map(|(header, carried)| carried.by_name(header).collect());
+            report.carried = carried.filter(|fields: &Vec<_>| !fields.is_empty()).map(CarriedFields);
+            report.append_json(detail, &mut block.out);
+        }
+        match &impact.analysis {
+            Ok(analysis) => {
+                let needed = self.friction_needed(state, analysis);
+                let place = || Place { id: state.id.clone(), line: around.line };
+                block.summary.count(place, &impact, analysis, needed);
+            }
+            // It stands in the result, beside the matrices.
+            Err(error) => block.refuse(error.clone(), around.line),
+        }
+        Ok(())
+    }
+
+    /// Appends a refusal.
+    fn refuse(&self, error: Error, id: Option<Value>, around: Around<'_>, block: &mut Block) {
+        let refused = Refused::new(id, around.line, &error);
+        match self.question.columns {
+            Some(columns) => columns.append_refused(&refused, around.carried, &mut block.out),
+            None => report::append_line(&mut block.out, &refused),
+        }
+        block.refuse(error, around.line);
+    }
+
+    /// The friction with which no contact would have to slide, where one has to; see [`MoreFriction`].
+    fn friction_needed(&mut self, state: &mut State, analysis: &Analysis) -> Option<f64> {
+        if analysis.no_slip_consistent || !matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous) {
+            return None;
+        }
+        let given = std::mem::replace(&mut state.scene.friction, ByLink::everywhere(Friction::Infinite));
+        let rough = self.pipeline.impact(state);
+        state.scene.friction = given;
+        let outcomes = rough.ok()?.analysis.ok()?.outcomes;
+        let without_slip = outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
+        without_slip.map(friction_of).min_by(f64::total_cmp)
+    }
+}
+
+impl Form<Chunk> for Batch<'_> {
+    fn answer(&mut self, chunk: Chunk, block: &mut Block) {
+        let mut rows = self.rows.take();
+        for (line, record) in chunk.records() {
+            match &mut rows {
+                Some(rows) => self.row(rows, line, record, block),
+                None => self.line(line, record, block),
             }
         }
+        self.rows = rows;
+        if let Some(line) = chunk.too_long {
+            self.refuse(too_long(), None, Around { line, carried: None, touchdown: None }, block);
+        }
     }
+}
 
-    /// Appends the result of one state to `out`; gives the error that stands in it beside the matrices, if any.
-    fn result(&mut self, text: &str, out: &mut Vec<u8>) -> Result<Option<Error>> {
-        let state = State::from_json(text, self.robot, &self.defaults)?;
-        let impact = self.pipeline.impact(&state)?;
-        Report::of_state(self.robot, &state, &impact, self.detail)?.append_json(self.detail, out);
-        Ok(impact.analysis.err())
+impl Form<Vec<Recorded>> for Batch<'_> {
+    fn answer(&mut self, found: Vec<Recorded>, block: &mut Block) {
+        for Recorded { origin: Origin { line, id, carried }, state, touchdown } in found {
+            let around = Around { line, carried: Some(&carried), touchdown: touchdown.as_ref() };
+            self.answer(state, || id, around, block);
+        }
     }
+}
+
+/// The refusal of a record longer than [`RECORD_LIMIT`].
+fn too_long() -> Error {
+    let reason = Reason::Unsupported(format!("the record is longer than {} MiB", RECORD_LIMIT >> 20));
+    Error::new(reason).hint("is a line break or a closing quote missing?")
+}
+
+impl Block {
+    /// Counts and keeps the refusal of what begins on `line`.
+    fn refuse(&mut self, error: Error, line: usize) {
+        self.summary.refuse();
+        let located = error.location().is_some();
+        self.refused.push(if located { error } else { error.on(line, 1) });
+    }
+}
+
+/// The greatest |L_t| / L_n of the sticking contacts.
+fn friction_of(outcome: &Outcome) -> f64 {
+    let sticking = outcome.impulse.iter().zip(&outcome.modes).filter(|(_, mode)| **mode == Mode::Stick);
+    let ratios = sticking.map(|(&[tangential, normal], _)| match tangential.abs() {
+        0.0 => 0.0,
+        tangential => tangential / normal.max(0.0),
+    });
+    ratios.fold(0.0, f64::max)
 }

@@ -1,64 +1,271 @@
-//! `heelstrike batch`: one result line per state, in order.
+//! `heelstrike batch`: the answers to many states, in order.
 
-use super::complaint::complain;
+use super::delivery::Delivery;
 use super::options::{ContactOptions, DetailOptions, SceneOptions, pipeline_options};
-use super::output::Output;
+use super::output::named;
+use super::progress::Progress;
 use super::robot::RobotOptions;
-use super::{Answered, Outcome, input};
-use heelstrike::batch::{Answer, Batch};
-use std::io::{BufRead, Write};
-use std::path::PathBuf;
+use super::{Answered, Failure, Outcome, input};
+use clap::ValueEnum;
+use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
+use heelstrike::table::{Columns, Header, Rates};
+use heelstrike::touchdown::{self, At, Difference, Touching};
+use heelstrike::{Error, Reason, Robot, report};
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::thread::available_parallelism;
 
-/// Find every outcome of many states: one line of JSON in, one out, in order
+/// Find every outcome of many states: one line of JSON or row of CSV each, answered in order
 ///
-/// A refused state is answered by an object with its `error` in its place, and the rest goes on; blank lines are skipped.
+/// A refused state is answered in its place by its `error`, and the rest goes on; blank lines are skipped. A summary goes to
+/// standard error.
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Example:\n  heelstrike batch urdf/ramone.urdf keyframes.ndjson --friction 0.8 -o results.ndjson"
-)]
+#[command(after_help = "\
+Examples:
+  heelstrike batch urdf/ramone.urdf keyframes.ndjson --friction 0.8 -o results.ndjson
+  heelstrike batch urdf/ramone.urdf keyframes.csv --friction 0.8 -o results.csv --summary summary.json
+  heelstrike batch urdf/ramone.urdf recorded.csv --touchdowns --velocity central --friction 0.8")]
 pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,
-    /// States, one JSON object per line; "-" reads standard input
-    #[arg(value_name = "KEYFRAMES.ndjson")]
+    /// States, one JSON object per line or as CSV; "-" reads standard input
+    #[arg(value_name = "KEYFRAMES")]
     states: PathBuf,
+    /// The form of the input [default: csv where its name ends in .csv, else ndjson]
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    input_format: Option<Form>,
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
     contacts: ContactOptions,
     #[command(flatten)]
+    recording: RecordingOptions,
+    #[command(flatten)]
     detail: DetailOptions,
     /// Write to this file, which is replaced
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
-    /// The form of the results: JSON, one line each
-    #[arg(long, value_name = "FORMAT", value_parser = ["json"], default_value = "json", help_heading = "Output")]
-    format: String,
+    /// The form of the results [default: csv where the output's name ends in .csv, else ndjson]
+    #[arg(long, alias = "format", value_name = "FORMAT", value_enum, help_heading = "Output")]
+    output_format: Option<Form>,
+    /// Write the summary to this file as JSON, too
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    summary: Option<PathBuf>,
+    /// What refused states mean for the exit status: 1, or 0 with "ok"
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = Refused::Fail, help_heading = "Output")]
+    refused: Refused,
+    /// How many threads compute; 0 takes one per core
+    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+    threads: usize,
+}
+
+/// How rows that follow each other in time are taken together.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Recordings")]
+struct RecordingOptions {
+    /// Answer only the moments at which a foot that was above the ground reaches it
+    #[arg(long)]
+    touchdowns: bool,
+    /// Which state of a touchdown is taken
+    #[arg(long, value_enum, default_value = "crossing", requires = "touchdowns")]
+    at: AtRow,
+    /// Which feet take part beside the one that strikes: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
+    #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
+    touching: Touching,
+    /// Compute velocities from positions and the column time
+    #[arg(long, value_enum, value_name = "HOW")]
+    velocity: Option<Velocity>,
+}
+
+/// The form of an input or output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// One JSON object per line
+    #[value(alias = "json", alias = "jsonl")]
+    Ndjson,
+    /// A table with a header
+    Csv,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Refused {
+    /// The exit status is 1
+    Fail,
+    /// The exit status is 0
+    Ok,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum AtRow {
+    /// Interpolated to the moment of contact
+    Crossing,
+    /// The last row before it, shifted in z
+    Row,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Velocity {
+    /// From the rows before and after
+    Central,
+    /// From the row before
+    Backward,
+}
+
+impl Form {
+    fn of(path: &Path) -> Self {
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) { Self::Csv } else { Self::Ndjson }
+    }
+}
+
+impl RecordingOptions {
+    fn touchdowns(&self) -> Option<(At, Touching)> {
+        let at = match self.at {
+            AtRow::Crossing => At::Crossing,
+            AtRow::Row => At::Row,
+        };
+        self.touchdowns.then_some((at, self.touching))
+    }
+
+    fn difference(&self) -> Option<Difference> {
+        self.velocity.map(|velocity| match velocity {
+            Velocity::Central => Difference::Central,
+            Velocity::Backward => Difference::Backward,
+        })
+    }
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
     let robot = args.robot.load()?;
-    let options = pipeline_options(&args.contacts, args.robot.feet(&robot)?, args.detail);
-    let mut states = input::open(&args.states)?;
-    let mut output = Output::open(args.output.as_deref())?;
-    let mut batch = Batch::new(&robot, options, args.scene.defaults(), args.detail.detail());
+    let feet = args.robot.feet(&robot)?;
+    let name = input::name(&args.states);
+    let progress = Progress::over(&args.states, args.output.is_some());
+    let states = progress.watch(input::stream(&args.states)?);
+    let mut chunks = match args.input_format.unwrap_or_else(|| Form::of(&args.states)) {
+        Form::Ndjson => Chunks::of_lines(states),
+        Form::Csv => Chunks::of_table(states),
+    };
+    let header = args.header(&robot, &mut chunks)?;
+    let output_form = args.output_format.unwrap_or_else(|| args.output.as_deref().map_or(Form::Ndjson, Form::of));
+    let touchdowns = args.recording.touchdowns();
+    let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns.is_some());
+    let columns = (output_form == Form::Csv).then(columns);
+    let question = Question {
+        robot: &robot,
+        options: pipeline_options(&args.contacts, feet, args.detail),
+        defaults: args.scene.defaults(),
+        detail: args.detail.detail(),
+        header: header.as_ref(),
+        columns: columns.as_ref(),
+        touchdowns,
+    };
+    // Created before the work, so that it is not in vain.
+    let summary = args.summary.as_deref().map(|path| File::create(path).map_err(|error| named(path, error)));
+    let summary = summary.transpose()?;
 
-    let mut answered = Answered::All;
-    let (mut line, mut answer) = (Vec::new(), Vec::new());
-    for number in 1.. {
-        line.clear();
-        let length = states.read_until(b'\n', &mut line).map_err(|error| input::cannot_read(&args.states, &error))?;
-        if length == 0 {
-            break;
-        }
-        answer.clear();
-        if let Answer::Refused(error) = batch.line(number, &line, &mut answer) {
-            let column = error.location().map_or(1, |location| location.column);
-            complain(&error.on(number, column).in_file(input::name(&args.states)));
-            answered = Answered::NotAll;
-        }
-        output.write_all(&answer)?;
+    let mut delivery = Delivery::new(args.open()?, &name, &progress);
+    if let Some(columns) = &columns {
+        let mut line = Vec::new();
+        columns.append_header(&mut line);
+        delivery.write(&line)?;
     }
-    output.flush()?;
-    Ok(answered)
+    args.answer(&question, chunks, &mut delivery)?;
+    let told = std::mem::take(&mut delivery.summary);
+    drop(delivery);
+    drop(progress);
+    args.tell(&told, summary)?;
+    Ok(if told.refused == 0 || args.refused == Refused::Ok { Answered::All } else { Answered::NotAll })
+}
+
+type Input = Chunks<Box<dyn Read + Send>>;
+
+impl Args {
+    /// The columns of a table; none of lines.
+    fn header(&self, robot: &Robot, chunks: &mut Input) -> Result<Option<Header>, Failure> {
+        let in_order = self.recording.touchdowns || self.recording.velocity.is_some();
+        if !chunks.is_table() {
+            if in_order {
+                let reason = "touchdowns and velocities over time are sought in tables alone".to_owned();
+                let hint = "give CSV with a column time, or say --input-format csv";
+                return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
+            }
+            return Ok(None);
+        }
+        let name = input::name(&self.states);
+        let chunk = chunks.record().map_err(|error| input::cannot_read(&self.states, &error))?;
+        let record = chunk.as_ref().and_then(|chunk| chunk.records().next()).map_or(&[][..], |(_, record)| record);
+        let rates = if self.recording.velocity.is_some() { Rates::Time } else { Rates::Columns };
+        let header = Header::read(record, robot, rates).map_err(|error| error.in_file(&name))?;
+        if in_order && !header.has_time() {
+            let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
+            return Err(missing.in_file(name).hint("touchdowns are sought over the time").into());
+        }
+        Ok(Some(header))
+    }
+
+    /// Opens the output without a buffer; blocks of results are large enough.
+    fn open(&self) -> io::Result<Box<dyn Write>> {
+        match &self.output {
+            Some(path) => Ok(Box::new(File::create(path).map_err(|error| named(path, error))?)),
+            None => standard_output(),
+        }
+    }
+
+    fn answer<W: Write>(&self, question: &Question, chunks: Input, delivery: &mut Delivery<W>) -> Result<(), Failure> {
+        let threads = match self.threads {
+            0 => available_parallelism().map_or(1, usize::from),
+            threads => threads,
+        };
+        let form = || Batch::new(question);
+        let ended = match (question.header, self.recording.difference(), question.touchdowns) {
+            (Some(header), difference, touchdowns) if difference.is_some() || touchdowns.is_some() => {
+                let samples = batch::samples(chunks, header, question.robot, &question.defaults);
+                let samples: Box<dyn Iterator<Item = _> + Send> = match difference {
+                    Some(difference) => Box::new(touchdown::rates(samples, difference)),
+                    None => Box::new(samples),
+                };
+                let states: Box<dyn Iterator<Item = Recorded> + Send> = match touchdowns {
+                    Some((at, touching)) => {
+                        let feet = &question.options.feet;
+                        let found = touchdown::find(samples, question.robot, feet, at, touching);
+                        let found = found.map_err(|error| error.in_file(input::name(&self.robot.robot)))?;
+                        Box::new(found.map(Recorded::from))
+                    }
+                    None => Box::new(samples.map(Recorded::from)),
+                };
+                batch::run(Recording::new(states), threads, form, delivery)
+            }
+            _ => batch::run(chunks, threads, form, delivery),
+        };
+        ended.map_err(|broken| match broken {
+            Broken::Input(error) => Failure::Refused(input::cannot_read(&self.states, &error)),
+            Broken::Output(error) => Failure::Output(error),
+        })
+    }
+
+    /// Writes the summary: for people where there is more than one state or it is asked for, and to its file.
+    fn tell(&self, summary: &Summary, file: Option<File>) -> io::Result<()> {
+        if summary.states > 1 || file.is_some() {
+            // Where nobody reads standard error there is nobody to tell that it cannot be written.
+            let _ = write!(io::stderr(), "{summary}");
+        }
+        if let (Some(mut file), Some(path)) = (file, &self.summary) {
+            let mut line = Vec::new();
+            report::append_line(&mut line, summary);
+            file.write_all(&line).map_err(|error| named(path, error))?;
+        }
+        Ok(())
+    }
+}
+
+/// Standard output without the line buffer of std, which would take more than is written to a full disk.
+#[cfg(unix)]
+fn standard_output() -> io::Result<Box<dyn Write>> {
+    use std::os::fd::AsFd;
+    Ok(Box::new(File::from(io::stdout().as_fd().try_clone_to_owned()?)))
+}
+
+#[cfg(not(unix))]
+fn standard_output() -> io::Result<Box<dyn Write>> {
+    Ok(Box::new(io::stdout()))
 }

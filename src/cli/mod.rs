@@ -5,24 +5,32 @@
 
 mod batch;
 mod complaint;
+mod completions;
+mod delivery;
 mod impact;
 mod input;
 mod inspect;
+mod man;
 mod options;
 mod output;
+mod progress;
 mod robot;
+mod schema;
 mod solve;
 mod stream;
 
 use clap::{Parser, Subcommand};
-use complaint::complain;
+use complaint::{complain, complain_within};
 use std::io;
 use std::process::ExitCode;
+
+/// The crate's version, and the commit where it is known.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("HEELSTRIKE_COMMIT"));
 
 /// Every rigid frictional impact outcome of a planar legged robot: which contact sticks, slides or lifts off, and whether
 /// that is the only possibility.
 #[derive(Debug, Parser)]
-#[command(name = "heelstrike", version, propagate_version = true, arg_required_else_help = true)]
+#[command(name = "heelstrike", version = VERSION, propagate_version = true, arg_required_else_help = true)]
 #[command(after_help = "Example:\n  heelstrike impact urdf/ramone.urdf examples/ramone.json")]
 pub struct Cli {
     #[command(subcommand)]
@@ -35,12 +43,18 @@ enum Command {
     Impact(impact::Args),
     Batch(batch::Args),
     Solve(solve::Args),
+    Schema(schema::Args),
+    Completions(completions::Args),
+    #[command(hide = true)]
+    Man(man::Args),
 }
 
 /// Why a command ended early.
 enum Failure {
     /// Input that nothing can be done without, such as the robot's file.
     Refused(heelstrike::Error),
+    /// The same, and the text that the place is in.
+    RefusedWithin(heelstrike::Error, String),
     /// An option's value that does not fit the robot.
     Usage(heelstrike::Error),
     /// The output could not be written.
@@ -76,6 +90,9 @@ pub fn run(cli: Cli) -> ExitCode {
         Command::Impact(args) => impact::run(&args),
         Command::Batch(args) => batch::run(&args),
         Command::Solve(args) => solve::run(&args),
+        Command::Schema(args) => schema::run(&args),
+        Command::Completions(args) => completions::run(&args),
+        Command::Man(args) => man::run(&args),
     };
     match outcome {
         Ok(Answered::All) => ExitCode::SUCCESS,
@@ -88,6 +105,10 @@ pub fn run(cli: Cli) -> ExitCode {
         }
         Err(Failure::Refused(error)) => {
             complain(&error);
+            ExitCode::from(1)
+        }
+        Err(Failure::RefusedWithin(error, text)) => {
+            complain_within(&error, &text);
             ExitCode::from(1)
         }
         Err(Failure::Usage(error)) => {

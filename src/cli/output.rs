@@ -90,7 +90,8 @@ impl Write for Output {
 /// Bold and faint; a test keeps the sequences equal to anstyle's.
 const COLOURS: Palette = Palette { strong: "\x1b[1m", faint: "\x1b[2m", plain: "\x1b[0m" };
 
-fn named(path: &Path, error: io::Error) -> io::Error {
+/// The error, with the file's name.
+pub(super) fn named(path: &Path, error: io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 

@@ -10,6 +10,9 @@ use heelstrike::{Error, Reason, Robot};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+/// The largest URDF file that is read \[bytes\].
+const LARGEST: u64 = 64 << 20;
+
 /// The robot's file and what is added to it.
 #[derive(Debug, clap::Args)]
 pub(super) struct RobotOptions {
@@ -80,11 +83,13 @@ fn finite(text: &str) -> Result<f64, String> {
 impl RobotOptions {
     /// Reads the robot.
     pub fn load(&self) -> Result<Robot, Failure> {
-        let located = |error: Error| match error.file() {
-            Some(_) => error,
-            None => error.in_file(input::name(&self.robot)),
-        };
-        Ok(self.read().map_err(located)?)
+        let name = input::name(&self.robot);
+        let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
+        let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
+        let robot = Description::from_urdf(text)
+            .and_then(|description| Robot::reduce(&description, self.base.map(Into::into)))
+            .map_err(|error| Failure::RefusedWithin(error.in_file(name), text.to_owned()))?;
+        Ok(robot)
     }
 
     /// The feet that are given by `--contact`.
@@ -98,11 +103,6 @@ impl RobotOptions {
             Ok(NamedContact { link, offset: foot.offset, radius: foot.radius })
         };
         self.contact.iter().map(foot).collect()
-    }
-
-    fn read(&self) -> heelstrike::Result<Robot> {
-        let bytes = input::bytes(&self.robot)?;
-        Robot::reduce(&Description::from_urdf(utf8(&bytes)?)?, self.base.map(Into::into))
     }
 }
 

@@ -1,6 +1,6 @@
 //! One object after the other: answered or refused, as text or JSON, in order.
 
-use super::complaint::complain;
+use super::complaint::{complain, complain_within, note};
 use super::output::{Format, OutputOptions};
 use super::{Answered, Outcome, input};
 use heelstrike::documents::{documents, utf8};
@@ -12,6 +12,13 @@ use std::path::Path;
 
 /// Up to so many contacts the rejected combinations are summed up for people, asked for or not: 4^6 are told at once.
 pub(super) const SUMMED_UP: usize = 6;
+
+/// The largest file of states or problems that is read at once \[bytes\]; `batch` reads line by line.
+const LARGEST: u64 = 1 << 30;
+/// So many refusals are shown with their line.
+const SHOWN: usize = 10;
+/// So many refusals are told, those beyond the shown ones in short; the rest are counted.
+const TOLD: usize = 100;
 
 /// What turns the text of an object into an answer.
 pub(super) trait Answers {
@@ -28,7 +35,7 @@ pub(super) trait Answers {
 /// Answers every object of a file.
 pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Format, options: &OutputOptions) -> Outcome {
     let name = input::name(path);
-    let bytes = input::bytes(path)?;
+    let bytes = input::bytes_up_to(path, LARGEST)?;
     let whole = utf8(&bytes).map_err(|error| error.in_file(&name))?;
     if whole.trim_ascii().is_empty() {
         let missing = Reason::Missing(format!("a {}", A::WHAT));
@@ -36,7 +43,7 @@ pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Forma
     }
 
     let mut output = options.open()?;
-    let mut answered = Answered::All;
+    let mut refused = 0;
     for (at, document) in documents(whole).enumerate() {
         let mut out = Vec::new();
         let answer = match format {
@@ -54,12 +61,20 @@ pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Forma
         }
         output.write_all(&out)?;
         if let Err(error) | Ok(Some(error)) = answer {
-            answered = Answered::NotAll;
             // What is already answered stands before the complaint also where both go to one terminal.
             output.flush()?;
-            complain(&document.locate(error).in_file(&name));
+            let error = document.locate(error).in_file(&name);
+            if refused < SHOWN {
+                complain_within(&error, whole)
+            } else {
+                complain(&error)
+            }
+            refused += 1;
         }
     }
     output.flush()?;
-    Ok(answered)
+    if refused > TOLD {
+        note(&format!("{} more were refused", refused - TOLD));
+    }
+    Ok(if refused == 0 { Answered::All } else { Answered::NotAll })
 }

@@ -46,7 +46,7 @@ impl Placement {
     }
 
     /// The world's point of a circle (or, with radius 0, a point) of a body that is lowest along the normal.
-    fn lowest(&self, point: Point) -> Vector<f64> {
+    pub(crate) fn lowest(&self, point: Point) -> Vector<f64> {
         let centre = sum(self.origins[point.body], self.turns[point.body].apply(point.centre));
         difference(centre, scaled(point.radius, self.normal()))
     }
@@ -78,10 +78,10 @@ impl Placement {
 
 /// A circle, or with radius 0 a point, rigid on a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Point {
-    body: usize,
-    centre: Vector<f64>,
-    radius: f64,
+pub(crate) struct Point {
+    pub body: usize,
+    pub centre: Vector<f64>,
+    pub radius: f64,
 }
 
 impl Contact {
@@ -92,7 +92,7 @@ impl Contact {
 }
 
 /// The points of a foot that can touch.
-fn points(foot: &Foot) -> Vec<Point> {
+pub(crate) fn points(foot: &Foot) -> Vec<Point> {
     let point = |centre, radius| Point { body: foot.body, centre, radius };
     match &foot.outline {
         FootShape::Disc { centre, radius } => vec![point(*centre, *radius)],

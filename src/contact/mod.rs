@@ -8,6 +8,7 @@ mod detect;
 mod feet;
 
 pub use detect::{Placement, detect, place, stance_foot};
+pub(crate) use detect::{Point, points};
 pub use feet::{Feet, Foot};
 
 use crate::planar::Vector;

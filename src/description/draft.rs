@@ -4,14 +4,17 @@
 //! wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
 //! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
 
-use super::xml::{self, Cursor};
+use super::strict::{Range, copy, copy_axis, copy_origin, copy_required, write_attribute};
+use super::xml::{self, Cursor, MOST_LINKS};
 use super::{Ignored, JointKind, joint_place, link_place};
-use crate::error::{Location, Reason, Result, finite};
+use crate::error::{Location, Reason, Result};
 use roxmltree::Node;
 use std::collections::HashMap;
 
-/// The most links that are accepted.
-const MOST_LINKS: usize = 500_000;
+/// The most joints that move: a chain of n of them takes n^3 / 3 steps to factorize.
+const MOST_MOVING: usize = 2000;
+/// The most kinds of elements that are passed over and told.
+const MOST_IGNORED: usize = 1000;
 /// The links or joints in one part of the strict copy; parts bound the memory that urdf-rs needs.
 const PART: usize = 1000;
 /// How a part of the strict copy begins.
@@ -68,13 +71,6 @@ pub(super) struct Joint {
     pub(super) mimic: Option<usize>,
 }
 
-/// Which numbers an attribute may hold.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Range {
-    Any,
-    NotNegative,
-}
-
 /// Reads and checks `text`; see [`super::Description::from_urdf`] for what is refused.
 pub(super) fn read(text: &str) -> Result<Draft> {
     let document = xml::parse(text)?;
@@ -96,18 +92,22 @@ pub(super) fn read(text: &str) -> Result<Draft> {
     if links.elements.is_empty() {
         return Err(xml::refuse(robot, Reason::Missing("a <link>".into())));
     }
-    if links.elements.len() > MOST_LINKS {
-        let reason = format!("a robot of more than {MOST_LINKS} links is not accepted");
-        return Err(xml::refuse(robot, Reason::Unsupported(reason)));
-    }
+    refuse_many_joints(&joints)?;
 
     let mut strict = Vec::new();
+    let mut shapes = 0;
     let mut draft_links = Vec::with_capacity(links.elements.len());
     for part in links.elements.chunks(PART) {
         let mut copy = String::from(OPENING);
         for &(name, element, location) in part {
             let link = read_link(name, element, location, &mut ignored, &mut copy);
-            draft_links.push(link.map_err(|error| error.at(link_place(name)))?);
+            let link = link.map_err(|error| error.at(link_place(name)))?;
+            shapes += link.shapes.len();
+            if shapes > MOST_LINKS {
+                let refused = xml::refuse(element, Reason::TooMany { what: "collision shapes", limit: MOST_LINKS });
+                return Err(refused.at(link_place(name)));
+            }
+            draft_links.push(link);
         }
         copy.push_str(CLOSING);
         strict.push(copy);
@@ -126,6 +126,20 @@ pub(super) fn read(text: &str) -> Result<Draft> {
 
     let name = robot.attribute("name").unwrap_or_default().to_owned();
     Ok(Draft { name, links: draft_links, joints: draft_joints, ignored: ignored.kinds, strict })
+}
+
+/// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
+fn refuse_many_joints(joints: &Named) -> Result<()> {
+    let mut all = joints.elements.iter().map(|&(_, element, _)| element);
+    let mut moving = all.clone().filter(|element| element.attribute("type") != Some("fixed"));
+    for (what, limit, too_many) in
+        [("joints", MOST_LINKS, all.nth(MOST_LINKS)), ("joints that move", MOST_MOVING, moving.nth(MOST_MOVING))]
+    {
+        if let Some(element) = too_many {
+            return Err(xml::refuse(element, Reason::TooMany { what, limit }));
+        }
+    }
+    Ok(())
 }
 
 fn require_urdf(root: Node<'_, '_>) -> Result<()> {
@@ -196,6 +210,10 @@ impl Tally {
         }
         let tag = element.tag_name().name();
         let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
+        if kind == MOST_IGNORED {
+            let reason = Reason::TooMany { what: "kinds of unknown elements", limit: MOST_IGNORED };
+            return Err(xml::refuse(element, reason));
+        }
         match self.kinds.get_mut(kind) {
             Some(known) => known.count += 1,
             None => self.kinds.push(Ignored { parent, tag: tag.into(), count: 1 }),
@@ -349,66 +367,4 @@ fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
         None => Err(xml::refuse(element, Reason::Unsupported(format!("unknown joint type \"{word}\"")))
             .did_you_mean(word, KINDS.map(|(known, _)| known))),
     }
-}
-
-fn copy_axis(axis: Node<'_, '_>, kind: JointKind, strict: &mut String) -> Result<()> {
-    let begin = strict.len();
-    strict.push_str("<axis");
-    if !copy(axis, "xyz", 3, Range::Any, strict)? {
-        // <axis/> means what no <axis> means.
-        strict.truncate(begin);
-        return Ok(());
-    }
-    strict.push_str("/>");
-    let components = axis.attribute("xyz").unwrap_or_default().split_whitespace();
-    if kind.has_axis() && components.flat_map(str::parse::<f64>).all(|component| component == 0.0) {
-        let reason = "xyz of <axis> is zero, so the joint has no direction".into();
-        return Err(xml::refuse(axis, Reason::Inconsistent(reason)));
-    }
-    Ok(())
-}
-
-fn copy_origin(parent: Node<'_, '_>, strict: &mut String) -> Result<()> {
-    let Some(origin) = xml::child(parent, "origin")? else { return Ok(()) };
-    if origin.has_attribute("quat_xyzw") {
-        let reason = "quat_xyzw of <origin> is not handled".into();
-        return Err(xml::refuse(origin, Reason::Unsupported(reason)).hint("give the turn as rpy"));
-    }
-    strict.push_str("<origin");
-    copy(origin, "xyz", 3, Range::Any, strict)?;
-    copy(origin, "rpy", 3, Range::Any, strict)?;
-    strict.push_str("/>");
-    Ok(())
-}
-
-fn copy_required(element: Node<'_, '_>, name: &str, count: usize, range: Range, strict: &mut String) -> Result<()> {
-    xml::required_attribute(element, name)?;
-    copy(element, name, count, range, strict).map(|_| ())
-}
-
-/// Copies an attribute that must hold `count` numbers of `range`; tells whether it is there.
-fn copy(element: Node<'_, '_>, name: &str, count: usize, range: Range, strict: &mut String) -> Result<bool> {
-    let Some(value) = element.attribute(name) else { return Ok(false) };
-    let what = || format!("{name} of <{}>", element.tag_name().name());
-    let numbers: Vec<&str> = value.split_whitespace().collect();
-    let parsed: Vec<f64> = numbers.iter().flat_map(|number| number.parse()).collect();
-    if numbers.len() != count || parsed.len() != count {
-        let expected = if count == 1 { "a number".into() } else { format!("{count} numbers") };
-        let error = xml::refuse(element, Reason::Syntax(format!("{} must be {expected}, not \"{value}\"", what())));
-        let is_xacro = value.contains("${");
-        return Err(if is_xacro { error.hint("expand the file first: xacro FILE > robot.urdf") } else { error });
-    }
-    for number in parsed {
-        finite(number, what).map_err(|error| xml::refuse(element, error.reason().clone()))?;
-        if range == Range::NotNegative && number < 0.0 {
-            let reason = Reason::OutOfRange { what: what(), allowed: "at least 0", value: number };
-            return Err(xml::refuse(element, reason));
-        }
-    }
-    write_attribute(name, &numbers.join(" "), strict);
-    Ok(true)
-}
-
-fn write_attribute(name: &str, value: &str, strict: &mut String) {
-    strict.push_str(&format!(" {name}=\"{value}\""));
 }

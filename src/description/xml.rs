@@ -5,17 +5,25 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 /// The deepest nesting of elements that is accepted; URDF itself needs six.
 const DEEPEST: usize = 200;
+/// The most links that are accepted, and the most joints and the most shapes.
+pub(super) const MOST_LINKS: usize = 10_000;
 /// The most attributes of one element that are accepted: roxmltree compares each with each.
 const MOST_ATTRIBUTES: usize = 100;
-/// The most nodes (elements, texts, comments) that are accepted.
-const MOST_NODES: u32 = 20_000_000;
+/// The most nodes (elements, texts, comments) that are accepted, and the most attributes in all: 100 for each of the most
+/// links.
+const MOST_NODES: u32 = 1_000_000;
+/// The most namespace declarations that are accepted: roxmltree copies those in force into each element that adds one.
+const MOST_NAMESPACES: usize = 1000;
+
+/// The remedy for what is something else altogether.
+const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
 
 /// The XML tree of `text`.
 ///
 /// # Errors
-/// Text that is no XML, a document type definition, too deep nesting, too many attributes or nodes.
+/// Text that is no XML, a document type definition, too deep nesting, too many links, attributes or nodes.
 pub(super) fn parse(text: &str) -> Result<Document<'_>> {
-    refuse_many_attributes(text)?;
+    refuse_many(text)?;
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|error| refusal(text, &error))?;
     refuse_deep_nesting(&document)?;
@@ -32,11 +40,12 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
                 .hint("remove the <!DOCTYPE ...> declaration; URDF needs none");
             at(error, Cursor::new(text).locate(text.find("<!DOCTYPE").unwrap_or(0)))
         }
-        Xml::NodesLimitReached => {
-            Reason::Unsupported(format!("the file has more than {MOST_NODES} XML nodes, which is not accepted")).into()
+        Xml::NodesLimitReached => Reason::TooMany { what: "XML nodes", limit: MOST_NODES as usize }.into(),
+        Xml::DuplicatedAttribute(name, place) => {
+            let reason = Reason::Duplicate { what: "attribute", name: name.clone() };
+            Error::new(reason).on(place.row as usize, place.col as usize)
         }
-        Xml::NoRootNode => Error::new(Reason::Syntax("the text holds no XML element".into()))
-            .hint("give the text of a URDF file, which begins with <robot"),
+        Xml::NoRootNode => Error::new(Reason::Syntax("the text holds no XML element".into())).hint(NO_URDF),
         _ => {
             // The message ends with the position, which is told apart from it.
             let message = error.to_string();
@@ -48,27 +57,56 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
                 Xml::UnknownNamespace(prefix, _) => {
                     refused.hint(format!("declare the prefix: <robot xmlns:{prefix}=\"...\">"))
                 }
+                Xml::UnclosedRootNode | Xml::UnexpectedEndOfStream => {
+                    refused.hint("the text ends too early: is it whole?")
+                }
+                _ if !text.trim_start().starts_with('<') => refused.hint(NO_URDF),
                 _ => refused,
             }
         }
     }
 }
 
-/// Refuses an element with more than [`MOST_ATTRIBUTES`] before roxmltree spends its square on them.
+/// Refuses more than [`MOST_LINKS`] tags `<link` before a tree is built of them, and what roxmltree would spend a square on:
+/// an element with more than [`MOST_ATTRIBUTES`], more than [`MOST_NAMESPACES`]. The place is that of the first one too many.
 ///
-/// An attribute value holds no `<`, so the attributes of an element stand between one `<` and the next.
-fn refuse_many_attributes(text: &str) -> Result<()> {
-    let mut offset = 0;
+/// An attribute value holds no `<`, so a tag and its attributes stand between one `<` and the next.
+fn refuse_many(text: &str) -> Result<()> {
+    let refused = |what, limit, offset: usize| {
+        let place = Cursor::new(text).locate(offset.max(1) - 1);
+        Err(Error::new(Reason::TooMany { what, limit }).on(place.line, place.column))
+    };
+    if let Some((offset, _)) = text.match_indices("xmlns").nth(MOST_NAMESPACES) {
+        return refused("namespaces", MOST_NAMESPACES, offset + 1);
+    }
+    let (mut offset, mut links, mut all_attributes, mut in_comment) = (0, 0, 0, false);
     for part in text.split('<') {
+        let commented = in_comment || part.starts_with("!--");
+        in_comment = commented && !part.contains("-->");
+        if !commented && is_link(part) {
+            links += 1;
+            if links > MOST_LINKS {
+                return refused("links", MOST_LINKS, offset);
+            }
+        }
         let attributes = part.split('=').skip(1).filter(|value| value.trim_start().starts_with(['"', '\'']));
-        if attributes.count() > MOST_ATTRIBUTES {
-            let place = Cursor::new(text).locate(offset.max(1) - 1);
-            let reason = format!("an element with more than {MOST_ATTRIBUTES} attributes is not accepted");
-            return Err(Error::new(Reason::Unsupported(reason)).on(place.line, place.column));
+        let attributes = attributes.count();
+        if attributes > MOST_ATTRIBUTES {
+            return refused("attributes of one element", MOST_ATTRIBUTES, offset);
+        }
+        all_attributes += attributes;
+        if all_attributes > MOST_NODES as usize {
+            return refused("attributes", MOST_NODES as usize, offset);
         }
         offset += part.len() + 1;
     }
     Ok(())
+}
+
+/// Whether the text after a `<` begins the element `link` of some namespace.
+fn is_link(part: &str) -> bool {
+    let name = part.find(|c: char| c.is_whitespace() || "/>".contains(c)).map_or(part, |end| &part[..end]);
+    name.rsplit(':').next() == Some("link")
 }
 
 fn refuse_deep_nesting(document: &Document<'_>) -> Result<()> {

@@ -19,4 +19,4 @@ pub mod sign;
 pub use analysis::{CONTACT_LIMIT, Scratch, analyse};
 pub use mode::{Friction, Mode};
 pub use outcome::{Analysis, Because, Explanation, Motion, Outcome, Region, Rejection, Verdict};
-pub use problem::ContactProblem;
+pub use problem::{ContactProblem, MATRIX_LIMIT};

@@ -5,6 +5,7 @@ use std::fmt;
 
 /// How a contact ends; strict, so that every velocity after the impact has exactly one list of modes (paper, section 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Mode {
     /// It leaves: xi_n > 0, L = 0.
     #[serde(rename = "separate")]

@@ -3,9 +3,11 @@
 use super::mode::Mode;
 use crate::planar::Vector;
 use serde::Serialize;
+use std::fmt;
 
 /// The answer in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Exactly one outcome.
@@ -20,6 +22,20 @@ pub enum Verdict {
     NoImpact,
     /// Nothing touches the ground.
     NoContact,
+}
+
+impl fmt::Display for Verdict {
+    /// As it is written in results.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Unique => "unique",
+            Self::Ambiguous => "ambiguous",
+            Self::None => "none",
+            Self::Undecided => "undecided",
+            Self::NoImpact => "no_impact",
+            Self::NoContact => "no_contact",
+        })
+    }
 }
 
 /// A consistent combination of modes.
@@ -139,6 +155,7 @@ pub struct Explanation {
 
 /// The paper's regions of the plane of gamma and beta, for infinite friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Region {
     /// Lift-off.
     A,

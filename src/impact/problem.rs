@@ -118,12 +118,27 @@ impl<T: Real> ContactProblem<T> {
     }
 }
 
+/// Matrices are formed for at most so many contacts, whether or not their outcomes are sought.
+pub const MATRIX_LIMIT: usize = 500;
+
+/// Refuses more contacts than [`MATRIX_LIMIT`].
+///
+/// # Errors
+/// [`Reason::MatricesTooLarge`].
+pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
+    if contacts <= MATRIX_LIMIT {
+        return Ok(());
+    }
+    let reason = Reason::MatricesTooLarge { contacts, limit: MATRIX_LIMIT };
+    Err(Error::new(reason).hint("name the contacts that matter by hand, or lower the contact tolerance"))
+}
+
 impl ContactProblem {
     /// A problem from its matrices: `delassus` 2n x 2n by rows, rows and columns [tangential, normal] per contact \[1/kg\];
     /// `velocity_before` \[m/s\], `friction` and `restitution` (0 to 1) one entry per contact.
     ///
     /// # Errors
-    /// Lengths that do not fit, numbers that are not finite, negative friction, restitution outside 0..1, and a Delassus
+    /// Lengths that do not fit, more contacts than [`MATRIX_LIMIT`], numbers that are not finite, negative friction, restitution outside 0..1, and a Delassus
     /// matrix that is asymmetric or indefinite beyond the rounding of its largest entry.
     pub fn new(
         delassus: Vec<f64>,
@@ -132,6 +147,7 @@ impl ContactProblem {
         restitution: Vec<f64>,
     ) -> Result<Self> {
         let contacts = velocity_before.len();
+        check_matrix_size(contacts)?;
         let rows = 2 * contacts;
         if delassus.len() != rows * rows {
             return Err(Error::new(Reason::Inconsistent(format!(
@@ -178,6 +194,7 @@ impl ContactProblem {
         restitution: Vec<f64>,
     ) -> Result<Self> {
         let dofs = velocity.len();
+        check_matrix_size(friction.len())?;
         let shape = |place: &'static str, matrix: &[Vec<f64>], rows: usize| {
             let fits = matrix.len() == rows && matrix.iter().all(|row| row.len() == dofs);
             if fits {
@@ -217,12 +234,14 @@ impl ContactProblem {
         friction: Vec<Friction>,
         restitution: Vec<f64>,
     ) -> Result<Self> {
+        check_matrix_size(velocity_before.len())?;
         let row = |i: usize| &factor.rows[i * factor.columns..(i + 1) * factor.columns];
         let count = 2 * velocity_before.len();
         let mut delassus = vec![0.0; count * count];
         for i in 0..count {
             for j in 0..=i {
                 let entry = row(i).iter().zip(row(j)).map(|(a, b)| a * b).sum();
+                let entry = finite(entry, || format!("entry [{i}][{j}] of J M^-1 J^T"))?;
                 delassus[i * count + j] = entry;
                 delassus[j * count + i] = entry;
             }

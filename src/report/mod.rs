@@ -10,8 +10,11 @@
 mod inspection;
 mod problem;
 mod result;
+#[cfg(feature = "schema")]
+pub mod schema;
 mod table;
 mod text;
+mod touchdown;
 
 pub use inspection::Inspection;
 pub use problem::Problem;
@@ -20,6 +23,7 @@ pub use result::{
     Report,
 };
 pub use text::{Palette, Subject, text};
+pub use touchdown::{CarriedFields, Touchdown};
 
 use serde::Serialize;
 

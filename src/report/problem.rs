@@ -1,5 +1,6 @@
 //! Reading a contact problem that is given as matrices.
 
+use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Friction};
 use crate::json::{Node, Value};
 use crate::state::{Defaults, read};
@@ -42,6 +43,7 @@ impl Problem {
         };
 
         let contacts = matrices.contacts();
+        check_matrix_size(contacts)?;
         let friction = match (fields.friction, defaults.friction) {
             (Some(field), _) => per_contact(&field, contacts, read::friction)?,
             (None, Some(friction)) => vec![friction; contacts],
@@ -58,7 +60,8 @@ impl Problem {
             None if contacts == 1 => vec!["contact".to_owned()],
             None => (0..contacts).map(|contact| format!("contact/{contact}")).collect(),
         };
-        Ok(Self { id, names, contact: matrices.problem(friction, restitution)? })
+        let contact = matrices.problem(friction, restitution).map_err(|error| fields.locate(error))?;
+        Ok(Self { id, names, contact })
     }
 
     /// G, two rows and columns per contact.
@@ -101,6 +104,20 @@ impl<'n> Fields<'n> {
             *place = Some(field);
         }
         Ok(fields)
+    }
+}
+
+impl Fields<'_> {
+    /// Puts an error of a matrix at the field of that name.
+    fn locate(&self, error: Error) -> Error {
+        let field = error.place().and_then(|place| {
+            let fields = [self.delassus, self.mass_matrix, self.contact_jacobian, self.velocity, self.velocity_before];
+            fields.into_iter().flatten().find(|field| place.split('[').next() == Some(field.key()))
+        });
+        match field {
+            Some(field) => field.locate(error),
+            None => error,
+        }
     }
 }
 

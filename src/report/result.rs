@@ -3,6 +3,9 @@
 //! Fields that do not apply are absent; fields that apply but have no value (the index on a border, the condition of a
 //! singular matrix) are null. Numbers are written with every digit.
 
+#[cfg(feature = "schema")]
+use super::schema::Id;
+use super::touchdown::{CarriedFields, Touchdown};
 use super::{Detail, Problem};
 use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, outcome};
 use crate::pipeline::{Impact, Matrices};
@@ -16,10 +19,15 @@ use std::borrow::Cow;
 
 /// The result of a state or of a contact problem.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report<'a> {
     /// What the user calls it.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<&'a Value>,
+    /// Where the state was found; of a touchdown in a recording.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub touchdown: Option<Touchdown<'a>>,
     /// The answer in one word; absent beside an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
@@ -42,12 +50,15 @@ pub struct Report<'a> {
     pub no_slip_consistent: Option<bool>,
     /// The paper's section 4 for each contact, if asked for; null for a singular Delassus matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub explain: Option<Option<Explained<'a>>>,
     /// Sum of the outcomes' indices; null where one of them has none.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub index_sum: Option<Option<i32>>,
     /// Condition number of the Delassus matrix scaled to a unit diagonal; null where it is singular.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub condition: Option<Option<f64>>,
     /// Rank of the Delassus matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,6 +81,9 @@ pub struct Report<'a> {
     /// G = J M^-1 J^T, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delassus: Option<Cow<'a, [Vec<f64>]>>,
+    /// Fields of the table that the state comes from and that mean nothing here, as they stand there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub carried: Option<CarriedFields<'a>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject<'a>>,
@@ -77,6 +91,7 @@ pub struct Report<'a> {
 
 /// A closed contact.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Contact<'a> {
     /// The URDF link that carries the shape; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -98,6 +113,7 @@ pub struct Contact<'a> {
 
 /// A consistent combination of modes.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outcome<'a> {
     /// One mode per contact.
     pub modes: &'a [Mode],
@@ -127,6 +143,7 @@ pub struct Outcome<'a> {
 
 /// Something of the robot's file that does not enter the analysis.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeftOut<'a> {
     /// What, as in `joint "left_ankle"`.
     pub what: &'a str,
@@ -157,6 +174,7 @@ impl Serialize for NamedVelocities<'_> {
 
 /// A combination of modes that is not an outcome.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rejected<'a> {
     /// One mode per contact.
     pub modes: &'a [Mode],
@@ -172,6 +190,7 @@ pub struct Rejected<'a> {
 
 /// The paper's section 4, one entry per contact.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Explained<'a> {
     /// Angle of the impulse of a pure slide \[rad\].
     pub beta: &'a [f64],
@@ -183,10 +202,15 @@ pub struct Explained<'a> {
 
 /// The result in brief.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Brief<'a> {
     /// What the user calls it.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<&'a Value>,
+    /// Where the state was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub touchdown: Option<Touchdown<'a>>,
     /// The answer in one word.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
@@ -203,6 +227,7 @@ pub struct Brief<'a> {
 
 /// An outcome in brief.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OutcomeInBrief<'a> {
     /// One mode per contact.
     pub modes: &'a [Mode],
@@ -214,9 +239,11 @@ pub struct OutcomeInBrief<'a> {
 
 /// What stands in place of the result of a refused input.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Refused<'a> {
     /// What the user calls it, where that can be read.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Value>,
     /// The line on which the input begins, from 1.
     pub line: usize,
@@ -226,6 +253,7 @@ pub struct Refused<'a> {
 
 /// A refusal; it names no file, so that a file, a pipe and standard input give the same bytes.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ErrorObject<'a> {
     /// Why.
     pub message: String,
@@ -307,6 +335,7 @@ impl<'a> Report<'a> {
         });
         Self {
             id: None,
+            touchdown: None,
             verdict: known.map(|analysis| analysis.verdict),
             proven: known.map(|analysis| analysis.proven),
             outcomes: known.map(|analysis| analysis.outcomes.iter().map(Outcome::new).collect()),
@@ -323,6 +352,7 @@ impl<'a> Report<'a> {
             mass_matrix: None,
             contact_jacobian: None,
             delassus: None,
+            carried: None,
             error: analysis.err().map(ErrorObject::new),
             contacts,
         }
@@ -337,6 +367,7 @@ impl<'a> Report<'a> {
         };
         Brief {
             id: self.id,
+            touchdown: self.touchdown.clone(),
             verdict: self.verdict,
             proven: self.proven,
             outcomes: self.outcomes.as_ref().map(|outcomes| outcomes.iter().map(brief).collect()),

@@ -36,14 +36,58 @@ fn exit_status_is_two_for_wrong_usage_alone() {
 
 #[test]
 fn every_command_has_an_example_in_its_help() {
-    for command in
-        [&["--help"][..], &["inspect", "--help"], &["impact", "--help"], &["batch", "--help"], &["solve", "--help"]]
-    {
-        let run = heelstrike(command);
+    for command in ["", "inspect", "impact", "batch", "solve", "schema", "completions", "man"] {
+        let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|argument| !argument.is_empty()).collect();
+        let run = heelstrike(&arguments);
         assert_eq!(run.status, 0);
         assert!(run.stdout.contains("Example"), "{command:?}");
         assert!(run.stdout.contains("\n  heelstrike "), "{command:?}");
     }
+}
+
+#[test]
+fn every_command_of_the_help_is_one() {
+    let help = heelstrike(&["--help"]).stdout;
+    let commands: Vec<&str> =
+        help.lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  ")).map(|(name, _)| name).collect();
+    for command in ["inspect", "impact", "batch", "solve", "schema", "completions"] {
+        assert!(commands.contains(&command), "{command}: {help}");
+    }
+    assert!(!commands.contains(&"man"), "for those who package the tool");
+}
+
+#[test]
+fn the_version_names_the_commit_where_it_is_known() {
+    let version = heelstrike(&["--version"]).stdout;
+    let rest = version.strip_prefix(concat!("heelstrike ", env!("CARGO_PKG_VERSION"))).expect("the version").trim_end();
+    let commit = rest.strip_prefix(" (").and_then(|rest| rest.strip_suffix(')'));
+    assert!(rest.is_empty() || commit.is_some_and(|hash| hash.len() == 12), "{version}");
+}
+
+#[test]
+fn completions_and_man_pages_are_written() {
+    for (shell, sign) in [
+        ("bash", "complete -F _heelstrike"),
+        ("zsh", "#compdef heelstrike"),
+        ("fish", "complete -c heelstrike"),
+        ("elvish", "edit:completion:arg-completer[heelstrike]"),
+        ("powershell", "Register-ArgumentCompleter"),
+    ] {
+        let run = heelstrike(&["completions", shell]);
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+        assert!(run.stdout.contains(sign) && run.stdout.contains("resting-speed"), "{shell}");
+    }
+    assert_eq!(heelstrike(&["completions", "cmd"]).status, 2);
+
+    for (page, title, within) in [
+        (&["man"][..], ".TH HEELSTRIKE 1", "inspect"),
+        (&["man", "impact"], ".TH HEELSTRIKE-IMPACT 1", "resting\\-speed"),
+    ] {
+        let run = heelstrike(page);
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+        assert!(run.stdout.contains(title) && run.stdout.contains(within), "{}", run.stdout);
+    }
+    assert_eq!(heelstrike(&["man", "nothing"]).status, 2);
 }
 
 // Pipes and terminals.
@@ -67,6 +111,50 @@ fn a_closed_pipe_ends_quietly() {
     assert_eq!((status.code(), stderr.as_str()), (Some(0), ""));
 }
 
+#[cfg(unix)]
+#[test]
+fn head_sees_the_first_lines_and_nothing_else_is_told() {
+    let problem = r#"{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1]], "friction": 1}"#;
+    let binary = env!("CARGO_BIN_EXE_heelstrike");
+    for command in [
+        format!("'{binary}' solve - --format json"),
+        format!("'{binary}' solve -"),
+        format!("yes '{{\"friction\": 0.5}}' | head -20000 | '{binary}' batch {BLOCK} -"),
+        format!("'{binary}' schema result"),
+        format!("'{binary}' completions bash"),
+    ] {
+        let script = format!("{{ {command}; echo $? >&2; }} | head -1");
+        let mut shell = Command::new("sh");
+        let run = finished(shell.args(["-c", &script]).write_stdin(problem.repeat(5000)));
+        assert_eq!((run.status, run.stdout.lines().count(), run.stderr.as_str()), (0, 1, "0\n"), "{command}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_by_every_command() {
+    let problem = "examples/problems/rod.json";
+    for command in [
+        &["inspect", BLOCK][..],
+        &["impact", BLOCK, "examples/block.json"],
+        &["solve", problem],
+        &["solve", problem, "--format", "json"],
+        &["schema", "state"],
+        &["completions", "zsh"],
+        &["man"],
+    ] {
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("a full disk");
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+        let output = child.args(command).stdout(full).output().expect("the command runs");
+        let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(1), "{command:?}");
+        assert_eq!(
+            stderr, "error: the output cannot be written: No space left on device (os error 28)\n",
+            "{command:?}"
+        );
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told() {
@@ -83,4 +171,11 @@ fn colours_come_only_where_they_are_wanted() {
     assert!(!coloured(finished(command().args(["impact", BLOCK, "nobody.json"]))));
     assert!(coloured(finished(command().args(arguments).env("CLICOLOR_FORCE", "1"))));
     assert!(!coloured(finished(command().args(arguments).env("NO_COLOR", "1"))));
+
+    // Errors likewise, with a line and without; where both are set, NO_COLOR wins.
+    for refused in [&["inspect", "Cargo.toml"][..], &["inspect", "nobody.urdf"], &["impact", BLOCK, "Cargo.toml"]] {
+        assert!(!coloured(finished(command().args(refused))), "{refused:?}");
+        assert!(coloured(finished(command().args(refused).env("CLICOLOR_FORCE", "1"))), "{refused:?}");
+        assert!(!coloured(finished(command().args(refused).env("NO_COLOR", "1"))), "{refused:?}");
+    }
 }

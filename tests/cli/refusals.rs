@@ -93,8 +93,13 @@ const REFUSED_STATES: &[(&str, &str, &str, &str)] = &[
         "",
     ),
     (r#"{"position": {"base": {"pitch": 1e999}}}"#, "position.base.pitch", "number out of range", ""),
-    (r#"{"position": {"base": {"pitch": NaN}}}"#, "position.base.pitch", "expected value", ""),
-    (r#"{"friction": 1"#, "", "EOF while parsing an object", ""),
+    (
+        r#"{"position": {"base": {"pitch": NaN}}}"#,
+        "position.base.pitch",
+        "expected value",
+        "JSON has no NaN and no infinity; numbers are finite",
+    ),
+    (r#"{"friction": 1"#, "", "EOF while parsing an object", "the text ends too early: is it whole?"),
     ("[1]", "", "expected an object, found a list", ""),
 ];
 
@@ -198,11 +203,62 @@ fn an_asymmetric_delassus_matrix_is_refused_and_other_fields_are_ignored() {
 }
 
 #[test]
-fn a_refusal_names_file_line_and_column_for_people() {
+fn a_refusal_shows_file_line_and_place_to_people() {
     let run = heelstrike_reads(&["impact", RAMONE, "-"], "{\"friction\": 1,\n \"stanse\": \"left_foot\"}");
     assert_eq!((run.status, run.stdout.as_str()), (1, ""));
     insta::assert_snapshot!(run.stderr, @r#"
-    error: <stdin>:2:2: stanse: unknown field "stanse"
+    error: unknown field "stanse"
+     --> <stdin>:2:2
+      |
+    2 |  "stanse": "left_foot"}
+      |  ^^^^^^^^ stanse
+      |
     hint: did you mean stance?
     "#);
+    let robot = "<robot name=\"r\">\n  <link name=\"a\"><inertial><mass value=\"-1\"/></inertial></link>\n</robot>";
+    insta::assert_snapshot!(heelstrike_reads(&["inspect", "-"], robot).stderr, @r#"
+    error: value of <mass> must be at least 0, not -1
+     --> <stdin>:2:28
+      |
+    2 |   <link name="a"><inertial><mass value="-1"/></inertial></link>
+      |                            ^^^^^^^^^^^^^^^^^^ link "a"
+    "#);
+    let cut = heelstrike_reads(&["solve", "-"], "{\"id\": 1,\n \"delassus\": [[2, 1],\n  [1, 2]");
+    insta::assert_snapshot!(cut.stderr, @r#"
+    error: EOF while parsing a list
+     --> <stdin>:3:8
+      |
+    3 |   [1, 2]
+      |        ^ delassus
+      |
+    hint: the text ends too early: is it whole?
+    "#);
+    // In a list the place is that in the whole file.
+    let second = "[{\"friction\": 1},\n  {\"friction\": 1, \"held\": [\"left_knie\"]}]";
+    insta::assert_snapshot!(heelstrike_reads(&["impact", RAMONE, "-", "--brief"], second).stderr, @r#"
+    error: link "left_foot" is 6.043e-1 m deep in the ground, more than the contact tolerance of 6.043e-7 m
+     --> <stdin>:1:2
+      |
+    1 | [{"friction": 1},
+      |  ^
+      |
+    hint: raise the base, correct the pose, or accept it by a greater --contact-tolerance
+    error: the robot has no joint named "left_knie"
+     --> <stdin>:2:28
+      |
+    2 |   {"friction": 1, "held": ["left_knie"]}]
+      |                            ^^^^^^^^^^^ held[0]
+      |
+    hint: did you mean left_knee?
+    "#);
+}
+
+#[test]
+fn of_many_refusals_the_first_are_shown_with_their_lines_and_the_last_are_counted() {
+    let run = heelstrike_reads(&["solve", "-"], "{\"friction\": 1} ".repeat(50));
+    assert_eq!(run.status, 1);
+    let count = |what: &str| run.stderr.matches(what).count();
+    assert_eq!((count("\"delassus\" is missing"), count(" --> <stdin>:1:"), count("error: <stdin>:1:")), (50, 10, 40));
+    let more = heelstrike_reads(&["solve", "-"], "{\"friction\": 1} ".repeat(150));
+    assert!(more.stderr.ends_with("\nnote: 50 more were refused\n"), "{}", more.stderr);
 }

@@ -20,7 +20,11 @@ fn what_is_no_urdf_is_refused() {
         "3:2: not well-formed XML: expected 'link' tag, not 'lnik'",
         None,
     );
-    assert_refused("<robot><link", "1:1: not well-formed XML: the root node was opened but never closed", None);
+    assert_refused(
+        "<robot><link",
+        "1:1: not well-formed XML: the root node was opened but never closed",
+        Some("the text ends too early: is it whole?"),
+    );
     let outermost = Some("the outermost element of a URDF file is <robot>");
     assert_refused("<roboter/>", "1:1: <roboter>: <robot> is missing", outermost);
     assert_refused("<sdf/>", "1:1: <sdf>: <robot> is missing", Some("this is an SDF file; convert it to URDF"));

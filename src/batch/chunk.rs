@@ -1,0 +1,197 @@
+//! Records of a stream, a few at a time.
+
+use super::run::Source;
+use crate::table::Quotes;
+use memchr::memchr;
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
+
+/// Bytes that are asked of the input at once.
+const READ: usize = 1 << 16;
+
+/// The most records of a chunk: few, so that the threads share short inputs, too.
+const RECORDS: usize = 16;
+
+/// A record longer than this is passed over and refused \[bytes\].
+pub const RECORD_LIMIT: usize = 1 << 24;
+
+/// Some consecutive whole records.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Chunk {
+    bytes: Vec<u8>,
+    /// On which line each record begins and where it ends in the bytes.
+    ends: Vec<(usize, usize)>,
+    /// The line of a record that follows and was passed over, because it is longer than [`RECORD_LIMIT`].
+    pub too_long: Option<usize>,
+}
+
+/// Cuts an input into chunks, and never waits for more of it while a whole record is at hand.
+#[derive(Debug)]
+pub struct Chunks<R> {
+    input: BufReader<R>,
+    /// Where a line break may stand within a record.
+    quotes: Option<Quotes>,
+    line: usize,
+}
+
+impl<R: Read> Chunks<R> {
+    /// An input with one record per line.
+    pub fn of_lines(input: R) -> Self {
+        Self { input: BufReader::with_capacity(READ, input), quotes: None, line: 1 }
+    }
+
+    /// An input as CSV.
+    pub fn of_table(input: R) -> Self {
+        Self { quotes: Some(Quotes::default()), ..Self::of_lines(input) }
+    }
+
+    /// Whether it is read as CSV.
+    pub fn is_table(&self) -> bool {
+        self.quotes.is_some()
+    }
+
+    /// The next record alone; none at the end of the input.
+    ///
+    /// # Errors
+    /// Whatever keeps the input from being read.
+    pub fn record(&mut self) -> io::Result<Option<Chunk>> {
+        self.records(1)
+    }
+
+    /// Up to `most` records, fewer where the input keeps us waiting.
+    fn records(&mut self, most: usize) -> io::Result<Option<Chunk>> {
+        let mut chunk = Chunk::default();
+        // Where the current record and its last line begin, the record's first line and its length so far.
+        let (mut start, mut line_start, mut first, mut length) = (0, 0, self.line, 0);
+        loop {
+            let ready = match self.input.fill_buf() {
+                Ok(ready) => ready,
+                Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error),
+            };
+            let newline = memchr(b'\n', ready);
+            let taken = newline.map_or(ready.len(), |newline| newline + 1);
+            length += taken;
+            if length <= RECORD_LIMIT {
+                chunk.bytes.extend_from_slice(&ready[..taken]);
+            }
+            self.input.consume(taken);
+            self.line += usize::from(newline.is_some());
+            let at_end = taken == 0;
+            if !at_end && newline.is_none() {
+                continue;
+            }
+            if length > RECORD_LIMIT {
+                chunk.bytes.truncate(start);
+                chunk.too_long = Some(first);
+                self.quotes = self.quotes.map(|_| Quotes::default());
+                return Ok(Some(chunk));
+            }
+            let closed = self.quotes.as_mut().is_none_or(|quotes| quotes.closed_after(&chunk.bytes[line_start..]));
+            line_start = chunk.bytes.len();
+            if (closed || at_end) && line_start > start {
+                chunk.ends.push((first, line_start));
+                (start, first, length) = (line_start, self.line, 0);
+            }
+            if at_end || chunk.ends.len() == most || (start == line_start && self.keeps_waiting()) {
+                return Ok((!chunk.ends.is_empty()).then_some(chunk));
+            }
+        }
+    }
+
+    /// Whether no whole line is at hand.
+    fn keeps_waiting(&self) -> bool {
+        memchr(b'\n', self.input.buffer()).is_none()
+    }
+}
+
+impl<R: Read + Send> Source for Chunks<R> {
+    type Task = Chunk;
+
+    fn next(&mut self) -> io::Result<Option<Chunk>> {
+        self.records(RECORDS)
+    }
+
+    fn keeps_waiting(&self) -> bool {
+        Chunks::keeps_waiting(self)
+    }
+}
+
+impl Chunk {
+    /// The records with the line breaks that end them, each with the line on which it begins, from 1.
+    pub fn records(&self) -> impl Iterator<Item = (usize, &[u8])> {
+        let starts = std::iter::once(0).chain(self.ends.iter().map(|&(_, end)| end));
+        starts.zip(&self.ends).map(|(start, &(line, end))| (line, &self.bytes[start..end]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gives one part after the other.
+    struct Parts(Vec<&'static [u8]>);
+
+    impl Read for Parts {
+        fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+            if self.0.is_empty() { Ok(0) } else { self.0.remove(0).read(into) }
+        }
+    }
+
+    fn records(mut chunks: Chunks<impl Read>) -> Vec<Vec<(usize, String)>> {
+        let chunks = std::iter::from_fn(|| chunks.records(RECORDS).unwrap());
+        let text = |(line, record): (usize, &[u8])| (line, String::from_utf8_lossy(record).into_owned());
+        chunks.map(|chunk| chunk.records().map(text).collect()).collect()
+    }
+
+    fn numbered(records: &[(usize, &str)]) -> Vec<(usize, String)> {
+        records.iter().map(|&(line, record)| (line, record.to_owned())).collect()
+    }
+
+    #[test]
+    fn lines_keep_their_numbers_however_the_input_comes() {
+        let lines = |parts: &[&'static [u8]]| records(Chunks::of_lines(Parts(parts.to_vec())));
+        assert_eq!(lines(&[b"a\n\nb"]), [numbered(&[(1, "a\n"), (2, "\n")]), numbered(&[(3, "b")])]);
+        assert_eq!(lines(&[b"a", b"\n\n", b"b\n"]), [numbered(&[(1, "a\n"), (2, "\n")]), numbered(&[(3, "b\n")])]);
+        assert_eq!(lines(&[b"a\nb", b"c\nd\n"]), [numbered(&[(1, "a\n")]), numbered(&[(2, "bc\n"), (3, "d\n")])]);
+        assert!(lines(&[]).is_empty());
+    }
+
+    #[test]
+    fn chunks_are_short() {
+        let lines: String = (0..40).map(|number| format!("{number}\n")).collect();
+        let chunks = records(Chunks::of_lines(lines.as_bytes()));
+        assert_eq!(chunks.iter().map(|chunk| chunk[0].0).collect::<Vec<_>>(), [1, 17, 33]);
+    }
+
+    #[test]
+    fn what_is_at_hand_is_not_held_back() {
+        let mut chunks = Chunks::of_lines(Parts(vec![b"a\nb\nc", b"\n"]));
+        assert_eq!(chunks.record().unwrap().unwrap().records().collect::<Vec<_>>(), [(1, &b"a\n"[..])]);
+        assert!(!chunks.keeps_waiting());
+        assert_eq!(chunks.next().unwrap().unwrap().records().collect::<Vec<_>>(), [(2, &b"b\n"[..])]);
+        assert!(chunks.keeps_waiting());
+    }
+
+    #[test]
+    fn a_record_of_a_table_may_have_line_breaks() {
+        let chunks = records(Chunks::of_table(Parts(vec![b"a\n\"b", b"\nc\"\n", b"d\n\"e\n"])));
+        let expected = [numbered(&[(1, "a\n")]), numbered(&[(2, "\"b\nc\"\n")]), numbered(&[(4, "d\n"), (5, "\"e\n")])];
+        assert_eq!(chunks, expected);
+    }
+
+    #[test]
+    fn an_endless_record_does_not_fill_the_memory() {
+        let parts = |first: &'static [u8], part: &'static [u8]| {
+            let long = std::iter::repeat_n(part, RECORD_LIMIT / part.len() + 1);
+            Parts(std::iter::once(first).chain(long).chain([&b"\nend"[..]]).collect())
+        };
+        let told = |mut chunks: Chunks<Parts>| {
+            let chunks = std::iter::from_fn(move || chunks.records(RECORDS).unwrap());
+            chunks.map(|chunk| (chunk.bytes.len(), chunk.too_long)).collect::<Vec<_>>()
+        };
+        let line = told(Chunks::of_lines(parts(b"a\n", &[b'x'; 1 << 12])));
+        assert_eq!(line, [(2, None), (0, Some(2)), (3, None)]);
+        let line = told(Chunks::of_table(parts(b"a\n\"", &[b'x'; 1 << 12])));
+        assert_eq!(line, [(2, None), (0, Some(2)), (3, None)]);
+    }
+}

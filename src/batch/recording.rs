@@ -1,0 +1,148 @@
+//! Tables whose rows are not independent of each other: they are read one after the other, and what comes of it is answered
+//! like any other state.
+
+use super::chunk::Chunks;
+use super::run::Source;
+use super::too_long;
+use crate::report;
+use crate::state::{Defaults, State};
+use crate::table::{Carried, Header};
+use crate::touchdown::{At, Sample, Sampled, Touchdown, Touching};
+use crate::{Error, Reason, Result, Robot};
+use serde_json::Value;
+use std::io::{self, Read};
+
+/// So many states make a task.
+const STATES: usize = 16;
+
+/// The row that a state comes from.
+#[derive(Debug, Clone, Default)]
+pub struct Origin {
+    /// Its line, from 1.
+    pub line: usize,
+    /// What the user calls it.
+    pub id: Option<Value>,
+    /// What is carried through.
+    pub carried: Carried,
+}
+
+/// A state of a recording, or why there is none.
+#[derive(Debug, Clone)]
+pub struct Recorded {
+    /// The row, of a touchdown the last one before it.
+    pub origin: Origin,
+    /// The state.
+    pub state: Result<State>,
+    /// How it was found, of a touchdown.
+    pub touchdown: Option<Landing>,
+}
+
+/// How a touchdown was found; the fields are those of [`Touchdown`].
+#[derive(Debug, Clone)]
+#[allow(missing_docs, reason = "told where they come from")]
+pub struct Landing {
+    pub row: usize,
+    pub time: f64,
+    pub striking: String,
+    pub shift_z: f64,
+}
+
+impl Landing {
+    /// As it stands in a result.
+    pub(super) fn told(&self, (at, touching): (At, Touching)) -> report::Touchdown<'_> {
+        let Self { row, time, striking, shift_z } = self;
+        let (at, touching) = (at.name(), touching.to_string());
+        report::Touchdown { row: *row, time: *time, striking, shift_z: *shift_z, at, touching }
+    }
+}
+
+impl From<Sampled<Origin>> for Recorded {
+    fn from(sampled: Sampled<Origin>) -> Self {
+        let (origin, state) = match sampled {
+            Ok(Sample { source, state, .. }) => (source, Ok(state)),
+            Err((source, error)) => (source, Err(error)),
+        };
+        Self { origin, state, touchdown: None }
+    }
+}
+
+impl From<std::result::Result<Touchdown<Origin>, (Origin, Error)>> for Recorded {
+    fn from(found: std::result::Result<Touchdown<Origin>, (Origin, Error)>) -> Self {
+        match found {
+            Ok(Touchdown { state, row, time, striking, shift_z, source }) => {
+                let touchdown = Some(Landing { row, time, striking, shift_z });
+                Self { origin: source, state: Ok(state), touchdown }
+            }
+            Err((origin, error)) => Self { origin, state: Err(error), touchdown: None },
+        }
+    }
+}
+
+/// The rows of a table with their times. An input that cannot be read on ends with a sample that [`Reason::Io`] refuses.
+pub fn samples<'h, R: Read>(
+    mut chunks: Chunks<R>,
+    header: &'h Header,
+    robot: &'h Robot,
+    defaults: &'h Defaults,
+) -> impl Iterator<Item = Sampled<Origin>> {
+    let mut rows = header.rows();
+    let mut read = move |line: usize, record: &[u8]| match rows.row(record, line) {
+        Ok(None) => None,
+        Ok(Some(row)) => {
+            let source = Origin { line, id: row.id(), carried: row.carried() };
+            Some(match row.time().and_then(|time| Ok((time, row.state(robot, defaults)?))) {
+                Ok((time, state)) => Ok(Sample { time, state, source }),
+                Err(error) => Err((source, error)),
+            })
+        }
+        Err(error) => Some(Err((Origin { line, ..Origin::default() }, error))),
+    };
+    let chunks = std::iter::from_fn(move || chunks.record().transpose());
+    chunks.flat_map(move |chunk| match chunk {
+        Ok(chunk) => {
+            let mut samples: Vec<_> = chunk.records().filter_map(|(line, record)| read(line, record)).collect();
+            let line = chunk.too_long;
+            samples.extend(line.map(|line| Err((Origin { line, ..Origin::default() }, too_long()))));
+            samples
+        }
+        Err(error) => vec![Err((Origin::default(), Reason::Io(error.to_string()).into()))],
+    })
+}
+
+/// States of a recording as tasks.
+#[derive(Debug)]
+pub struct Recording<I> {
+    states: I,
+    /// Why the input ended early; told after what came before.
+    broken: Option<String>,
+}
+
+impl<I: Iterator<Item = Recorded> + Send> Recording<I> {
+    /// The tasks of `states`, which come from [`samples`].
+    pub fn new(states: I) -> Self {
+        Self { states, broken: None }
+    }
+}
+
+impl<I: Iterator<Item = Recorded> + Send> Source for Recording<I> {
+    type Task = Vec<Recorded>;
+
+    fn next(&mut self) -> io::Result<Option<Vec<Recorded>>> {
+        let mut task = Vec::new();
+        while self.broken.is_none() && task.len() < STATES {
+            let Some(recorded) = self.states.next() else { break };
+            match recorded.state.as_ref().map_err(Error::reason) {
+                Err(Reason::Io(reason)) => self.broken = Some(reason.clone()),
+                _ => task.push(recorded),
+            }
+        }
+        match &self.broken {
+            Some(reason) if task.is_empty() => Err(io::Error::other(reason.clone())),
+            _ => Ok((!task.is_empty()).then_some(task)),
+        }
+    }
+
+    fn keeps_waiting(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,171 @@
+//! All tasks of a source, answered by several threads and handed on in order.
+//!
+//! ```text
+//!     Source --tasks--> threads, each with its own Form --blocks--┐
+//!        └─────────────────── places of the blocks ───────────────┴──> Sink, on the caller's thread
+//! ```
+//!
+//! The source's thread sends on two ways: tasks to whoever is free, and to the sink the places where their blocks will
+//! appear. The second way is bounded, and with it the memory. No answer depends on another: the bytes are those of one thread.
+
+use super::Summary;
+use crate::Error;
+use std::io;
+use std::sync::Mutex;
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
+use std::thread;
+
+/// Tasks in flight per thread.
+const AHEAD: usize = 4;
+
+/// Where tasks come from, one after the other.
+pub trait Source: Send {
+    /// Some records.
+    type Task: Send;
+
+    /// The next records; none at the end.
+    ///
+    /// # Errors
+    /// Whatever keeps the input from being read; nothing more is asked for then.
+    fn next(&mut self) -> io::Result<Option<Self::Task>>;
+
+    /// Whether the next records may be long in coming.
+    fn keeps_waiting(&self) -> bool;
+}
+
+/// Answers tasks; each thread has its own.
+pub trait Form<T> {
+    /// Answers the records of a task.
+    fn answer(&mut self, task: T, block: &mut Block);
+}
+
+/// The answers to a task.
+#[derive(Debug, Default)]
+pub struct Block {
+    /// What is written.
+    pub out: Vec<u8>,
+    /// Why records were refused, each with its line and column in the input.
+    pub refused: Vec<Error>,
+    /// What is to be said of these records at the end; see [`Summary::merge`].
+    pub summary: Summary,
+}
+
+/// Takes the answers in the order of the input.
+pub trait Sink {
+    /// Takes the next answers.
+    ///
+    /// # Errors
+    /// Whatever keeps them from being written; nothing more is handed on then.
+    fn block(&mut self, block: Block) -> io::Result<()>;
+
+    /// All that was read is answered, and the input keeps us waiting or is at its end: what is buffered goes out now.
+    ///
+    /// # Errors
+    /// As above.
+    fn idle(&mut self) -> io::Result<()>;
+}
+
+/// Why not all records were answered.
+#[derive(Debug)]
+pub enum Broken {
+    /// The input could not be read on; what came before is answered.
+    Input(io::Error),
+    /// The sink could not take an answer.
+    Output(io::Error),
+}
+
+/// Answers all tasks of `source` in `threads` threads, each with what `form` makes; with one thread none is started.
+///
+/// # Errors
+/// Where the input cannot be read or the sink takes no more.
+pub fn run<S, F>(source: S, threads: usize, form: impl Fn() -> F + Sync, sink: &mut impl Sink) -> Result<(), Broken>
+where
+    S: Source,
+    F: Form<S::Task>,
+{
+    if threads > 1 { in_threads(source, threads, form, sink) } else { alone(source, form(), sink) }
+}
+
+fn alone<S: Source>(mut source: S, mut form: impl Form<S::Task>, sink: &mut impl Sink) -> Result<(), Broken> {
+    while let Some(task) = source.next().map_err(Broken::Input)? {
+        sink.block(answer(&mut form, task)).map_err(Broken::Output)?;
+        if source.keeps_waiting() {
+            sink.idle().map_err(Broken::Output)?;
+        }
+    }
+    sink.idle().map_err(Broken::Output)
+}
+
+/// A task, and where its answer goes.
+type Job<T> = (T, SyncSender<Block>);
+
+fn in_threads<S, F>(
+    mut source: S,
+    threads: usize,
+    form: impl Fn() -> F + Sync,
+    sink: &mut impl Sink,
+) -> Result<(), Broken>
+where
+    S: Source,
+    F: Form<S::Task>,
+{
+    let (jobs, queue) = channel::<Job<S::Task>>();
+    let (places, ordered) = sync_channel(AHEAD * threads);
+    let queue = Mutex::new(queue);
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            while let Some(task) = source.next().transpose() {
+                let (block, place) = sync_channel(1);
+                let task = task.map(|task| jobs.send((task, block)));
+                let ended = task.is_err();
+                // A send fails where nobody listens any more: the sink has failed.
+                if places.send(task.map(|_| place)).is_err() || ended {
+                    break;
+                }
+            }
+        });
+        for _ in 0..threads {
+            scope.spawn(|| {
+                let mut form = form();
+                while let Some((task, block)) = next_job(&queue) {
+                    if block.send(answer(&mut form, task)).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        hand_on(ordered, sink)
+    })
+}
+
+/// The next job; none when the source has ended.
+fn next_job<T>(queue: &Mutex<Receiver<Job<T>>>) -> Option<Job<T>> {
+    queue.lock().ok()?.recv().ok()
+}
+
+/// Gives the sink the blocks in the order of their places.
+fn hand_on(ordered: Receiver<io::Result<Receiver<Block>>>, sink: &mut impl Sink) -> Result<(), Broken> {
+    loop {
+        let place = match ordered.try_recv() {
+            Err(TryRecvError::Empty) => {
+                sink.idle().map_err(Broken::Output)?;
+                ordered.recv().ok()
+            }
+            place => place.ok(),
+        };
+        let Some(place) = place else {
+            return sink.idle().map_err(Broken::Output);
+        };
+        match place.map_err(Broken::Input)?.recv() {
+            Ok(block) => sink.block(block).map_err(Broken::Output)?,
+            // Its thread has panicked, which the end of the scope passes on.
+            Err(_) => return Ok(()),
+        }
+    }
+}
+
+fn answer<T>(form: &mut impl Form<T>, task: T) -> Block {
+    let mut block = Block::default();
+    form.answer(task, &mut block);
+    block
+}

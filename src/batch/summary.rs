@@ -1,0 +1,275 @@
+//! What is said of a whole batch at its end.
+
+use crate::impact::{Analysis, Mode, Outcome, Verdict};
+use crate::pipeline::Impact;
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+use std::fmt;
+
+/// So many of the states with the smallest margins are named.
+const NAMED: usize = 10;
+
+/// So many different lists of modes are counted one by one.
+const LISTS: usize = 1000;
+
+/// Counts over the states of a batch; a result line of `--summary`. Its size is bounded, and it does not depend on how the
+/// states are shared out.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Summary {
+    /// All states, refused ones too.
+    pub states: u64,
+    /// States that were refused, also those whose matrices are known.
+    pub refused: u64,
+    /// How many of the others have which verdict.
+    pub verdicts: Verdicts,
+    /// The states that are nearest to another answer, the nearest first; outcomes without impulse are not asked.
+    pub smallest_margins: Vec<Nearest>,
+    /// Where feet slide for want of friction.
+    pub more_friction: MoreFriction,
+    /// Which contacts ended how, in the order of their first appearance, 1,000 different lists at most.
+    pub modes: Vec<ModeCount>,
+    /// Outcomes with still other lists of modes.
+    pub other_modes: u64,
+}
+
+/// How many states have which verdict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[allow(missing_docs, reason = "the verdicts are told where they are defined")]
+pub struct Verdicts {
+    pub unique: u64,
+    pub ambiguous: u64,
+    pub none: u64,
+    pub undecided: u64,
+    pub no_impact: u64,
+    pub no_contact: u64,
+}
+
+/// A state of the batch, and its smallest margin.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Nearest {
+    /// Which state.
+    #[serde(flatten)]
+    pub state: Place,
+    /// The margin of its outcomes that is nearest to zero, free of units.
+    pub margin: f64,
+}
+
+/// Which state of the input.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Place {
+    /// What the user calls it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub id: Option<Value>,
+    /// Its line, from 1.
+    pub line: usize,
+}
+
+/// States in which a foot slides for want of friction: they are unique or ambiguous, every outcome has a sliding contact,
+/// and with infinite friction there is an outcome without.
+///
+/// The friction that a state needs is the greatest |L_t| / L_n of the contacts that stick then; of several such outcomes
+/// the one that needs least counts.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct MoreFriction {
+    /// How many.
+    pub states: u64,
+    /// The one that needs most, the first of equal ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub greatest: Option<Needed>,
+}
+
+/// A state of the batch, and the friction that it needs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Needed {
+    /// Which state.
+    #[serde(flatten)]
+    pub state: Place,
+    /// The coefficient, or "infinite" where a contact sticks that nothing presses on the ground.
+    #[serde(serialize_with = "coefficient")]
+    pub friction: f64,
+}
+
+/// How often a list of modes occurs among the outcomes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ModeCount {
+    /// The closed contacts.
+    pub contacts: Vec<String>,
+    /// One mode per contact.
+    pub modes: Vec<Mode>,
+    /// How many outcomes.
+    pub outcomes: u64,
+}
+
+impl Summary {
+    /// Counts a state that has outcomes; `friction_needed` where it is one of [`MoreFriction`].
+    pub fn count(
+        &mut self,
+        state: impl Fn() -> Place,
+        impact: &Impact,
+        analysis: &Analysis,
+        friction_needed: Option<f64>,
+    ) {
+        self.states += 1;
+        *self.verdicts.of(analysis.verdict) += 1;
+        self.near(&state, &analysis.outcomes);
+        if let Some(friction) = friction_needed {
+            self.more_friction.states += 1;
+            self.more_friction.take(|| Needed { state: state(), friction }, friction);
+        }
+        for outcome in &analysis.outcomes {
+            let names = impact.contacts.iter().map(|contact| contact.name.as_str());
+            let known = |list: &&mut ModeCount| {
+                list.modes == outcome.modes && names.clone().eq(list.contacts.iter().map(String::as_str))
+            };
+            match self.modes.iter_mut().find(known) {
+                Some(list) => list.outcomes += 1,
+                None => self.modes.push(ModeCount {
+                    contacts: names.map(str::to_owned).collect(),
+                    modes: outcome.modes.clone(),
+                    outcomes: 1,
+                }),
+            }
+        }
+    }
+
+    /// Counts a refused state.
+    pub fn refuse(&mut self) {
+        self.states += 1;
+        self.refused += 1;
+    }
+
+    /// Adds what is known of the states that follow.
+    pub fn merge(&mut self, following: Self) {
+        self.states += following.states;
+        self.refused += following.refused;
+        self.verdicts.add(following.verdicts);
+        for near in following.smallest_margins {
+            self.insert(near);
+        }
+        self.more_friction.states += following.more_friction.states;
+        if let Some(needed) = following.more_friction.greatest {
+            let friction = needed.friction;
+            self.more_friction.take(|| needed, friction);
+        }
+        for list in following.modes {
+            let known = |known: &&mut ModeCount| known.modes == list.modes && known.contacts == list.contacts;
+            // The limit holds here alone: applied to parts, it would let the parts be seen.
+            let room = self.modes.len() < LISTS;
+            match self.modes.iter_mut().find(known) {
+                Some(known) => known.outcomes += list.outcomes,
+                None if room => self.modes.push(list),
+                None => self.other_modes += list.outcomes,
+            }
+        }
+        self.other_modes += following.other_modes;
+    }
+
+    fn near(&mut self, state: impl Fn() -> Place, outcomes: &[Outcome]) {
+        // Where nothing presses on anything, every slack of an impulse is zero, and that says nothing.
+        let pressed = |outcome: &&Outcome| outcome.impulse.iter().flatten().any(|&entry| entry != 0.0);
+        let margins = outcomes.iter().filter(pressed).filter_map(|outcome| outcome.margin);
+        let Some(margin) = margins.min_by(|a, b| a.abs().total_cmp(&b.abs())) else { return };
+        let farthest = self.smallest_margins.get(NAMED - 1);
+        if farthest.is_none_or(|farthest| margin.abs() < farthest.margin.abs()) {
+            self.insert(Nearest { state: state(), margin });
+        }
+    }
+
+    /// Inserts behind those that are as near: they came earlier.
+    fn insert(&mut self, near: Nearest) {
+        let at = self.smallest_margins.partition_point(|other| other.margin.abs() <= near.margin.abs());
+        if at < NAMED {
+            self.smallest_margins.truncate(NAMED - 1);
+            self.smallest_margins.insert(at, near);
+        }
+    }
+}
+
+impl Verdicts {
+    fn of(&mut self, verdict: Verdict) -> &mut u64 {
+        match verdict {
+            Verdict::Unique => &mut self.unique,
+            Verdict::Ambiguous => &mut self.ambiguous,
+            Verdict::None => &mut self.none,
+            Verdict::Undecided => &mut self.undecided,
+            Verdict::NoImpact => &mut self.no_impact,
+            Verdict::NoContact => &mut self.no_contact,
+        }
+    }
+
+    fn add(&mut self, more: Self) {
+        let Self { unique, ambiguous, none, undecided, no_impact, no_contact } = more;
+        self.unique += unique;
+        self.ambiguous += ambiguous;
+        self.none += none;
+        self.undecided += undecided;
+        self.no_impact += no_impact;
+        self.no_contact += no_contact;
+    }
+}
+
+impl MoreFriction {
+    fn take(&mut self, needed: impl FnOnce() -> Needed, friction: f64) {
+        if self.greatest.as_ref().is_none_or(|greatest| friction > greatest.friction) {
+            self.greatest = Some(needed());
+        }
+    }
+}
+
+fn coefficient<S: Serializer>(friction: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    if friction.is_finite() { serializer.serialize_f64(*friction) } else { serializer.serialize_str("infinite") }
+}
+
+impl fmt::Display for Place {
+    /// `k17 (line 17)`, or `line 17`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.id {
+            Some(Value::String(id)) => write!(f, "{id} (line {})", self.line),
+            Some(id) => write!(f, "{id} (line {})", self.line),
+            None => write!(f, "line {}", self.line),
+        }
+    }
+}
+
+/// So many of each kind are told to people.
+const TOLD: usize = 5;
+
+impl fmt::Display for Summary {
+    /// A few lines for people.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Verdicts { unique, ambiguous, none, undecided, no_impact, no_contact } = self.verdicts;
+        let counts = [
+            (unique, "unique"),
+            (ambiguous, "ambiguous"),
+            (none, "without outcome"),
+            (undecided, "undecided"),
+            (no_impact, "without impact"),
+            (no_contact, "without contact"),
+            (self.refused, "refused"),
+        ];
+        let counts = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+        let plural = if self.states == 1 { "" } else { "s" };
+        writeln!(f, "{} state{plural}: {}", self.states, counts.collect::<Vec<_>>().join(", "))?;
+        if !self.smallest_margins.is_empty() {
+            let near = self.smallest_margins.iter().take(TOLD);
+            let near = near.map(|Nearest { state, margin }| format!("{margin:.1e} {state}"));
+            writeln!(f, "smallest margins: {}", near.collect::<Vec<_>>().join(", "))?;
+        }
+        if let Some(Needed { state, friction }) = &self.more_friction.greatest {
+            let states = self.more_friction.states;
+            let friction = if friction.is_finite() { format!("{friction:.3}") } else { "infinite".to_owned() };
+            writeln!(f, "all outcomes slide for want of friction: {states}; most is needed by {state}: {friction}")?;
+        }
+        let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
+        lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));
+        for list in lists.iter().take(TOLD) {
+            let ends = list.contacts.iter().zip(&list.modes).map(|(contact, mode)| format!("{contact} {mode}"));
+            writeln!(f, "{:>8} x {}", list.outcomes, ends.collect::<Vec<_>>().join(", "))?;
+        }
+        let rest: u64 = lists.iter().skip(TOLD).map(|list| list.outcomes).sum::<u64>() + self.other_modes;
+        if rest > 0 {
+            writeln!(f, "{rest:>8} x other modes")?;
+        }
+        Ok(())
+    }
+}

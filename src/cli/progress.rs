@@ -1,0 +1,46 @@
+//! How far a long input has been read, shown where a person waits for it.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal, Read};
+use std::path::Path;
+
+/// A bar on standard error, or nothing.
+pub(super) struct Progress(Option<ProgressBar>);
+
+impl Progress {
+    /// A bar for the bytes of `input`, where that is a file, standard error a terminal, and the results, which go to standard
+    /// output unless `to_a_file`, do not appear there, too.
+    pub fn over(input: &Path, to_a_file: bool) -> Self {
+        let watched = io::stderr().is_terminal() && (to_a_file || !io::stdout().is_terminal());
+        let file = if watched { std::fs::metadata(input).ok().filter(std::fs::Metadata::is_file) } else { None };
+        Self(file.map(|file| {
+            let bar = ProgressBar::with_draw_target(Some(file.len()), ProgressDrawTarget::stderr());
+            let parts = "{wide_bar} {percent}% of {total_bytes}, {eta} left";
+            bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))
+        }))
+    }
+
+    /// The same input, watched.
+    pub fn watch(&self, input: Box<dyn Read + Send>) -> Box<dyn Read + Send> {
+        match &self.0 {
+            Some(bar) => Box::new(bar.wrap_read(input)),
+            None => input,
+        }
+    }
+
+    /// Writes to standard error without touching the bar.
+    pub fn beside<T>(&self, write: impl FnOnce() -> T) -> T {
+        match &self.0 {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! What the readers of states and problems accept, as types that a schema can be derived from.
+//!
+//! Nothing is read into these types; `tests/schema` compares them with the readers field by field.
+#![expect(dead_code, reason = "the schemas are all that is wanted of them")]
+
+use super::Id;
+use schemars::JsonSchema;
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
+
+/// A state just before the impact; what is left out is 0.
+#[derive(JsonSchema)]
+pub(super) struct State {
+    /// What the user calls it.
+    id: Option<Id>,
+    /// Where the robot is.
+    position: Option<Coordinates>,
+    /// How it moves: the derivatives of the position's entries.
+    velocity: Option<Coordinates>,
+    /// Friction, for all links or by link.
+    friction: Option<ByLink<Friction>>,
+    /// Newton's restitution, for all links or by link.
+    restitution: Option<ByLink<Restitution>>,
+    /// The ground.
+    ground: Option<Ground>,
+    /// The link whose lowest point stands on the ground at x = 0, instead of the base's x and z.
+    stance: Option<String>,
+    /// Joints that keep their velocity through the impact.
+    #[schemars(extend("uniqueItems" = true))]
+    held: Option<Vec<String>>,
+    /// Inertia of the rotor at each joint [kg m^2].
+    rotor_inertia: Option<BTreeMap<String, NotNegative>>,
+    /// Contacts named by hand instead of detected.
+    contacts: Option<Vec<Contact>>,
+    /// Impulses that act on the robot at the impact.
+    impulse: Option<Vec<AppliedImpulse>>,
+}
+
+/// Coordinates or their derivatives by name.
+#[derive(JsonSchema)]
+struct Coordinates {
+    /// Of the root link; a robot that is bolted to the world has none.
+    base: Option<Base>,
+    /// By joint [rad or m, and per second].
+    joints: Option<BTreeMap<String, f64>>,
+}
+
+/// Entries of the base.
+#[derive(JsonSchema)]
+struct Base {
+    /// Forward [m or m/s].
+    x: Option<f64>,
+    /// Up [m or m/s].
+    z: Option<f64>,
+    /// Nose down [rad or rad/s].
+    pitch: Option<f64>,
+}
+
+/// A value for all links, or values by link, with "default" for all others.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "{T}ByLink")]
+enum ByLink<T> {
+    Everywhere(T),
+    ByLink(BTreeMap<String, T>),
+}
+
+/// A value for all contacts, or a list with one for each.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "{T}PerContact")]
+enum PerContact<T> {
+    All(T),
+    Each(Vec<T>),
+}
+
+/// A coefficient of friction.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+enum Friction {
+    Finite(NotNegative),
+    Infinite(Infinite),
+}
+
+#[derive(JsonSchema)]
+#[schemars(inline)]
+#[serde(rename_all = "lowercase")]
+enum Infinite {
+    Infinite,
+}
+
+/// A coefficient of restitution.
+#[derive(JsonSchema)]
+struct Restitution(#[schemars(range(min = 0.0, max = 1.0))] f64);
+
+#[derive(JsonSchema)]
+#[schemars(inline)]
+struct NotNegative(#[schemars(range(min = 0.0))] f64);
+
+/// The ground.
+#[derive(JsonSchema)]
+struct Ground {
+    /// Its slope, uphill toward +x [rad].
+    #[schemars(extend("exclusiveMinimum" = -FRAC_PI_2, "exclusiveMaximum" = FRAC_PI_2))]
+    slope: Option<f64>,
+}
+
+/// A contact named by hand.
+#[derive(JsonSchema)]
+struct Contact {
+    /// Its link.
+    link: String,
+    /// The point in the link's frame [m].
+    offset: Option<[f64; 3]>,
+    /// The radius of the circle about the point [m].
+    radius: Option<NotNegative>,
+}
+
+/// An applied impulse.
+#[derive(JsonSchema)]
+struct AppliedImpulse {
+    /// The link it acts on.
+    link: String,
+    /// Its point in the link's frame [m].
+    offset: Option<[f64; 3]>,
+    /// The impulse, [x, z] in the world [N s].
+    vector: [f64; 2],
+}
+
+/// A contact problem as matrices: `delassus` and `velocity_before`, or `mass_matrix`, `contact_jacobian` and `velocity`.
+/// Other fields are ignored.
+#[derive(JsonSchema)]
+#[schemars(extend("additionalProperties" = true, "oneOf" = [
+    {"required": ["delassus", "velocity_before"], "not": {"required": ["mass_matrix"]}},
+    {"required": ["mass_matrix", "contact_jacobian", "velocity"], "not": {"required": ["delassus"]}},
+]))]
+pub(super) struct Problem {
+    /// What the user calls it.
+    id: Option<Id>,
+    /// G = J M^-1 J^T, two rows and columns per contact: tangential, normal [1/kg].
+    delassus: Option<Vec<Vec<f64>>>,
+    /// [tangential, normal] per contact [m/s].
+    velocity_before: Option<Vec<[f64; 2]>>,
+    /// M [kg, kg m, kg m^2].
+    mass_matrix: Option<Vec<Vec<f64>>>,
+    /// J, two rows per contact: tangential, normal.
+    contact_jacobian: Option<Vec<Vec<f64>>>,
+    /// v.
+    velocity: Option<Vec<f64>>,
+    /// Friction, for all contacts or for each.
+    friction: Option<PerContact<Friction>>,
+    /// Newton's restitution, for all contacts or for each.
+    restitution: Option<PerContact<Restitution>>,
+    /// A different name for each contact.
+    #[schemars(extend("uniqueItems" = true))]
+    names: Option<Vec<String>>,
+}

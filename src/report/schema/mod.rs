@@ -1,0 +1,139 @@
+//! JSON Schema (draft 2020-12) of what is read and written.
+//!
+//! A result's schema is derived from the very structs that are written. States and problems are read by hand, so that each
+//! refusal has its place; `inputs` mirrors what those readers accept, and a test holds the two together.
+//!
+//! The schemas are closed: a field that they do not name is none, as the strict readers have it.
+
+mod inputs;
+
+use super::result::{Brief, NamedVelocities, Refused, Report};
+use super::touchdown::CarriedFields;
+use schemars::generate::SchemaSettings;
+use schemars::transform::RecursiveTransform;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde_json::Value;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// Marks a property that may be null although it may also be absent.
+const MAY_BE_NULL: &str = "x-may-be-null";
+
+/// The schema of a state.
+pub fn state() -> Value {
+    schema_of::<inputs::State>(SchemaSettings::draft2020_12().for_deserialize())
+}
+
+/// The schema of a contact problem that is given as matrices.
+pub fn problem() -> Value {
+    schema_of::<inputs::Problem>(SchemaSettings::draft2020_12().for_deserialize())
+}
+
+/// The schema of a line of results: a result, one in brief, or a refusal.
+pub fn result() -> Value {
+    schema_of::<ResultLine>(SchemaSettings::draft2020_12().for_serialize())
+}
+
+/// One line of results.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(title = "Result")]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+enum ResultLine<'a> {
+    Whole(Box<Report<'a>>),
+    Brief(Brief<'a>),
+    Refused(Refused<'a>),
+}
+
+/// What the user calls a state or a problem.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+pub(super) enum Id {
+    /// A name.
+    Text(String),
+    /// A number.
+    Number(f64),
+}
+
+impl JsonSchema for NamedVelocities<'_> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "NamedVelocities".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        BTreeMap::<String, f64>::json_schema(generator)
+    }
+}
+
+impl JsonSchema for CarriedFields<'_> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "CarriedFields".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        BTreeMap::<String, String>::json_schema(generator)
+    }
+}
+
+fn schema_of<T: JsonSchema>(settings: SchemaSettings) -> Value {
+    let settings = settings.with_transform(RecursiveTransform(strict));
+    settings.into_generator().into_root_schema_for::<T>().to_value()
+}
+
+/// Says of one schema what the contract says of all: what is not named does not exist, what is optional is absent and
+/// not null.
+fn strict(schema: &mut Schema) {
+    if let Some(Value::String(description)) = schema.get_mut("description") {
+        *description = plain_text(description);
+    }
+    if schema.get("properties").is_none() {
+        return;
+    }
+    let required: Vec<Value> = schema.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
+    if let Some(Value::Object(properties)) = schema.get_mut("properties") {
+        for (name, property) in properties {
+            if !required.iter().any(|required| required == name) {
+                without_null(property);
+            }
+        }
+    }
+    if schema.get("additionalProperties").is_none() {
+        schema.insert("additionalProperties".into(), false.into());
+    }
+}
+
+/// A description as rustdoc's markup has it, without the marks that only rustdoc needs.
+fn plain_text(description: &str) -> String {
+    description.replace("[`", "`").replace("`]", "`").replace("\\[", "[").replace("\\]", "]").replace('\n', " ")
+}
+
+/// Takes null out of what an optional property may be, unless it is marked.
+fn without_null(property: &mut Value) {
+    let Value::Object(property) = property else { return };
+    if property.remove(MAY_BE_NULL).is_some() {
+        return;
+    }
+    if let Some(Value::Array(types)) = property.get_mut("type") {
+        types.retain(|kind| kind != "null");
+        if let [only] = types.as_slice() {
+            let only = only.clone();
+            property.insert("type".into(), only);
+        }
+    }
+    if let Some(Value::Array(choices)) = property.get_mut("anyOf") {
+        choices.retain(|choice| choice.get("type").is_none_or(|kind| kind != "null"));
+        if let [Value::Object(only)] = choices.as_mut_slice() {
+            let only = std::mem::take(only);
+            property.remove("anyOf");
+            for (key, value) in only {
+                property.entry(key).or_insert(value);
+            }
+        }
+    }
+}

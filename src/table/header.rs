@@ -1,0 +1,210 @@
+//! What each column of a table is, resolved once against the robot.
+
+use super::records::place_of;
+use super::rows::Rows;
+use crate::robot::Base;
+use crate::{Error, Reason, Result, Robot};
+use std::collections::HashSet;
+
+/// The entries of a floating base in the order of q.
+const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
+
+/// What recordings of three-dimensional robots have instead.
+const SPATIAL: [&str; 5] = ["base_y", "base_qw", "base_qx", "base_qy", "base_qz"];
+
+/// Where the velocities of a table come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Rates {
+    /// From columns `v_...`; a table without one is refused.
+    #[default]
+    Columns,
+    /// From the positions of other rows by the `time` column; a table with columns `v_...` is refused.
+    Time,
+}
+
+/// The columns of a table of states.
+#[derive(Debug, Clone)]
+pub struct Header {
+    pub(super) names: Vec<String>,
+    pub(super) columns: Vec<Column>,
+    /// The columns that are carried through.
+    pub(super) carried: Vec<usize>,
+    pub(super) id: Option<usize>,
+    pub(super) time: Option<usize>,
+}
+
+/// What a column holds; coordinates are indices into q.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Column {
+    Id,
+    Position(usize),
+    Velocity(usize),
+    Friction,
+    Restitution,
+    Stance,
+    Carried,
+}
+
+impl Header {
+    /// Reads the first record of a table.
+    ///
+    /// # Errors
+    /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
+    /// robot does not have, velocities that are missing or one too many (see [`Rates`]). The error tells the column's place
+    /// in `record`, on line 1.
+    pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
+        let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
+        let names = names(record)?;
+        let mut header =
+            Self { columns: Vec::with_capacity(names.len()), carried: vec![], id: None, time: None, names };
+        let mut seen = HashSet::new();
+        for (at, name) in header.names.iter().enumerate() {
+            let refused = |error: Error| in_column(error, record, at);
+            if !seen.insert(name.as_str()) {
+                return Err(refused(Reason::Duplicate { what: "column", name: short(name) }.into()));
+            }
+            let column = column(name, robot).map_err(refused)?;
+            match column {
+                Column::Id => header.id = Some(at),
+                Column::Carried => header.carried.push(at),
+                _ => {}
+            }
+            if name == "time" {
+                header.time = Some(at);
+            }
+            header.columns.push(column);
+        }
+        header.check(record, robot, rates)?;
+        Ok(header)
+    }
+
+    /// What reads the rows of the table.
+    pub fn rows(&self) -> Rows<'_> {
+        Rows::new(self)
+    }
+
+    /// Whether there is a column `time`.
+    pub fn has_time(&self) -> bool {
+        self.time.is_some()
+    }
+
+    /// Names of the columns that are carried through.
+    pub fn carried(&self) -> impl Iterator<Item = &str> {
+        self.carried.iter().map(|&at| self.names[at].as_str())
+    }
+
+    /// Refuses a table without what a state needs.
+    fn check(&self, record: &[u8], robot: &Robot, rates: Rates) -> Result<()> {
+        let first = |wanted: fn(&Column) -> bool| self.columns.iter().position(wanted);
+        let velocity = first(|column| matches!(column, Column::Velocity(_)));
+        let example = robot.coordinates().next().map_or("base_x".to_owned(), |name| prefixed(robot, name));
+        let missing = |what: &str, prefix: &str, hint: &str| {
+            let what = format!("a column of {what}, such as {prefix}{example},");
+            Err(Error::new(Reason::Missing(what)).on(1, 1).hint(hint))
+        };
+        if first(|column| matches!(column, Column::Position(_))).is_none() && velocity.is_none() {
+            return missing("positions", "q_", "the first line must name the columns");
+        }
+        match (rates, velocity) {
+            (Rates::Columns, None) if self.has_time() => missing(
+                "velocities",
+                "v_",
+                "add the columns, or --velocity central or backward to take them from the time",
+            ),
+            (Rates::Columns, None) => {
+                missing("velocities", "v_", "add the columns; with a column time they can be computed")
+            }
+            (Rates::Time, Some(at)) => {
+                let reason = "the table has velocities, and they were to be computed from the time".to_owned();
+                let error = in_column(Error::new(Reason::Inconsistent(reason)), record, at);
+                Err(error.hint("leave out --velocity, or the columns v_..."))
+            }
+            (Rates::Time, None) if !self.has_time() => {
+                let error = Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
+                Err(error.hint("velocities are computed over the time; add the column, or columns v_..."))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Puts an error where column `at` begins in the first record.
+fn in_column(error: Error, record: &[u8], at: usize) -> Error {
+    let (lines, column) = place_of(record, at);
+    error.at(format!("column {}", at + 1)).on(1 + lines, column)
+}
+
+/// The names in the first record, without the space around them.
+fn names(record: &[u8]) -> Result<Vec<String>> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(record);
+    let mut fields = csv::ByteRecord::new();
+    let read =
+        reader.read_byte_record(&mut fields).map_err(|error| Error::new(Reason::Syntax(error.to_string())).on(1, 1))?;
+    if !read {
+        return Err(Error::new(Reason::Missing("the line that names the columns".into()))
+            .on(1, 1)
+            .hint("the table is empty"));
+    }
+    let name = |(at, field): (usize, &[u8])| match std::str::from_utf8(field) {
+        Ok(name) => Ok(name.trim().to_owned()),
+        Err(_) => {
+            let error = Error::new(Reason::Syntax("the column's name is not UTF-8".into()));
+            Err(in_column(error, record, at).hint("save the table as UTF-8"))
+        }
+    };
+    fields.iter().enumerate().map(name).collect()
+}
+
+/// What the column called `name` holds.
+fn column(name: &str, robot: &Robot) -> Result<Column> {
+    if let Some(coordinate) = name.strip_prefix("q_") {
+        return self::coordinate("q_", coordinate, robot).map(Column::Position);
+    }
+    if let Some(coordinate) = name.strip_prefix("v_") {
+        return self::coordinate("v_", coordinate, robot).map(Column::Velocity);
+    }
+    Ok(match name {
+        "id" => Column::Id,
+        "friction" => Column::Friction,
+        "restitution" => Column::Restitution,
+        "stance" => Column::Stance,
+        _ => Column::Carried,
+    })
+}
+
+/// The index in q of a coordinate.
+fn coordinate(prefix: &str, name: &str, robot: &Robot) -> Result<usize> {
+    if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
+        return Ok(robot.base_dofs() + joint);
+    }
+    let in_base = BASE.iter().position(|entry| *entry == name);
+    if let Some(at) = in_base.filter(|_| robot.base == Base::Floating) {
+        return Ok(at);
+    }
+    if robot.base == Base::Fixed && (in_base.is_some() || SPATIAL.contains(&name)) {
+        let reason = "the robot is bolted to the world, its base has no coordinates".to_owned();
+        return Err(Error::new(Reason::Inconsistent(reason)).hint("leave the column out, or give --base floating"));
+    }
+    if SPATIAL.contains(&name) {
+        let reason = format!("{prefix}{name}: bases in three dimensions are not supported by this version");
+        let hint = format!("give {prefix}base_x, {prefix}base_z and {prefix}base_pitch");
+        return Err(Error::new(Reason::Unsupported(reason)).hint(hint));
+    }
+    let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();
+    let reason = Reason::UnknownName { what: "coordinate", name: short(name) };
+    Err(Error::new(reason).did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
+}
+
+/// A coordinate's name as columns have it behind `q_` and `v_`.
+pub(super) fn prefixed(robot: &Robot, name: &str) -> String {
+    if robot.joint(name).is_some() { name.to_owned() } else { format!("base_{name}") }
+}
+
+/// The beginning of a text that may be long, for messages.
+pub(super) fn short(text: &str) -> String {
+    const MOST: usize = 60;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}

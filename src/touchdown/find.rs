@@ -1,0 +1,244 @@
+//! Finds the touchdowns of a recording, sample by sample, in memory for the last moments alone.
+
+use super::clip::{Clock, Step};
+use super::points::Points;
+use super::{ABOVE, At, DROP, GROUND, SLOW, Sample, Sampled, TOGETHER, Touchdown, Touching};
+use crate::planar::Vector;
+use crate::robot::Robot;
+use crate::scene::NamedContact;
+use crate::state::State;
+use crate::{Error, Reason, Result};
+use std::collections::VecDeque;
+
+/// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it; refused samples in their place.
+///
+/// # Errors
+/// [`Reason::Missing`] for a robot that has nothing to touch the ground with.
+pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
+    samples: I,
+    robot: &'r Robot,
+    feet: &[NamedContact],
+    at: At,
+    touching: Touching,
+) -> Result<Touchdowns<'r, S, I>> {
+    let points = Points::new(robot, feet);
+    if points.is_empty() {
+        let reason =
+            Reason::Missing("a foot of the robot, which has no collision shape that could touch the ground,".into());
+        return Err(Error::new(reason).hint("name the feet, as in --contact left_shin:0,0,0.4"));
+    }
+    Ok(Touchdowns {
+        samples,
+        points,
+        at,
+        touching,
+        clock: Clock::default(),
+        counted: 0,
+        window: VecDeque::new(),
+        descents: Vec::new(),
+        ready: VecDeque::new(),
+    })
+}
+
+/// The touchdowns of a recording; see [`find`].
+#[derive(Debug)]
+pub struct Touchdowns<'r, S, I> {
+    samples: I,
+    points: Points<'r>,
+    at: At,
+    touching: Touching,
+    clock: Clock,
+    /// Samples so far, refused ones too.
+    counted: usize,
+    /// The last samples of the clip: as far back as a descent that ends now can have been [`ABOVE`] its end.
+    window: VecDeque<Frame<S>>,
+    /// One per point.
+    descents: Vec<Descent>,
+    ready: VecDeque<std::result::Result<Touchdown<S>, (S, Error)>>,
+}
+
+/// A sample and where its points are.
+#[derive(Debug)]
+struct Frame<S> {
+    sample: Sample<S>,
+    row: usize,
+    places: Vec<Vector<f64>>,
+    /// The next sample has the same time.
+    before_impact: bool,
+}
+
+/// How a point moves.
+#[derive(Debug, Clone, Copy)]
+struct Descent {
+    /// Its greatest height since it last was not falling \[m\].
+    from: f64,
+    falling: bool,
+}
+
+/// When a descent becomes a touchdown.
+#[derive(Debug, Clone, Copy)]
+enum Moment {
+    /// At a row as it is.
+    Row(usize),
+    /// Between a row of the window and the next, where the point is at this height \[m\].
+    After(usize, f64),
+}
+
+impl<S: Clone, I: Iterator<Item = Sampled<S>>> Iterator for Touchdowns<'_, S, I> {
+    type Item = std::result::Result<Touchdown<S>, (S, Error)>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(ready) = self.ready.pop_front() {
+                return Some(ready);
+            }
+            match self.samples.next() {
+                Some(Ok(sample)) if sample.state.scene.stance.is_some() => {
+                    let reason = Reason::Unsupported("a stance hides the height of the feet".into());
+                    let error = Error::new(reason).at("stance").hint("give the base's x and z instead");
+                    self.ready.push_back(Err((sample.source, error)));
+                }
+                Some(Ok(sample)) => self.take(sample),
+                Some(Err(refused)) => self.ready.push_back(Err(refused)),
+                None => {
+                    self.end_clip();
+                    return self.ready.pop_front();
+                }
+            }
+            self.counted += 1;
+        }
+    }
+}
+
+impl<S: Clone, I> Touchdowns<'_, S, I> {
+    /// Takes the next sample.
+    fn take(&mut self, sample: Sample<S>) {
+        let places = self.points.at(&sample.state.position);
+        match self.clock.step(sample.time) {
+            Step::NewClip => {
+                self.end_clip();
+                self.descents = places.iter().map(|place| Descent { from: place[1], falling: false }).collect();
+            }
+            Step::Impact => {
+                if let Some(last) = self.window.back_mut() {
+                    last.before_impact = true;
+                }
+            }
+            Step::Later(passed) => self.follow(&places, passed),
+        }
+        // A point that falls at SLOW or faster was ABOVE its level no longer ago than this; twice that is kept.
+        let oldest = sample.time - 2.0 * ABOVE / SLOW;
+        while self.window.get(1).is_some_and(|second| second.sample.time < oldest) {
+            self.window.pop_front();
+        }
+        self.window.push_back(Frame { sample, row: self.counted, places, before_impact: false });
+    }
+
+    /// Follows every point to its next place, `passed` \[s\] after the last.
+    fn follow(&mut self, places: &[Vector<f64>], passed: f64) {
+        let mut struck = Vec::new();
+        for (point, place) in places.iter().enumerate() {
+            let Some(last) = self.window.back().map(|last| last.places[point][1]) else {
+                return;
+            };
+            let (height, mut descent) = (place[1], self.descents[point]);
+            if (height - last) / passed < -SLOW {
+                descent.falling = true;
+            } else {
+                let level = height.min(last);
+                if descent.falling {
+                    if descent.from - level >= DROP && level <= GROUND {
+                        struck.extend(self.moment(point, level + ABOVE).map(|moment| (point, moment)));
+                    }
+                    descent = Descent { from: height, falling: false };
+                }
+                descent.from = descent.from.max(height);
+            }
+            self.descents[point] = descent;
+        }
+        self.strike(struck);
+    }
+
+    /// Ends the clip: a point that is still falling has reached the ground if it is at z = 0.
+    fn end_clip(&mut self) {
+        let mut struck = Vec::new();
+        for (point, &Descent { from, falling }) in self.descents.iter().enumerate() {
+            let Some(last) = self.window.back().map(|last| last.places[point][1]).filter(|_| falling) else {
+                continue;
+            };
+            if from - last < DROP || last > ABOVE {
+                continue;
+            }
+            let moment =
+                if last >= -ABOVE { Some(Moment::Row(self.last_before_impact())) } else { self.moment(point, 0.0) };
+            struck.extend(moment.map(|moment| (point, moment)));
+        }
+        self.strike(struck);
+        self.window.clear();
+        self.descents.clear();
+    }
+
+    /// The last frame of the window, of two with the same time the first.
+    fn last_before_impact(&self) -> usize {
+        let last = self.window.len() - 1;
+        let twin = last.checked_sub(1).filter(|&before| self.window[before].before_impact);
+        twin.unwrap_or(last)
+    }
+
+    /// When the point was last as high as `height`; an impact that the recording itself marks after that is the moment.
+    fn moment(&self, point: usize, height: f64) -> Option<Moment> {
+        let last = self.window.iter().rposition(|frame| frame.places[point][1] >= height)?;
+        let marked = |&frame: &usize| {
+            let Frame { places, before_impact, .. } = &self.window[frame];
+            *before_impact && places[point][1] < height
+        };
+        Some((last..self.window.len()).find(marked).map_or(Moment::After(last, height), Moment::Row))
+    }
+
+    /// Makes touchdowns of the points that strike; those that strike together are one.
+    fn strike(&mut self, struck: Vec<(usize, Moment)>) {
+        let mut left = VecDeque::from(struck);
+        while let Some((striking, moment)) = left.pop_front() {
+            let also = left.iter().filter(|&&other| self.together((striking, moment), other));
+            let also: Vec<usize> = also.map(|&(point, _)| point).collect();
+            left.retain(|(point, _)| !also.contains(point));
+            let (mut state, time, at) = self.state(striking, moment);
+            let (shift_z, contact) = self.points.touch(&mut state, striking, &also, self.touching);
+            let Frame { sample, row, .. } = &self.window[at];
+            let (row, source) = (*row, sample.source.clone());
+            self.ready.push_back(match state.position.iter().all(|entry| entry.is_finite()) {
+                true => Ok(Touchdown { state, row, time, striking: contact, shift_z, source }),
+                false => {
+                    Err((source, Error::new(Reason::Inconsistent("the robot is too far away to be placed".into()))))
+                }
+            });
+        }
+    }
+
+    /// Whether two points strike at the same moment.
+    fn together(&self, (one, when): (usize, Moment), (other, its): (usize, Moment)) -> bool {
+        let close = |a: f64, b: f64| (a - b).abs() <= TOGETHER;
+        let alike = |at: usize| close(self.window[at].places[one][1], self.window[at].places[other][1]);
+        match (when, its) {
+            (Moment::Row(at), Moment::Row(same)) => at == same && alike(at),
+            (Moment::After(at, height), Moment::After(same, its)) => at == same && alike(at) && close(height, its),
+            _ => false,
+        }
+    }
+
+    /// The state of a point's touchdown, its time, and the frame that it is of.
+    fn state(&self, point: usize, moment: Moment) -> (State, f64, usize) {
+        let (Moment::Row(at) | Moment::After(at, _)) = moment;
+        let Frame { sample, places, .. } = &self.window[at];
+        let (mut state, mut time) = (sample.state.clone(), sample.time);
+        if let (At::Crossing, Moment::After(_, height), Some(next)) = (self.at, moment, self.window.get(at + 1)) {
+            let (above, below) = (places[point][1], next.places[point][1]);
+            let part = if below < above { ((above - height) / (above - below)).clamp(0.0, 1.0) } else { 0.0 };
+            time += part * (next.sample.time - time);
+            for (own, next) in state.position.iter_mut().zip(&next.sample.state.position) {
+                *own += part * (next - *own);
+            }
+        }
+        (state, time, at)
+    }
+}

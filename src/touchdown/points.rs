@@ -1,0 +1,125 @@
+//! The points of a robot that can touch the ground, and where they are.
+
+use super::Touching;
+use crate::contact::{Feet, Placement, Point, points};
+use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
+use crate::plan::{Plan, Posture};
+use crate::planar::Vector;
+use crate::robot::{Base, Link, Robot};
+use crate::scene::{NamedContact, Scene};
+use crate::state::State;
+
+/// All points of a robot's feet, in the order of its links, and the memory to place them.
+#[derive(Debug)]
+pub(super) struct Points<'r> {
+    robot: &'r Robot,
+    plan: Plan,
+    posture: Posture,
+    workspace: Workspace,
+    points: Vec<(usize, Point)>,
+}
+
+impl<'r> Points<'r> {
+    pub fn new(robot: &'r Robot, feet: &[NamedContact]) -> Self {
+        let mut all: Vec<(usize, Point)> = Vec::new();
+        for foot in Feet::new(robot, feet).iter() {
+            for point in points(foot) {
+                // Shapes of a link may share a corner; it is one point all the same.
+                if !all.contains(&(foot.link, point)) {
+                    all.push((foot.link, point));
+                }
+            }
+        }
+        let plan = Plan::new(robot, &[], &[]);
+        Self { robot, plan, posture: Posture::default(), workspace: Workspace::default(), points: all }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
+    pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
+        self.posture.set(position);
+        kinematics(&self.plan, &self.posture, &mut self.workspace);
+        let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
+        let placement = Placement::new(&self.plan, &self.workspace, base, Scene::default().ground());
+        self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
+    }
+
+    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
+    /// (`also`) among them; gives the shift \[m\] and the striking one's name.
+    pub fn touch(&mut self, state: &mut State, striking: usize, also: &[usize], touching: Touching) -> (f64, String) {
+        let places = self.at(&state.position);
+        let above = |point: usize| (places[point][1] - places[striking][1]).abs();
+        let mut closed = vec![striking];
+        closed.extend(also);
+        match touching {
+            Touching::Strike => {}
+            Touching::Slow { speed, height } => {
+                let mut feet = self.lowest_of_other_links(&closed, &places);
+                feet.retain(|&point| above(point) <= height && self.speed(point, &state.velocity) < speed);
+                closed.append(&mut feet);
+            }
+            Touching::Near { height } => {
+                let near = |point: &usize| *point != striking && !also.contains(point) && above(*point) <= height;
+                closed.extend((0..places.len()).filter(near));
+            }
+        }
+        // As detected contacts: in the order of the links, within a link along x.
+        let link = |point: usize| self.points[point].0;
+        closed.sort_by(|&a, &b| link(a).cmp(&link(b)).then(places[a][0].total_cmp(&places[b][0])));
+        state.scene.contacts = Some(closed.iter().map(|&point| self.named(point)).collect());
+
+        let name = self.robot.links[link(striking)].name.clone();
+        let mut of_link = closed.iter().filter(|&&point| link(point) == link(striking));
+        let at = of_link.clone().position(|&point| point == striking).unwrap_or(0);
+        let name = if of_link.nth(1).is_some() { format!("{name}/{at}") } else { name };
+        let shift = match self.robot.base {
+            Base::Floating => -places[striking][1],
+            Base::Fixed => 0.0,
+        };
+        if self.robot.base == Base::Floating {
+            state.position[1] += shift;
+        }
+        (shift, name)
+    }
+
+    /// The lowest point of every link of which none strikes.
+    fn lowest_of_other_links(&self, strikers: &[usize], places: &[Vector<f64>]) -> Vec<usize> {
+        let link = |point: usize| self.points[point].0;
+        let (mut lowest, mut of): (Vec<usize>, Option<usize>) = (Vec::new(), None);
+        for point in 0..self.points.len() {
+            if of != Some(link(point)) {
+                lowest.push(point);
+                of = Some(link(point));
+            } else if let Some(last) = lowest.last_mut().filter(|last| places[point][1] < places[**last][1]) {
+                *last = point;
+            }
+        }
+        let striking: Vec<usize> = strikers.iter().map(|&point| link(point)).collect();
+        lowest.retain(|&point| !striking.contains(&link(point)));
+        lowest
+    }
+
+    /// Speed of a point after `at` \[m/s\].
+    fn speed(&self, point: usize, velocity: &[f64]) -> f64 {
+        let Point { body, centre, radius } = self.points[point].1;
+        let arm = ContactPoint { body, centre, radius, ground: Scene::default().ground() }.arm(&self.workspace);
+        let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
+        libm::hypot(x, z)
+    }
+
+    fn named(&self, point: usize) -> NamedContact {
+        let (link, Point { centre, radius, .. }) = self.points[point];
+        NamedContact { link, offset: offset(&self.robot.links[link], centre), radius }
+    }
+}
+
+/// The point of the link's own frame, in the plane through its origin, that is at `point` of its body's frame.
+fn offset(link: &Link, point: Vector<f64>) -> [f64; 3] {
+    // The rows of a turn are its inverse's columns.
+    let [forward, up] = link.pose;
+    let across = [point[0] - forward[3], point[1] - up[3]];
+    [0, 1, 2].map(|axis| forward[axis] * across[0] + up[axis] * across[1])
+}

@@ -1,0 +1,232 @@
+//! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary. What a single result says is
+//! checked in `cli`; tables and touchdowns have tests of their own.
+
+use assert_cmd::Command;
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::PathBuf;
+use std::process::Stdio;
+
+mod summary;
+mod table;
+
+/// A disc of 2 kg, 1 kg m^2 and radius 0.5 m.
+const DISC: &str = r#"<robot name="disc"><link name="disc">
+    <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><geometry><sphere radius="0.5"/></geometry></collision>
+</link></robot>"#;
+
+/// What a run left behind.
+struct Run {
+    status: i32,
+    stdout: Vec<u8>,
+    stderr: String,
+}
+
+impl Run {
+    fn lines(&self) -> Vec<Value> {
+        self.stdout.split(|&byte| byte == b'\n').filter(|line| !line.is_empty()).map(parsed).collect()
+    }
+}
+
+fn parsed(line: &[u8]) -> Value {
+    serde_json::from_slice(line).expect("JSON")
+}
+
+/// A file of this test alone.
+fn file(name: &str, content: impl AsRef<[u8]>) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, content).expect("writable");
+    path.to_str().expect("UTF-8").to_owned()
+}
+
+fn disc(test: &str) -> String {
+    file(&format!("{test}.urdf"), DISC)
+}
+
+/// Runs `heelstrike batch` on a disc.
+fn batch(test: &str, arguments: &[&str], stdin: impl Into<Vec<u8>>) -> Run {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    let output = command.args(["batch", &disc(test)]).args(arguments).write_stdin(stdin).output().expect("it runs");
+    let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+    Run { status: output.status.code().expect("no signal"), stdout: output.stdout, stderr }
+}
+
+/// A disc that strikes the ground with the tangential speed `x`.
+fn strike(id: usize, x: f64) -> String {
+    let state = json!({"id": id, "position": {"base": {"z": 0.5}}, "velocity": {"base": {"x": x, "z": -1}}});
+    format!("{state}\n")
+}
+
+/// Many lines, none on a border, of which every tenth is broken and every seventh is followed by a blank one.
+fn many() -> String {
+    let line = |id: usize| match id {
+        _ if id % 10 == 9 => format!("{{\"id\": {id}, oops\r\n"),
+        _ if id % 7 == 3 => strike(id, id as f64 * 1.1e-3) + " \n",
+        _ => strike(id, -(id as f64) * 1.1e-3),
+    };
+    (0..2000).map(line).collect()
+}
+
+#[test]
+fn answers_come_in_order_and_refusals_in_their_place() {
+    let run = batch("order", &["-", "--friction", "0.5"], many());
+    assert_eq!(run.status, 1);
+    let answers = run.lines();
+    assert_eq!(answers.len(), 2000);
+    let mut line = 0;
+    for (id, answer) in answers.iter().enumerate() {
+        line += 1;
+        assert_eq!(answer["id"], id);
+        if id % 10 == 9 {
+            assert_eq!((&answer["line"], answer.get("verdict")), (&json!(line), None));
+        } else {
+            assert_eq!(answer["verdict"], "unique");
+            line += usize::from(id % 7 == 3);
+        }
+    }
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_threads_or_on_the_way_in() {
+    let states = file("bytes.ndjson", many());
+    let summary = |name: &str| PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let run = |threads: &str, input: &str, stdin: String| {
+        let summary = summary(&format!("bytes-{threads}.json"));
+        let arguments =
+            [input, "--friction", "0.5", "--threads", threads, "--summary", summary.to_str().expect("UTF-8")];
+        let run = batch(&format!("bytes-{threads}"), &arguments, stdin);
+        (run.stdout, std::fs::read(summary).expect("written"))
+    };
+    let expected = run("1", &states, String::new());
+    for threads in ["2", "4", "0"] {
+        assert!(run(threads, &states, String::new()) == expected, "{threads} threads, file");
+        assert!(run(threads, "-", many()) == expected, "{threads} threads, pipe");
+    }
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    let stdin = std::fs::File::open(&states).expect("it is there");
+    let arguments = ["batch", &disc("bytes"), "-", "--friction", "0.5"];
+    let output = command.args(arguments).stdin(stdin).output().expect("it runs");
+    assert!(output.stdout == expected.0, "redirected");
+}
+
+#[test]
+fn refused_lines_are_no_failure_where_that_is_said() {
+    let fails = batch("refused", &["-"], "oops\n");
+    let passes = batch("refused", &["-", "--refused", "ok"], "oops\n");
+    assert_eq!((fails.status, passes.status), (1, 0));
+    assert_eq!(fails.stdout, passes.stdout);
+    assert!(passes.stderr.starts_with("error: <stdin>:1:1: "), "{}", passes.stderr);
+}
+
+#[test]
+fn many_refusals_do_not_flood_standard_error() {
+    let run = batch("flood", &["-"], "oops\n".repeat(1000));
+    assert_eq!((run.status, run.lines().len()), (1, 1000));
+    let lines: Vec<&str> = run.stderr.lines().collect();
+    assert!(lines[19].starts_with("error: <stdin>:20:1: "), "{}", lines[19]);
+    assert_eq!(lines[20..], ["note: further refusals stand in the output alone", "1000 states: 1000 refused"]);
+}
+
+#[test]
+fn an_empty_input_gives_an_empty_output() {
+    for threads in ["1", "4"] {
+        let run = batch("empty", &["-", "--threads", threads], "");
+        assert_eq!((run.status, run.stdout.len(), run.stderr.as_str()), (0, 0, ""));
+    }
+}
+
+#[test]
+fn line_ends_may_be_of_either_kind_and_the_last_one_is_optional() {
+    let expected = batch("ends", &["-", "--friction", "1"], strike(1, 0.0) + &strike(2, 0.1)).stdout;
+    for end in ["\n", "\r\n", "\n\n"] {
+        let lines = (strike(1, 0.0) + strike(2, 0.1).trim_end()).replace('\n', end);
+        let run = batch("ends", &["-", "--friction", "1"], lines);
+        assert_eq!((run.status, run.stdout == expected), (0, true), "{end:?}");
+    }
+}
+
+#[test]
+fn a_long_line_is_read_and_its_refusal_is_short() {
+    let blanks = " ".repeat(1 << 20);
+    let run = batch(
+        "long",
+        &["-", "--friction", "1"],
+        strike(1, 0.0).replace(", ", &blanks).replace(':', &format!(":{blanks}")),
+    );
+    assert_eq!((run.status, &run.lines()[0]["verdict"]), (0, &json!("unique")));
+    let name = "x".repeat(1 << 20);
+    let run = batch("long", &["-"], format!("{{\"{name}\": 1}}\n{}", strike(2, 0.0)));
+    assert_eq!((run.status, run.lines().len()), (1, 2));
+    assert!(run.stderr.len() < 5000, "{} bytes", run.stderr.len());
+}
+
+#[test]
+fn an_endless_line_is_refused_and_the_rest_goes_on() {
+    let line = format!("{}\n", "x".repeat((1 << 24) + 1));
+    let run = batch("endless", &["-", "--friction", "1"], strike(1, 0.0) + &line + &strike(3, 0.0));
+    assert_eq!(run.status, 1);
+    let refused = json!({"line": 2, "error": {"message": "the record is longer than 16 MiB",
+        "hint": "is a line break or a closing quote missing?"}});
+    assert_eq!((&run.lines()[1], &run.lines()[2]["id"]), (&refused, &json!(3)));
+}
+
+// Ends.
+
+fn spawned(test: &str, threads: &str) -> std::process::Child {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.args(["batch", &disc(test), "-", "--friction", "1", "--threads", threads]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs")
+}
+
+#[test]
+fn an_answer_does_not_wait_for_the_next_line() {
+    for threads in ["1", "2"] {
+        let mut child = spawned("prompt", threads);
+        let mut stdin = child.stdin.take().expect("piped");
+        let mut answers = BufReader::new(child.stdout.take().expect("piped")).lines();
+        for id in 0..3 {
+            stdin.write_all(strike(id, 0.0).as_bytes()).expect("it reads");
+            let answer = answers.next().expect("an answer").expect("UTF-8");
+            assert_eq!(parsed(answer.as_bytes())["id"], id);
+        }
+        drop(stdin);
+        assert!(answers.next().is_none());
+        assert!(child.wait().expect("it ends").success());
+    }
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_ends_it_quietly() {
+    for threads in ["1", "4"] {
+        let mut child = spawned("head", threads);
+        let mut stdin = child.stdin.take().expect("piped");
+        // The writer is told by a closed pipe, too.
+        let writer = std::thread::spawn(move || while stdin.write_all(strike(1, 0.0).as_bytes()).is_ok() {});
+        let mut first = [0; 1000];
+        child.stdout.take().expect("piped").read_exact(&mut first).expect("answers");
+        let mut stderr = String::new();
+        child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("UTF-8");
+        assert_eq!((child.wait().expect("it ends").code(), stderr.as_str()), (Some(0), ""));
+        writer.join().expect("it ends");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_with_what_was_written() {
+    let told =
+        "error: the output cannot be written: No space left on device (os error 28); it ends after 0 whole lines\n";
+    for threads in ["1", "4"] {
+        let run = batch("full", &["-", "--friction", "1", "--threads", threads, "-o", "/dev/full"], strike(1, 0.0));
+        assert_eq!((run.status, run.stderr.as_str()), (1, told));
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
+        let states = file(&format!("full-{threads}.ndjson"), strike(1, 0.0));
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"))
+            .args(["batch", &disc("full"), &states, "--friction", "1", "--threads", threads])
+            .stdout(full)
+            .output()
+            .expect("it runs");
+        assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(1), told));
+    }
+}

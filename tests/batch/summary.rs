@@ -1,0 +1,75 @@
+//! The summary of a batch, for people and as JSON.
+
+use super::*;
+
+/// At friction 0.5, G = diag(0.75, 0.5) 1/kg: to hold a disc that strikes with c = [x, -1] takes L = [-x / 0.75, 2], and
+/// friction x / 1.5.
+fn discs() -> String {
+    let at_rest = json!({"id": "at rest", "position": {"base": {"z": 0.5}}});
+    let aloft = json!({"position": {"base": {"z": 1}}});
+    format!("{}{}{}{at_rest}\n\n{aloft}\nopps\n", strike(1, 0.3), strike(2, 1.5), strike(3, -3.0))
+}
+
+#[test]
+fn the_summary_counts_and_names() {
+    let path = file("summary.json", "what was there before");
+    let run = batch("summary", &["-", "--friction", "0.5", "--summary", &path], discs());
+    assert_eq!(run.status, 1);
+    let mut summary = parsed(&std::fs::read(path).expect("written"));
+    let margins: Vec<f64> = summary["smallest_margins"]
+        .as_array_mut()
+        .expect("a list")
+        .iter_mut()
+        .map(|near| near["margin"].take().as_f64().expect("a number"))
+        .collect();
+    // The holding cone's (0.5 L_n - |L_t|) / (S sqrt(0.25 / G_nn + 1 / G_tt)) with S = 1 / sqrt(G_nn); then c_t+ = 0.75 of
+    // S = 1.5 / sqrt(G_tt); then L_n sqrt(G_nn) / S with S = 3 / sqrt(G_tt).
+    let expected = [0.6 / (2.0_f64.sqrt() * (11.0_f64 / 6.0).sqrt()), 2.0 * 0.375_f64.sqrt() / 3.0, 0.5];
+    for (margin, expected) in margins.iter().zip(expected) {
+        // A few roundings of numbers of order one.
+        assert!((margin - expected).abs() < 1e-14, "{margin} {expected}");
+    }
+    let count = |modes: &[&str], outcomes: u64| {
+        let contacts: Vec<&str> = modes.iter().map(|_| "disc").collect();
+        json!({"contacts": contacts, "modes": modes, "outcomes": outcomes})
+    };
+    let expected = json!({
+        "states": 6,
+        "refused": 1,
+        "verdicts": {"unique": 3, "ambiguous": 0, "none": 0, "undecided": 0, "no_impact": 1, "no_contact": 1},
+        "smallest_margins": [
+            {"id": 1, "line": 1, "margin": null},
+            {"id": 3, "line": 3, "margin": null},
+            {"id": 2, "line": 2, "margin": null},
+        ],
+        "more_friction": {"states": 2, "greatest": {"id": 3, "line": 3, "friction": 2.0}},
+        "modes": [count(&["stick"], 2), count(&["slide+"], 1), count(&["slide-"], 1), count(&[], 1)],
+        "other_modes": 0,
+    });
+    assert_eq!(summary, expected);
+    let for_people = "\
+6 states: 3 unique, 1 without impact, 1 without contact, 1 refused
+smallest margins: 3.1e-1 1 (line 1), 4.1e-1 3 (line 3), 5.0e-1 2 (line 2)
+all outcomes slide for want of friction: 2; most is needed by 3 (line 3): 2.000
+       2 x disc stick
+       1 x disc slide+
+       1 x disc slide-
+";
+    assert!(run.stderr.ends_with(for_people), "{}", run.stderr);
+}
+
+#[test]
+fn a_single_state_has_a_summary_only_where_it_is_asked_for() {
+    assert_eq!(batch("single", &["-", "--friction", "1"], strike(1, 0.0)).stderr, "");
+    let path = file("single.json", "");
+    let run = batch("single", &["-", "--friction", "1", "--summary", &path], strike(1, 0.0));
+    assert!(run.stderr.starts_with("1 state: 1 unique\n"), "{}", run.stderr);
+    assert_eq!(parsed(&std::fs::read(path).expect("written"))["states"], 1);
+}
+
+#[test]
+fn a_summary_that_cannot_be_written_is_told_before_the_work() {
+    let run = batch("unwritable", &["-", "--summary", "nowhere/at/all.json"], strike(1, 0.0));
+    assert_eq!((run.status, run.stdout.len()), (1, 0));
+    assert!(run.stderr.starts_with("error: the output cannot be written: nowhere/at/all.json: "), "{}", run.stderr);
+}

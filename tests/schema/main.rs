@@ -1,0 +1,244 @@
+//! The schemas that `heelstrike schema` prints against what is really read and written.
+//!
+//! Inputs: a full sample is changed in every place and in every way; schema and reader must agree about each. Results: every
+//! form of result that the command writes must be valid, and not with a field more or less.
+
+use assert_cmd::Command;
+use heelstrike::report::{Problem, schema};
+use heelstrike::state::{Defaults, State};
+use heelstrike::{Error, Reason, Robot};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+use validator::is_valid;
+
+mod validator;
+
+fn robot() -> Robot {
+    Robot::from_urdf(&std::fs::read_to_string("urdf/ramone.urdf").expect("the file")).expect("a robot")
+}
+
+/// What the command writes, whatever its exit status.
+fn written(arguments: &[&str], stdin: &str) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    let output = command.args(arguments).write_stdin(stdin).output().expect("the command runs");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// The sample, each of its values replaced by each of some others, left out, and each object with an unknown field.
+fn variants(sample: &Value) -> Vec<Value> {
+    let others = [
+        json!(null),
+        json!(true),
+        json!("x"),
+        json!("infinite"),
+        json!(-1),
+        json!(0),
+        json!(1.5),
+        json!(2),
+        json!([]),
+        json!({}),
+        json!([0, 0]),
+        json!([0, 0, 0]),
+        json!([[0, 0]]),
+        json!(["left_hip", "left_hip"]),
+    ];
+    let mut variants = others.to_vec();
+    match sample {
+        Value::Object(fields) => {
+            for (name, field) in fields {
+                let with = |field: Option<Value>| {
+                    let mut object = fields.clone();
+                    object.remove(name);
+                    object.extend(field.map(|field| (name.clone(), field)));
+                    Value::Object(object)
+                };
+                variants.push(with(None));
+                variants.extend(self::variants(field).into_iter().map(|field| with(Some(field))));
+            }
+            let mut more: Map<String, Value> = fields.clone();
+            more.insert("unknown?".into(), json!(0));
+            variants.push(more.into());
+        }
+        Value::Array(entries) => {
+            for at in 0..entries.len() {
+                let with = |entry: Option<Value>| {
+                    let mut entries = entries.clone();
+                    entries.splice(at..=at, entry);
+                    Value::Array(entries)
+                };
+                variants.push(with(None));
+                variants.extend(self::variants(&entries[at]).into_iter().map(|entry| with(Some(entry))));
+            }
+        }
+        _ => {}
+    }
+    variants
+}
+
+/// Checks that schema and reader agree about every variant of the sample, but for what only the reader can know.
+fn assert_agreement<T>(
+    schema: &Value,
+    sample: &Value,
+    read: impl Fn(&str) -> Result<T, Error>,
+    beyond_a_schema: impl Fn(&Reason) -> bool,
+) {
+    assert!(is_valid(schema, sample), "{sample}");
+    read(&sample.to_string()).map_err(|error| panic!("{error}: {sample}")).ok();
+    let (mut accepted, mut refused) = (0, 0);
+    for variant in variants(sample) {
+        match read(&variant.to_string()) {
+            Ok(_) => {
+                assert!(is_valid(schema, &variant), "accepted, but not by the schema: {variant}");
+                accepted += 1;
+            }
+            Err(error) if beyond_a_schema(error.reason()) => {}
+            Err(error) => {
+                assert!(!is_valid(schema, &variant), "{error}, but the schema accepts it: {variant}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(accepted > 20 && refused > 50, "{accepted} accepted, {refused} refused");
+}
+
+#[test]
+fn schema_and_reader_of_states_agree() {
+    let robot = robot();
+    let scene = json!({
+        "id": "k17",
+        "position": {"base": {"x": 0.0, "z": 0.44, "pitch": 0.0}, "joints": {"left_hip": 0.7}},
+        "velocity": {"base": {"x": 0.1}, "joints": {"left_hip": 0.0}},
+        "friction": {"default": 0.8, "left_foot": "infinite"},
+        "restitution": {"default": 0, "left_foot": 1},
+        "ground": {"slope": 0.1},
+        "held": ["left_hip", "left_knee"],
+        "rotor_inertia": {"left_knee": 0.01},
+        "contacts": [{"link": "left_foot", "offset": [0, 0, -0.1], "radius": 0.1}],
+        "impulse": [{"link": "torso", "offset": [0, 0, 0], "vector": [0, 0]}],
+    });
+    let standing = json!({"id": 1, "stance": "left_foot", "friction": 0.8, "restitution": 0.5,
+        "position": {"base": {"pitch": 0.1}}});
+    let read = |text: &str| State::from_json(text, &robot, &Defaults::default());
+    // Which names the robot has, and that a stance places the base.
+    let beyond = |reason: &Reason| matches!(reason, Reason::UnknownName { .. } | Reason::Inconsistent(_));
+    let shape = |reason: &Reason| matches!(reason, Reason::Inconsistent(text) if text.starts_with("expected"));
+    for sample in [scene, standing] {
+        assert_agreement(&schema::state(), &sample, read, |reason| beyond(reason) && !shape(reason));
+    }
+}
+
+#[test]
+fn schema_and_reader_of_problems_agree() {
+    let contact = json!({"id": "rod", "delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1.0]],
+        "friction": [0.8], "restitution": [0.0], "names": ["tip"]});
+    let dynamics = json!({"mass_matrix": [[2, 0], [0, 2]], "contact_jacobian": [[1, 0], [0, 1]], "velocity": [0, -1],
+        "friction": "infinite", "restitution": 0.5});
+    let defaults = Defaults { friction: Some(heelstrike::impact::Friction::Infinite) };
+    let read = |text: &str| Problem::from_json(text, &defaults);
+    // Whether the matrices fit each other and are those of a body.
+    let beyond = |reason: &Reason| match reason {
+        Reason::Inconsistent(text) => !text.starts_with("expected") && !text.starts_with("the problem has both"),
+        Reason::OutOfRange { what, .. } => what != "friction" && what != "restitution",
+        Reason::Singular(_) => true,
+        _ => false,
+    };
+    for sample in [contact, dynamics] {
+        assert_agreement(&schema::problem(), &sample, read, beyond);
+    }
+}
+
+#[test]
+fn the_schema_of_states_has_the_fields_that_the_reader_names() {
+    let robot = robot();
+    let schema = schema::state();
+    let of = |pointer: &str| {
+        let properties = schema.pointer(pointer).and_then(Value::as_object).expect("properties");
+        properties.keys().cloned().collect::<Vec<_>>()
+    };
+    for (text, pointer) in [
+        (json!({"?": 0}), "/properties"),
+        (json!({"position": {"?": 0}}), "/$defs/Coordinates/properties"),
+        (json!({"velocity": {"base": {"?": 0}}}), "/$defs/Base/properties"),
+        (json!({"ground": {"?": 0}}), "/$defs/Ground/properties"),
+        (json!({"contacts": [{"?": 0}]}), "/$defs/Contact/properties"),
+        (json!({"impulse": [{"?": 0}]}), "/$defs/AppliedImpulse/properties"),
+    ] {
+        let error = State::from_json(&text.to_string(), &robot, &Defaults::default()).expect_err("an unknown field");
+        let hint = error.remedy().and_then(|hint| hint.strip_prefix("the fields here are ")).expect("the known fields");
+        // Those that the reader knows only in order to refuse them.
+        let mut known: Vec<&str> =
+            hint.split(", ").filter(|field| !["loops", "uncertainty", "profile"].contains(field)).collect();
+        known.sort_unstable();
+        assert_eq!(of(pointer), known, "{text}");
+    }
+}
+
+#[test]
+fn every_example_is_valid() {
+    let files = |folder: &str| {
+        let entries = std::fs::read_dir(folder).expect("a folder");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        let json = paths.filter(|path| path.extension().is_some_and(|ending| ending == "json" || ending == "ndjson"));
+        json.collect::<Vec<_>>()
+    };
+    let values = |path: &Path| {
+        let text = std::fs::read_to_string(path).expect("the example");
+        let values: Result<Vec<Value>, _> = serde_json::Deserializer::from_str(&text).into_iter().collect();
+        values.unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    };
+    let check = |schema: &Value, folder: &str, at_least: usize| {
+        let files = files(folder);
+        assert!(files.len() >= at_least, "{folder}");
+        for path in files {
+            for value in values(&path) {
+                assert!(is_valid(schema, &value), "{}: {value}", path.display());
+            }
+        }
+    };
+    check(&schema::state(), "examples", 7);
+    check(&schema::problem(), "examples/problems", 3);
+}
+
+#[test]
+fn every_form_of_result_is_valid() {
+    let schema = schema::result();
+    let ramone = ["impact", "urdf/ramone.urdf", "examples/ramone.json", "--format", "json"];
+    let pdw = ["batch", "urdf/pdw.urdf", "-"];
+    let rod = ["solve", "examples/problems/rod.json", "--format", "json"];
+    let lines = "{\"id\": 1, \"stance\": \"left_leg\", \"friction\": 0.5}\n{\"id\": \"k2\", \"frict\": 0.5}\n";
+    let contacts: Vec<Value> = (0..11).map(|k| json!({"link": "left_leg", "offset": [k, 0, 0]})).collect();
+    let many = json!({"id": 1, "friction": 1, "contacts": contacts}).to_string();
+    let mut seen = 0;
+    for (arguments, input) in [
+        (&ramone[..], ""),
+        (&[&ramone[..], &["--explain", "--matrices"]].concat(), ""),
+        (&[&ramone[..], &["--brief"]].concat(), ""),
+        (&pdw, lines),
+        (&[&pdw[..], &["--brief"]].concat(), lines),
+        (&[&pdw[..], &["--matrices"]].concat(), &many),
+        (&[&pdw[..], &["--base", "fixed"]].concat(), "{\"friction\": 1}"),
+        (&rod, ""),
+        (&[&rod[..], &["--explain", "--matrices"]].concat(), ""),
+        (&["solve", "examples/problems/painleve_rod.json", "--format", "json", "--explain"], ""),
+    ] {
+        for line in written(arguments, input).lines() {
+            let result: Value = serde_json::from_str(line).expect("a line of JSON");
+            assert!(is_valid(&schema, &result), "{arguments:?}: {line}");
+            let mut more = result.clone();
+            more["unknown?"] = json!(0);
+            assert!(!is_valid(&schema, &more), "{arguments:?}");
+            seen += 1;
+        }
+    }
+    assert_eq!(seen, 12);
+}
+
+#[test]
+fn the_command_prints_the_schemas_and_no_other() {
+    for (name, expected) in [("state", schema::state()), ("result", schema::result()), ("problem", schema::problem())] {
+        let printed: Value = serde_json::from_str(&written(&["schema", name], "")).expect("JSON");
+        assert_eq!(printed, expected);
+        assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    }
+    assert_eq!(written(&["schema", "study"], ""), "");
+}

@@ -1,0 +1,287 @@
+//! Touchdowns in recorded gaits: found where the references in `tests/data/gaits` have them, with the same contacts and
+//! modes (here); and what decides what is a touchdown, on a foot that moves up and down (`motion`).
+
+mod motion;
+
+use heelstrike::Robot;
+use heelstrike::impact::Friction;
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::scene::NamedContact;
+use heelstrike::state::Defaults;
+use heelstrike::table::{Header, Rates};
+use heelstrike::touchdown::{At, Difference, Sample, Sampled, Touchdown, Touching, find, rates};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+#[derive(Deserialize)]
+struct Reference {
+    states: Vec<Expected>,
+}
+
+#[derive(Deserialize)]
+struct Expected {
+    rule: String,
+    csv_row: usize,
+    shift_z: f64,
+    striking: String,
+    touching: Vec<String>,
+    gap: Vec<f64>,
+    velocity_before: Vec<[f64; 2]>,
+    by_friction: BTreeMap<String, Outcomes>,
+}
+
+#[derive(Deserialize)]
+struct Outcomes {
+    outcomes: Vec<Outcome>,
+}
+
+#[derive(Deserialize)]
+struct Outcome {
+    modes: Vec<String>,
+    velocity_after: Vec<[f64; 2]>,
+    margin: Option<f64>,
+}
+
+fn data(path: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(path);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn rabbit() -> (Robot, Vec<NamedContact>) {
+    let robot = Robot::from_urdf(&data("robots/rabbit/five_link_walker.urdf")).unwrap();
+    let feet = ["right_shin", "left_shin"].map(|link| NamedContact {
+        link: robot.link(link).unwrap(),
+        offset: [0.0, 0.0, 0.4],
+        radius: 0.0,
+    });
+    (robot, feet.into())
+}
+
+/// The samples of a table, known by their lines.
+fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
+    let mut lines = (1..).zip(table.lines());
+    let (_, first) = lines.next().unwrap();
+    let header = Header::read(first.as_bytes(), robot, from).unwrap();
+    let mut rows = header.rows();
+    lines
+        .map(|(line, record)| {
+            let row = rows.row(record.as_bytes(), line).unwrap().unwrap();
+            let state = row.state(robot, &Defaults::default()).map_err(|error| (line, error))?;
+            let time = row.time().map_err(|error| (line, error))?;
+            Ok(Sample { time, state, source: line })
+        })
+        .collect()
+}
+
+fn reference(name: &str) -> Reference {
+    serde_json::from_str(&data(&format!("gaits/{name}.reference.json"))).unwrap()
+}
+
+/// The touchdowns of the rabbit.
+fn found(samples: Vec<Sampled<usize>>, at: At, touching: Touching) -> Vec<Touchdown<usize>> {
+    let (robot, feet) = rabbit();
+    found_of(&robot, &feet, samples, at, touching)
+}
+
+fn found_of(
+    robot: &Robot,
+    feet: &[NamedContact],
+    samples: Vec<Sampled<usize>>,
+    at: At,
+    touching: Touching,
+) -> Vec<Touchdown<usize>> {
+    let touchdowns = find(samples.into_iter(), robot, feet, at, touching).unwrap();
+    touchdowns.map(|touchdown| touchdown.expect("no row is refused")).collect()
+}
+
+#[test]
+fn the_rabbits_touchdowns_are_those_of_the_reference() {
+    let reference = reference("rabbit_walk");
+    let (robot, _) = rabbit();
+    let samples = samples(&data("gaits/rabbit_walk.csv"), &robot, Rates::Columns);
+    let touchdowns = found(samples, At::Row, Touching::default());
+    assert_eq!(touchdowns.len(), reference.states.len());
+    for (touchdown, expected) in touchdowns.iter().zip(&reference.states) {
+        assert_eq!(touchdown.row, expected.csv_row);
+        assert_eq!(touchdown.source, expected.csv_row + 2, "the line of the row");
+        assert_eq!(touchdown.striking, expected.striking);
+        // Sums of five links' positions, each of order one, rounded.
+        assert!((touchdown.shift_z - expected.shift_z).abs() < 1e-14, "{} {}", touchdown.shift_z, expected.shift_z);
+        for (friction, expected_outcomes) in &expected.by_friction {
+            let mut state = touchdown.state.clone();
+            let mu = friction.parse().map_or(Friction::Infinite, Friction::Finite);
+            state.scene.friction.default = Some(mu);
+            let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
+            let names: Vec<&str> = impact.contacts.iter().map(|contact| contact.name.as_str()).collect();
+            assert_eq!(names, expected.touching);
+            for (contact, gap) in impact.contacts.iter().zip(&expected.gap) {
+                assert!((contact.gap - gap).abs() < 1e-14, "{} {gap}", contact.gap);
+            }
+            close(&impact.velocity_before, &expected.velocity_before);
+            let analysis = impact.analysis.unwrap();
+            assert_eq!(analysis.outcomes.len(), expected_outcomes.outcomes.len());
+            for (outcome, expected) in analysis.outcomes.iter().zip(&expected_outcomes.outcomes) {
+                let modes: Vec<String> = outcome.modes.iter().map(ToString::to_string).collect();
+                assert_eq!(modes, expected.modes, "row {} at friction {friction}", touchdown.row);
+                close(&outcome.velocity_after, &expected.velocity_after);
+                assert!((outcome.margin.unwrap() - expected.margin.unwrap()).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+/// Contact velocities of order one through a Delassus matrix of condition ten.
+fn close(found: &[[f64; 2]], expected: &[[f64; 2]]) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+}
+
+#[test]
+fn a_recorded_run_has_the_touchdowns_of_the_reference_and_no_others() {
+    let reference = reference("h1_run");
+    let robot = Robot::from_urdf(&data("gaits/h1_planar.urdf")).unwrap();
+    let table = data("gaits/h1_run.csv");
+    for (rule, touching, states) in
+        [("stance", "slow:0.35,0.02", 9), ("5mm", "near:0.005", 2), ("20mm", "near:0.02", 5)]
+    {
+        let samples = samples(&table, &robot, Rates::Columns);
+        let touchdowns = found_of(&robot, &[], samples, At::Row, touching.parse().unwrap());
+        assert_eq!(touchdowns.len(), 9);
+        let expected: Vec<&Expected> = reference.states.iter().filter(|state| state.rule == rule).collect();
+        assert_eq!(expected.len(), states);
+        for expected in expected {
+            let foot = |contact: &str| contact.split('/').next().unwrap_or_default().to_owned();
+            let near = touchdowns.iter().find(|touchdown| {
+                touchdown.row.abs_diff(expected.csv_row) <= 1 && foot(&touchdown.striking) == foot(&expected.striking)
+            });
+            let touchdown = near.unwrap_or_else(|| panic!("{rule}: none at row {}", expected.csv_row));
+            for (friction, outcomes) in &expected.by_friction {
+                let mut state = touchdown.state.clone();
+                let mu = friction.parse().map_or(Friction::Infinite, Friction::Finite);
+                state.scene.friction.default = Some(mu);
+                let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
+                let links: Vec<String> = impact.contacts.iter().map(|contact| foot(&contact.name)).collect();
+                assert_eq!(links, expected.touching.iter().map(|contact| foot(contact)).collect::<Vec<_>>());
+                let mode = |outcome: &heelstrike::impact::Outcome| -> Vec<String> {
+                    outcome.modes.iter().map(ToString::to_string).collect()
+                };
+                let modes: Vec<Vec<String>> = impact.analysis.unwrap().outcomes.iter().map(mode).collect();
+                let expected_modes: Vec<Vec<String>> =
+                    outcomes.outcomes.iter().map(|outcome| outcome.modes.clone()).collect();
+                assert_eq!(modes, expected_modes, "{rule}: row {} at friction {friction}", expected.csv_row);
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_of_one_time_are_taken_as_they_are_also_by_crossing() {
+    let (robot, _) = rabbit();
+    let table = data("gaits/rabbit_walk.csv");
+    let (row, crossing) = (At::Row, At::Crossing);
+    let [row, crossing] =
+        [row, crossing].map(|at| found(samples(&table, &robot, Rates::Columns), at, Touching::Strike));
+    assert_eq!(row.len(), 4);
+    for (row, crossing) in row.iter().zip(&crossing) {
+        assert_eq!((row.row, row.time), (crossing.row, crossing.time));
+        assert_eq!(row.state.position, crossing.state.position);
+    }
+}
+
+#[test]
+fn velocities_from_the_time_stop_short_of_the_impact() {
+    let (robot, _) = rabbit();
+    let table = data("gaits/rabbit_walk.csv");
+    let recorded = samples(&table, &robot, Rates::Columns);
+    // The same table without its columns of velocities.
+    let kept = table.lines().next().unwrap().split(',').take_while(|name| !name.starts_with("v_")).count();
+    let bare: String =
+        table.lines().map(|line| line.split(',').take(kept).collect::<Vec<_>>().join(",") + "\n").collect();
+    for difference in [Difference::Central, Difference::Backward] {
+        let bare = samples(&bare, &robot, Rates::Time);
+        let computed: Vec<Sampled<usize>> = rates(bare.into_iter(), difference).collect();
+        assert_eq!(computed.len(), recorded.len());
+        for (computed, recorded) in computed.iter().zip(&recorded) {
+            let (computed, recorded) = (computed.as_ref().unwrap(), recorded.as_ref().unwrap());
+            assert_eq!(computed.source, recorded.source);
+            for (computed_rate, rate) in computed.state.velocity.iter().zip(&recorded.state.velocity) {
+                // One-sided over 2 ms, of joints that speed up at up to 100 rad/s^2; across an impact it would be 5 rad/s.
+                assert!((computed_rate - rate).abs() < 0.3, "line {}: {computed_rate} {rate}", computed.source);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_robot_without_feet_is_refused() {
+    let (robot, _) = rabbit();
+    let none = std::iter::empty::<Sampled<()>>();
+    let error = find(none, &robot, &[], At::Row, Touching::Strike).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains("foot"), "{error}");
+    assert!(error.remedy().is_some_and(|hint| hint.contains("--contact")));
+}
+
+#[test]
+fn touching_is_read_as_it_is_written() {
+    for text in ["strike", "slow:0.35,0.02", "near:0.005"] {
+        assert_eq!(text.parse::<Touching>().unwrap().to_string(), text);
+    }
+    for text in ["", "slow:0.35", "slow:-1,0", "near", "near:nan", "touch"] {
+        assert!(text.parse::<Touching>().is_err(), "{text}");
+    }
+}
+
+/// What `heelstrike batch` writes about the rabbit's walk.
+fn batch(arguments: &[&str]) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let output = assert_cmd::Command::new(env!("CARGO_BIN_EXE_heelstrike"))
+        .arg("batch")
+        .args([root.join("robots/rabbit/five_link_walker.urdf"), root.join("gaits/rabbit_walk.csv")])
+        .args([
+            "--contact",
+            "right_shin:0,0,0.4",
+            "--contact",
+            "left_shin:0,0,0.4",
+            "--touchdowns",
+            "--friction",
+            "0.8",
+        ])
+        .args(arguments)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_command_tells_of_each_touchdown_where_it_was_and_who_strikes() {
+    let lines = batch(&["--at", "row"]);
+    let results: Vec<serde_json::Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let rows: Vec<u64> = results.iter().map(|result| result["touchdown"]["row"].as_u64().unwrap()).collect();
+    assert_eq!(rows, [89, 328, 593, 845]);
+    let touchdown = &results[1]["touchdown"];
+    assert_eq!(touchdown["striking"], "left_shin");
+    assert_eq!((&touchdown["at"], &touchdown["touching"]), (&"row".into(), &"slow:0.35,0.02".into()));
+    assert!((touchdown["time"].as_f64().unwrap() - 0.652).abs() < 0.01, "{touchdown}");
+    assert_eq!(results[1]["outcomes"][0]["modes"], serde_json::json!(["separate", "stick"]));
+}
+
+#[test]
+fn the_command_writes_touchdowns_as_a_table_and_carries_the_time() {
+    let table = batch(&["--touching", "strike", "--output-format", "csv"]);
+    let rows: Vec<BTreeMap<String, String>> =
+        csv::Reader::from_reader(table.as_bytes()).deserialize().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 4);
+    for (row, (number, striking)) in rows.iter().zip([(89, "right"), (328, "left"), (593, "right"), (845, "left")]) {
+        assert_eq!(row["touchdown_row"], number.to_string());
+        assert_eq!(row["touchdown_striking"], format!("{striking}_shin"));
+        assert_eq!(row[&format!("mode_{striking}_shin")], "stick");
+        assert_eq!(row["time"], row["touchdown_time"]);
+        let other = if striking == "left" { "mode_right_shin" } else { "mode_left_shin" };
+        assert_eq!(row[other], "", "the other foot takes no part");
+    }
+}

@@ -1,0 +1,173 @@
+//! What is a touchdown and which state is taken, on feet that move up and down.
+
+use super::samples;
+use heelstrike::Robot;
+use heelstrike::table::Rates;
+use heelstrike::touchdown::{At, Difference, Touchdown, Touching, find, rates};
+
+/// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own.
+const LIFT: &str = r#"<robot name="lift">
+    <link name="block"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+        <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+    <link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+        <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+    <joint name="ja" type="prismatic"><parent link="block"/><child link="a"/><axis xyz="0 0 1"/>
+        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
+    <joint name="jb" type="prismatic"><parent link="block"/><child link="b"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
+        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
+</robot>"#;
+
+/// The touchdowns of both feet: rows of time, height of a, height of b.
+fn lifted(rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Touchdown<usize>> {
+    let robot = Robot::from_urdf(LIFT).unwrap();
+    let mut table = "time,q_base_z,q_ja,q_jb\n".to_owned();
+    // The sphere's lowest point is 0.1 below its link.
+    table.extend(rows.iter().map(|[time, a, b]| format!("{time},0.1,{a},{b}\n")));
+    let samples = samples(&table, &robot, Rates::Time);
+    let samples: Vec<_> = rates(samples.into_iter(), Difference::Backward).collect();
+    let touchdowns = find(samples.into_iter(), &robot, &[], at, touching).unwrap();
+    touchdowns.map(|touchdown| touchdown.expect("no row is refused")).collect()
+}
+
+/// Rows of 10 ms at which foot a has these heights and foot b stands at 0.
+fn one_foot(heights: &[f64]) -> Vec<[f64; 3]> {
+    (0..).zip(heights).map(|(at, height)| [f64::from(at) * 0.01, *height, 0.0]).collect()
+}
+
+#[test]
+fn the_state_is_the_last_row_above_the_level_on_which_the_foot_comes_to_rest() {
+    let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.005, 0.005, 0.05]);
+    let touchdowns = lifted(&rows, At::Row, Touching::Strike);
+    assert_eq!(touchdowns.len(), 1);
+    let Touchdown { row, striking, shift_z, state, .. } = &touchdowns[0];
+    assert_eq!((*row, striking.as_str()), (4, "a"));
+    assert!((shift_z + 0.01).abs() < 1e-15);
+    assert!((state.position[1] - 0.09).abs() < 1e-15);
+    assert!((state.velocity[3] + 1.0).abs() < 1e-12, "backward: 10 mm in 10 ms");
+}
+
+#[test]
+fn crossing_interpolates_to_two_millimetres_above_that_level() {
+    let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.004, 0.004, 0.004]);
+    let touchdowns = lifted(&rows, At::Crossing, Touching::Strike);
+    assert_eq!(touchdowns.len(), 1);
+    // From 10 mm to 4 mm in 10 ms: 6 mm are passed after two thirds.
+    assert!((touchdowns[0].time - (0.04 + 0.01 * 2.0 / 3.0)).abs() < 1e-12, "{}", touchdowns[0].time);
+    assert!((touchdowns[0].state.position[3] - 0.006).abs() < 1e-12);
+    assert!((touchdowns[0].shift_z + 0.006).abs() < 1e-12);
+    assert_eq!(touchdowns[0].row, 4);
+}
+
+#[test]
+fn what_does_not_reach_the_ground_or_was_hardly_above_it_is_no_touchdown() {
+    // A swinging foot that stops 3 cm above the ground; one that comes down by 11 mm; one that sinks slowly.
+    for heights in [
+        vec![0.10, 0.08, 0.06, 0.04, 0.03, 0.03, 0.05],
+        vec![0.0, 0.011, 0.006, 0.0, 0.0, 0.0],
+        (0..100).map(|row| 0.04 - 0.0004 * f64::from(row)).collect(),
+    ] {
+        assert!(lifted(&one_foot(&heights), At::Row, Touching::Strike).is_empty(), "{heights:?}");
+    }
+    assert_eq!(lifted(&one_foot(&[0.0, 0.013, 0.006, 0.0, 0.0, 0.0]), At::Row, Touching::Strike).len(), 1);
+}
+
+#[test]
+fn a_clip_may_end_with_the_touchdown() {
+    let swing = [0.05, 0.04, 0.03, 0.02, 0.01, 0.0];
+    let ends = |heights: &[f64], at| {
+        let touchdowns = lifted(&one_foot(heights), at, Touching::Strike);
+        touchdowns.iter().map(|touchdown| (touchdown.row, touchdown.time)).collect::<Vec<_>>()
+    };
+    assert_eq!(ends(&swing, At::Row), [(5, 0.05)]);
+    assert_eq!(ends(&swing, At::Crossing), [(5, 0.05)]);
+    assert_eq!(ends(&swing[..5], At::Row), [], "it ends in the air");
+    // Beyond the ground: where the foot crosses it.
+    let through = [0.05, 0.04, 0.03, 0.02, 0.01, -0.01];
+    assert_eq!(ends(&through, At::Row), [(4, 0.04)]);
+    let [(4, time)] = ends(&through, At::Crossing)[..] else { panic!("one touchdown after row 4") };
+    assert!((time - 0.045).abs() < 1e-12, "{time}");
+}
+
+#[test]
+fn a_new_clip_does_not_go_on_with_the_old_ones_descent() {
+    let swing = [0.05, 0.04, 0.03, 0.02];
+    let clips = |start: f64| -> Vec<[f64; 3]> {
+        let mut rows = one_foot(&swing);
+        rows.extend((0..4).map(|row| [start + f64::from(row) * 0.01, 0.0, 0.0]));
+        rows
+    };
+    assert!(lifted(&clips(0.0), At::Row, Touching::Strike).is_empty(), "back in time");
+    assert!(lifted(&clips(1.0), At::Row, Touching::Strike).is_empty(), "after a pause");
+    assert_eq!(lifted(&clips(0.04), At::Row, Touching::Strike).len(), 1, "the next row");
+}
+
+#[test]
+fn who_touches_is_asked_of_every_other_foot() {
+    // b stands 5 mm high, or 30 mm, or comes down as well.
+    let swing = [0.05, 0.04, 0.03, 0.02, 0.01, 0.0, 0.0, 0.0];
+    let with = |b: fn(f64) -> f64, touching: &str| {
+        let rows: Vec<[f64; 3]> = one_foot(&swing).iter().map(|[time, a, _]| [*time, *a, b(*a)]).collect();
+        let touching: Touching = touching.parse().unwrap();
+        let touchdowns = lifted(&rows, At::Row, touching);
+        let contacts = touchdowns[0].state.scene.contacts.as_ref().unwrap();
+        (touchdowns[0].striking.clone(), contacts.iter().map(|contact| contact.link).collect::<Vec<_>>())
+    };
+    let [a, b] = [1, 2];
+    assert_eq!(with(|_| 0.005, "strike"), ("a".into(), vec![a]));
+    assert_eq!(with(|_| 0.005, "slow"), ("a".into(), vec![a, b]));
+    assert_eq!(with(|_| 0.005, "slow:0.35,0.004"), ("a".into(), vec![a]));
+    assert_eq!(with(|_| 0.040, "slow"), ("a".into(), vec![a]));
+    assert_eq!(with(|a| a + 0.001, "slow"), ("a".into(), vec![a]), "it moves at 1 m/s");
+    assert_eq!(with(|a| a + 0.001, "near:0.002"), ("a".into(), vec![a, b]));
+    assert_eq!(with(|a| a + 0.001, "near:0.0005"), ("a".into(), vec![a]));
+}
+
+#[test]
+fn feet_that_come_down_together_are_one_touchdown() {
+    let hop = |apart: f64| {
+        let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.0, 0.0, 0.0]);
+        let rows: Vec<[f64; 3]> = rows.iter().map(|[time, a, _]| [*time, *a, a + apart]).collect();
+        let touchdowns = lifted(&rows, At::Crossing, Touching::Strike);
+        touchdowns.iter().map(|touchdown| touchdown.state.scene.contacts.as_ref().unwrap().len()).collect::<Vec<_>>()
+    };
+    assert_eq!(hop(0.0), [2]);
+    assert_eq!(hop(1e-7), [2]);
+    assert_eq!(hop(1e-4), [1, 1]);
+}
+
+#[test]
+fn a_refused_row_stays_in_its_place() {
+    let robot = Robot::from_urdf(LIFT).unwrap();
+    let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
+    let heights = ["0.05", "0.04", "x", "0.02", "0.01", "0", "0", "0"];
+    table.extend((0..).zip(heights).map(|(row, height)| format!("{},0.1,{height},-1\n", f64::from(row) * 0.01)));
+    let samples = samples(&table, &robot, Rates::Columns);
+    let found: Vec<_> = find(samples.into_iter(), &robot, &[], At::Row, Touching::Strike).unwrap().collect();
+    assert_eq!(found.len(), 2);
+    let (line, error) = found[0].as_ref().unwrap_err();
+    assert_eq!((*line, error.to_string().as_str()), (4, "4:10: q_ja: expected a number, found \"x\""));
+    assert_eq!(found[1].as_ref().unwrap().row, 4);
+}
+
+#[test]
+fn numbers_beyond_all_measure_are_refused_and_end() {
+    let rows = one_foot(&[1e308, -1e308, 1e308, -1e308, -1e308]);
+    let robot = Robot::from_urdf(LIFT).unwrap();
+    for base in ["0.1", "1e308", "-1e308"] {
+        let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
+        table.extend(rows.iter().map(|[time, a, _]| format!("{time},{base},{a:e},-1\n")));
+        for at in [At::Row, At::Crossing] {
+            let samples = samples(&table, &robot, Rates::Columns);
+            for found in find(samples.into_iter(), &robot, &[], at, Touching::default()).unwrap() {
+                let finite = |touchdown: &Touchdown<usize>| touchdown.state.position.iter().all(|q| q.is_finite());
+                assert!(found.as_ref().map_or(true, finite));
+            }
+        }
+        let bare = table.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect::<String>();
+        let computed: Vec<_> = rates(samples(&bare, &robot, Rates::Time).into_iter(), Difference::Central).collect();
+        assert_eq!(computed.len(), rows.len());
+        let error = computed[0].as_ref().map(|_| ()).unwrap_err();
+        assert_eq!(error.1.to_string(), "time: the velocity to the next row is beyond all numbers");
+    }
+}
