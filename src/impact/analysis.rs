@@ -6,21 +6,23 @@
 //!
 //! Each combination is first read in f64 with an estimate of its rounding; what lies within it is read again in
 //! [`Ball`] arithmetic, which knows exact zeros; what is still open (vanishing pivots, contacts that depend on each other)
-//! goes to the redundant stage. What none of them tells is undecided, and nothing is guessed.
+//! goes to the redundant stage, and, where the matrices were given and so are exact, to exact rationals. What none of them
+//! tells is undecided, and nothing is guessed.
 
 use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
 use super::mode::Mode;
 use super::outcome::{Analysis, Because, Motion, Outcome, Rejection, Verdict};
 use super::problem::{ContactProblem, Entry};
-use super::reading::{Reading, read_ball, read_f64};
+use super::reading::{Reading, read_f64, read_signed};
 use super::redundant::{Judged, Rows};
 use super::region::explanation;
 use super::sign::{Scale, Sign};
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
-use crate::scalar::Ball;
+use crate::scalar::{Ball, Exact, Real};
 use nalgebra::DMatrix;
+use std::cmp::Ordering;
 
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
@@ -56,7 +58,8 @@ impl Scratch {
         self.scale.measure(problem);
         self.tableau.load(problem);
         let (scale, labels) = (&self.scale, &mut self.labels);
-        let mut second = SecondLook { problem, scale, rows: None, balls: &mut self.balls, loaded: false };
+        let mut second =
+            SecondLook { problem, scale, rows: None, regular: None, balls: &mut self.balls, loaded: false };
         let mut found = Found { explain, ..Found::default() };
         let mut regular = contacts == 0;
         self.tableau.visit(|leaf| {
@@ -69,7 +72,8 @@ impl Scratch {
                 if reading.sign == Sign::Undecided {
                     second.look(&leaf, modes, &mut found);
                 } else {
-                    found.take_leaf(&leaf, modes, problem, reading, index(leaf.pivots));
+                    let motion = || best_motion(&leaf, modes, problem, rounding);
+                    found.take_leaf(modes, problem, &reading, index(leaf.pivots), motion);
                 }
             }
         });
@@ -146,6 +150,7 @@ struct SecondLook<'a> {
     problem: &'a ContactProblem,
     scale: &'a Scale,
     rows: Option<Rows>,
+    regular: Option<bool>,
     balls: &'a mut Tableau<Ball>,
     loaded: bool,
 }
@@ -155,11 +160,21 @@ impl SecondLook<'_> {
         self.rows.get_or_insert_with(|| Rows::of(self.problem, self.scale))
     }
 
+    fn regular(&mut self) -> bool {
+        if let Some(regular) = self.regular {
+            return regular;
+        }
+        let regular = self.rows().rank() == 2 * self.problem.contacts();
+        *self.regular.insert(regular)
+    }
+
     fn look(&mut self, leaf: &Leaf<'_, f64>, modes: &[Mode], found: &mut Found) {
         if self.scale.at_rest {
             let (problem, scale) = (self.problem, self.scale);
             let judged = self.rows().judge_at_rest(problem, scale, modes);
-            found.take_judged(modes, self.problem, judged, None);
+            let inside = judged.sign == Sign::Positive && judged.margin.is_none();
+            let index = if inside { self.rows().index(problem, scale, modes) } else { None };
+            found.take_judged(modes, problem, judged, index);
             return;
         }
         if !self.loaded {
@@ -167,16 +182,75 @@ impl SecondLook<'_> {
             self.loaded = true;
         }
         let leaf_of_balls = self.balls.leaf(modes);
-        let reading = read_ball(&leaf_of_balls, modes, self.problem, self.scale);
+        let reading = read_signed(&leaf_of_balls, modes, self.problem, self.scale, |ball| ball.mid);
         let pivots: Vec<f64> = leaf_of_balls.pivots.iter().map(|pivot| pivot.mid).collect();
+        let (problem, scale) = (self.problem, self.scale);
         if reading.sign != Sign::Undecided {
-            found.take_leaf(leaf, modes, self.problem, reading, index(&pivots));
+            let rounding = scale.rounding(leaf, problem);
+            let motion = || best_motion(leaf, modes, problem, rounding);
+            found.take_leaf(modes, problem, &reading, index(&pivots), motion);
             return;
         }
-        let (problem, scale) = (self.problem, self.scale);
-        let judged = self.rows().judge(problem, scale, modes);
+        // Exact elimination decides all but vanishing pivots, which a singular matrix is full of.
+        let given = problem.factor().is_none();
+        let judged = if given && self.regular() { None } else { Some(self.rows().judge(problem, scale, modes)) };
+        let open = judged.as_ref().is_none_or(|judged| judged.sign == Sign::Undecided);
+        if open
+            && given
+            && let Some((reading, index, motion)) = read_exactly(problem, scale, modes)
+        {
+            found.take_leaf(modes, problem, &reading, index, || motion);
+            return;
+        }
+        let judged = judged.unwrap_or_else(|| self.rows().judge(problem, scale, modes));
         let index = self.rows().index(problem, scale, modes);
         found.take_judged(modes, self.problem, judged, index);
+    }
+}
+
+/// Reads a combination of a problem whose matrices were given, and so are exact; with its index. None where a pivot
+/// vanishes.
+fn read_exactly(problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Option<(Reading, i8, Motion)> {
+    Exact::scope(|| {
+        let mut tableau = Tableau::<Exact>::new();
+        tableau.load(&problem.map(Exact::from_f64));
+        let leaf = tableau.leaf(modes);
+        let reading = read_signed(&leaf, modes, problem, scale, Exact::to_f64);
+        let pivots: Vec<f64> = leaf.pivots.iter().map(|pivot| pivot.to_f64()).collect();
+        let decided = reading.sign != Sign::Undecided;
+        decided.then(|| (reading, index(&pivots), motion(&leaf, modes, problem, Exact::to_f64)))
+    })
+}
+
+/// Impulses and velocities of a combination: those of its leaf, or exact but for one rounding where the leaf is ill
+/// conditioned and the matrices were given.
+fn best_motion(leaf: &Leaf<'_, f64>, modes: &[Mode], problem: &ContactProblem, rounding: f64) -> Motion {
+    let exactly = || {
+        let mut tableau = Tableau::<Exact>::new();
+        tableau.load(&problem.map(Exact::from_f64));
+        let leaf = tableau.leaf(modes);
+        let regular = leaf.pivots.iter().all(|pivot| pivot.compare_with_zero().is_some_and(Ordering::is_ne));
+        regular.then(|| motion(&leaf, modes, problem, Exact::to_f64))
+    };
+    let given = problem.factor().is_none();
+    let better = if given && rounding > F64_SERVES { Exact::scope(exactly) } else { None };
+    better.unwrap_or_else(|| motion(leaf, modes, problem, |number| number))
+}
+
+/// Scaled numbers whose rounding is below this are told as f64 has them.
+const F64_SERVES: f64 = 1e-12;
+
+/// Impulses and velocities of a leaf.
+fn motion<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem, nearest: impl Fn(T) -> f64) -> Motion {
+    let contacts = 0..problem.contacts();
+    let velocity = |contact: usize| {
+        let [c_t, xi_n] = leaf.velocity(contact).map(&nearest);
+        let c_t = if modes[contact] == Mode::Stick { 0.0 } else { c_t };
+        [c_t, xi_n - problem.bounce(contact)]
+    };
+    Motion {
+        impulse: contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)).collect(),
+        velocity_after: contacts.map(velocity).collect(),
     }
 }
 
@@ -210,34 +284,20 @@ struct Found {
 impl Found {
     fn take_leaf(
         &mut self,
-        leaf: &Leaf<'_, f64>,
         modes: &[Mode],
         problem: &ContactProblem,
-        reading: Reading,
+        reading: &Reading,
         index: i8,
+        motion: impl FnOnce() -> Motion,
     ) {
-        if reading.sign == Sign::Negative && !self.explain {
-            return;
-        }
-        let contacts = 0..problem.contacts();
-        let impulse = contacts.clone().map(|contact| leaf.impulse(contact)).collect();
-        let velocity_after = contacts
-            .map(|contact| {
-                let [c_t, xi_n] = leaf.velocity(contact);
-                let c_t = if modes[contact] == Mode::Stick { 0.0 } else { c_t };
-                [c_t, xi_n - problem.bounce(contact)]
-            })
-            .collect();
-        if reading.sign == Sign::Negative {
-            let solved = !matches!(reading.because, Because::NothingHolds { .. });
-            let motion = solved.then_some(Motion { impulse, velocity_after });
-            self.reject(modes, reading.because, reading.margin, motion);
-        } else {
-            let index = (!reading.border).then_some(index);
-            let mut outcome = outcome(modes, problem, Motion { impulse, velocity_after });
-            outcome.index = index;
+        if reading.sign != Sign::Negative {
+            let mut outcome = outcome(modes, problem, motion());
+            outcome.index = (!reading.border).then_some(index);
             outcome.margin = reading.margin;
             self.outcomes.push(outcome);
+        } else if self.explain {
+            let solved = !matches!(reading.because, Because::NothingHolds { .. });
+            self.reject(modes, reading.because, reading.margin, solved.then(motion));
         }
     }
 
@@ -296,7 +356,7 @@ fn outcome(modes: &[Mode], problem: &ContactProblem, motion: Motion) -> Outcome 
     let needed = |(&mode, l): (&Mode, &Vector<f64>)| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
     Outcome {
         modes: modes.to_vec(),
-        energy_loss: -0.5 * work,
+        energy_loss: 0.0 - 0.5 * work,
         impulse_unique: true,
         friction_needed: modes.iter().zip(&impulse).map(needed).collect(),
         index: None,

@@ -20,8 +20,8 @@ use super::sign::{Scale, Sign, SlackKind};
 
 /// A scaled number within this of zero is not told from zero: the tolerance of the programs, above that of the rank.
 const TOLERANCE: f64 = 1e-9;
-/// A scaled velocity within this of zero, where the modes ask for more, is the rounding of one that the equations hold at
-/// zero (heel and toe of a flat foot cannot slide apart).
+/// A margin within this of zero, where the modes ask for a velocity that is not, is the rounding of one that the equations
+/// hold at zero (heel and toe of a flat foot cannot slide apart); so is a coefficient of rows of length one.
 const ROUNDING: f64 = 1e-12;
 /// Slacks are not followed beyond this: the impulses are then unbounded.
 const UNBOUNDED: f64 = 1e3;
@@ -125,8 +125,9 @@ impl Rows {
         Judged { sign, ..judged }
     }
 
-    /// Judges a combination where nothing moves. Impulses cannot add energy, so that the contacts stay at rest: all stick
-    /// with zero impulse, on every border, and any other list of modes is that one's twin.
+    /// Judges a combination where nothing moves. Impulses cannot add energy, so that the contacts stay at rest: all stick,
+    /// and any other list of modes is that one's twin. It is on a border unless contacts can squeeze each other, so that
+    /// zero is not the only admissible impulse; then no margin is left to tell.
     pub fn judge_at_rest(&self, problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Judged {
         if modes.iter().any(|&mode| mode != Mode::Stick) {
             return Judged::without_solution(Because::RedundantTwin);
@@ -140,11 +141,13 @@ impl Rows {
         let free: Vec<Vec<f64>> = basis.complement().rows().map(<[f64]>::to_vec).collect();
         let slacks = self.slacks(problem, scale, modes, &generators, &origin, &free);
         let functions: Vec<Affine> = slacks.into_iter().map(|(_, _, slack)| slack).collect();
+        let inside = || widest_slack(&functions, free.len(), UNBOUNDED).is_some_and(|(_, least)| least > TOLERANCE);
+        let squeezes = functions.is_empty() || (!free.is_empty() && inside());
         let still = || vec![[0.0; 2]; modes.len()];
         Judged {
             sign: Sign::Positive,
             because: Because::NoSolution,
-            margin: Some(0.0),
+            margin: if squeezes { None } else { Some(0.0) },
             motion: Some(Motion { impulse: still(), velocity_after: still() }),
             impulse_unique: free.is_empty() || !opens(&functions, free.len()),
         }
@@ -162,7 +165,7 @@ impl Rows {
     ) -> Vec<(usize, SlackKind, Affine)> {
         let affine = |constant: f64, of_lambda: &[f64]| Affine {
             constant: constant + dot(of_lambda, origin),
-            coefficients: free.iter().map(|direction| dot(of_lambda, direction)).collect(),
+            coefficients: free.iter().map(|direction| without_noise(dot(of_lambda, direction))).collect(),
         };
         let velocity = |row: usize, sign: f64| {
             let of_lambda: Vec<f64> = generators.against(&self.rows[row]).iter().map(|entry| sign * entry).collect();
@@ -234,7 +237,7 @@ impl Rows {
         let values: Vec<f64> = functions.iter().map(|slack| slack.at(&y)).collect();
         let least = (0..values.len()).min_by(|&i, &j| values[i].total_cmp(&values[j]));
         let margin = least.map(|least| values[least]);
-        let vanishes = |(i, value): (usize, &f64)| slacks[i].1.is_strict() && value.abs() <= ROUNDING * size;
+        let vanishes = |(i, value): (usize, &f64)| slacks[i].1.is_strict() && value.abs() <= TOLERANCE * size;
         let sign = match margin.map_or(Sign::Positive, |margin| Sign::within(margin, TOLERANCE * size)) {
             Sign::Undecided if margin >= Some(-ROUNDING * size) && values.iter().enumerate().any(vanishes) => {
                 Sign::Zero
@@ -244,9 +247,7 @@ impl Rows {
         };
         if sign == Sign::Positive && !impulse_unique {
             let directions: Vec<Vec<f64>> = free.iter().map(|lambda| generators.raw_impulse(lambda, scale)).collect();
-            if let Some(least) = least_impulse(&generators.raw_impulse(&origin, scale), &directions, &functions) {
-                y = least;
-            }
+            y = least_impulse(&generators.raw_impulse(&origin, scale), &directions, &functions, &y);
         }
         let mut lambda = origin;
         for (direction, factor) in free.iter().zip(&y) {
@@ -330,6 +331,12 @@ impl Rows {
         }
         Some(sign)
     }
+}
+
+/// A coefficient of rows and directions of length one, unless it is no more than their rounding: a program would follow
+/// such a slope to any distance.
+fn without_noise(coefficient: f64) -> f64 {
+    if coefficient.abs() <= ROUNDING { 0.0 } else { coefficient }
 }
 
 /// The velocity rows that a combination sets to zero.

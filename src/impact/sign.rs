@@ -12,7 +12,8 @@ use super::mode::{Friction, Mode};
 use super::outcome::Because;
 use super::problem::ContactProblem;
 use crate::planar::Vector;
-use crate::scalar::{Ball, Real};
+use crate::scalar::{Ball, Exact, Real};
+use std::cmp::Ordering;
 
 /// The sign of a number that may be known inexactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +46,17 @@ impl Sign {
 impl From<Ball> for Sign {
     fn from(ball: Ball) -> Self {
         Sign::within(ball.mid, ball.radius)
+    }
+}
+
+impl From<Exact> for Sign {
+    fn from(number: Exact) -> Self {
+        match number.compare_with_zero() {
+            Some(Ordering::Less) => Sign::Negative,
+            Some(Ordering::Equal) => Sign::Zero,
+            Some(Ordering::Greater) => Sign::Positive,
+            None => Sign::Undecided,
+        }
     }
 }
 
