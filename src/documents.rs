@@ -34,7 +34,7 @@ pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
     let start = text.len() - text.trim_start().len();
     let within = if text[start..].starts_with('[') { Within::FreshList } else { Within::Stream };
     let at = start + usize::from(within != Within::Stream);
-    Documents { text, at, within, counted: 0, line: 1 }
+    Documents { text, at, within, counted: 0, line: 1, column: 1 }
 }
 
 /// The bytes as text, without a byte order mark.
@@ -65,9 +65,10 @@ struct Documents<'t> {
     text: &'t str,
     at: usize,
     within: Within,
-    /// The bytes before this one hold `line - 1` line breaks.
+    /// This byte stands in this line and column.
     counted: usize,
     line: usize,
+    column: usize,
 }
 
 impl<'t> Iterator for Documents<'t> {
@@ -116,9 +117,9 @@ impl<'t> Documents<'t> {
     fn take(&mut self, end: usize) -> Document<'t> {
         let (lines, column) = line_and_column(&self.text[self.counted..], self.at - self.counted);
         self.line += lines - 1;
-        // The column counts from the line's own beginning, which is where counting goes on.
-        let line_start = self.text[..self.at].rfind('\n').map_or(0, |newline| newline + 1);
-        let column = if lines == 1 { self.text[line_start..self.at].chars().count() + 1 } else { column };
+        // Only what is new is counted, so that a million objects on one line take a million steps.
+        self.column = if lines == 1 { self.column + column - 1 } else { column };
+        let column = self.column;
         self.counted = self.at;
         let text = &self.text[self.at..end];
         self.at = end;

@@ -87,9 +87,7 @@ impl Scratch {
             index_sum: outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum(),
             rank,
             condition: if regular { condition(problem, scale) } else { None },
-            no_slip_consistent: outcomes
-                .iter()
-                .any(|outcome| outcome.decided && !outcome.modes.iter().any(|mode| mode.slides())),
+            no_slip_consistent: no_slip_consistent(&outcomes),
             explanation: if explain && regular { explanation(problem, scale) } else { None },
             outcomes,
             rejected,
@@ -113,6 +111,15 @@ fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
         [only] if only.impulse.iter().flatten().all(|&entry| entry == 0.0) => Verdict::NoImpact,
         [_] => Verdict::Unique,
         _ => Verdict::Ambiguous,
+    }
+}
+
+/// Whether some outcome has no sliding contact; none where that hangs on an undecided combination.
+fn no_slip_consistent(outcomes: &[Outcome]) -> Option<bool> {
+    let without_slip = || outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
+    match without_slip().any(|outcome| outcome.decided) {
+        false if without_slip().next().is_some() => None,
+        found => Some(found),
     }
 }
 
@@ -169,14 +176,6 @@ impl SecondLook<'_> {
     }
 
     fn look(&mut self, leaf: &Leaf<'_, f64>, modes: &[Mode], found: &mut Found) {
-        if self.scale.at_rest {
-            let (problem, scale) = (self.problem, self.scale);
-            let judged = self.rows().judge_at_rest(problem, scale, modes);
-            let inside = judged.sign == Sign::Positive && judged.margin.is_none();
-            let index = if inside { self.rows().index(problem, scale, modes) } else { None };
-            found.take_judged(modes, problem, judged, index);
-            return;
-        }
         if !self.loaded {
             self.balls.load(&enclosed(self.problem, self.scale));
             self.loaded = true;
@@ -263,7 +262,11 @@ fn enclosed(problem: &ContactProblem, scale: &Scale) -> ContactProblem<Ball> {
             Entry::Delassus { row, column } => scale.mobility[row] * scale.mobility[column],
             Entry::Velocity { row } => value.abs() + scale.speed * scale.mobility[row],
         };
-        Ball { mid: value, radius: if value == 0.0 { 0.0 } else { rounding * size } }
+        let noise = match (place, problem.noise()) {
+            (Entry::Velocity { row }, Some(noise)) => noise[row / 2][row % 2],
+            _ => 0.0,
+        };
+        Ball { mid: value, radius: if value == 0.0 && noise == 0.0 { 0.0 } else { rounding * size + noise } }
     })
 }
 
@@ -293,7 +296,7 @@ impl Found {
         if reading.sign != Sign::Negative {
             let mut outcome = outcome(modes, problem, motion());
             outcome.index = (!reading.border).then_some(index);
-            outcome.margin = reading.margin;
+            outcome.margin = reading.margin.map(|margin| margin + 0.0);
             self.outcomes.push(outcome);
         } else if self.explain {
             let solved = !matches!(reading.because, Because::NothingHolds { .. });
@@ -316,7 +319,7 @@ impl Found {
         let Some(motion) = judged.motion else { return };
         self.outcomes.push(Outcome {
             impulse_unique: judged.impulse_unique,
-            index: index.filter(|_| decided),
+            index: index.filter(|_| decided && !judged.border),
             margin: judged.margin,
             decided,
             ..outcome(modes, problem, motion)

@@ -48,11 +48,13 @@ pub struct Judged {
     pub motion: Option<Motion>,
     /// Whether the impulse is the only one.
     pub impulse_unique: bool,
+    /// Whether an impulse inequality is zero for every admissible impulse.
+    pub border: bool,
 }
 
 impl Judged {
     fn without_solution(because: Because) -> Self {
-        Self { sign: Sign::Negative, because, margin: None, motion: None, impulse_unique: false }
+        Self { sign: Sign::Negative, because, margin: None, motion: None, impulse_unique: false, border: false }
     }
 }
 
@@ -125,34 +127,6 @@ impl Rows {
         Judged { sign, ..judged }
     }
 
-    /// Judges a combination where nothing moves. Impulses cannot add energy, so that the contacts stay at rest: all stick,
-    /// and any other list of modes is that one's twin. It is on a border unless contacts can squeeze each other, so that
-    /// zero is not the only admissible impulse; then no margin is left to tell.
-    pub fn judge_at_rest(&self, problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Judged {
-        if modes.iter().any(|&mode| mode != Mode::Stick) {
-            return Judged::without_solution(Because::RedundantTwin);
-        }
-        let generators = Generators::of(&self.rows, problem, scale, modes);
-        let columns: Vec<Vec<f64>> =
-            (0..self.columns).map(|k| generators.images().iter().map(|image| image[k]).collect()).collect();
-        let origin = vec![0.0; generators.count()];
-        let mut basis = Basis::new(generators.count());
-        basis.extend(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        let free: Vec<Vec<f64>> = basis.complement().rows().map(<[f64]>::to_vec).collect();
-        let slacks = self.slacks(problem, scale, modes, &generators, &origin, &free);
-        let functions: Vec<Affine> = slacks.into_iter().map(|(_, _, slack)| slack).collect();
-        let inside = || widest_slack(&functions, free.len(), UNBOUNDED).is_some_and(|(_, least)| least > TOLERANCE);
-        let squeezes = functions.is_empty() || (!free.is_empty() && inside());
-        let still = || vec![[0.0; 2]; modes.len()];
-        Judged {
-            sign: Sign::Positive,
-            because: Because::NoSolution,
-            margin: if squeezes { None } else { Some(0.0) },
-            motion: Some(Motion { impulse: still(), velocity_after: still() }),
-            impulse_unique: free.is_empty() || !opens(&functions, free.len()),
-        }
-    }
-
     /// Every slack of the combination as a function of the free parameters y of lambda = origin + free y.
     fn slacks(
         &self,
@@ -216,28 +190,32 @@ impl Rows {
         (origin, free): (Vec<f64>, Vec<Vec<f64>>),
         slacks: Vec<(usize, SlackKind, Affine)>,
     ) -> Judged {
-        let size = 1.0 + dot(&origin, &origin).sqrt();
+        // Whatever the velocities are off by is as good as the programs' own tolerance.
+        let size = (1.0 + scale.noise / TOLERANCE) * (1.0 + dot(&origin, &origin).sqrt());
         let functions: Vec<Affine> = slacks.iter().map(|(_, _, slack)| slack.clone()).collect();
-        // Generators are independent, so that a free direction always changes the impulses.
-        let impulse_unique = free.is_empty();
+        let strict = |index: usize| slacks[index].1.is_strict();
+        let widest = if free.is_empty() { None } else { widest_slack(&functions, free.len(), UNBOUNDED) };
+        // Where the velocities themselves form a set, no single one may be told as the outcome.
+        let family = self.rows.iter().any(|row| {
+            let of_lambda = generators.against(row);
+            free.iter().any(|direction| dot(&of_lambda, direction).abs() > TOLERANCE)
+        });
+        let open = family || (widest.is_none() && !free.is_empty());
+        let inside = widest.as_ref().is_some_and(|(_, least)| *least > TOLERANCE * size);
+        // What the modes hold at zero is at rest already: no impulse is needed, and its own inequalities are all zero.
+        let resting = !open && !origin.is_empty() && origin.iter().all(|&entry| entry == 0.0);
+        let border = resting && !inside;
         let mut y = vec![0.0; free.len()];
-        // Some member of the set is told even where the verdict on it is open.
-        let mut open = false;
-        if !free.is_empty() {
-            match widest_slack(&functions, free.len(), UNBOUNDED) {
-                Some((widest, _)) => y = widest,
-                None => open = true,
-            }
-            // Where the velocities themselves form a set, no single one may be told as the outcome.
-            open |= self.rows.iter().any(|row| {
-                let of_lambda = generators.against(row);
-                free.iter().any(|direction| dot(&of_lambda, direction).abs() > TOLERANCE)
-            });
+        if let Some((widest, _)) = widest
+            && !border
+        {
+            y = widest;
         }
         let values: Vec<f64> = functions.iter().map(|slack| slack.at(&y)).collect();
-        let least = (0..values.len()).min_by(|&i, &j| values[i].total_cmp(&values[j]));
+        let decisive = (0..values.len()).filter(|&index| !border || strict(index));
+        let least = decisive.min_by(|&i, &j| values[i].total_cmp(&values[j]));
         let margin = least.map(|least| values[least]);
-        let vanishes = |(i, value): (usize, &f64)| slacks[i].1.is_strict() && value.abs() <= TOLERANCE * size;
+        let vanishes = |(index, value): (usize, &f64)| strict(index) && value.abs() <= TOLERANCE * size;
         let sign = match margin.map_or(Sign::Positive, |margin| Sign::within(margin, TOLERANCE * size)) {
             Sign::Undecided if margin >= Some(-ROUNDING * size) && values.iter().enumerate().any(vanishes) => {
                 Sign::Zero
@@ -245,10 +223,19 @@ impl Rows {
             Sign::Positive if open => Sign::Undecided,
             sign => sign,
         };
-        if sign == Sign::Positive && !impulse_unique {
+        // Generators are independent, so that a free direction always changes the impulses.
+        let mut impulse_unique = free.is_empty();
+        if border {
+            let pressing: Vec<Affine> =
+                (0..values.len()).filter(|&index| !strict(index)).map(|index| functions[index].clone()).collect();
+            impulse_unique |= !opens(&pressing, free.len());
+        } else if sign == Sign::Positive && resting {
+            y = vec![0.0; free.len()];
+        } else if sign == Sign::Positive && !impulse_unique {
             let directions: Vec<Vec<f64>> = free.iter().map(|lambda| generators.raw_impulse(lambda, scale)).collect();
             y = least_impulse(&generators.raw_impulse(&origin, scale), &directions, &functions, &y);
         }
+        let margin = if border && sign == Sign::Positive { Some(0.0) } else { margin };
         let mut lambda = origin;
         for (direction, factor) in free.iter().zip(&y) {
             for (entry, part) in lambda.iter_mut().zip(direction) {
@@ -277,6 +264,7 @@ impl Rows {
             margin: margin.filter(|margin| *margin < UNBOUNDED * (1.0 - TOLERANCE)),
             motion: Some(Motion { impulse, velocity_after }),
             impulse_unique,
+            border,
         }
     }
 

@@ -37,9 +37,9 @@ pub struct Report<'a> {
     /// Kinetic energy before the impact \[J\]; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinetic_energy: Option<f64>,
-    /// Whether some outcome has no sliding contact; absent beside an `error`.
+    /// Whether some outcome has no sliding contact; null where that is undecided, absent beside an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub no_slip_consistent: Option<bool>,
+    pub no_slip_consistent: Option<Option<bool>>,
     /// The paper's section 4 for each contact, if asked for; null for a singular Delassus matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explain: Option<Option<Explained<'a>>>,
@@ -57,7 +57,7 @@ pub struct Report<'a> {
     pub left_out: Option<Vec<LeftOut<'a>>>,
     /// What a reader should know, in whole sentences.
     #[serde(skip_serializing_if = "<[String]>::is_empty")]
-    pub notes: &'a [String],
+    pub notes: Cow<'a, [String]>,
     /// Names of the kept coordinates in the order of q, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coordinates: Option<&'a [String]>,
@@ -123,13 +123,16 @@ pub struct Outcome<'a> {
     pub margin: Option<f64>,
     /// Every sign is shown by an error bound.
     pub proven: bool,
+    /// False, and only then present, where the combination is neither shown nor excluded.
+    #[serde(skip_serializing_if = "is_true")]
+    pub decided: bool,
 }
 
 /// Something of the robot's file that does not enter the analysis.
 #[derive(Debug, Clone, Serialize)]
 pub struct LeftOut<'a> {
     /// What, as in `joint "left_ankle"`.
-    pub what: &'a str,
+    pub what: Cow<'a, str>,
     /// Why, as in `fixed: welded into left_shank`.
     pub why: &'a str,
 }
@@ -137,7 +140,17 @@ pub struct LeftOut<'a> {
 impl<'a> LeftOut<'a> {
     /// All that was left out of `robot`.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
-        robot.left_out.iter().map(|left| Self { what: &left.what, why: &left.why }).collect()
+        robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: &left.why }).collect()
+    }
+
+    /// All that was left out of `robot` and of this state of it.
+    pub fn of_state(robot: &'a Robot, state: &State) -> Vec<Self> {
+        let mut all = Self::all(robot);
+        let held = state.scene.held.iter().map(|&joint| &robot.joints[joint].name);
+        all.extend(
+            held.map(|name| Self { what: Cow::Owned(format!("joint \"{name}\"")), why: "held: keeps its rate" }),
+        );
+        all
     }
 }
 
@@ -201,6 +214,10 @@ pub struct Brief<'a> {
     pub error: Option<ErrorObject<'a>>,
 }
 
+fn is_true(flag: &bool) -> bool {
+    *flag
+}
+
 /// An outcome in brief.
 #[derive(Debug, Clone, Serialize)]
 pub struct OutcomeInBrief<'a> {
@@ -210,6 +227,9 @@ pub struct OutcomeInBrief<'a> {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
+    /// False, and only then present, where the combination is neither shown nor excluded.
+    #[serde(skip_serializing_if = "is_true")]
+    pub decided: bool,
 }
 
 /// What stands in place of the result of a refused input.
@@ -266,8 +286,8 @@ impl<'a> Report<'a> {
         let mut report = Self {
             id: state.id.as_ref(),
             kinetic_energy: Some(impact.kinetic_energy),
-            left_out: Some(LeftOut::all(robot)),
-            notes: &impact.notes,
+            left_out: Some(LeftOut::of_state(robot, state)),
+            notes: Cow::Borrowed(&impact.notes),
             ..Self::of_analysis(contacts, analysis, detail)
         };
         for (outcome, velocity) in report.outcomes.iter_mut().flatten().zip(&impact.velocity_after) {
@@ -289,6 +309,7 @@ impl<'a> Report<'a> {
         Self {
             id: problem.id.as_ref(),
             delassus: detail.matrices.then(|| Cow::Owned(problem.delassus())),
+            notes: analysis.energy_note().into_iter().collect(),
             ..Self::of_analysis(contacts, Ok(analysis), detail)
         }
     }
@@ -318,7 +339,7 @@ impl<'a> Report<'a> {
             condition: known.map(|analysis| analysis.condition),
             rank: known.map(|analysis| analysis.rank),
             left_out: None,
-            notes: &[],
+            notes: Cow::Borrowed(&[]),
             coordinates: None,
             mass_matrix: None,
             contact_jacobian: None,
@@ -334,6 +355,7 @@ impl<'a> Report<'a> {
             modes: outcome.modes,
             index: outcome.index,
             margin: outcome.margin,
+            decided: outcome.decided,
         };
         Brief {
             id: self.id,
@@ -381,6 +403,7 @@ impl<'a> Outcome<'a> {
             index: outcome.index,
             margin: outcome.margin,
             proven: outcome.proven,
+            decided: outcome.decided,
         }
     }
 
