@@ -207,33 +207,34 @@ impl SecondLook<'_> {
     }
 }
 
-/// Reads a combination of a problem whose matrices were given, and so are exact; with its index. None where a pivot
-/// vanishes.
-fn read_exactly(problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Option<(Reading, i8, Motion)> {
+/// What `read` sees in a combination's exact numbers, of matrices that were given and so are exact.
+fn exactly<R>(problem: &ContactProblem, modes: &[Mode], read: impl FnOnce(&Leaf<'_, Exact>) -> R) -> R {
     Exact::scope(|| {
         let mut tableau = Tableau::<Exact>::new();
         tableau.load(&problem.map(Exact::from_f64));
-        let leaf = tableau.leaf(modes);
-        let reading = read_signed(&leaf, modes, problem, scale, Exact::to_f64);
+        read(&tableau.leaf(modes))
+    })
+}
+
+/// Reads a combination exactly, with its index; none where a pivot vanishes.
+fn read_exactly(problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Option<(Reading, i8, Motion)> {
+    exactly(problem, modes, |leaf| {
+        let reading = read_signed(leaf, modes, problem, scale, Exact::to_f64);
         let pivots: Vec<f64> = leaf.pivots.iter().map(|pivot| pivot.to_f64()).collect();
         let decided = reading.sign != Sign::Undecided;
-        decided.then(|| (reading, index(&pivots), motion(&leaf, modes, problem, Exact::to_f64)))
+        decided.then(|| (reading, index(&pivots), motion(leaf, modes, problem, Exact::to_f64)))
     })
 }
 
 /// Impulses and velocities of a combination: those of its leaf, or exact but for one rounding where the leaf is ill
 /// conditioned and the matrices were given.
 fn best_motion(leaf: &Leaf<'_, f64>, modes: &[Mode], problem: &ContactProblem, rounding: f64) -> Motion {
-    let exactly = || {
-        let mut tableau = Tableau::<Exact>::new();
-        tableau.load(&problem.map(Exact::from_f64));
-        let leaf = tableau.leaf(modes);
-        let regular = leaf.pivots.iter().all(|pivot| pivot.compare_with_zero().is_some_and(Ordering::is_ne));
-        regular.then(|| motion(&leaf, modes, problem, Exact::to_f64))
-    };
+    let regular =
+        |leaf: &Leaf<'_, Exact>| leaf.pivots.iter().all(|pivot| pivot.compare_with_zero().is_some_and(Ordering::is_ne));
     let given = problem.factor().is_none();
-    let better = if given && rounding > F64_SERVES { Exact::scope(exactly) } else { None };
-    better.unwrap_or_else(|| motion(leaf, modes, problem, |number| number))
+    let better = (given && rounding > F64_SERVES)
+        .then(|| exactly(problem, modes, |leaf| regular(leaf).then(|| motion(leaf, modes, problem, Exact::to_f64))));
+    better.flatten().unwrap_or_else(|| motion(leaf, modes, problem, |number| number))
 }
 
 /// Scaled numbers whose rounding is below this are told as f64 has them.
