@@ -24,7 +24,7 @@
 //! # The impact
 //!
 //! ```text
-//!     M (v+ - v-) = J^T L          c = J v          c+ = c- + G L
+//!     M (v+ - v-) = J^T L          c = J v          c+ = c- + G L        (an applied impulse p adds J_p^T p on the right)
 //! ```
 //!
 //! | symbol | JSON | meaning | unit |

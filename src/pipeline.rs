@@ -10,7 +10,7 @@ use crate::dynamics::{
     kinetic_energy, mass_matrix, point_velocity,
 };
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::problem::{Factor, check_matrix_size};
+use crate::impact::problem::{Factor, VELOCITY_ROUNDING, check_matrix_size};
 use crate::impact::{Analysis, ContactProblem, Friction, Scratch};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Vector, dot, scaled, sum};
@@ -27,8 +27,8 @@ pub struct Options {
     pub resting_speed: f64,
     /// Feet beside the robot's shapes, detected by their height like them.
     pub feet: Vec<NamedContact>,
-    /// List every rejected combination, and beta, gamma and the region of each contact.
-    pub explain: bool,
+    /// Up to how many contacts to list every rejected combination, and beta, gamma and the region of each contact.
+    pub explain_up_to: usize,
     /// Keep the matrices.
     pub matrices: bool,
 }
@@ -119,22 +119,24 @@ impl<'r> Pipeline<'r> {
         self.check_inertia()?;
 
         let mut notes = Vec::new();
-        let (base, velocity, stance) = self.stand(state)?;
-        let contacts = self.contacts(scene, base)?;
+        let (base, velocity, foot) = self.stand(state)?;
+        let contacts = self.contacts(scene, base, &mut notes)?;
         check_matrix_size(contacts.len())?;
-        let stance = stance.and_then(|foot| contacts.iter().position(|contact| same_point(contact, &foot)));
+        let stance = foot.and_then(|foot| contacts.iter().position(|contact| same_point(contact, &foot)));
         self.points.clear();
         self.points.extend(contacts.iter().map(|contact| contact.point_of(scene.ground())));
         contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
-        self.rest(&contacts, &velocity, &mut notes);
+        let noise = self.rest(&contacts, &velocity, &mut notes);
         delassus(&self.plan, &mut self.workspace);
         let kinetic_energy = self.energy_in_range(&velocity)?;
 
         let free = self.applied(scene, &velocity);
-        let problem = self.problem(scene, &contacts, &velocity, &free)?;
-        let analysis = self.scratch.analyse(&problem, self.options.explain);
+        let problem = self.problem(scene, &contacts, &velocity, &free, noise)?;
+        let analysis =
+            self.scratch.analyse(&problem, contacts.len() <= self.options.explain_up_to && !contacts.is_empty());
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
         let velocity_after = outcomes.iter().map(|outcome| self.struck(&free, &outcome.impulse)).collect();
+        notes.extend(analysis.as_ref().ok().and_then(Analysis::energy_note));
         Ok(Impact {
             velocity_before: problem.velocity_before().to_vec(),
             kinetic_energy,
@@ -177,7 +179,8 @@ impl<'r> Pipeline<'r> {
         contact_jacobian(&self.plan, &self.points, velocity, None, &mut self.workspace);
         delassus(&self.plan, &mut self.workspace);
         let before = self.workspace.contact_velocity.clone();
-        Ok(self.assemble(before.clone(), before, friction, restitution))
+        let noise = self.noise(velocity);
+        self.assemble(before.clone(), before, noise, friction, restitution)
     }
 
     /// Compiles the plan, unless the last one was for the same held joints and rotors.
@@ -196,6 +199,7 @@ impl<'r> Pipeline<'r> {
             let (whole, rest) =
                 (self.workspace.mass_matrix[column * nv + column], self.workspace.factor[column * nv + column]);
             // Each of up to nv eliminations loses at most a few units in the last place of the whole.
+            finite(whole, || "the mass matrix".into())?;
             if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {
                 let coordinate = self.plan.coordinates()[column];
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
@@ -240,7 +244,9 @@ impl<'r> Pipeline<'r> {
         let ground = state.scene.ground();
         let at_zero = Placement::new(&self.plan, &self.workspace, [0.0; 2], ground);
         let named = state.scene.contacts.as_deref();
-        let foot = contact::stance_foot(self.robot, &self.feet, named, link, &at_zero, self.tolerance())?;
+        // A side is flat by the rounding of its corners, whatever the contact tolerance is.
+        let flat = CONTACT_TOLERANCE * self.feet.size();
+        let foot = contact::stance_foot(self.robot, &self.feet, named, link, &at_zero, flat)?;
         velocity[..2].fill(0.0);
         let arm = foot.point_of(ground).arm(&self.workspace);
         let moving = point_velocity(&self.plan, foot.body, arm, &velocity, &self.workspace);
@@ -248,27 +254,55 @@ impl<'r> Pipeline<'r> {
         Ok((contact::place(&foot), velocity, Some(foot)))
     }
 
-    fn contacts(&self, scene: &Scene, base: Vector<f64>) -> Result<Vec<Contact>> {
+    fn contacts(&self, scene: &Scene, base: Vector<f64>, notes: &mut Vec<String>) -> Result<Vec<Contact>> {
         let placement = Placement::new(&self.plan, &self.workspace, base, scene.ground());
-        contact::detect(self.robot, &self.feet, scene.contacts.as_deref(), &placement, self.tolerance())
+        let named = scene.contacts.as_deref();
+        let contacts = contact::detect(self.robot, &self.feet, named, &placement, self.tolerance())?;
+        for contact in &contacts {
+            finite(contact.gap, || format!("the height of {}", contact.name))?;
+        }
+        if contacts.is_empty() && named.is_none() {
+            notes.push(match contact::nearest(self.robot, &self.feet, &placement) {
+                Some((link, height)) => {
+                    format!("nothing touches the ground: the lowest foot, {link}, is {height:?} m above it")
+                }
+                None => "the robot has no feet: name contact points by `contacts` in the state or by --contact".into(),
+            });
+        }
+        Ok(contacts)
     }
 
-    /// Takes slow contacts as resting where asked to, and tells of speeds that are no more than rounding.
-    fn rest(&mut self, contacts: &[Contact], velocity: &[f64], notes: &mut Vec<String>) {
-        let fastest = velocity.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-        let reach = fastest * self.feet.size().max(1.0);
-        for (contact, speed) in contacts.iter().zip(&mut self.workspace.contact_velocity) {
+    /// What each contact velocity may be off by: the rounding of its terms, nothing where all are zero \[m/s\].
+    fn noise(&self, velocity: &[f64]) -> Vec<Vector<f64>> {
+        let nv = self.plan.columns();
+        let row = |index: usize, speed: f64| {
+            let row = &self.workspace.contact_jacobian[index * nv..(index + 1) * nv];
+            let terms = || row.iter().zip(self.plan.coordinates()).map(|(j, &coordinate)| j * velocity[coordinate]);
+            // Held joints have no column; what they add is what is left.
+            let held = speed - terms().sum::<f64>();
+            VELOCITY_ROUNDING * (terms().map(f64::abs).sum::<f64>() + held.abs())
+        };
+        let speeds = self.workspace.contact_velocity.iter().enumerate();
+        speeds.map(|(contact, speed)| [0, 1].map(|k| row(2 * contact + k, speed[k]))).collect()
+    }
+
+    /// Takes slow contacts as resting where asked to, and tells of speeds that are no more than rounding. Gives what the
+    /// velocities may be off by, nothing for those that rest exactly.
+    fn rest(&mut self, contacts: &[Contact], velocity: &[f64], notes: &mut Vec<String>) -> Vec<Vector<f64>> {
+        let mut noise = self.noise(velocity);
+        for ((contact, speed), noise) in contacts.iter().zip(&mut self.workspace.contact_velocity).zip(&mut noise) {
             let slow = libm::hypot(speed[0], speed[1]);
-            if slow == 0.0 {
-                continue;
-            }
-            if slow < self.options.resting_speed {
+            if slow > 0.0 && slow < self.options.resting_speed {
                 *speed = [0.0; 2];
                 notes.push(format!(
-                    "{} moves at {slow:.1e} m/s and is taken as exactly at rest (resting speed {} m/s)",
+                    "{} moves at {slow:.1e} m/s and is taken as exactly at rest (resting speed {} m/s); the velocities of \
+                     base and joints are not changed for it",
                     contact.name, self.options.resting_speed
                 ));
-            } else if slow <= 16.0 * f64::EPSILON * reach {
+            }
+            if *speed == [0.0; 2] {
+                *noise = [0.0; 2];
+            } else if slow <= libm::hypot(noise[0], noise[1]) {
                 notes.push(format!(
                     "{} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, say so by \
                      `stance` or --resting-speed",
@@ -276,6 +310,7 @@ impl<'r> Pipeline<'r> {
                 ));
             }
         }
+        noise
     }
 
     /// The velocity by coordinate after the applied impulses.
@@ -308,6 +343,7 @@ impl<'r> Pipeline<'r> {
         contacts: &[Contact],
         velocity: &[f64],
         free: &[f64],
+        noise: Vec<Vector<f64>>,
     ) -> Result<ContactProblem> {
         let mut friction = Vec::with_capacity(contacts.len());
         for contact in contacts {
@@ -329,20 +365,22 @@ impl<'r> Pipeline<'r> {
                 *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));
             }
         }
-        Ok(self.assemble(before, unbraked, friction, restitution))
+        self.assemble(before, unbraked, noise, friction, restitution)
     }
 
     fn assemble(
         &self,
         before: Vec<Vector<f64>>,
         free: Vec<Vector<f64>>,
+        noise: Vec<Vector<f64>>,
         friction: Vec<Friction>,
         restitution: Vec<f64>,
-    ) -> ContactProblem {
+    ) -> Result<ContactProblem> {
         let mut rows = Vec::new();
         factor_rows(&self.plan, &self.workspace, &mut rows);
         let factor = Factor { rows, columns: self.plan.columns() };
-        ContactProblem::from_parts(self.workspace.delassus.clone(), factor, before, free, friction, restitution)
+        let delassus = self.workspace.delassus.clone();
+        ContactProblem::from_parts((delassus, factor), before, free, noise, friction, restitution)
     }
 
     fn matrices(&self) -> Matrices {

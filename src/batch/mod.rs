@@ -154,7 +154,9 @@ impl<'q> Batch<'q> {
 
     /// The friction with which no contact would have to slide, where one has to; see [`MoreFriction`].
     fn friction_needed(&mut self, state: &mut State, analysis: &Analysis) -> Option<f64> {
-        if analysis.no_slip_consistent || !matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous) {
+        if analysis.no_slip_consistent != Some(false)
+            || !matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous)
+        {
             return None;
         }
         let given = std::mem::replace(&mut state.scene.friction, ByLink::everywhere(Friction::Infinite));

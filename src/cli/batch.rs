@@ -2,7 +2,7 @@
 
 use super::delivery::Delivery;
 use super::options::{ContactOptions, DetailOptions, SceneOptions, pipeline_options};
-use super::output::named;
+use super::output::{named, spare};
 use super::progress::Progress;
 use super::robot::RobotOptions;
 use super::{Answered, Failure, Outcome, input};
@@ -136,6 +136,9 @@ impl RecordingOptions {
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
+    for written in [args.output.as_deref(), args.summary.as_deref()] {
+        spare(written, &[&args.robot.robot, &args.states])?;
+    }
     let robot = args.robot.load()?;
     let feet = args.robot.feet(&robot)?;
     let name = input::name(&args.states);
@@ -205,7 +208,7 @@ impl Args {
 
     /// Opens the output without a buffer; blocks of results are large enough.
     fn open(&self) -> io::Result<Box<dyn Write>> {
-        match &self.output {
+        match self.output.as_ref().filter(|path| path.as_os_str() != "-") {
             Some(path) => Ok(Box::new(File::create(path).map_err(|error| named(path, error))?)),
             None => standard_output(),
         }

@@ -5,7 +5,7 @@ use super::output::{Format, OutputOptions};
 use super::robot::RobotOptions;
 use super::stream::{Answers, SUMMED_UP, answer_all};
 use super::{Outcome, input};
-use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::pipeline::Pipeline;
 use heelstrike::report::{Detail, Palette, Report, Subject, text};
 use heelstrike::state::{Defaults, State};
 use heelstrike::{Error, Result, Robot};
@@ -38,21 +38,24 @@ pub(super) fn run(args: &Args) -> Outcome {
     let robot = args.robot.load()?;
     let by_input = if input::is_ndjson(&args.state) { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(by_input);
-    let options = pipeline_options(&args.contacts, args.robot.feet(&robot)?, args.detail);
+    let mut options = pipeline_options(&args.contacts, args.robot.feet(&robot)?, args.detail);
+    if format == Format::Text && !args.detail.brief {
+        // What is wrong with the other combinations is summed up for people also where they are not listed.
+        options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
+    }
     let mut impacts = Impacts {
         robot: &robot,
-        pipeline: Pipeline::new(&robot, options.clone()),
-        options,
+        pipeline: Pipeline::new(&robot, options),
         defaults: args.scene.defaults(),
         detail: args.detail.detail(),
     };
+    args.output.spare(&[&args.robot.robot, &args.state])?;
     answer_all(&mut impacts, &args.state, format, &args.output)
 }
 
 struct Impacts<'r> {
     robot: &'r Robot,
     pipeline: Pipeline<'r>,
-    options: Options,
     defaults: Defaults,
     detail: Detail,
 }
@@ -69,11 +72,7 @@ impl Answers for Impacts<'_> {
 
     fn text(&mut self, state: &str, palette: &Palette) -> Result<(String, Option<Error>)> {
         let state = State::from_json(state, self.robot, &self.defaults)?;
-        let mut impact = self.pipeline.impact(&state)?;
-        // What is wrong with the other combinations is summed up for people also where they are not listed.
-        if !self.options.explain && !self.detail.brief && impact.contacts.len() <= SUMMED_UP {
-            impact = Pipeline::new(self.robot, Options { explain: true, ..self.options.clone() }).impact(&state)?;
-        }
+        let impact = self.pipeline.impact(&state)?;
         let report = Report::of_state(self.robot, &state, &impact, self.detail)?;
         let text = text(&report, &Subject::of_state(self.robot, &state, &impact), self.detail, palette);
         Ok((text, impact.analysis.err()))

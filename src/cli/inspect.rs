@@ -19,6 +19,7 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Outcome {
     let robot = args.robot.load()?;
     let inspection = Inspection::new(&robot, &args.robot.feet(&robot)?);
+    args.output.spare(&[&args.robot.robot])?;
     let mut output = args.output.open()?;
     match args.output.chosen().unwrap_or(Format::Text) {
         Format::Text => output.write_all(inspection.text(output.palette()).as_bytes())?,

@@ -64,7 +64,7 @@ pub(super) fn pipeline_options(
         feet,
         contact_tolerance: contacts.contact_tolerance,
         resting_speed: contacts.resting_speed,
-        explain: detail.explain,
+        explain_up_to: if detail.explain { usize::MAX } else { 0 },
         matrices: detail.matrices,
     }
 }

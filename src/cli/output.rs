@@ -1,6 +1,7 @@
 //! Standard output or a file, as text or JSON.
 
 use heelstrike::report::Palette;
+use heelstrike::{Error, Reason, Result};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -44,6 +45,30 @@ impl OutputOptions {
     pub fn open(&self) -> io::Result<Output> {
         Output::open(self.output.as_deref())
     }
+
+    /// Refuses to write over what is being read.
+    ///
+    /// # Errors
+    /// [`Reason::Io`], naming the file.
+    pub fn spare(&self, inputs: &[&Path]) -> Result<()> {
+        spare(self.output.as_deref(), inputs)
+    }
+}
+
+/// Refuses an `output` that is one of the `inputs`, under whatever name.
+///
+/// # Errors
+/// [`Reason::Io`], naming the file.
+pub(super) fn spare(output: Option<&Path>, inputs: &[&Path]) -> Result<()> {
+    let place = |path: &Path| path.canonicalize().ok();
+    match output.and_then(|path| place(path).map(|place| (path, place))) {
+        Some((path, output)) if inputs.iter().any(|input| place(input).as_ref() == Some(&output)) => {
+            Err(Error::new(Reason::Io("is an input of this command, and the output would replace it".into()))
+                .in_file(path.display().to_string())
+                .hint("write to another file"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A buffered output; standard output takes colours if it is a terminal that wants them.
@@ -58,7 +83,7 @@ impl Output {
     /// # Errors
     /// Whatever keeps the file from being created.
     pub fn open(path: Option<&Path>) -> io::Result<Self> {
-        let (writer, palette): (Box<dyn Write>, _) = match path {
+        let (writer, palette): (Box<dyn Write>, _) = match path.filter(|path| path.as_os_str() != "-") {
             Some(path) => (Box::new(File::create(path).map_err(|error| named(path, error))?), Palette::default()),
             None => {
                 let stdout = io::stdout();

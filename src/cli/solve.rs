@@ -15,7 +15,7 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Examples:
   heelstrike solve examples/problems/rod.json
-  echo '{\"delassus\": [[2, 1], [1, 2]], \"velocity_before\": [[0.5, -1]], \"friction\": 0.8}' | heelstrike solve -")]
+  echo '{\"delassus\": [[2, 1], [1, 2]], \"velocity_before\": [[0.5, -1]], \"friction\": 0.5}' | heelstrike solve -")]
 pub struct Args {
     /// The problem, or several after each other or in a list; "-" reads standard input
     #[arg(value_name = "PROBLEM.json")]
@@ -33,6 +33,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     let otherwise = if to_a_file_or_lines { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(otherwise);
     let mut problems = Problems { defaults: args.scene.defaults(), detail: args.detail.detail() };
+    args.output.spare(&[&args.problem])?;
     answer_all(&mut problems, &args.problem, format, &args.output)
 }
 

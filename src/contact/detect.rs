@@ -62,6 +62,12 @@ impl Placement {
         Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
     }
 
+    /// How far heights are off by rounding alone: positions are sums of a few terms of this size.
+    fn rounding(&self, size: f64) -> f64 {
+        let [x, z] = self.origins.first().copied().unwrap_or_default();
+        16.0 * f64::EPSILON * (size + libm::hypot(x, z))
+    }
+
     fn contact(&self, link: usize, point: Point) -> Contact {
         Contact {
             link,
@@ -170,9 +176,10 @@ pub fn detect(
 }
 
 fn detected(robot: &Robot, feet: &Feet, placement: &Placement, tolerance: f64) -> Result<Vec<Contact>> {
+    let tolerance = tolerance + placement.rounding(feet.size());
     let mut contacts: Vec<Contact> = Vec::new();
     for foot in feet.iter() {
-        for point in touching(foot, placement, tolerance) {
+        for point in touching(foot, placement, tolerance)? {
             let contact = placement.contact(foot.link, point);
             if contact.gap < -tolerance {
                 return Err(Error::new(Reason::Penetration {
@@ -180,7 +187,10 @@ fn detected(robot: &Robot, feet: &Feet, placement: &Placement, tolerance: f64) -
                     depth: -contact.gap,
                     tolerance,
                 })
-                .hint("raise the base, correct the pose, or accept it by a greater --contact-tolerance"));
+                .hint(format!(
+                    "raise the base by {:?} m, correct the pose, or accept it by a greater --contact-tolerance",
+                    -contact.gap
+                )));
             }
             // Shapes of a link may share a corner; it is one point all the same.
             let known = |other: &Contact| {
@@ -197,23 +207,29 @@ fn detected(robot: &Robot, feet: &Feet, placement: &Placement, tolerance: f64) -
 }
 
 /// The points of a foot that parry finds within `tolerance` of the ground or below it.
-fn touching(foot: &Foot, placement: &Placement, tolerance: f64) -> Vec<Point> {
+///
+/// # Errors
+/// [`Reason::Unsupported`] for a pair of shapes that parry does not serve; none of ours is.
+fn touching(foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Point>> {
     let [x, z] = placement.normal();
     let ground = HalfSpace::new(ParryVector::new(x, z));
     let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
     let mut collide = |pose: Pose, shape: &dyn Shape| {
-        // Every pair of a half space with one of our convex shapes is supported; were it not, nothing touched.
-        let _ = DefaultQueryDispatcher.contact_manifolds(&pose, &ground, shape, tolerance, &mut manifolds, &mut None);
-        manifolds.iter().flat_map(|manifold| &manifold.points).map(|point| (point.local_p2, point.dist)).collect()
+        DefaultQueryDispatcher.contact_manifolds(&pose, &ground, shape, tolerance, &mut manifolds, &mut None).map_err(
+            |unsupported| Error::new(Reason::Unsupported(format!("a foot against the ground: {unsupported}"))),
+        )?;
+        let points = manifolds.iter().flat_map(|manifold| &manifold.points);
+        Ok::<Vec<_>, Error>(points.map(|point| (point.local_p2, point.dist)).collect())
     };
     match &foot.outline {
         FootShape::Disc { centre, radius } => {
-            let found: Vec<_> = collide(placement.pose(foot.body, *centre), &Ball::new(*radius));
+            let found = collide(placement.pose(foot.body, *centre), &Ball::new(*radius))?;
             let near = found.iter().any(|&(_, distance)| distance <= tolerance);
-            near.then_some(Point { body: foot.body, centre: *centre, radius: *radius }).into_iter().collect()
+            let point = Point { body: foot.body, centre: *centre, radius: *radius };
+            Ok(near.then_some(point).into_iter().collect())
         }
         FootShape::Polygon { corners, shape } => {
-            let found: Vec<_> = collide(placement.pose(foot.body, [0.0; 2]), &*shape.0);
+            let found = collide(placement.pose(foot.body, [0.0; 2]), &*shape.0)?;
             let mut points: Vec<Point> = Vec::new();
             for (at, _) in found.into_iter().filter(|&(_, distance)| distance <= tolerance) {
                 let far = |corner: &Vector<f64>| libm::hypot(corner[0] - at.x, corner[1] - at.y);
@@ -221,9 +237,17 @@ fn touching(foot: &Foot, placement: &Placement, tolerance: f64) -> Vec<Point> {
                 let point = nearest.map(|&centre| Point { body: foot.body, centre, radius: 0.0 });
                 points.extend(point.filter(|point| !points.contains(point)));
             }
-            points
+            Ok(points)
         }
     }
+}
+
+/// The foot nearest to the ground, and its height above it \[m\]; none where the robot has no feet.
+pub fn nearest(robot: &Robot, feet: &Feet, placement: &Placement) -> Option<(String, f64)> {
+    let heights =
+        feet.iter().flat_map(|foot| points(foot).into_iter().map(|point| (foot.link, placement.height(point))));
+    let (link, height) = heights.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some((robot.links[link].name.clone(), height))
 }
 
 /// A contact is named after its link, and numbered where the link has several.

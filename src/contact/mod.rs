@@ -7,7 +7,7 @@
 mod detect;
 mod feet;
 
-pub use detect::{Placement, detect, place, stance_foot};
+pub use detect::{Placement, detect, nearest, place, stance_foot};
 pub(crate) use detect::{Point, points};
 pub use feet::{Feet, Foot};
 

@@ -16,7 +16,7 @@ use crate::scalar::Real;
 /// Computes G (2n x 2n) from the factorized mass matrix and the contact Jacobian.
 pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let nv = plan.columns();
-    let Workspace { factor, contact_jacobian, half, half_by_d, delassus, .. } = workspace;
+    let Workspace { factor, contact_jacobian, contact_velocity, half, half_by_d, delassus, .. } = workspace;
     half.clear();
     half.extend_from_slice(contact_jacobian);
     half_by_d.clear();
@@ -24,7 +24,8 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
         half_solve(plan, factor, y);
         half_by_d.extend(y.iter().enumerate().map(|(i, &entry)| entry / factor[i * nv + i]));
     }
-    let rows = half.len().checked_div(nv).unwrap_or(0);
+    // Not from the Jacobian's length: where every joint is held it has no columns.
+    let rows = 2 * contact_velocity.len();
     delassus.clear();
     delassus.resize(rows * rows, T::zero());
     for row in 0..rows {

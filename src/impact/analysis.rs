@@ -6,21 +6,23 @@
 //!
 //! Each combination is first read in f64 with an estimate of its rounding; what lies within it is read again in
 //! [`Ball`] arithmetic, which knows exact zeros; what is still open (vanishing pivots, contacts that depend on each other)
-//! goes to the redundant stage. What none of them tells is undecided, and nothing is guessed.
+//! goes to the redundant stage, and, where the matrices were given and so are exact, to exact rationals. What none of them
+//! tells is undecided, and nothing is guessed.
 
 use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
 use super::mode::Mode;
 use super::outcome::{Analysis, Because, Motion, Outcome, Rejection, Verdict};
 use super::problem::{ContactProblem, Entry};
-use super::reading::{Reading, read_ball, read_f64};
+use super::reading::{Reading, read_f64, read_signed};
 use super::redundant::{Judged, Rows};
 use super::region::explanation;
 use super::sign::{Scale, Sign};
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
-use crate::scalar::Ball;
+use crate::scalar::{Ball, Exact, Real};
 use nalgebra::DMatrix;
+use std::cmp::Ordering;
 
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
@@ -56,7 +58,8 @@ impl Scratch {
         self.scale.measure(problem);
         self.tableau.load(problem);
         let (scale, labels) = (&self.scale, &mut self.labels);
-        let mut second = SecondLook { problem, scale, rows: None, balls: &mut self.balls, loaded: false };
+        let mut second =
+            SecondLook { problem, scale, rows: None, regular: None, balls: &mut self.balls, loaded: false };
         let mut found = Found { explain, ..Found::default() };
         let mut regular = contacts == 0;
         self.tableau.visit(|leaf| {
@@ -69,7 +72,8 @@ impl Scratch {
                 if reading.sign == Sign::Undecided {
                     second.look(&leaf, modes, &mut found);
                 } else {
-                    found.take_leaf(&leaf, modes, problem, reading, index(leaf.pivots));
+                    let motion = || best_motion(&leaf, modes, problem, rounding);
+                    found.take_leaf(modes, problem, &reading, index(leaf.pivots), motion);
                 }
             }
         });
@@ -83,9 +87,7 @@ impl Scratch {
             index_sum: outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum(),
             rank,
             condition: if regular { condition(problem, scale) } else { None },
-            no_slip_consistent: outcomes
-                .iter()
-                .any(|outcome| outcome.decided && !outcome.modes.iter().any(|mode| mode.slides())),
+            no_slip_consistent: no_slip_consistent(&outcomes),
             explanation: if explain && regular { explanation(problem, scale) } else { None },
             outcomes,
             rejected,
@@ -109,6 +111,15 @@ fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
         [only] if only.impulse.iter().flatten().all(|&entry| entry == 0.0) => Verdict::NoImpact,
         [_] => Verdict::Unique,
         _ => Verdict::Ambiguous,
+    }
+}
+
+/// Whether some outcome has no sliding contact; none where that hangs on an undecided combination.
+fn no_slip_consistent(outcomes: &[Outcome]) -> Option<bool> {
+    let without_slip = || outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
+    match without_slip().any(|outcome| outcome.decided) {
+        false if without_slip().next().is_some() => None,
+        found => Some(found),
     }
 }
 
@@ -146,6 +157,7 @@ struct SecondLook<'a> {
     problem: &'a ContactProblem,
     scale: &'a Scale,
     rows: Option<Rows>,
+    regular: Option<bool>,
     balls: &'a mut Tableau<Ball>,
     loaded: bool,
 }
@@ -155,28 +167,90 @@ impl SecondLook<'_> {
         self.rows.get_or_insert_with(|| Rows::of(self.problem, self.scale))
     }
 
-    fn look(&mut self, leaf: &Leaf<'_, f64>, modes: &[Mode], found: &mut Found) {
-        if self.scale.at_rest {
-            let (problem, scale) = (self.problem, self.scale);
-            let judged = self.rows().judge_at_rest(problem, scale, modes);
-            found.take_judged(modes, self.problem, judged, None);
-            return;
+    fn regular(&mut self) -> bool {
+        if let Some(regular) = self.regular {
+            return regular;
         }
+        let regular = self.rows().rank() == 2 * self.problem.contacts();
+        *self.regular.insert(regular)
+    }
+
+    fn look(&mut self, leaf: &Leaf<'_, f64>, modes: &[Mode], found: &mut Found) {
         if !self.loaded {
             self.balls.load(&enclosed(self.problem, self.scale));
             self.loaded = true;
         }
         let leaf_of_balls = self.balls.leaf(modes);
-        let reading = read_ball(&leaf_of_balls, modes, self.problem, self.scale);
+        let reading = read_signed(&leaf_of_balls, modes, self.problem, self.scale, |ball| ball.mid);
         let pivots: Vec<f64> = leaf_of_balls.pivots.iter().map(|pivot| pivot.mid).collect();
+        let (problem, scale) = (self.problem, self.scale);
         if reading.sign != Sign::Undecided {
-            found.take_leaf(leaf, modes, self.problem, reading, index(&pivots));
+            let rounding = scale.rounding(leaf, problem);
+            let motion = || best_motion(leaf, modes, problem, rounding);
+            found.take_leaf(modes, problem, &reading, index(&pivots), motion);
             return;
         }
-        let (problem, scale) = (self.problem, self.scale);
-        let judged = self.rows().judge(problem, scale, modes);
+        // Exact elimination decides all but vanishing pivots, which a singular matrix is full of.
+        let given = problem.factor().is_none();
+        let judged = if given && self.regular() { None } else { Some(self.rows().judge(problem, scale, modes)) };
+        let open = judged.as_ref().is_none_or(|judged| judged.sign == Sign::Undecided);
+        if open
+            && given
+            && let Some((reading, index, motion)) = read_exactly(problem, scale, modes)
+        {
+            found.take_leaf(modes, problem, &reading, index, || motion);
+            return;
+        }
+        let judged = judged.unwrap_or_else(|| self.rows().judge(problem, scale, modes));
         let index = self.rows().index(problem, scale, modes);
         found.take_judged(modes, self.problem, judged, index);
+    }
+}
+
+/// What `read` sees in a combination's exact numbers, of matrices that were given and so are exact.
+fn exactly<R>(problem: &ContactProblem, modes: &[Mode], read: impl FnOnce(&Leaf<'_, Exact>) -> R) -> R {
+    Exact::scope(|| {
+        let mut tableau = Tableau::<Exact>::new();
+        tableau.load(&problem.map(Exact::from_f64));
+        read(&tableau.leaf(modes))
+    })
+}
+
+/// Reads a combination exactly, with its index; none where a pivot vanishes.
+fn read_exactly(problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Option<(Reading, i8, Motion)> {
+    exactly(problem, modes, |leaf| {
+        let reading = read_signed(leaf, modes, problem, scale, Exact::to_f64);
+        let pivots: Vec<f64> = leaf.pivots.iter().map(|pivot| pivot.to_f64()).collect();
+        let decided = reading.sign != Sign::Undecided;
+        decided.then(|| (reading, index(&pivots), motion(leaf, modes, problem, Exact::to_f64)))
+    })
+}
+
+/// Impulses and velocities of a combination: those of its leaf, or exact but for one rounding where the leaf is ill
+/// conditioned and the matrices were given.
+fn best_motion(leaf: &Leaf<'_, f64>, modes: &[Mode], problem: &ContactProblem, rounding: f64) -> Motion {
+    let regular =
+        |leaf: &Leaf<'_, Exact>| leaf.pivots.iter().all(|pivot| pivot.compare_with_zero().is_some_and(Ordering::is_ne));
+    let given = problem.factor().is_none();
+    let better = (given && rounding > F64_SERVES)
+        .then(|| exactly(problem, modes, |leaf| regular(leaf).then(|| motion(leaf, modes, problem, Exact::to_f64))));
+    better.flatten().unwrap_or_else(|| motion(leaf, modes, problem, |number| number))
+}
+
+/// Scaled numbers whose rounding is below this are told as f64 has them.
+const F64_SERVES: f64 = 1e-12;
+
+/// Impulses and velocities of a leaf.
+fn motion<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem, nearest: impl Fn(T) -> f64) -> Motion {
+    let contacts = 0..problem.contacts();
+    let velocity = |contact: usize| {
+        let [c_t, xi_n] = leaf.velocity(contact).map(&nearest);
+        let c_t = if modes[contact] == Mode::Stick { 0.0 } else { c_t };
+        [c_t, xi_n - problem.bounce(contact)]
+    };
+    Motion {
+        impulse: contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)).collect(),
+        velocity_after: contacts.map(velocity).collect(),
     }
 }
 
@@ -189,7 +263,11 @@ fn enclosed(problem: &ContactProblem, scale: &Scale) -> ContactProblem<Ball> {
             Entry::Delassus { row, column } => scale.mobility[row] * scale.mobility[column],
             Entry::Velocity { row } => value.abs() + scale.speed * scale.mobility[row],
         };
-        Ball { mid: value, radius: if value == 0.0 { 0.0 } else { rounding * size } }
+        let noise = match (place, problem.noise()) {
+            (Entry::Velocity { row }, Some(noise)) => noise[row / 2][row % 2],
+            _ => 0.0,
+        };
+        Ball { mid: value, radius: if value == 0.0 && noise == 0.0 { 0.0 } else { rounding * size + noise } }
     })
 }
 
@@ -210,34 +288,20 @@ struct Found {
 impl Found {
     fn take_leaf(
         &mut self,
-        leaf: &Leaf<'_, f64>,
         modes: &[Mode],
         problem: &ContactProblem,
-        reading: Reading,
+        reading: &Reading,
         index: i8,
+        motion: impl FnOnce() -> Motion,
     ) {
-        if reading.sign == Sign::Negative && !self.explain {
-            return;
-        }
-        let contacts = 0..problem.contacts();
-        let impulse = contacts.clone().map(|contact| leaf.impulse(contact)).collect();
-        let velocity_after = contacts
-            .map(|contact| {
-                let [c_t, xi_n] = leaf.velocity(contact);
-                let c_t = if modes[contact] == Mode::Stick { 0.0 } else { c_t };
-                [c_t, xi_n - problem.bounce(contact)]
-            })
-            .collect();
-        if reading.sign == Sign::Negative {
-            let solved = !matches!(reading.because, Because::NothingHolds { .. });
-            let motion = solved.then_some(Motion { impulse, velocity_after });
-            self.reject(modes, reading.because, reading.margin, motion);
-        } else {
-            let index = (!reading.border).then_some(index);
-            let mut outcome = outcome(modes, problem, Motion { impulse, velocity_after });
-            outcome.index = index;
-            outcome.margin = reading.margin;
+        if reading.sign != Sign::Negative {
+            let mut outcome = outcome(modes, problem, motion());
+            outcome.index = (!reading.border).then_some(index);
+            outcome.margin = reading.margin.map(|margin| margin + 0.0);
             self.outcomes.push(outcome);
+        } else if self.explain {
+            let solved = !matches!(reading.because, Because::NothingHolds { .. });
+            self.reject(modes, reading.because, reading.margin, solved.then(motion));
         }
     }
 
@@ -256,7 +320,7 @@ impl Found {
         let Some(motion) = judged.motion else { return };
         self.outcomes.push(Outcome {
             impulse_unique: judged.impulse_unique,
-            index: index.filter(|_| decided),
+            index: index.filter(|_| decided && !judged.border),
             margin: judged.margin,
             decided,
             ..outcome(modes, problem, motion)
@@ -296,7 +360,7 @@ fn outcome(modes: &[Mode], problem: &ContactProblem, motion: Motion) -> Outcome 
     let needed = |(&mode, l): (&Mode, &Vector<f64>)| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
     Outcome {
         modes: modes.to_vec(),
-        energy_loss: -0.5 * work,
+        energy_loss: 0.0 - 0.5 * work,
         impulse_unique: true,
         friction_needed: modes.iter().zip(&impulse).map(needed).collect(),
         index: None,

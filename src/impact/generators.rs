@@ -57,11 +57,6 @@ impl Generators {
         Self { entries, images }
     }
 
-    /// Z^T times each generator.
-    pub fn images(&self) -> &[Vec<f64>] {
-        &self.images
-    }
-
     /// How many.
     pub fn count(&self) -> usize {
         self.entries.len()

@@ -184,8 +184,22 @@ pub struct Analysis {
     pub rank: usize,
     /// Condition number of the Delassus matrix scaled to a unit diagonal; none where it is singular.
     pub condition: Option<f64>,
-    /// Whether some outcome has no sliding contact.
-    pub no_slip_consistent: bool,
+    /// Whether some outcome has no sliding contact; none where that hangs on an undecided combination.
+    pub no_slip_consistent: Option<bool>,
     /// The paper's section 4 for each contact, if asked for; none for a singular Delassus matrix.
     pub explanation: Option<Explanation>,
+}
+
+impl Analysis {
+    /// What to tell where an outcome gains energy: Newton's restitution with Coulomb friction can.
+    pub fn energy_note(&self) -> Option<String> {
+        let gains = self.outcomes.iter().filter(|outcome| outcome.energy_loss < 0.0).count();
+        let total = self.outcomes.len();
+        (gains > 0).then(|| {
+            format!(
+                "in {gains} of {total} outcomes the contacts add energy: Newton's restitution with Coulomb friction may, and a \
+                 contact that works with an applied impulse"
+            )
+        })
+    }
 }

@@ -28,6 +28,8 @@ pub struct ContactProblem<T = f64> {
     restitution: Vec<f64>,
     /// Z, 2n rows with G = Z Z^T, where it is known better than from G.
     factor: Option<Factor>,
+    /// What the velocities may be off by, where they were computed; none where they were given \[m/s\].
+    noise: Option<Vec<Vector<f64>>>,
 }
 
 /// Rows Z with G = Z Z^T; their singular values show the rank that rounding hides in G.
@@ -114,6 +116,7 @@ impl<T: Real> ContactProblem<T> {
             friction: self.friction.clone(),
             restitution: self.restitution.clone(),
             factor: None,
+            noise: None,
         }
     }
 }
@@ -175,8 +178,10 @@ impl ContactProblem {
             friction,
             restitution,
             factor: None,
+            noise: None,
         };
         problem.check_contacts()?;
+        problem.check_range()?;
         problem.check_definite()?;
         Ok(problem)
     }
@@ -217,20 +222,23 @@ impl ContactProblem {
         for row in contact_jacobian {
             rows.extend(forward_substituted(&cholesky, row));
         }
-        let before = contact_jacobian
-            .chunks_exact(2)
-            .map(|pair| [0, 1].map(|k| pair[k].iter().zip(velocity).map(|(j, v)| j * v).sum()))
-            .collect::<Vec<Vector<f64>>>();
-        Self::from_factor(Factor { rows, columns: dofs }, before, friction, restitution)
+        let pairs = || contact_jacobian.chunks_exact(2);
+        let products =
+            |row: &[f64], size: fn(f64) -> f64| row.iter().zip(velocity).map(|(j, v)| size(j * v)).sum::<f64>();
+        let before = pairs().map(|pair| [0, 1].map(|k| products(&pair[k], |product| product))).collect();
+        let noise = pairs().map(|pair| [0, 1].map(|k| VELOCITY_ROUNDING * products(&pair[k], f64::abs))).collect();
+        Self::from_factor(Factor { rows, columns: dofs }, before, noise, friction, restitution)
     }
 
-    /// A problem from the rows Z of G = Z Z^T (two per contact, each of `columns` entries).
+    /// A problem from the rows Z of G = Z Z^T (two per contact, each of `columns` entries), and from velocities known up to
+    /// `noise`.
     ///
     /// # Errors
     /// As [`ContactProblem::new`].
     pub fn from_factor(
         factor: Factor,
         velocity_before: Vec<Vector<f64>>,
+        noise: Vec<Vector<f64>>,
         friction: Vec<Friction>,
         restitution: Vec<f64>,
     ) -> Result<Self> {
@@ -254,22 +262,32 @@ impl ContactProblem {
             friction,
             restitution,
             factor: Some(factor),
+            noise: Some(noise),
         };
         problem.check_contacts()?;
+        problem.check_range()?;
         Ok(problem)
     }
 
-    /// A problem from parts that the dynamics computed and that need no check.
+    /// A problem from parts that the dynamics computed: G with its factor, c-, the change by applied impulses included in
+    /// `velocity_free`, and what these velocities may be off by.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`], of numbers that overflowed or lie outside the range.
     pub(crate) fn from_parts(
-        delassus: Vec<f64>,
-        factor: Factor,
+        (delassus, factor): (Vec<f64>, Factor),
         velocity_before: Vec<Vector<f64>>,
         velocity_free: Vec<Vector<f64>>,
+        noise: Vec<Vector<f64>>,
         friction: Vec<Friction>,
         restitution: Vec<f64>,
-    ) -> Self {
+    ) -> Result<Self> {
         let approach = approach(&velocity_before);
-        Self { delassus, velocity_before, velocity_free, approach, friction, restitution, factor: Some(factor) }
+        let (factor, noise) = (Some(factor), Some(noise));
+        let problem = Self { delassus, velocity_before, velocity_free, approach, friction, restitution, factor, noise };
+        problem.check_contacts()?;
+        problem.check_range()?;
+        Ok(problem)
     }
 
     /// Z with G = Z Z^T, where the problem was built from the dynamics.
@@ -277,10 +295,33 @@ impl ContactProblem {
         self.factor.as_ref()
     }
 
+    /// What the velocities may be off by \[m/s\]; none where they were given.
+    pub fn noise(&self) -> Option<&[Vector<f64>]> {
+        self.noise.as_deref()
+    }
+
+    /// Products of two entries of G must stay far from overflow and underflow.
+    fn check_range(&self) -> Result<()> {
+        let rows = 2 * self.contacts();
+        for row in 0..rows {
+            let diagonal = finite(self.delassus(row, row), || format!("delassus[{row}][{row}]"))?;
+            if diagonal > 0.0 && !(SMALLEST_MOBILITY..LARGEST_MOBILITY).contains(&diagonal) {
+                let what = format!("delassus[{row}][{row}]");
+                let allowed = "0 or between 1e-120 and 1e120 1/kg";
+                return Err(Error::new(Reason::OutOfRange { what, allowed, value: diagonal })
+                    .hint("choose units of mass and length nearer to the robot's own"));
+            }
+        }
+        Ok(())
+    }
+
     fn check_contacts(&self) -> Result<()> {
         for (contact, velocity) in self.velocity_before.iter().enumerate() {
             for &entry in velocity {
                 finite(entry, || format!("velocity_before of contact {contact}"))?;
+            }
+            for entry in self.velocity_free[contact] {
+                finite(entry, || format!("the velocity of contact {contact} after the applied impulses"))?;
             }
             if let Friction::Finite(mu) = self.friction[contact]
                 && !(mu.is_finite() && mu >= 0.0)
@@ -348,6 +389,12 @@ impl ContactProblem {
     }
 }
 
+/// What a product J v loses to rounding, relative to the sum of its terms' magnitudes.
+pub(crate) const VELOCITY_ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Diagonal entries of G outside these would let products of two of them underflow or overflow \[1/kg\].
+const SMALLEST_MOBILITY: f64 = 1e-120;
+const LARGEST_MOBILITY: f64 = 1e120;
+
 /// min(c_n-, 0) of each contact.
 fn approach(velocity_before: &[Vector<f64>]) -> Vec<f64> {
     velocity_before.iter().map(|c| c[1].min(0.0)).collect()
@@ -358,6 +405,11 @@ fn dense_cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
     let size = matrix.len();
     let largest = matrix.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.abs()));
     let rounding = 4.0 * size as f64 * f64::EPSILON * largest;
+    if let Some(place) = (0..size).find(|&i| matrix[i][i] < 0.0) {
+        let (what, value) = ("an entry of the mass matrix's diagonal".into(), matrix[place][place]);
+        return Err(Error::new(Reason::OutOfRange { what, allowed: "positive", value })
+            .at(format!("mass_matrix[{place}][{place}]")));
+    }
     let mut lower = vec![vec![0.0; size]; size];
     for i in 0..size {
         for j in 0..=i {

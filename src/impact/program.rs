@@ -7,7 +7,7 @@
 //!     least impulse    min_y |L0 + D y|^2   with   slack_i(y) >= 0
 //! ```
 
-use super::basis::{Agreement, Basis, dot, solve};
+use super::basis::{Basis, dot, solve};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
@@ -45,8 +45,7 @@ pub fn widest_slack(slacks: &[Affine], dimension: usize, cap: f64) -> Option<(Ve
     right.push(cap);
     let mut cost = vec![0.0; dimension + 1];
     cost[dimension] = -1.0;
-    let quadratic = CscMatrix::zeros((dimension + 1, dimension + 1));
-    let mut x = minimize(&quadratic, &cost, &entries.matrix(rows, dimension + 1), &right)?;
+    let mut x = minimize(&cost, &entries.matrix(rows, dimension + 1), &right)?;
     x.truncate(dimension);
     let least = slacks.iter().map(|slack| slack.at(&x)).fold(cap, f64::min);
     Some((x, least))
@@ -75,61 +74,67 @@ pub fn opens(slacks: &[Affine], dimension: usize) -> bool {
     let mut right = vec![0.0; slacks.len() + 1];
     right[slacks.len()] = 1.0;
     let cost: Vec<f64> = sum.iter().map(|entry| -entry).collect();
-    let none = CscMatrix::zeros((dimension, dimension));
-    minimize(&none, &cost, &entries.matrix(slacks.len() + 1, dimension), &right).is_none_or(|y| dot(&sum, &y) > 0.5)
+    minimize(&cost, &entries.matrix(slacks.len() + 1, dimension), &right).is_none_or(|y| dot(&sum, &y) > 0.5)
 }
 
-/// The y that makes |L0 + D y| least among those with no negative slack; `directions` are the columns of D. None where
-/// the program fails numerically.
-pub fn least_impulse(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine]) -> Option<Vec<f64>> {
-    let dimension = directions.len();
-    let size = dot(origin, origin).sqrt().max(f64::MIN_POSITIVE);
-    let free = polished(origin, directions, slacks, |_| false)?;
-    let violated = |y: &[f64]| slacks.iter().any(|slack| slack.at(y) < -ADMISSIBLE);
-    if !violated(&free) {
-        return Some(free);
-    }
-    let mut hessian = Triplets::default();
-    for i in 0..dimension {
-        for j in i..dimension {
-            hessian.push(i, j, dot(&directions[i], &directions[j]) / (size * size));
+/// The y that makes |L0 + D y| least among those with no negative slack; `directions` are the columns of D, and `inside`
+/// is a y with no negative slack to begin at.
+///
+/// A primal active-set method (Nocedal and Wright 2006, section 16.5): few slacks, an answer exact to rounding.
+pub fn least_impulse(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine], inside: &[f64]) -> Vec<f64> {
+    let mut y = inside.to_vec();
+    let mut binding: Vec<usize> = Vec::new();
+    // Each round adds or drops one slack; rounding could make it turn in circles on a degenerate corner.
+    for _ in 0..8 * (slacks.len() + 1) {
+        let target = shortest_on_face(origin, directions, slacks, &binding);
+        let step: Vec<f64> = target.iter().zip(&y).map(|(to, from)| to - from).collect();
+        let reach = |&index: &usize| {
+            let slope = dot(&slacks[index].coefficients, &step);
+            let room = slacks[index].at(&y).max(0.0);
+            (slope < 0.0 && room + slope < -ADMISSIBLE).then(|| (index, room / -slope))
+        };
+        let open = (0..slacks.len()).filter(|index| !binding.contains(index));
+        match open.filter_map(|index| reach(&index)).min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((blocking, part)) => {
+                for (entry, change) in y.iter_mut().zip(&step) {
+                    *entry += part.min(1.0) * change;
+                }
+                binding.push(blocking);
+            }
+            None => {
+                y = target;
+                match pulling(origin, directions, slacks, &binding, &y) {
+                    Some(place) => drop(binding.swap_remove(place)),
+                    None => break,
+                }
+            }
         }
     }
-    let cost: Vec<f64> = directions.iter().map(|direction| dot(direction, origin) / (size * size)).collect();
-    let mut entries = Triplets::default();
-    for (row, slack) in slacks.iter().enumerate() {
-        for (column, &coefficient) in slack.coefficients.iter().enumerate() {
-            entries.push(row, column, -coefficient);
-        }
-    }
-    let right: Vec<f64> = slacks.iter().map(|slack| slack.constant).collect();
-    let quadratic = hessian.matrix(dimension, dimension);
-    let near = minimize(&quadratic, &cost, &entries.matrix(slacks.len(), dimension), &right)?;
-    // The interior point names the active slacks; on their face the answer is a projection, exact to rounding.
-    let sharp = polished(origin, directions, slacks, |slack| slack.at(&near).abs() < ACTIVE);
-    Some(sharp.filter(|y| !violated(y)).unwrap_or(near))
+    y
+}
+
+/// The binding slack that keeps L from growing shorter the most: the one with the most negative multiplier.
+fn pulling(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine], binding: &[usize], y: &[f64]) -> Option<usize> {
+    let at: Vec<f64> = origin.iter().zip(combination(directions, y, origin.len())).map(|(a, b)| a + b).collect();
+    let gradient: Vec<f64> = directions.iter().map(|direction| dot(direction, &at)).collect();
+    // gradient = sum of multiplier * coefficients, one equation per entry of y.
+    let equations: Vec<Vec<f64>> =
+        (0..y.len()).map(|entry| binding.iter().map(|&index| slacks[index].coefficients[entry]).collect()).collect();
+    let rows: Vec<&[f64]> = equations.iter().map(Vec::as_slice).collect();
+    let (multipliers, _, _) = solve(binding.len(), &rows, &gradient);
+    let size = dot(&gradient, &gradient).sqrt() + dot(&at, &at).sqrt();
+    let least = (0..binding.len()).min_by(|&i, &j| multipliers[i].total_cmp(&multipliers[j]))?;
+    (multipliers[least] < -ADMISSIBLE * size).then_some(least)
 }
 
 /// A slack may be negative by this much of its scale and still count as zero.
 const ADMISSIBLE: f64 = 1e-11;
-/// An interior-point solution leaves an active slack about this far from zero.
-const ACTIVE: f64 = 1e-7;
 
-/// The shortest L0 + D y with the chosen slacks at zero.
-fn polished(
-    origin: &[f64],
-    directions: &[Vec<f64>],
-    slacks: &[Affine],
-    active: impl Fn(&Affine) -> bool,
-) -> Option<Vec<f64>> {
-    let dimension = directions.len();
-    let chosen: Vec<&Affine> = slacks.iter().filter(|slack| active(slack)).collect();
-    let rows: Vec<&[f64]> = chosen.iter().map(|slack| slack.coefficients.as_slice()).collect();
-    let right: Vec<f64> = chosen.iter().map(|slack| -slack.constant).collect();
-    let (mut y, basis, agreement) = solve(dimension, &rows, &right);
-    if agreement == Agreement::Fails {
-        return None;
-    }
+/// The y of the shortest L0 + D y with the chosen slacks at zero.
+fn shortest_on_face(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine], chosen: &[usize]) -> Vec<f64> {
+    let rows: Vec<&[f64]> = chosen.iter().map(|&index| slacks[index].coefficients.as_slice()).collect();
+    let right: Vec<f64> = chosen.iter().map(|&index| -slacks[index].constant).collect();
+    let (mut y, basis, _) = solve(directions.len(), &rows, &right);
     // Along the face: L = start + E z with E = D (complement); shortest where L is orthogonal to every column of E.
     let along: Vec<(Vec<f64>, Vec<f64>)> =
         basis.complement().rows().map(|z| (z.to_vec(), combination(directions, z, origin.len()))).collect();
@@ -146,7 +151,7 @@ fn polished(
             *entry += factor * part;
         }
     }
-    Some(y)
+    y
 }
 
 fn combination(columns: &[Vec<f64>], factors: &[f64], length: usize) -> Vec<f64> {
@@ -181,8 +186,8 @@ impl Triplets {
     }
 }
 
-/// x that makes 1/2 x.P x + q.x least with A x <= b.
-fn minimize(p: &CscMatrix<f64>, q: &[f64], a: &CscMatrix<f64>, b: &[f64]) -> Option<Vec<f64>> {
+/// x that makes q.x least with A x <= b.
+fn minimize(q: &[f64], a: &CscMatrix<f64>, b: &[f64]) -> Option<Vec<f64>> {
     let settings = DefaultSettings {
         verbose: false,
         tol_gap_abs: 1e-12,
@@ -190,8 +195,9 @@ fn minimize(p: &CscMatrix<f64>, q: &[f64], a: &CscMatrix<f64>, b: &[f64]) -> Opt
         tol_feas: 1e-12,
         ..DefaultSettings::default()
     };
+    let linear = CscMatrix::zeros((q.len(), q.len()));
     let cones = [SupportedConeT::NonnegativeConeT(b.len())];
-    let mut solver = DefaultSolver::new(p, q, a, b, &cones, settings).ok()?;
+    let mut solver = DefaultSolver::new(&linear, q, a, b, &cones, settings).ok()?;
     solver.solve();
     // The last digits may be out of reach; every use checks the point it gets.
     let usable = matches!(
@@ -231,9 +237,18 @@ mod tests {
     #[test]
     fn the_least_impulse_lies_on_the_face_that_binds() {
         // L = (1 - y, y); free optimum y = 1/2, but y <= 1/4.
-        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.25, &[-1.0])]).unwrap();
+        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.25, &[-1.0])], &[0.0]);
         assert!((found[0] - 0.25).abs() < 1e-14, "exact on the face: {found:?}");
-        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.75, &[-1.0])]).unwrap();
+        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.75, &[-1.0])], &[0.0]);
         assert!((found[0] - 0.5).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_slack_that_binds_on_the_way_is_dropped_again() {
+        // L = (y1, y2) + (-2, -1) is shortest at (2, 1); y1 + y2 <= 3 touches there, y2 >= 1.5 - y1 does not bind at all,
+        // and y1 <= 1 does.
+        let slacks = [affine(3.0, &[-1.0, -1.0]), affine(-1.5, &[1.0, 1.0]), affine(1.0, &[-1.0, 0.0])];
+        let found = least_impulse(&[-2.0, -1.0], &[vec![1.0, 0.0], vec![0.0, 1.0]], &slacks, &[0.0, 2.9]);
+        assert!((found[0] - 1.0).abs() < 1e-13 && (found[1] - 1.0).abs() < 1e-13, "{found:?}");
     }
 }

@@ -5,7 +5,7 @@ use super::mode::{Friction, Mode};
 use super::outcome::Because;
 use super::problem::ContactProblem;
 use super::sign::{Scale, Sign, Slack, slacks};
-use crate::scalar::{Ball, Real};
+use crate::scalar::Real;
 
 /// What the slacks of a combination say.
 pub struct Reading {
@@ -36,16 +36,25 @@ pub fn read_f64(
     })
 }
 
-/// Reads a leaf whose numbers know their error.
-pub fn read_ball(leaf: &Leaf<'_, Ball>, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Reading {
-    let factor = |slack: &Slack<Ball>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
+/// Reads a leaf whose numbers know their own sign; `nearest` is the f64 nearest to a number.
+pub fn read_signed<T: Real>(
+    leaf: &Leaf<'_, T>,
+    modes: &[Mode],
+    problem: &ContactProblem,
+    scale: &Scale,
+    nearest: impl Fn(T) -> f64,
+) -> Reading
+where
+    Sign: From<T>,
+{
+    let factor = |slack: &Slack<T>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
     read(
         leaf,
         modes,
         problem.friction(),
         true,
         |_, c_t| Sign::from(c_t),
-        |slack| (Sign::from(slack.number), slack.number.mid * factor(slack)),
+        |slack| (Sign::from(slack.number), nearest(slack.number) * factor(slack)),
     )
 }
 

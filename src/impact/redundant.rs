@@ -20,8 +20,8 @@ use super::sign::{Scale, Sign, SlackKind};
 
 /// A scaled number within this of zero is not told from zero: the tolerance of the programs, above that of the rank.
 const TOLERANCE: f64 = 1e-9;
-/// A scaled velocity within this of zero, where the modes ask for more, is the rounding of one that the equations hold at
-/// zero (heel and toe of a flat foot cannot slide apart).
+/// A margin within this of zero, where the modes ask for a velocity that is not, is the rounding of one that the equations
+/// hold at zero (heel and toe of a flat foot cannot slide apart); so is a coefficient of rows of length one.
 const ROUNDING: f64 = 1e-12;
 /// Slacks are not followed beyond this: the impulses are then unbounded.
 const UNBOUNDED: f64 = 1e3;
@@ -48,11 +48,13 @@ pub struct Judged {
     pub motion: Option<Motion>,
     /// Whether the impulse is the only one.
     pub impulse_unique: bool,
+    /// Whether an impulse inequality is zero for every admissible impulse.
+    pub border: bool,
 }
 
 impl Judged {
     fn without_solution(because: Because) -> Self {
-        Self { sign: Sign::Negative, because, margin: None, motion: None, impulse_unique: false }
+        Self { sign: Sign::Negative, because, margin: None, motion: None, impulse_unique: false, border: false }
     }
 }
 
@@ -125,31 +127,6 @@ impl Rows {
         Judged { sign, ..judged }
     }
 
-    /// Judges a combination where nothing moves. Impulses cannot add energy, so that the contacts stay at rest: all stick
-    /// with zero impulse, on every border, and any other list of modes is that one's twin.
-    pub fn judge_at_rest(&self, problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Judged {
-        if modes.iter().any(|&mode| mode != Mode::Stick) {
-            return Judged::without_solution(Because::RedundantTwin);
-        }
-        let generators = Generators::of(&self.rows, problem, scale, modes);
-        let columns: Vec<Vec<f64>> =
-            (0..self.columns).map(|k| generators.images().iter().map(|image| image[k]).collect()).collect();
-        let origin = vec![0.0; generators.count()];
-        let mut basis = Basis::new(generators.count());
-        basis.extend(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        let free: Vec<Vec<f64>> = basis.complement().rows().map(<[f64]>::to_vec).collect();
-        let slacks = self.slacks(problem, scale, modes, &generators, &origin, &free);
-        let functions: Vec<Affine> = slacks.into_iter().map(|(_, _, slack)| slack).collect();
-        let still = || vec![[0.0; 2]; modes.len()];
-        Judged {
-            sign: Sign::Positive,
-            because: Because::NoSolution,
-            margin: Some(0.0),
-            motion: Some(Motion { impulse: still(), velocity_after: still() }),
-            impulse_unique: free.is_empty() || !opens(&functions, free.len()),
-        }
-    }
-
     /// Every slack of the combination as a function of the free parameters y of lambda = origin + free y.
     fn slacks(
         &self,
@@ -162,7 +139,7 @@ impl Rows {
     ) -> Vec<(usize, SlackKind, Affine)> {
         let affine = |constant: f64, of_lambda: &[f64]| Affine {
             constant: constant + dot(of_lambda, origin),
-            coefficients: free.iter().map(|direction| dot(of_lambda, direction)).collect(),
+            coefficients: free.iter().map(|direction| without_noise(dot(of_lambda, direction))).collect(),
         };
         let velocity = |row: usize, sign: f64| {
             let of_lambda: Vec<f64> = generators.against(&self.rows[row]).iter().map(|entry| sign * entry).collect();
@@ -213,28 +190,32 @@ impl Rows {
         (origin, free): (Vec<f64>, Vec<Vec<f64>>),
         slacks: Vec<(usize, SlackKind, Affine)>,
     ) -> Judged {
-        let size = 1.0 + dot(&origin, &origin).sqrt();
+        // Whatever the velocities are off by is as good as the programs' own tolerance.
+        let size = (1.0 + scale.noise / TOLERANCE) * (1.0 + dot(&origin, &origin).sqrt());
         let functions: Vec<Affine> = slacks.iter().map(|(_, _, slack)| slack.clone()).collect();
-        // Generators are independent, so that a free direction always changes the impulses.
-        let impulse_unique = free.is_empty();
+        let strict = |index: usize| slacks[index].1.is_strict();
+        let widest = if free.is_empty() { None } else { widest_slack(&functions, free.len(), UNBOUNDED) };
+        // Where the velocities themselves form a set, no single one may be told as the outcome.
+        let family = self.rows.iter().any(|row| {
+            let of_lambda = generators.against(row);
+            free.iter().any(|direction| dot(&of_lambda, direction).abs() > TOLERANCE)
+        });
+        let open = family || (widest.is_none() && !free.is_empty());
+        let inside = widest.as_ref().is_some_and(|(_, least)| *least > TOLERANCE * size);
+        // What the modes hold at zero is at rest already: no impulse is needed, and its own inequalities are all zero.
+        let resting = !open && !origin.is_empty() && origin.iter().all(|&entry| entry == 0.0);
+        let border = resting && !inside;
         let mut y = vec![0.0; free.len()];
-        // Some member of the set is told even where the verdict on it is open.
-        let mut open = false;
-        if !free.is_empty() {
-            match widest_slack(&functions, free.len(), UNBOUNDED) {
-                Some((widest, _)) => y = widest,
-                None => open = true,
-            }
-            // Where the velocities themselves form a set, no single one may be told as the outcome.
-            open |= self.rows.iter().any(|row| {
-                let of_lambda = generators.against(row);
-                free.iter().any(|direction| dot(&of_lambda, direction).abs() > TOLERANCE)
-            });
+        if let Some((widest, _)) = widest
+            && !border
+        {
+            y = widest;
         }
         let values: Vec<f64> = functions.iter().map(|slack| slack.at(&y)).collect();
-        let least = (0..values.len()).min_by(|&i, &j| values[i].total_cmp(&values[j]));
+        let decisive = (0..values.len()).filter(|&index| !border || strict(index));
+        let least = decisive.min_by(|&i, &j| values[i].total_cmp(&values[j]));
         let margin = least.map(|least| values[least]);
-        let vanishes = |(i, value): (usize, &f64)| slacks[i].1.is_strict() && value.abs() <= ROUNDING * size;
+        let vanishes = |(index, value): (usize, &f64)| strict(index) && value.abs() <= TOLERANCE * size;
         let sign = match margin.map_or(Sign::Positive, |margin| Sign::within(margin, TOLERANCE * size)) {
             Sign::Undecided if margin >= Some(-ROUNDING * size) && values.iter().enumerate().any(vanishes) => {
                 Sign::Zero
@@ -242,12 +223,19 @@ impl Rows {
             Sign::Positive if open => Sign::Undecided,
             sign => sign,
         };
-        if sign == Sign::Positive && !impulse_unique {
+        // Generators are independent, so that a free direction always changes the impulses.
+        let mut impulse_unique = free.is_empty();
+        if border {
+            let pressing: Vec<Affine> =
+                (0..values.len()).filter(|&index| !strict(index)).map(|index| functions[index].clone()).collect();
+            impulse_unique |= !opens(&pressing, free.len());
+        } else if sign == Sign::Positive && resting {
+            y = vec![0.0; free.len()];
+        } else if sign == Sign::Positive && !impulse_unique {
             let directions: Vec<Vec<f64>> = free.iter().map(|lambda| generators.raw_impulse(lambda, scale)).collect();
-            if let Some(least) = least_impulse(&generators.raw_impulse(&origin, scale), &directions, &functions) {
-                y = least;
-            }
+            y = least_impulse(&generators.raw_impulse(&origin, scale), &directions, &functions, &y);
         }
+        let margin = if border && sign == Sign::Positive { Some(0.0) } else { margin };
         let mut lambda = origin;
         for (direction, factor) in free.iter().zip(&y) {
             for (entry, part) in lambda.iter_mut().zip(direction) {
@@ -276,6 +264,7 @@ impl Rows {
             margin: margin.filter(|margin| *margin < UNBOUNDED * (1.0 - TOLERANCE)),
             motion: Some(Motion { impulse, velocity_after }),
             impulse_unique,
+            border,
         }
     }
 
@@ -330,6 +319,12 @@ impl Rows {
         }
         Some(sign)
     }
+}
+
+/// A coefficient of rows and directions of length one, unless it is no more than their rounding: a program would follow
+/// such a slope to any distance.
+fn without_noise(coefficient: f64) -> f64 {
+    if coefficient.abs() <= ROUNDING { 0.0 } else { coefficient }
 }
 
 /// The velocity rows that a combination sets to zero.

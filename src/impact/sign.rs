@@ -12,7 +12,8 @@ use super::mode::{Friction, Mode};
 use super::outcome::Because;
 use super::problem::ContactProblem;
 use crate::planar::Vector;
-use crate::scalar::{Ball, Real};
+use crate::scalar::{Ball, Exact, Real};
+use std::cmp::Ordering;
 
 /// The sign of a number that may be known inexactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +46,17 @@ impl Sign {
 impl From<Ball> for Sign {
     fn from(ball: Ball) -> Self {
         Sign::within(ball.mid, ball.radius)
+    }
+}
+
+impl From<Exact> for Sign {
+    fn from(number: Exact) -> Self {
+        match number.compare_with_zero() {
+            Some(Ordering::Less) => Sign::Negative,
+            Some(Ordering::Equal) => Sign::Zero,
+            Some(Ordering::Greater) => Sign::Positive,
+            None => Sign::Undecided,
+        }
     }
 }
 
@@ -127,10 +139,10 @@ pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], friction: &[Friction]
 pub struct Scale {
     /// S \[sqrt J\]; 1 where nothing moves.
     pub speed: f64,
-    /// Nothing moves: c_free and every bounce are exactly zero.
-    pub at_rest: bool,
     /// sqrt(G_ii) of every row \[1/sqrt(kg)\]; of a row that nothing moves the largest of the others.
     pub mobility: Vec<f64>,
+    /// What the scaled velocities may be off by before anything is computed from them.
+    pub noise: f64,
 }
 
 impl Scale {
@@ -153,10 +165,11 @@ impl Scale {
             // An applied impulse may cancel c- exactly and leave the bounce alone.
             self.speed = bounces.fold(0.0, f64::max);
         }
-        self.at_rest = self.speed == 0.0;
-        if self.at_rest {
+        if self.speed == 0.0 {
             self.speed = 1.0;
         }
+        let noise = problem.noise().unwrap_or_default().iter().flatten().zip(&self.mobility);
+        self.noise = noise.map(|(noise, mobility)| noise / (mobility * self.speed)).fold(0.0, f64::max);
     }
 
     /// What a slack of this kind is multiplied by to be free of units.
@@ -197,16 +210,18 @@ impl Scale {
                 } else {
                     (d_t * d_n).powi(2)
                 };
-                growth *= (size / pivot.abs()).max(1.0);
+                let loss = size / pivot.abs();
+                growth *= if loss.is_nan() { f64::INFINITY } else { loss.max(1.0) };
             }
             let [l_t, l_n] = leaf.impulse(contact);
             let [c_t, xi_n] = leaf.velocity(contact);
             for scaled in [l_t * d_t, l_n * d_n, c_t / d_t, xi_n / d_n] {
-                largest = largest.max(scaled.abs() / self.speed);
+                let scaled = scaled.abs() / self.speed;
+                // `f64::max` would drop a NaN.
+                largest = if scaled.is_nan() { f64::INFINITY } else { largest.max(scaled) };
             }
         }
-        let rounding = 16.0 * leaf.modes.len() as f64 * f64::EPSILON * growth * largest;
-        if rounding.is_nan() { f64::INFINITY } else { rounding }
+        (16.0 * leaf.modes.len() as f64 * f64::EPSILON + self.noise) * growth * largest
     }
 }
 

@@ -201,7 +201,7 @@ impl<'a> Inspection<'a> {
         if !self.left_out.is_empty() {
             writeln!(out, "\n{strong}left out{plain}")?;
             Table::default()
-                .text("what", self.left_out.iter().map(|left| left.what))
+                .text("what", self.left_out.iter().map(|left| &*left.what))
                 .text("why", self.left_out.iter().map(|left| left.why))
                 .write_body(out);
         }

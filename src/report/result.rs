@@ -45,9 +45,10 @@ pub struct Report<'a> {
     /// Kinetic energy before the impact \[J\]; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinetic_energy: Option<f64>,
-    /// Whether some outcome has no sliding contact; absent beside an `error`.
+    /// Whether some outcome has no sliding contact; null where that is undecided, absent beside an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub no_slip_consistent: Option<bool>,
+    #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
+    pub no_slip_consistent: Option<Option<bool>>,
     /// The paper's section 4 for each contact, if asked for; null for a singular Delassus matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
@@ -68,7 +69,7 @@ pub struct Report<'a> {
     pub left_out: Option<Vec<LeftOut<'a>>>,
     /// What a reader should know, in whole sentences.
     #[serde(skip_serializing_if = "<[String]>::is_empty")]
-    pub notes: &'a [String],
+    pub notes: Cow<'a, [String]>,
     /// Names of the kept coordinates in the order of q, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coordinates: Option<&'a [String]>,
@@ -139,6 +140,9 @@ pub struct Outcome<'a> {
     pub margin: Option<f64>,
     /// Every sign is shown by an error bound.
     pub proven: bool,
+    /// False, and only then present, where the combination is neither shown nor excluded.
+    #[serde(skip_serializing_if = "is_true")]
+    pub decided: bool,
 }
 
 /// Something of the robot's file that does not enter the analysis.
@@ -146,7 +150,7 @@ pub struct Outcome<'a> {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeftOut<'a> {
     /// What, as in `joint "left_ankle"`.
-    pub what: &'a str,
+    pub what: Cow<'a, str>,
     /// Why, as in `fixed: welded into left_shank`.
     pub why: &'a str,
 }
@@ -154,7 +158,17 @@ pub struct LeftOut<'a> {
 impl<'a> LeftOut<'a> {
     /// All that was left out of `robot`.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
-        robot.left_out.iter().map(|left| Self { what: &left.what, why: &left.why }).collect()
+        robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: &left.why }).collect()
+    }
+
+    /// All that was left out of `robot` and of this state of it.
+    pub fn of_state(robot: &'a Robot, state: &State) -> Vec<Self> {
+        let mut all = Self::all(robot);
+        let held = state.scene.held.iter().map(|&joint| &robot.joints[joint].name);
+        all.extend(
+            held.map(|name| Self { what: Cow::Owned(format!("joint \"{name}\"")), why: "held: keeps its rate" }),
+        );
+        all
     }
 }
 
@@ -225,6 +239,10 @@ pub struct Brief<'a> {
     pub error: Option<ErrorObject<'a>>,
 }
 
+fn is_true(flag: &bool) -> bool {
+    *flag
+}
+
 /// An outcome in brief.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -235,6 +253,9 @@ pub struct OutcomeInBrief<'a> {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
+    /// False, and only then present, where the combination is neither shown nor excluded.
+    #[serde(skip_serializing_if = "is_true")]
+    pub decided: bool,
 }
 
 /// What stands in place of the result of a refused input.
@@ -294,8 +315,8 @@ impl<'a> Report<'a> {
         let mut report = Self {
             id: state.id.as_ref(),
             kinetic_energy: Some(impact.kinetic_energy),
-            left_out: Some(LeftOut::all(robot)),
-            notes: &impact.notes,
+            left_out: Some(LeftOut::of_state(robot, state)),
+            notes: Cow::Borrowed(&impact.notes),
             ..Self::of_analysis(contacts, analysis, detail)
         };
         for (outcome, velocity) in report.outcomes.iter_mut().flatten().zip(&impact.velocity_after) {
@@ -317,6 +338,7 @@ impl<'a> Report<'a> {
         Self {
             id: problem.id.as_ref(),
             delassus: detail.matrices.then(|| Cow::Owned(problem.delassus())),
+            notes: analysis.energy_note().into_iter().collect(),
             ..Self::of_analysis(contacts, Ok(analysis), detail)
         }
     }
@@ -347,7 +369,7 @@ impl<'a> Report<'a> {
             condition: known.map(|analysis| analysis.condition),
             rank: known.map(|analysis| analysis.rank),
             left_out: None,
-            notes: &[],
+            notes: Cow::Borrowed(&[]),
             coordinates: None,
             mass_matrix: None,
             contact_jacobian: None,
@@ -364,6 +386,7 @@ impl<'a> Report<'a> {
             modes: outcome.modes,
             index: outcome.index,
             margin: outcome.margin,
+            decided: outcome.decided,
         };
         Brief {
             id: self.id,
@@ -412,6 +435,7 @@ impl<'a> Outcome<'a> {
             index: outcome.index,
             margin: outcome.margin,
             proven: outcome.proven,
+            decided: outcome.decided,
         }
     }
 

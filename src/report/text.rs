@@ -345,7 +345,7 @@ impl<'w> Writer<'w> {
             self.out.push('\n');
         }
         let struck = !self.report.contacts.is_empty();
-        if struck && self.report.no_slip_consistent == Some(false) && self.report.verdict != Some(Verdict::None) {
+        if struck && self.report.no_slip_consistent == Some(Some(false)) && self.report.verdict != Some(Verdict::None) {
             let infinite = |friction: &Option<Friction>| *friction == Some(Friction::Infinite);
             self.out.push_str(if self.subject.friction.iter().all(infinite) {
                 "No outcome in which every contact sticks or lifts off exists: it slides whatever the friction.\n"
@@ -363,12 +363,15 @@ impl<'w> Writer<'w> {
             let proven = if self.report.proven == Some(true) { "proven" } else { "not proven" };
             writeln!(self.out, "; sum of indices {sum}; {proven}.")?;
         }
-        for note in self.report.notes {
+        if !struck && !self.report.notes.is_empty() {
+            self.out.push('\n');
+        }
+        for note in self.report.notes.iter() {
             writeln!(self.out, "Note: {note}")?;
         }
         if let Some(left_out) = self.report.left_out.as_ref().filter(|left_out| !left_out.is_empty()) {
             let Palette { faint, plain, .. } = *self.palette;
-            let what = left_out.iter().map(|left| left.what).collect::<Vec<_>>().join(", ");
+            let what = left_out.iter().map(|left| &*left.what).collect::<Vec<_>>().join(", ");
             writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {what}.{plain}")?;
         }
         Ok(())
@@ -401,7 +404,7 @@ fn verdict_sentence(verdict: Verdict, outcomes: usize) -> String {
             "Undecided: some sign lies within its rounding; what it leaves open is listed.".to_owned()
         }
         Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.".to_owned(),
-        Verdict::NoContact => "No contact: the velocities stay as they are.".to_owned(),
+        Verdict::NoContact => "No contact: the ground gives no impulse.".to_owned(),
     }
 }
 

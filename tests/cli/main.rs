@@ -145,12 +145,14 @@ fn a_robot_in_the_air_keeps_its_velocity() {
     block: nothing touches the ground.
     Kinetic energy before the impact: 2 J.
 
-    No contact: the velocities stay as they are.
+    No contact: the ground gives no impulse.
 
       velocity after
       x               m/s    2.00000
       z               m/s          0
       pitch           rad/s        0
+
+    Note: nothing touches the ground: the lowest foot, block, is 1.0 m above it
     ");
     let result = heelstrike_reads(&["impact", BLOCK, "-", "--format", "json"], state).line();
     assert_eq!(result["verdict"], "no_contact");

@@ -242,7 +242,7 @@ fn a_refusal_shows_file_line_and_place_to_people() {
     1 | [{"friction": 1},
       |  ^
       |
-    hint: raise the base, correct the pose, or accept it by a greater --contact-tolerance
+    hint: raise the base by 0.604325 m, correct the pose, or accept it by a greater --contact-tolerance
     error: the robot has no joint named "left_knie"
      --> <stdin>:2:28
       |
