@@ -167,7 +167,8 @@ impl Summary {
     fn near(&mut self, state: impl Fn() -> Place, outcomes: &[Outcome]) {
         // Where nothing presses on anything, every slack of an impulse is zero, and that says nothing.
         let pressed = |outcome: &&Outcome| outcome.impulse.iter().flatten().any(|&entry| entry != 0.0);
-        let margins = outcomes.iter().filter(pressed).filter_map(|outcome| outcome.margin);
+        let margins =
+            outcomes.iter().filter(|outcome| outcome.decided).filter(pressed).filter_map(|outcome| outcome.margin);
         let Some(margin) = margins.min_by(|a, b| a.abs().total_cmp(&b.abs())) else { return };
         let farthest = self.smallest_margins.get(NAMED - 1);
         if farthest.is_none_or(|farthest| margin.abs() < farthest.margin.abs()) {

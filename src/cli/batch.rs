@@ -150,6 +150,12 @@ pub(super) fn run(args: &Args) -> Outcome {
     };
     let header = args.header(&robot, &mut chunks)?;
     let output_form = args.output_format.unwrap_or_else(|| args.output.as_deref().map_or(Form::Ndjson, Form::of));
+    let detail = args.detail.detail();
+    if output_form == Form::Csv && (detail.explain || detail.matrices || detail.brief) {
+        let reason = "a table has a row per outcome and no room for --explain, --matrices or --brief".to_owned();
+        let hint = "write JSON: --output-format ndjson, or -o with that ending";
+        return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
+    }
     let touchdowns = args.recording.touchdowns();
     let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns.is_some());
     let columns = (output_form == Form::Csv).then(columns);
@@ -157,7 +163,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         robot: &robot,
         options: pipeline_options(&args.contacts, feet, args.detail),
         defaults: args.scene.defaults(),
-        detail: args.detail.detail(),
+        detail,
         header: header.as_ref(),
         columns: columns.as_ref(),
         touchdowns,
