@@ -6,6 +6,12 @@
 //!
 //! with the laws of each contact (paper, section 2). It can be built from matrices alone and knows no robot.
 
+mod checks;
+mod dense;
+
+pub use checks::MATRIX_LIMIT;
+pub(crate) use checks::check_matrix_size;
+
 use super::mode::Friction;
 use crate::error::{Error, Reason, Result, finite};
 use crate::planar::Vector;
@@ -121,21 +127,6 @@ impl<T: Real> ContactProblem<T> {
     }
 }
 
-/// Matrices are formed for at most so many contacts, whether or not their outcomes are sought.
-pub const MATRIX_LIMIT: usize = 500;
-
-/// Refuses more contacts than [`MATRIX_LIMIT`].
-///
-/// # Errors
-/// [`Reason::MatricesTooLarge`].
-pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
-    if contacts <= MATRIX_LIMIT {
-        return Ok(());
-    }
-    let reason = Reason::MatricesTooLarge { contacts, limit: MATRIX_LIMIT };
-    Err(Error::new(reason).hint("name the contacts that matter by hand, or lower the contact tolerance"))
-}
-
 impl ContactProblem {
     /// A problem from its matrices: `delassus` 2n x 2n by rows, rows and columns [tangential, normal] per contact \[1/kg\];
     /// `velocity_before` \[m/s\], `friction` and `restitution` (0 to 1) one entry per contact.
@@ -184,50 +175,6 @@ impl ContactProblem {
         problem.check_range()?;
         problem.check_definite()?;
         Ok(problem)
-    }
-
-    /// A problem from the dynamics, so that exact redundancy survives where a rounded G would lose it: M (dofs x dofs), J
-    /// (two rows per contact: tangential, normal; dofs columns), v (dofs).
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`]; also a mass matrix that is asymmetric or not positive definite.
-    pub fn from_dynamics(
-        mass_matrix: &[Vec<f64>],
-        contact_jacobian: &[Vec<f64>],
-        velocity: &[f64],
-        friction: Vec<Friction>,
-        restitution: Vec<f64>,
-    ) -> Result<Self> {
-        let dofs = velocity.len();
-        check_matrix_size(friction.len())?;
-        let shape = |place: &'static str, matrix: &[Vec<f64>], rows: usize| {
-            let fits = matrix.len() == rows && matrix.iter().all(|row| row.len() == dofs);
-            if fits {
-                return matrix
-                    .iter()
-                    .flatten()
-                    .try_for_each(|&entry| finite(entry, || format!("an entry of {place}")).map(drop));
-            }
-            Err(Error::new(Reason::Inconsistent(format!("{place} must have {rows} rows of {dofs} numbers")))
-                .at(place)
-                .hint("its columns are the entries of `velocity`"))
-        };
-        shape("mass_matrix", mass_matrix, dofs)?;
-        shape("contact_jacobian", contact_jacobian, 2 * friction.len())?;
-        for &entry in velocity {
-            finite(entry, || "an entry of velocity".into())?;
-        }
-        let cholesky = dense_cholesky(mass_matrix)?;
-        let mut rows = Vec::with_capacity(contact_jacobian.len() * dofs);
-        for row in contact_jacobian {
-            rows.extend(forward_substituted(&cholesky, row));
-        }
-        let pairs = || contact_jacobian.chunks_exact(2);
-        let products =
-            |row: &[f64], size: fn(f64) -> f64| row.iter().zip(velocity).map(|(j, v)| size(j * v)).sum::<f64>();
-        let before = pairs().map(|pair| [0, 1].map(|k| products(&pair[k], |product| product))).collect();
-        let noise = pairs().map(|pair| [0, 1].map(|k| VELOCITY_ROUNDING * products(&pair[k], f64::abs))).collect();
-        Self::from_factor(Factor { rows, columns: dofs }, before, noise, friction, restitution)
     }
 
     /// A problem from the rows Z of G = Z Z^T (two per contact, each of `columns` entries), and from velocities known up to
@@ -299,147 +246,14 @@ impl ContactProblem {
     pub fn noise(&self) -> Option<&[Vector<f64>]> {
         self.noise.as_deref()
     }
-
-    /// Products of two entries of G must stay far from overflow and underflow.
-    fn check_range(&self) -> Result<()> {
-        let rows = 2 * self.contacts();
-        for row in 0..rows {
-            let diagonal = finite(self.delassus(row, row), || format!("delassus[{row}][{row}]"))?;
-            if diagonal > 0.0 && !(SMALLEST_MOBILITY..LARGEST_MOBILITY).contains(&diagonal) {
-                let what = format!("delassus[{row}][{row}]");
-                let allowed = "0 or between 1e-120 and 1e120 1/kg";
-                return Err(Error::new(Reason::OutOfRange { what, allowed, value: diagonal })
-                    .hint("choose units of mass and length nearer to the robot's own"));
-            }
-        }
-        Ok(())
-    }
-
-    fn check_contacts(&self) -> Result<()> {
-        for (contact, velocity) in self.velocity_before.iter().enumerate() {
-            for &entry in velocity {
-                finite(entry, || format!("velocity_before of contact {contact}"))?;
-            }
-            for entry in self.velocity_free[contact] {
-                finite(entry, || format!("the velocity of contact {contact} after the applied impulses"))?;
-            }
-            if let Friction::Finite(mu) = self.friction[contact]
-                && !(mu.is_finite() && mu >= 0.0)
-            {
-                let allowed = "zero, positive or \"infinite\"";
-                return Err(Error::new(Reason::OutOfRange { what: "friction".into(), allowed, value: mu })
-                    .at(format!("friction of contact {contact}")));
-            }
-            let restitution = self.restitution[contact];
-            if !(0.0..=1.0).contains(&restitution) {
-                let allowed = "between 0 and 1";
-                return Err(Error::new(Reason::OutOfRange { what: "restitution".into(), allowed, value: restitution })
-                    .at(format!("restitution of contact {contact}")));
-            }
-        }
-        Ok(())
-    }
-
-    /// Symmetry entry by entry, then definiteness by elimination with diagonal pivoting, both to n eps of the largest
-    /// entry.
-    fn check_definite(&self) -> Result<()> {
-        let rows = 2 * self.contacts();
-        let largest = self.delassus.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-        let rounding = 4.0 * rows as f64 * f64::EPSILON * largest;
-        let mut rest = nalgebra::DMatrix::from_row_slice(rows, rows, &self.delassus);
-        for i in 0..rows {
-            for j in 0..i {
-                if (rest[(i, j)] - rest[(j, i)]).abs() > rounding {
-                    return Err(Error::new(Reason::Inconsistent(format!(
-                        "the Delassus matrix is not symmetric: {} against {}",
-                        rest[(i, j)],
-                        rest[(j, i)]
-                    )))
-                    .at(format!("delassus[{i}][{j}]"))
-                    .hint("G = J M^-1 J^T is symmetric; check the order of rows and columns"));
-                }
-            }
-        }
-        for _ in 0..rows {
-            let Some(pivot) = (0..rows).max_by(|&i, &j| rest[(i, i)].total_cmp(&rest[(j, j)])) else { break };
-            let indefinite = (0..rows).find(|&i| rest[(i, i)] < -rounding);
-            let coupled = || (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j)));
-            let stray = (rest[(pivot, pivot)] <= rounding)
-                .then(|| coupled().find(|&(i, j)| rest[(i, j)].abs() > 4.0 * rounding))
-                .flatten();
-            if let Some((i, j)) = indefinite.map(|i| (i, i)).or(stray) {
-                return Err(Error::new(Reason::Inconsistent(
-                    "the Delassus matrix is indefinite: an impulse there would gain energy".into(),
-                ))
-                .at(format!("delassus[{i}][{j}]"))
-                .hint("G = J M^-1 J^T is positive semidefinite; check signs and units"));
-            }
-            let diagonal = rest[(pivot, pivot)];
-            if diagonal <= rounding {
-                break;
-            }
-            let column = rest.column(pivot).clone_owned();
-            for i in 0..rows {
-                for j in 0..rows {
-                    rest[(i, j)] -= column[i] * column[j] / diagonal;
-                }
-            }
-        }
-        Ok(())
-    }
 }
 
 /// What a product J v loses to rounding, relative to the sum of its terms' magnitudes.
 pub(crate) const VELOCITY_ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// Diagonal entries of G outside these would let products of two of them underflow or overflow \[1/kg\].
-const SMALLEST_MOBILITY: f64 = 1e-120;
-const LARGEST_MOBILITY: f64 = 1e120;
 
 /// min(c_n-, 0) of each contact.
 fn approach(velocity_before: &[Vector<f64>]) -> Vec<f64> {
     velocity_before.iter().map(|c| c[1].min(0.0)).collect()
-}
-
-/// Lower Cholesky factor of a dense symmetric matrix, by rows.
-fn dense_cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
-    let size = matrix.len();
-    let largest = matrix.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-    let rounding = 4.0 * size as f64 * f64::EPSILON * largest;
-    if let Some(place) = (0..size).find(|&i| matrix[i][i] < 0.0) {
-        let (what, value) = ("an entry of the mass matrix's diagonal".into(), matrix[place][place]);
-        return Err(Error::new(Reason::OutOfRange { what, allowed: "positive", value })
-            .at(format!("mass_matrix[{place}][{place}]")));
-    }
-    let mut lower = vec![vec![0.0; size]; size];
-    for i in 0..size {
-        for j in 0..=i {
-            if (matrix[i][j] - matrix[j][i]).abs() > rounding {
-                return Err(Error::new(Reason::Inconsistent("the mass matrix is not symmetric".into()))
-                    .at(format!("mass_matrix[{i}][{j}]")));
-            }
-            let rest = matrix[i][j] - (0..j).map(|k| lower[i][k] * lower[j][k]).sum::<f64>();
-            if i != j {
-                lower[i][j] = rest / lower[j][j];
-            } else if rest > 4.0 * size as f64 * f64::EPSILON * matrix[i][i] {
-                lower[i][i] = rest.sqrt();
-            } else {
-                return Err(Error::new(Reason::Singular(format!("coordinate {i}")))
-                    .at(format!("mass_matrix[{i}][{i}]"))
-                    .hint("every coordinate needs inertia: add a mass, or a rotor inertia on the diagonal"));
-            }
-        }
-    }
-    Ok(lower)
-}
-
-/// y with `lower` y = `right`.
-fn forward_substituted(lower: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
-    let mut y = Vec::with_capacity(right.len());
-    for (row, &entry) in lower.iter().zip(right) {
-        let known: f64 = row.iter().zip(&y).map(|(a, b)| a * b).sum();
-        y.push((entry - known) / row[y.len()]);
-    }
-    y
 }
 
 #[cfg(test)]

@@ -1,0 +1,114 @@
+//! What a contact problem must be, however it was built.
+
+use super::ContactProblem;
+use crate::error::{Error, Reason, Result, finite};
+use crate::impact::mode::Friction;
+
+/// Matrices are formed for at most so many contacts, whether or not their outcomes are sought.
+pub const MATRIX_LIMIT: usize = 500;
+
+/// Refuses more contacts than [`MATRIX_LIMIT`].
+///
+/// # Errors
+/// [`Reason::MatricesTooLarge`].
+pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
+    if contacts <= MATRIX_LIMIT {
+        return Ok(());
+    }
+    let reason = Reason::MatricesTooLarge { contacts, limit: MATRIX_LIMIT };
+    Err(Error::new(reason).hint("name the contacts that matter by hand, or lower the contact tolerance"))
+}
+
+/// Diagonal entries of G outside these would let products of two of them underflow or overflow \[1/kg\].
+const SMALLEST_MOBILITY: f64 = 1e-120;
+const LARGEST_MOBILITY: f64 = 1e120;
+
+impl ContactProblem {
+    /// Products of two entries of G must stay far from overflow and underflow.
+    pub(super) fn check_range(&self) -> Result<()> {
+        let rows = 2 * self.contacts();
+        for row in 0..rows {
+            let diagonal = finite(self.delassus(row, row), || format!("delassus[{row}][{row}]"))?;
+            if diagonal > 0.0 && !(SMALLEST_MOBILITY..LARGEST_MOBILITY).contains(&diagonal) {
+                let what = format!("delassus[{row}][{row}]");
+                let allowed = "0 or between 1e-120 and 1e120 1/kg";
+                return Err(Error::new(Reason::OutOfRange { what, allowed, value: diagonal })
+                    .hint("choose units of mass and length nearer to the robot's own"));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_contacts(&self) -> Result<()> {
+        for (contact, velocity) in self.velocity_before.iter().enumerate() {
+            for &entry in velocity {
+                finite(entry, || format!("velocity_before of contact {contact}"))?;
+            }
+            for entry in self.velocity_free[contact] {
+                finite(entry, || format!("the velocity of contact {contact} after the applied impulses"))?;
+            }
+            if let Friction::Finite(mu) = self.friction[contact]
+                && !(mu.is_finite() && mu >= 0.0)
+            {
+                let allowed = "zero, positive or \"infinite\"";
+                return Err(Error::new(Reason::OutOfRange { what: "friction".into(), allowed, value: mu })
+                    .at(format!("friction of contact {contact}")));
+            }
+            let restitution = self.restitution[contact];
+            if !(0.0..=1.0).contains(&restitution) {
+                let allowed = "between 0 and 1";
+                return Err(Error::new(Reason::OutOfRange { what: "restitution".into(), allowed, value: restitution })
+                    .at(format!("restitution of contact {contact}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Symmetry entry by entry, then definiteness by elimination with diagonal pivoting, both to n eps of the largest
+    /// entry.
+    pub(super) fn check_definite(&self) -> Result<()> {
+        let rows = 2 * self.contacts();
+        let largest = self.delassus.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        let rounding = 4.0 * rows as f64 * f64::EPSILON * largest;
+        let mut rest = nalgebra::DMatrix::from_row_slice(rows, rows, &self.delassus);
+        for i in 0..rows {
+            for j in 0..i {
+                if (rest[(i, j)] - rest[(j, i)]).abs() > rounding {
+                    return Err(Error::new(Reason::Inconsistent(format!(
+                        "the Delassus matrix is not symmetric: {} against {}",
+                        rest[(i, j)],
+                        rest[(j, i)]
+                    )))
+                    .at(format!("delassus[{i}][{j}]"))
+                    .hint("G = J M^-1 J^T is symmetric; check the order of rows and columns"));
+                }
+            }
+        }
+        for _ in 0..rows {
+            let Some(pivot) = (0..rows).max_by(|&i, &j| rest[(i, i)].total_cmp(&rest[(j, j)])) else { break };
+            let indefinite = (0..rows).find(|&i| rest[(i, i)] < -rounding);
+            let coupled = || (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j)));
+            let stray = (rest[(pivot, pivot)] <= rounding)
+                .then(|| coupled().find(|&(i, j)| rest[(i, j)].abs() > 4.0 * rounding))
+                .flatten();
+            if let Some((i, j)) = indefinite.map(|i| (i, i)).or(stray) {
+                return Err(Error::new(Reason::Inconsistent(
+                    "the Delassus matrix is indefinite: an impulse there would gain energy".into(),
+                ))
+                .at(format!("delassus[{i}][{j}]"))
+                .hint("G = J M^-1 J^T is positive semidefinite; check signs and units"));
+            }
+            let diagonal = rest[(pivot, pivot)];
+            if diagonal <= rounding {
+                break;
+            }
+            let column = rest.column(pivot).clone_owned();
+            for i in 0..rows {
+                for j in 0..rows {
+                    rest[(i, j)] -= column[i] * column[j] / diagonal;
+                }
+            }
+        }
+        Ok(())
+    }
+}
