@@ -193,7 +193,12 @@ impl SecondLook<'_> {
         // Exact elimination decides all but vanishing pivots, which a singular matrix is full of.
         let given = problem.factor().is_none();
         let judged = if given && self.regular() { None } else { Some(self.rows().judge(problem, scale, modes)) };
-        let open = judged.as_ref().is_none_or(|judged| judged.sign == Sign::Undecided);
+        // An outcome with a single impulse gains digits by it, too.
+        let exact_serves = |judged: &Judged| match judged.sign {
+            Sign::Undecided => true,
+            sign => sign == Sign::Positive && judged.impulse_unique,
+        };
+        let open = judged.as_ref().is_none_or(exact_serves);
         if open
             && given
             && let Some((reading, index, motion)) = read_exactly(problem, scale, modes)
