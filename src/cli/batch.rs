@@ -56,8 +56,8 @@ pub struct Args {
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Refused::Fail, help_heading = "Output")]
     refused: Refused,
     /// How many threads compute; 0 takes one per core
-    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
-    threads: usize,
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
+    threads: u16,
 }
 
 /// How rows that follow each other in time are taken together.
@@ -139,6 +139,10 @@ pub(super) fn run(args: &Args) -> Outcome {
     for written in [args.output.as_deref(), args.summary.as_deref()] {
         spare(written, &[&args.robot.robot, &args.states])?;
     }
+    if args.output.is_some() && args.output == args.summary {
+        let reason = "results and summary would be written to the same file".to_owned();
+        return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).at("--summary").hint("name two files")));
+    }
     let robot = args.robot.load()?;
     let feet = args.robot.feet(&robot)?;
     let name = input::name(&args.states);
@@ -157,6 +161,12 @@ pub(super) fn run(args: &Args) -> Outcome {
         return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
     }
     let touchdowns = args.recording.touchdowns();
+    if let Some((at, touching)) = touchdowns {
+        // Before any file is replaced: does this robot have feet to look for?
+        let none = std::iter::empty::<touchdown::Sampled<()>>();
+        let refused = touchdown::find(none, &robot, &feet, at, touching).err();
+        refused.map_or(Ok(()), |error| Err(error.in_file(input::name(&args.robot.robot))))?;
+    }
     let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns.is_some());
     let columns = (output_form == Form::Csv).then(columns);
     let question = Question {
@@ -223,7 +233,7 @@ impl Args {
     fn answer<W: Write>(&self, question: &Question, chunks: Input, delivery: &mut Delivery<W>) -> Result<(), Failure> {
         let threads = match self.threads {
             0 => available_parallelism().map_or(1, usize::from),
-            threads => threads,
+            threads => usize::from(threads),
         };
         let form = || Batch::new(question);
         let ended = match (question.header, self.recording.difference(), question.touchdowns) {
@@ -254,7 +264,16 @@ impl Args {
 
     /// Writes the summary: for people where there is more than one state or it is asked for, and to its file.
     fn tell(&self, summary: &Summary, file: Option<File>) -> io::Result<()> {
-        if summary.states > 1 || file.is_some() {
+        if self.recording.touchdowns && summary.states == 0 {
+            let _ = writeln!(
+                io::stderr(),
+                "no touchdown found: one counts where a foot comes down {} m or more, faster than {} m/s, to at most {} m above \
+                 the ground",
+                touchdown::DROP,
+                touchdown::SLOW,
+                touchdown::GROUND
+            );
+        } else if summary.states > 1 || file.is_some() {
             // Where nobody reads standard error there is nobody to tell that it cannot be written.
             let _ = write!(io::stderr(), "{summary}");
         }

@@ -145,6 +145,13 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
             .on(1, 1)
             .hint("the table is empty"));
     }
+    let whole = record.trim_ascii_end().len() as u64;
+    if reader.position().byte() < whole {
+        let (lines, column) = line_and_column_after(record, reader.position().byte());
+        return Err(Error::new(Reason::Syntax("a line break that is not one of this table".into()))
+            .on(lines, column)
+            .hint("save the table with line ends \\n or \\r\\n"));
+    }
     let name = |(at, field): (usize, &[u8])| match std::str::from_utf8(field) {
         Ok(name) => Ok(name.trim().to_owned()),
         Err(_) => {
@@ -153,6 +160,14 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
         }
     };
     fields.iter().enumerate().map(name).collect()
+}
+
+/// Line and column of the byte at `offset` of the first record.
+fn line_and_column_after(record: &[u8], offset: u64) -> (usize, usize) {
+    let before = &record[..usize::try_from(offset).map_or(record.len(), |offset| offset.min(record.len()))];
+    let lines = before.iter().filter(|&&byte| byte == b'\n').count();
+    let start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
+    (lines + 1, before.len() - start + 1)
 }
 
 /// What the column called `name` holds.

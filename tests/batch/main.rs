@@ -230,3 +230,14 @@ fn a_full_disk_is_told_with_what_was_written() {
         assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(1), told));
     }
 }
+
+#[test]
+fn nothing_that_is_read_or_written_beside_is_replaced() {
+    let states = file("spared.ndjson", strike(1, 0.0));
+    for arguments in [[&states, "-o", &states], [&states, "--summary", &states]] {
+        assert_eq!(batch("spared", &arguments, "").status, 1, "{arguments:?}");
+    }
+    let both = file("both.ndjson", "");
+    assert_eq!(batch("spared", &[&states, "-o", &both, "--summary", &both], "").status, 2);
+    assert_eq!(std::fs::read_to_string(&states).expect("still there"), strike(1, 0.0));
+}

@@ -69,3 +69,26 @@ fn velocities_over_time_are_the_same_for_any_number_of_threads() {
     assert_eq!(alone.lines().len(), 200);
     assert!(run("4").stdout == alone.stdout);
 }
+
+#[test]
+fn a_table_whose_lines_end_otherwise_is_refused_and_not_lost() {
+    let table = "id,q_base_z,v_base_z\r1,0.5,-1\r2,0.5,-1\r";
+    let run = batch("line-ends", &["-", "--input-format", "csv", "--friction", "1"], table);
+    assert_eq!((run.status, run.stdout.len()), (1, 0));
+    assert!(run.stderr.contains("a line break that is not one of this table"), "{}", run.stderr);
+}
+
+#[test]
+fn a_recording_without_a_touchdown_says_what_would_count() {
+    let still = "time,q_base_z,v_base_z\n0,0.5,0\n0.1,0.5,0\n";
+    let run = batch("still", &["-", "--input-format", "csv", "--friction", "1", "--touchdowns"], still);
+    assert_eq!((run.status, run.stdout.len()), (0, 0));
+    assert!(run.stderr.starts_with("no touchdown found: one counts where a foot comes down 0.012 m"), "{}", run.stderr);
+}
+
+#[test]
+fn a_table_has_no_room_for_matrices() {
+    let arguments = ["-", "--output-format", "csv", "--matrices"];
+    let run = batch("matrices", &arguments, strike(1, 0.0));
+    assert_eq!((run.status, run.stdout.len()), (2, 0));
+}
