@@ -161,6 +161,14 @@ impl<'r> Pipeline<'r> {
         friction: Vec<Friction>,
         restitution: Vec<f64>,
     ) -> Result<ContactProblem> {
+        let dofs = self.robot.dofs();
+        for length in [posture.cos.len(), posture.sin.len(), posture.displacement.len(), velocity.len()] {
+            if length != dofs {
+                let reason =
+                    Reason::Inconsistent(format!("the robot has {dofs} coordinates, but {length} values are given"));
+                return Err(Error::new(reason).hint("posture and velocity have an entry per coordinate of q"));
+            }
+        }
         self.compile(&Scene::default());
         kinematics(&self.plan, posture, &mut self.workspace);
         mass_matrix(&self.plan, &mut self.workspace);

@@ -132,8 +132,9 @@ impl ContactProblem {
     /// `velocity_before` \[m/s\], `friction` and `restitution` (0 to 1) one entry per contact.
     ///
     /// # Errors
-    /// Lengths that do not fit, more contacts than [`MATRIX_LIMIT`], numbers that are not finite, negative friction, restitution outside 0..1, and a Delassus
-    /// matrix that is asymmetric or indefinite beyond the rounding of its largest entry.
+    /// Lengths that do not fit, more contacts than [`MATRIX_LIMIT`], numbers that are not finite, negative friction,
+    /// restitution outside 0..1, and a Delassus matrix that is asymmetric or indefinite beyond the rounding of its largest
+    /// entry.
     pub fn new(
         delassus: Vec<f64>,
         velocity_before: Vec<Vector<f64>>,
@@ -151,28 +152,11 @@ impl ContactProblem {
             .at("delassus")
             .hint("give two rows and columns per contact: tangential, normal"));
         }
-        for (place, length) in [("friction", friction.len()), ("restitution", restitution.len())] {
-            if length != contacts {
-                return Err(Error::new(Reason::Inconsistent(format!("{contacts} contacts, but {length} values")))
-                    .at(place)
-                    .hint("give one number for all contacts or a list with one entry per contact"));
-            }
-        }
         for (index, &entry) in delassus.iter().enumerate() {
             finite(entry, || format!("entry [{}][{}] of delassus", index / rows, index % rows))?;
         }
-        let problem = Self {
-            delassus,
-            velocity_free: velocity_before.clone(),
-            approach: approach(&velocity_before),
-            velocity_before,
-            friction,
-            restitution,
-            factor: None,
-            noise: None,
-        };
-        problem.check_contacts()?;
-        problem.check_range()?;
+        let free = velocity_before.clone();
+        let problem = Self::checked(delassus, (velocity_before, free), (friction, restitution), None)?;
         problem.check_definite()?;
         Ok(problem)
     }
@@ -190,8 +174,17 @@ impl ContactProblem {
         restitution: Vec<f64>,
     ) -> Result<Self> {
         check_matrix_size(velocity_before.len())?;
-        let row = |i: usize| &factor.rows[i * factor.columns..(i + 1) * factor.columns];
         let count = 2 * velocity_before.len();
+        if factor.rows.len() != count * factor.columns {
+            return Err(Error::new(Reason::Inconsistent(format!(
+                "{count} rows of {} entries are needed, not {} entries",
+                factor.columns,
+                factor.rows.len()
+            )))
+            .at("factor")
+            .hint("give two rows per contact: tangential, normal"));
+        }
+        let row = |i: usize| &factor.rows[i * factor.columns..(i + 1) * factor.columns];
         let mut delassus = vec![0.0; count * count];
         for i in 0..count {
             for j in 0..=i {
@@ -201,19 +194,8 @@ impl ContactProblem {
                 delassus[j * count + i] = entry;
             }
         }
-        let problem = Self {
-            delassus,
-            velocity_free: velocity_before.clone(),
-            approach: approach(&velocity_before),
-            velocity_before,
-            friction,
-            restitution,
-            factor: Some(factor),
-            noise: Some(noise),
-        };
-        problem.check_contacts()?;
-        problem.check_range()?;
-        Ok(problem)
+        let free = velocity_before.clone();
+        Self::checked(delassus, (velocity_before, free), (friction, restitution), Some((factor, noise)))
     }
 
     /// A problem from parts that the dynamics computed: G with its factor, c-, the change by applied impulses included in
@@ -229,8 +211,29 @@ impl ContactProblem {
         friction: Vec<Friction>,
         restitution: Vec<f64>,
     ) -> Result<Self> {
-        let approach = approach(&velocity_before);
-        let (factor, noise) = (Some(factor), Some(noise));
+        Self::checked(delassus, (velocity_before, velocity_free), (friction, restitution), Some((factor, noise)))
+    }
+
+    /// The one place where a problem is put together; `computed` is its factor and noise, none where G was given.
+    fn checked(
+        delassus: Vec<f64>,
+        (velocity_before, velocity_free): (Vec<Vector<f64>>, Vec<Vector<f64>>),
+        (friction, restitution): (Vec<Friction>, Vec<f64>),
+        computed: Option<(Factor, Vec<Vector<f64>>)>,
+    ) -> Result<Self> {
+        let contacts = velocity_before.len();
+        let noise = computed.as_ref().map_or(contacts, |(_, noise)| noise.len());
+        for (place, length) in
+            [("friction", friction.len()), ("restitution", restitution.len()), ("noise of the velocities", noise)]
+        {
+            if length != contacts {
+                return Err(Error::new(Reason::Inconsistent(format!("{contacts} contacts, but {length} values")))
+                    .at(place)
+                    .hint("give one number for all contacts or a list with one entry per contact"));
+            }
+        }
+        let approach = velocity_before.iter().map(|c| c[1].min(0.0)).collect();
+        let (factor, noise) = computed.unzip();
         let problem = Self { delassus, velocity_before, velocity_free, approach, friction, restitution, factor, noise };
         problem.check_contacts()?;
         problem.check_range()?;
@@ -251,11 +254,6 @@ impl ContactProblem {
 /// What a product J v loses to rounding, relative to the sum of its terms' magnitudes.
 pub(crate) const VELOCITY_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// min(c_n-, 0) of each contact.
-fn approach(velocity_before: &[Vector<f64>]) -> Vec<f64> {
-    velocity_before.iter().map(|c| c[1].min(0.0)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -271,6 +269,22 @@ mod tests {
         assert!(problem(vec![0.0, 1.0, 1.0, 0.0]).is_err());
         assert!(problem(vec![1.0, 2.0, 2.0, 4.0]).is_ok(), "singular is not indefinite");
         assert!(problem(vec![2.0, 1.0, 1.0, f64::NAN]).is_err());
+    }
+
+    #[test]
+    fn lengths_that_do_not_fit_are_refused_however_it_is_built() {
+        let (one, two) = (vec![Friction::Infinite], vec![Friction::Infinite; 2]);
+        let identity = [vec![1.0, 0.0], vec![0.0, 1.0]];
+        let place = |problem: Result<ContactProblem>| problem.unwrap_err().place().map(str::to_owned);
+        let given = ContactProblem::new(vec![1.0, 0.0, 0.0, 1.0], vec![[0.0, -1.0]], two.clone(), vec![0.0]);
+        assert_eq!(place(given).as_deref(), Some("friction"));
+        let dynamics = ContactProblem::from_dynamics(&identity, &identity, &[0.0, -1.0], one.clone(), vec![]);
+        assert_eq!(place(dynamics).as_deref(), Some("restitution"));
+        let factor = |rows: usize| Factor { rows: vec![1.0; rows], columns: 2 };
+        let build =
+            |rows, noise| ContactProblem::from_factor(factor(rows), vec![[0.0, -1.0]], noise, one.clone(), vec![0.0]);
+        assert_eq!(place(build(3, vec![[0.0; 2]])).as_deref(), Some("factor"));
+        assert_eq!(place(build(4, vec![])).as_deref(), Some("noise of the velocities"));
     }
 
     #[test]
