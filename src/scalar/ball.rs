@@ -1,6 +1,6 @@
 //! f64 with an error bound.
 
-use super::Real;
+use super::{Ordered, Real, Sign};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A real number known to lie within `radius` of `mid`.
@@ -45,6 +45,16 @@ impl Ball {
 impl Real for Ball {
     fn from_f64(value: f64) -> Self {
         Self { mid: value, radius: 0.0 }
+    }
+}
+
+impl Ordered for Ball {
+    fn sign(self) -> Sign {
+        Sign::within(self.mid, self.radius)
+    }
+
+    fn to_f64(self) -> f64 {
+        if self.radius.is_finite() { self.mid } else { f64::NAN }
     }
 }
 

@@ -38,3 +38,62 @@ impl Real for f64 {
         value
     }
 }
+
+/// The sign of a number that may be known inexactly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sign {
+    /// Less than zero.
+    Negative,
+    /// Exactly zero.
+    Zero,
+    /// Greater than zero.
+    Positive,
+    /// Zero lies within the error.
+    Undecided,
+}
+
+impl Sign {
+    /// The sign of a number with an absolute error of at most `error`.
+    pub fn within(number: f64, error: f64) -> Self {
+        if number > error {
+            Sign::Positive
+        } else if number < -error {
+            Sign::Negative
+        } else if number == 0.0 && error == 0.0 {
+            Sign::Zero
+        } else {
+            Sign::Undecided
+        }
+    }
+}
+
+/// A number that knows its own sign, or that its precision does not tell it.
+pub trait Ordered: Real {
+    /// The sign; never guessed.
+    fn sign(self) -> Sign;
+
+    /// The nearest f64, or one as near as the number is known; NaN where nothing is known.
+    fn to_f64(self) -> f64;
+}
+
+/// A number in which the cosine and sine of an f64 angle can be told.
+pub trait Trigonometry: Real {
+    /// Cosine and sine of exactly the angle that `angle` \[rad\] is.
+    fn cos_sin(angle: f64) -> [Self; 2];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sign_is_told_only_outside_the_error() {
+        assert_eq!(Sign::within(1e-3, 1e-4), Sign::Positive);
+        assert_eq!(Sign::within(-1e-3, 1e-4), Sign::Negative);
+        assert_eq!(Sign::within(1e-5, 1e-4), Sign::Undecided);
+        assert_eq!(Sign::within(0.0, 1e-4), Sign::Undecided);
+        assert_eq!(Sign::within(0.0, 0.0), Sign::Zero);
+        assert_eq!(Sign::within(f64::NAN, 0.0), Sign::Undecided);
+        assert_eq!(Ball { mid: 1.0, radius: f64::INFINITY }.sign(), Sign::Undecided);
+    }
+}
