@@ -2,14 +2,25 @@
 //!
 //! From kinematics to the slacks of the modes every algorithm is written once over [`Real`]: it neither branches on a
 //! number nor takes a root, so that eight lanes, a ball, a double-double or an exact rational run the same code as `f64`.
-//! [`Ball`] is the instance that knows its own rounding and [`Exact`] the one that has none; only the stage that turns numbers
-//! into signs looks inside.
+//! [`Ball`] is the instance that knows its own rounding, over f64 or over [`DoubleDouble`], [`Interval`] the one with as many
+//! digits as asked for, [`Exact`] the one that rounds nothing, and [`Residue`] the one that tells only whether a number is
+//! zero; [`Certified`] carries an enclosure and a residue in step, so that enough digits decide every sign. Only the stage
+//! that turns numbers into signs looks inside.
 
 mod ball;
+mod certified;
+mod double;
 mod exact;
+mod interval;
+mod residue;
+mod series;
 
-pub use ball::Ball;
+pub use ball::{Ball, Midpoint};
+pub use certified::Certified;
+pub use double::DoubleDouble;
 pub use exact::Exact;
+pub use interval::Interval;
+pub use residue::Residue;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -80,6 +91,19 @@ pub trait Ordered: Real {
 pub trait Trigonometry: Real {
     /// Cosine and sine of exactly the angle that `angle` \[rad\] is.
     fn cos_sin(angle: f64) -> [Self; 2];
+}
+
+impl Trigonometry for f64 {
+    fn cos_sin(angle: f64) -> [Self; 2] {
+        let (sin, cos) = libm::sincos(angle);
+        [cos, sin]
+    }
+}
+
+/// A number that is known up to an error.
+pub trait Enclosure: Ordered {
+    /// This number, known only up to a further error of at most the magnitude of `by`.
+    fn widened(self, by: Self) -> Self;
 }
 
 #[cfg(test)]
