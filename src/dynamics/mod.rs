@@ -7,6 +7,7 @@
 //!
 //! Every function reads a [`Plan`](crate::plan::Plan) and writes into a [`Workspace`].
 
+mod bounds;
 mod crba;
 mod delassus;
 mod energy;
@@ -15,8 +16,9 @@ mod kinematics;
 mod ltl;
 mod workspace;
 
+pub use bounds::Bounds;
 pub use crba::mass_matrix;
-pub use delassus::{add_impulse, delassus, factor_rows};
+pub use delassus::{add_impulse, delassus};
 pub use energy::kinetic_energy;
 pub use jacobian::{ContactPoint, contact_jacobian, point_velocity};
 pub use kinematics::kinematics;
