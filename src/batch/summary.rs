@@ -57,7 +57,7 @@ pub struct Nearest {
 /// Which state of the input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Place {
-    /// What the user calls it.
+    /// What the user calls it; of a long name the beginning.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub id: Option<Value>,
     /// Its line, from 1.

@@ -8,6 +8,8 @@ use super::robot::RobotOptions;
 use super::{Answered, Failure, Outcome, input};
 use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
+use heelstrike::error::Location;
+use heelstrike::excerpt::Excerpt;
 use heelstrike::table::{Columns, Header, Rates};
 use heelstrike::touchdown::{self, At, Difference, Touching};
 use heelstrike::{Error, Reason, Robot, report};
@@ -136,8 +138,13 @@ impl RecordingOptions {
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
-    for written in [args.output.as_deref(), args.summary.as_deref()] {
-        spare(written, &[&args.robot.robot, &args.states])?;
+    let inputs = [args.robot.robot.as_path(), &args.states];
+    spare(args.output.as_deref(), &inputs)?;
+    args.summary.as_deref().map_or(Ok(()), |summary| spare(Some(summary), &inputs))?;
+    if args.summary.as_deref() == Some(Path::new("-")) {
+        let reason =
+            "standard output holds the results alone, and standard error has the summary for people".to_owned();
+        return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).at("--summary").hint("name a file")));
     }
     if args.output.is_some() && args.output == args.summary {
         let reason = "results and summary would be written to the same file".to_owned();
@@ -152,6 +159,8 @@ pub(super) fn run(args: &Args) -> Outcome {
         Form::Ndjson => Chunks::of_lines(states),
         Form::Csv => Chunks::of_table(states),
     };
+    let foreign = chunks.foreign().map_err(|error| input::cannot_read(&args.states, &error))?;
+    foreign.map_or(Ok(()), |error| Err(error.in_file(&name)))?;
     let header = args.header(&robot, &mut chunks)?;
     let output_form = args.output_format.unwrap_or_else(|| args.output.as_deref().map_or(Form::Ndjson, Form::of));
     let detail = args.detail.detail();
@@ -199,7 +208,7 @@ pub(super) fn run(args: &Args) -> Outcome {
 type Input = Chunks<Box<dyn Read + Send>>;
 
 impl Args {
-    /// The columns of a table; none of lines.
+    /// The columns of a table; none of lines and of an empty table.
     fn header(&self, robot: &Robot, chunks: &mut Input) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.touchdowns || self.recording.velocity.is_some();
         if !chunks.is_table() {
@@ -211,12 +220,19 @@ impl Args {
             return Ok(None);
         }
         let name = input::name(&self.states);
-        let chunk = chunks.record().map_err(|error| input::cannot_read(&self.states, &error))?;
-        let record = chunk.as_ref().and_then(|chunk| chunk.records().next()).map_or(&[][..], |(_, record)| record);
+        let first = chunks.first().map_err(|error| input::cannot_read(&self.states, &error))?;
+        // A table without any line has no states, like lines of JSON.
+        let Some(first) = first else { return Ok(None) };
+        let (line, record) = first.map_err(|error| error.in_file(&name))?;
         let rates = if self.recording.velocity.is_some() { Rates::Time } else { Rates::Columns };
-        let header = Header::read(record, robot, rates).map_err(|error| error.in_file(&name))?;
+        let header = Header::read(&record, robot, rates).map_err(|error| {
+            let place = error.location().unwrap_or(Location { line: 1, column: 1 });
+            let place = Location { line: line + place.line - 1, ..place };
+            let excerpt = Excerpt::around(&record, line, place);
+            Failure::RefusedAt(error.on(place.line, place.column).in_file(&name), excerpt)
+        })?;
         if in_order && !header.has_time() {
-            let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
+            let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(line, 1);
             return Err(missing.in_file(name).hint("touchdowns are sought over the time").into());
         }
         Ok(Some(header))
