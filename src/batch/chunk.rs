@@ -16,6 +16,9 @@ const RECORDS: usize = 16;
 /// A record longer than this is passed over and refused \[bytes\].
 pub const RECORD_LIMIT: usize = 1 << 24;
 
+/// A record behind the line on which it begins, from 1.
+pub type Numbered = (usize, Vec<u8>);
+
 /// Some consecutive whole records.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Chunk {
@@ -61,11 +64,11 @@ impl<R: Read> Chunks<R> {
         Ok(foreign(self.fill()?))
     }
 
-    /// The first record that is not blank with the line on which it begins, or why it is refused; none where there is none.
+    /// The first record that is not blank, or why it is refused; none where there is none.
     ///
     /// # Errors
     /// Whatever keeps the input from being read.
-    pub fn first(&mut self) -> io::Result<Option<Result<(usize, Vec<u8>)>>> {
+    pub fn first(&mut self) -> io::Result<Option<Result<Numbered>>> {
         while let Some(chunk) = self.record()? {
             if let Some(line) = chunk.too_long {
                 return Ok(Some(Err(too_long().on(line, 1))));

@@ -14,7 +14,7 @@ mod run;
 mod summary;
 
 use chunk::too_long;
-pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
+pub use chunk::{Chunk, Chunks, Numbered, RECORD_LIMIT};
 pub use recording::{Landing, Origin, Recorded, Recording, samples};
 pub use run::{Block, Broken, Form, Refusal, Sink, Source, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, Place, Summary, Verdicts};

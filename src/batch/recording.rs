@@ -93,7 +93,7 @@ pub fn samples<'h, R: Read>(
         Ok(Some(row)) => {
             let source = Origin { line, id: row.id(), carried: row.carried(), excerpt: None };
             Some(match row.time().and_then(|time| Ok((time, row.state(robot, defaults)?))) {
-                Ok((time, state)) => Ok(Sample { time, state, source }),
+                Ok((time, state)) => Ok(Sample { time, state, rate_over: [time; 2], source }),
                 Err(error) => Err((Origin { excerpt: excerpt(record, line, &error), ..source }, error)),
             })
         }

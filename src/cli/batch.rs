@@ -1,7 +1,7 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
 use super::delivery::Delivery;
-use super::options::{ContactOptions, DetailOptions, SceneOptions, pipeline_options};
+use super::options::{ContactOptions, DetailOptions, SceneOptions, from_zero, pipeline_options};
 use super::output::{named, spare};
 use super::progress::Progress;
 use super::robot::RobotOptions;
@@ -10,8 +10,9 @@ use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
 use heelstrike::error::Location;
 use heelstrike::excerpt::Excerpt;
+use heelstrike::scene::NamedContact;
 use heelstrike::table::{Columns, Header, Rates};
-use heelstrike::touchdown::{self, At, Difference, Touching};
+use heelstrike::touchdown::{self, At, Difference, Thresholds, Touching};
 use heelstrike::{Error, Reason, Robot, report};
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -67,6 +68,11 @@ pub struct Args {
 #[command(next_help_heading = "Recordings")]
 struct RecordingOptions {
     /// Answer only the moments at which a foot that was above the ground reaches it
+    ///
+    /// A foot does so where it comes down far enough (--drop), faster than 0.045 of the robot's size per second, and ends low
+    /// enough (--ground-height); it touches when it is 0.002 of the size above the level on which it ends. The size is the
+    /// greatest distance from the root's origin to a foot or centre of gravity with all joints at zero. The base is then
+    /// shifted so that the foot is at z = 0.
     #[arg(long)]
     touchdowns: bool,
     /// Which state of a touchdown is taken
@@ -75,6 +81,12 @@ struct RecordingOptions {
     /// Which feet take part beside the one that strikes: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     touching: Touching,
+    /// How far a foot must have come down, in metres [default: 0.011 of the robot's size]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    drop: Option<f64>,
+    /// How far above z = 0 a foot may come to rest, in metres; recorded feet float [default: 0.019 of the robot's size]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    ground_height: Option<f64>,
     /// Compute velocities from positions and the column time
     #[arg(long, value_enum, value_name = "HOW")]
     velocity: Option<Velocity>,
@@ -100,7 +112,7 @@ enum Refused {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum AtRow {
-    /// Interpolated to the moment of contact
+    /// Positions and velocities at the moment of contact, carried there from the rows before the impact
     Crossing,
     /// The last row before it, shifted in z
     Row,
@@ -127,6 +139,12 @@ impl RecordingOptions {
             AtRow::Row => At::Row,
         };
         self.touchdowns.then_some((at, self.touching))
+    }
+
+    fn thresholds(&self, robot: &Robot, feet: &[NamedContact]) -> Thresholds {
+        let usual = Thresholds::of(robot, feet);
+        let (drop, ground) = (self.drop.unwrap_or(usual.drop), self.ground_height.unwrap_or(usual.ground));
+        Thresholds { drop, ground, ..usual }
     }
 
     fn difference(&self) -> Option<Difference> {
@@ -176,6 +194,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         let refused = touchdown::find(none, &robot, &feet, at, touching).err();
         refused.map_or(Ok(()), |error| Err(error.in_file(input::name(&args.robot.robot))))?;
     }
+    let thresholds = args.recording.thresholds(&robot, &feet);
     let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns.is_some());
     let columns = (output_form == Form::Csv).then(columns);
     let question = Question {
@@ -197,11 +216,11 @@ pub(super) fn run(args: &Args) -> Outcome {
         columns.append_header(&mut line);
         delivery.write(&line)?;
     }
-    args.answer(&question, chunks, &mut delivery)?;
+    args.answer(&question, chunks, thresholds, &mut delivery)?;
     let told = std::mem::take(&mut delivery.summary);
     drop(delivery);
     drop(progress);
-    args.tell(&told, summary)?;
+    args.tell(&told, summary, thresholds)?;
     Ok(if told.refused == 0 || args.refused == Refused::Ok { Answered::All } else { Answered::NotAll })
 }
 
@@ -246,7 +265,13 @@ impl Args {
         }
     }
 
-    fn answer<W: Write>(&self, question: &Question, chunks: Input, delivery: &mut Delivery<W>) -> Result<(), Failure> {
+    fn answer<W: Write>(
+        &self,
+        question: &Question,
+        chunks: Input,
+        thresholds: Thresholds,
+        delivery: &mut Delivery<W>,
+    ) -> Result<(), Failure> {
         let threads = match self.threads {
             0 => available_parallelism().map_or(1, usize::from),
             threads => usize::from(threads),
@@ -264,7 +289,7 @@ impl Args {
                         let feet = &question.options.feet;
                         let found = touchdown::find(samples, question.robot, feet, at, touching);
                         let found = found.map_err(|error| error.in_file(input::name(&self.robot.robot)))?;
-                        Box::new(found.map(Recorded::from))
+                        Box::new(found.with(thresholds).map(Recorded::from))
                     }
                     None => Box::new(samples.map(Recorded::from)),
                 };
@@ -279,18 +304,16 @@ impl Args {
     }
 
     /// Writes the summary: for people where there is more than one state or it is asked for, and to its file.
-    fn tell(&self, summary: &Summary, file: Option<File>) -> io::Result<()> {
+    fn tell(&self, summary: &Summary, file: Option<File>, thresholds: Thresholds) -> io::Result<()> {
         if self.recording.touchdowns && summary.states == 0 {
+            let Thresholds { drop, slow, ground, .. } = thresholds;
+            // Where nobody reads standard error there is nobody to tell that it cannot be written.
             let _ = writeln!(
                 io::stderr(),
-                "no touchdown found: one counts where a foot comes down {} m or more, faster than {} m/s, to at most {} m above \
-                 the ground",
-                touchdown::DROP,
-                touchdown::SLOW,
-                touchdown::GROUND
+                "no touchdown found: one counts where a foot comes down {drop} m or more, faster than {slow} m/s, to at \
+                 most {ground} m above the ground",
             );
         } else if summary.states > 1 || file.is_some() {
-            // Where nobody reads standard error there is nobody to tell that it cannot be written.
             let _ = write!(io::stderr(), "{summary}");
         }
         if let (Some(mut file), Some(path)) = (file, &self.summary) {
