@@ -99,10 +99,13 @@ impl<'q> Batch<'q> {
         }
         let Question { robot, defaults, .. } = self.question;
         let state = utf8(record).and_then(|text| State::from_json(text, robot, defaults));
-        // The error's place is that in its line alone.
         let state = state.map_err(|error| {
-            let column = error.location().map_or(1, |location| location.column);
-            with_remedy(error, record).on(line, column)
+            let error = with_remedy(error, record);
+            // Its place is that in the line alone.
+            match error.location() {
+                Some(Location { column, .. }) => error.on(line, column),
+                None => error,
+            }
         });
         let unread = || utf8(record).ok().and_then(State::id_in);
         let around = Around { line, text: Text::Record(record), carried: None, touchdown: None };
@@ -245,9 +248,10 @@ impl Block {
     /// Counts and keeps a refusal.
     fn refuse(&mut self, error: Error, around: Around<'_>) {
         self.summary.refuse();
-        let place = error.location().unwrap_or(Location { line: around.line, column: 1 });
-        let excerpt = around.text.around(around.line, place);
-        self.refused.push(Refusal { error: error.on(place.line, place.column), excerpt });
+        let place = error.location();
+        let excerpt = place.and_then(|place| around.text.around(around.line, place));
+        let error = if place.is_some() { error } else { error.on(around.line, 1) };
+        self.refused.push(Refusal { error, excerpt });
     }
 }
 

@@ -56,7 +56,7 @@ pub struct Block {
 pub struct Refusal {
     /// Why, with line and column in the input.
     pub error: Error,
-    /// The line, where it can be shown; it is short.
+    /// The line, where a place in it is refused and it can be shown; it is short.
     pub excerpt: Option<Excerpt>,
 }
 

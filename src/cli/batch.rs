@@ -27,8 +27,8 @@ use std::thread::available_parallelism;
 #[command(after_help = "\
 Examples:
   heelstrike batch urdf/ramone.urdf keyframes.ndjson --friction 0.8 -o results.ndjson
-  heelstrike batch urdf/ramone.urdf keyframes.csv --friction 0.8 -o results.csv --summary summary.json
-  heelstrike batch urdf/ramone.urdf recorded.csv --touchdowns --velocity central --friction 0.8")]
+  heelstrike batch urdf/ramone.urdf keyframes.csv --friction 0.8 -o results.csv --summary sum.json
+  heelstrike batch urdf/ramone.urdf recorded.csv --touchdowns --velocity backward --friction 0.8")]
 pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,
@@ -79,6 +79,10 @@ struct RecordingOptions {
     #[arg(long, value_enum, default_value = "crossing", requires = "touchdowns")]
     at: AtRow,
     /// Which feet take part beside the one that strikes: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
+    ///
+    /// With slow of every other link the lowest point, if it is slower than SPEED (m/s) and its height differs from the
+    /// striking point's by no more than HEIGHT (m): feet that stand. With near every point at such a height, however it
+    /// moves.
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     touching: Touching,
     /// How far a foot must have come down, in metres [default: 0.011 of the robot's size]

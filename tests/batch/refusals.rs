@@ -15,15 +15,10 @@ fn a_refused_line_is_shown_with_its_place_and_remedy() {
       |              ^^^^^^^^^ velocty
       |
     hint: did you mean velocity?
-    error: link "disc" is 2.500e-1 m deep in the ground, more than the contact tolerance of 5.000e-7 m
-     --> <stdin>:4:1
-      |
-    4 | {"id": 3, "position": {"base": {"z": 0.25}}}
-      | ^
-      |
+    error: <stdin>:4:1: link "disc" is 2.500e-1 m deep in the ground, more than the contact tolerance of 5.000e-7 m
     hint: raise the base by 0.25 m, correct the pose, or accept it by a greater --contact-tolerance
     3 states: 1 unique, 2 refused
-    smallest margins: 7.7e-1 1 (line 1)
+    smallest margins: 0.77 1 (line 1)
            1 x disc stick
     "#);
 }
@@ -51,12 +46,7 @@ fn a_refused_row_is_shown_with_its_place_also_in_the_midst_of_a_row() {
       |     ^ q_base_z
       |
     hint: write 0 where it is 0, or leave the column out
-    error: the friction of link "disc", which touches the ground, is missing
-     --> <stdin>:6:1
-      |
-    6 | 4,x,0.5,-1
-      | ^ friction
-      |
+    error: <stdin>:6:1: friction: the friction of link "disc", which touches the ground, is missing
     hint: add a column friction, or give --friction 0.8 (or infinite)
     4 states: 4 refused
     "#);
