@@ -3,7 +3,7 @@
 /// A motion is carried on by so many times the distance of its last rows at most.
 const REACH: f64 = 2.5;
 
-/// Times of up to three rows before an impact, the last one first, and the slopes that carry on from it.
+/// How the motion of two or three rows goes on after the last of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Onward {
     /// Between the last row and the one before, and between that and the one before it, where there is one \[s\].

@@ -228,11 +228,12 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             let (shift_z, contact) = self.points.touch(&mut state, striking, &also, self.touching);
             let Frame { sample, row, .. } = &self.window[at];
             let (row, source) = (*row, sample.source.clone());
-            self.ready.push_back(match state.position.iter().all(|entry| entry.is_finite()) {
-                true => Ok(Touchdown { state, row, time, striking: contact, shift_z, source }),
-                false => {
-                    Err((source, Error::new(Reason::Inconsistent("the robot is too far away to be placed".into()))))
-                }
+            let finite = state.position.iter().chain(&state.velocity).all(|entry| entry.is_finite());
+            self.ready.push_back(if finite {
+                Ok(Touchdown { state, row, time, striking: contact, shift_z, source })
+            } else {
+                let reason = "the robot is too far away or too fast to be placed on the ground".to_owned();
+                Err((source, Error::new(Reason::Inconsistent(reason))))
             });
         }
     }
@@ -288,11 +289,10 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     /// How the motion of rows `first` to `at` goes on, and how much later the point is at `height`, if that is before the
     /// next row.
     fn onward(&self, point: usize, first: usize, at: usize, height: f64) -> Option<(Onward, f64)> {
-        let mut times = [0.0; BEFORE];
         let rows = (first..=at).rev().take(BEFORE);
-        let count = rows.zip(&mut times).map(|(row, time)| *time = self.window[row].sample.time).count();
+        let times: Vec<f64> = rows.map(|row| self.window[row].sample.time).collect();
         let next = self.window[at + 1].sample.time - self.window[at].sample.time;
-        let onward = Onward::from(&times[..count], next)?;
+        let onward = Onward::from(&times, next)?;
         let later = onward.down_to(height, |back| self.height(point, at - back))?;
         (later <= next).then_some((onward, later))
     }

@@ -24,6 +24,8 @@
 //! * Velocities go through those of rows before the impact alone: on the line between the two rows around the moment, else
 //!   on the line through the last two, carried on. A velocity taken from differences belongs to the middle of the rows that
 //!   it comes from, and one that comes from a row after the impact does not count.
+//! * Neither goes back over two rows of one time: between them another foot may have struck.
+//! * Where the descent ends above that height, the row at which it ends is taken as it is.
 //!
 //! Where a row within that distance is followed by one of the same time, it is the state just before the impact and is taken
 //! as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within

@@ -101,6 +101,22 @@ fn crossing_lies_between_rows_that_are_both_before_the_impact() {
     assert!((state.velocity[3] + 0.2).abs() < 1e-9, "{}", state.velocity[3]);
 }
 
+#[test]
+fn what_was_before_another_foots_impact_is_not_carried_on() {
+    // Foot b has struck at 20 ms, which slows foot a to 1 m/s; it is stopped at 4 mm.
+    let robot = lift(1.0);
+    let rows = [[0.0, 0.06, -2.0], [0.01, 0.04, -2.0], [0.02, 0.02, -2.0], [0.02, 0.02, -1.0], [0.03, 0.01, -1.0]];
+    let stopped = [[0.04, 0.004, 0.0], [0.05, 0.004, 0.0]];
+    let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
+    table.extend(rows.iter().chain(&stopped).map(|[time, a, rate]| format!("{time},0.1,{a},{rate}\n")));
+    let samples = samples(&table, &robot, Rates::Columns);
+    let found: Vec<_> = find(samples.into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap().collect();
+    let [Ok(Touchdown { state, time, .. })] = &found[..] else { panic!("one touchdown: {found:?}") };
+    let expected = 0.03 + (0.01 - 0.004 - lift_thresholds(1.0).above);
+    assert!((time - expected).abs() < 1e-12, "{time} {expected}");
+    assert!((state.velocity[3] + 1.0).abs() < 1e-12, "{}", state.velocity[3]);
+}
+
 /// Gravity of the test's drop \[m/s^2\].
 const G: f64 = 9.81;
 
@@ -270,7 +286,9 @@ fn numbers_beyond_all_measure_are_refused_and_end() {
         for at in [At::Row, At::Crossing] {
             let samples = samples(&table, &robot, Rates::Columns);
             for found in find(samples.into_iter(), &robot, &[], at, Touching::default()).unwrap() {
-                let finite = |touchdown: &Touchdown<usize>| touchdown.state.position.iter().all(|q| q.is_finite());
+                let finite = |Touchdown { state, .. }: &Touchdown<usize>| {
+                    state.position.iter().chain(&state.velocity).all(|entry| entry.is_finite())
+                };
                 assert!(found.as_ref().map_or(true, finite));
             }
         }
