@@ -233,14 +233,21 @@ impl Form<Vec<Recorded>> for Batch<'_> {
     }
 }
 
-/// The error with a remedy for a line that is not of this form: a table's, or one of JSON that goes over several.
+/// The error with a remedy for a line that is not of this form: a table's, or one of JSON that holds no state or many.
 fn with_remedy(error: Error, record: &[u8]) -> Error {
+    if record.trim_ascii_start().starts_with(b"[") {
+        return error.hint("each line must hold one state; `jq -c '.[]'` takes a list apart");
+    }
     let Reason::Syntax(reason) = error.reason() else { return error };
     if reason.starts_with("EOF while parsing") {
         return error.hint("each line must hold a whole state; `jq -c .` writes JSON so");
     }
+    if reason == "trailing characters" {
+        return error.hint("a line holds one state and nothing after it");
+    }
     // The names of a table's columns.
-    let header = record.split(|&byte| byte == b',').any(|name| [&b"q_"[..], b"v_"].iter().any(|p| name.starts_with(p)));
+    let column = |name: &[u8]| [&b"q_"[..], b"v_"].iter().any(|prefix| name.starts_with(prefix));
+    let header = record.split(|&byte| byte == b',').any(column);
     if header { error.hint("is this a table? then say --input-format csv") } else { error }
 }
 

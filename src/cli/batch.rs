@@ -314,8 +314,8 @@ impl Args {
             // Where nobody reads standard error there is nobody to tell that it cannot be written.
             let _ = writeln!(
                 io::stderr(),
-                "no touchdown found: one counts where a foot comes down {drop} m or more, faster than {slow} m/s, to at \
-                 most {ground} m above the ground",
+                "no touchdown found: one counts where a foot comes down {drop:.4} m or more, faster than {slow:.4} m/s, to at \
+                 most {ground:.4} m above the ground (see --drop, --ground-height)",
             );
         } else if summary.states > 1 || file.is_some() {
             let _ = write!(io::stderr(), "{summary}");

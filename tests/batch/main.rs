@@ -234,6 +234,35 @@ fn a_full_disk_is_told_with_what_was_written() {
     }
 }
 
+#[test]
+fn a_reader_that_is_gone_ends_it_also_while_the_input_is_silent() {
+    for threads in ["1", "4"] {
+        let mut child = spawned("gone", threads);
+        drop(child.stdout.take());
+        let mut stdin = child.stdin.take().expect("piped");
+        stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
+        assert_eq!(ended(&mut child), (Some(0), String::new()), "{threads} threads");
+        drop(stdin);
+    }
+}
+
+/// Exit status and standard error of a process that must not wait for its input, which is still open.
+fn ended(child: &mut std::process::Child) -> (Option<i32>, String) {
+    let mut stderr = child.stderr.take().expect("piped");
+    let (sent, received) = std::sync::mpsc::channel();
+    // Standard error ends with the process.
+    std::thread::spawn(move || {
+        let mut told = String::new();
+        stderr.read_to_string(&mut told).map(|_| sent.send(told))
+    });
+    let told = received.recv_timeout(std::time::Duration::from_secs(20));
+    if told.is_err() {
+        child.kill().expect("ours");
+    }
+    let told = told.expect("it does not wait for the next line");
+    (child.wait().expect("it ends").code(), told)
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_failed_output_ends_it_also_while_the_input_is_silent() {
@@ -243,18 +272,9 @@ fn a_failed_output_ends_it_also_while_the_input_is_silent() {
         let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
         let mut stdin = child.stdin.take().expect("piped");
         stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
-        // Standard error ends with the process, while its input is still open.
-        let mut told = child.stderr.take().expect("piped");
-        let (sent, received) = std::sync::mpsc::channel();
-        std::thread::spawn(move || {
-            let mut text = String::new();
-            told.read_to_string(&mut text).map(|_| sent.send(text))
-        });
-        let text = received.recv_timeout(std::time::Duration::from_secs(20));
-        child.kill().expect("ours");
-        let text = text.expect("it does not wait for the next line");
-        assert!(text.starts_with("error: the output cannot be written: No space left on device"), "{text}");
-        assert_eq!(child.wait().expect("it ends").code(), Some(1), "{threads} threads");
+        let (status, told) = ended(&mut child);
+        assert_eq!(status, Some(1), "{threads} threads");
+        assert!(told.starts_with("error: the output cannot be written: No space left on device"), "{told}");
         drop(stdin);
     }
 }

@@ -146,7 +146,9 @@ fn lines_that_are_no_states_of_their_own_get_a_remedy() {
     let hint = |input: &str| batch("remedy", &["-"], input).lines()[0]["error"]["hint"].clone();
     let indented = "{\n  \"friction\": 1\n}\n";
     assert_eq!(hint(indented), "each line must hold a whole state; `jq -c .` writes JSON so");
-    assert_eq!(hint("[\n{\"friction\": 1}]\n"), "each line must hold a whole state; `jq -c .` writes JSON so");
+    let list = "each line must hold one state; `jq -c '.[]'` takes a list apart";
+    assert_eq!((hint("[\n{\"friction\": 1}]\n"), hint("[{\"friction\": 1}, {}]\n")), (list.into(), list.into()));
+    assert_eq!(hint("{\"friction\": 1},\n"), "a line holds one state and nothing after it");
     assert_eq!(hint("id,q_base_z,v_base_z\n1,0.5,-1\n"), "is this a table? then say --input-format csv");
 }
 

@@ -89,9 +89,9 @@ fn a_recording_without_a_touchdown_says_what_would_count() {
     };
     // The disc's size is its radius of 0.5 m.
     let told = "no touchdown found: one counts where a foot comes down 0.0055 m or more, faster than 0.0225 m/s, to at most \
-                0.0095 m above the ground\n";
+                0.0095 m above the ground (see --drop, --ground-height)\n";
     assert_eq!(run(&[]), told);
-    let told = told.replace("0.0055", "0.02").replace("0.0095", "0.03");
+    let told = told.replace("0.0055", "0.0200").replace("0.0095", "0.0300");
     assert_eq!(run(&["--drop", "0.02", "--ground-height", "0.03"]), told);
 }
 

@@ -105,7 +105,7 @@ const REFUSED_STATES: &[(&str, &str, &str, &str)] = &[
         "EOF while parsing an object",
         "each line must hold a whole state; `jq -c .` writes JSON so",
     ),
-    ("[1]", "", "expected an object, found a list", ""),
+    ("[1]", "", "expected an object, found a list", "each line must hold one state; `jq -c '.[]'` takes a list apart"),
 ];
 
 #[test]
