@@ -94,7 +94,9 @@ impl<'q> Batch<'q> {
 
     /// Answers a line of JSON; a blank one has no answer.
     fn line(&mut self, line: usize, record: &[u8], block: &mut Block) {
-        if record.trim_ascii().is_empty() {
+        // Without its end: a line that is cut off would seem to end on the next one.
+        let record = record.trim_ascii_end();
+        if record.is_empty() {
             return;
         }
         let Question { robot, defaults, .. } = self.question;

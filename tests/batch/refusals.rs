@@ -57,6 +57,14 @@ fn a_refused_row_is_shown_with_its_place_also_in_the_midst_of_a_row() {
 }
 
 #[test]
+fn a_line_that_is_cut_off_is_marked_at_its_end() {
+    for end in ["", "\n", "\r\n", "  \n{}\n"] {
+        let run = batch("cut", &["-", "--friction", "1"], format!("{{\"position\": {{\"base\": {{\"z\":{end}"));
+        assert!(run.stderr.contains(" --> <stdin>:1:27\n"), "{end:?}: {}", run.stderr);
+    }
+}
+
+#[test]
 fn a_refused_header_is_shown_on_its_own_line() {
     let run = batch("header", &["-", "--input-format", "csv"], "\n  \nid,q_base_zz,v_base_z\n1,0.5,-1\n");
     assert_eq!((run.status, run.stdout.len()), (1, 0));
