@@ -239,6 +239,8 @@ fn a_reader_that_is_gone_ends_it_also_while_the_input_is_silent() {
     for threads in ["1", "4"] {
         let mut child = spawned("gone", threads);
         drop(child.stdout.take());
+        // Processes that other tests are just starting hold the pipe for a moment.
+        std::thread::sleep(std::time::Duration::from_millis(300));
         let mut stdin = child.stdin.take().expect("piped");
         stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
         assert_eq!(ended(&mut child), (Some(0), String::new()), "{threads} threads");
