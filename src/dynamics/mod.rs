@@ -16,7 +16,7 @@ mod kinematics;
 mod ltl;
 mod workspace;
 
-pub use bounds::Bounds;
+pub use bounds::{Arm, Bounds};
 pub use crba::mass_matrix;
 pub use delassus::{add_impulse, delassus};
 pub use energy::kinetic_energy;
