@@ -1,9 +1,9 @@
 //! The product's answers to many states beside the oracle's, counted.
 
-use crate::oracle::{self, Answer, Outcome};
+use crate::oracle::{self, Answer, Index, Outcome};
 use crate::random::Random;
 use crate::states::{Model, beside_a_border};
-use heelstrike::impact::{Analysis, Friction, Verdict};
+use heelstrike::impact::{self, Analysis, Friction, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::robot::Robot;
 use heelstrike::state::State;
@@ -36,16 +36,25 @@ pub fn compare(answer: &Answer, analysis: &Analysis) -> Finding {
     if answer.open > 0 {
         return Finding::Unknown;
     }
-    let decided = analysis.outcomes.iter().filter(|outcome| outcome.decided);
-    let mut found: Vec<Outcome> =
-        decided.clone().map(|outcome| Outcome { modes: outcome.modes.clone(), index: outcome.index }).collect();
-    found.sort();
-    let difference = || format!("{}, outcomes {found:?}\nnot {:?}", analysis.verdict, answer.outcomes);
+    let same = |told: &Outcome, found: &impact::Outcome| {
+        let index = match told.index {
+            Index::Sign(sign) => found.index == Some(sign),
+            Index::Border => found.index.is_none(),
+            Index::Redundant => true,
+        };
+        index && told.modes == found.modes
+    };
+    let decided: Vec<&impact::Outcome> = analysis.outcomes.iter().filter(|outcome| outcome.decided).collect();
+    let is_one = |found: &impact::Outcome| answer.outcomes.iter().any(|told| same(told, found));
+    let difference = || {
+        let found: Vec<_> = decided.iter().map(|outcome| (&outcome.modes, outcome.index)).collect();
+        format!("{}, outcomes {found:?}\nnot {:?}", analysis.verdict, answer.outcomes)
+    };
     // An outcome that is proven must be one, whatever the rest is.
-    let refuted = decided.filter(|outcome| outcome.proven).any(|proven| {
-        !answer.outcomes.iter().any(|outcome| (&outcome.modes, outcome.index) == (&proven.modes, proven.index))
-    });
-    let differs = found != answer.outcomes || analysis.verdict == Verdict::Undecided;
+    let refuted = decided.iter().any(|outcome| outcome.proven && !is_one(outcome));
+    let complete = decided.len() == answer.outcomes.len() && analysis.verdict != Verdict::Undecided;
+    let found = |told: &Outcome| decided.iter().any(|outcome| same(told, outcome));
+    let differs = !complete || !decided.iter().all(|outcome| is_one(outcome)) || !answer.outcomes.iter().all(found);
     let verdict = match answer.outcomes.len() {
         0 => analysis.verdict == Verdict::None,
         1 => matches!(analysis.verdict, Verdict::Unique | Verdict::NoImpact),
@@ -241,13 +250,17 @@ fn answer_state(model: &Model, pipeline: &mut Pipeline<'_>, state: &State) -> (C
         counts.unknown += 1;
         return (counts, None);
     };
-    let border = answer.outcomes.iter().any(|outcome| outcome.index.is_none());
+    let border = answer.outcomes.iter().any(|outcome| outcome.index == Index::Border);
     counts.border += u64::from(border);
     counts.ambiguous += u64::from(answer.outcomes.len() > 1);
     counts.deeper += u64::from(answer.bits > 256);
-    let sum: Option<i32> = answer.outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum();
+    let sign = |outcome: &Outcome| match outcome.index {
+        Index::Sign(sign) => Some(i32::from(sign)),
+        Index::Border | Index::Redundant => None,
+    };
+    let sum: Option<i32> = answer.outcomes.iter().map(sign).sum();
     assert!(
-        answer.open > 0 || border || sum == Some(1),
+        answer.open > 0 || sum.is_none_or(|sum| sum == 1),
         "the oracle's own indices do not add up to one: {answer:?}\n{}",
         state_json(&model.robot, state)
     );

@@ -1,10 +1,12 @@
 //! Every outcome of a state, by one dense linear solve for each of the 4^n lists of modes, in balls.
 //!
 //! A contact that separates has no unknown, one that slides one (L_n, or with infinite friction L_t), one that sticks two
-//! (one at friction 0). Where 256 bits leave a sign open it is tried with 448 and 832; a number that these hold below
-//! 2^-150 of its scale is taken for zero, and the state for one on a border.
+//! (one at friction 0). Where 256 bits leave a sign open it is tried with 832; a number that these hold below
+//! 2^-150 of its scale is taken for zero, and the state for one on a border. Where that makes equations dependent, the
+//! impulses that are left free are eliminated from the inequalities one by one (Fourier and Motzkin).
 
 use crate::dynamics::{Problem, problem};
+use crate::linear::{Affine, Inequality, Solved, Zero, feasible, solve};
 use crate::number::{Ball, Number};
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::robot::Robot;
@@ -12,18 +14,26 @@ use heelstrike::state::State;
 use std::cmp::Ordering;
 
 /// The precisions that are tried, one after the other.
-const BITS: [usize; 3] = [256, 448, 832];
-
-/// What is below this part of its scale at the highest precision counts as zero: 2^-150.
-const ZERO: f64 = 7.006492321624085e-46;
+const BITS: [usize; 2] = [256, 832];
 
 /// An outcome, as far as signs tell it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Outcome {
     /// One mode per contact.
     pub modes: Vec<Mode>,
-    /// Sign of det A; none on a border.
-    pub index: Option<i8>,
+    /// What becomes of its index.
+    pub index: Index,
+}
+
+/// The sign of det A, where it has one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Index {
+    /// It has.
+    Sign(i8),
+    /// An inequality is zero.
+    Border,
+    /// Contacts depend on each other, so that det A = 0.
+    Redundant,
 }
 
 /// All that the oracle knows about a state.
@@ -31,7 +41,7 @@ pub struct Outcome {
 pub struct Answer {
     /// Every outcome, in the order of its modes.
     pub outcomes: Vec<Outcome>,
-    /// Lists of modes whose equations no precision solved: contacts that depend on each other.
+    /// Lists of modes that no precision told: whole families of velocities, or many free impulses.
     pub open: usize,
     /// The precision that it took.
     pub bits: usize,
@@ -47,7 +57,7 @@ pub fn answer(robot: &Robot, state: &State) -> Option<Answer> {
         let lists = open.take().unwrap_or_else(|| lists(problem.friction.len()));
         let mut left = Vec::new();
         for modes in lists {
-            match judge(&problem, &modes, last) {
+            match judge(&problem, &modes, Zero { last }) {
                 Judgement::Outcome(index) => outcomes.push(Outcome { modes, index }),
                 Judgement::None => {}
                 Judgement::Open => left.push(modes),
@@ -66,7 +76,7 @@ pub fn answer(robot: &Robot, state: &State) -> Option<Answer> {
 pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
     let Some(problem) = problem::<f64>(robot, state, 0) else { return Vec::new() };
     let mut lists = lists(problem.friction.len());
-    lists.retain(|modes| matches!(judge(&problem, modes, false), Judgement::Outcome(_)));
+    lists.retain(|modes| matches!(judge(&problem, modes, Zero { last: false }), Judgement::Outcome(_)));
     lists
 }
 
@@ -78,78 +88,72 @@ fn lists(contacts: usize) -> Vec<Vec<Mode>> {
 
 /// What a list of modes comes to.
 enum Judgement {
-    /// An outcome with its index, which it lacks on a border.
-    Outcome(Option<i8>),
+    /// An outcome.
+    Outcome(Index),
     /// No outcome.
     None,
     /// Not told by this precision.
     Open,
 }
 
-/// Of which of the two kinds of numbers a slack is; they have scales of their own.
-#[derive(Clone, Copy)]
-enum Kind {
-    Speed,
-    Impulse,
+/// An entry of L, or L_n of a slide, which brings L_t = slope * L_n with it.
+struct Unknown<N> {
+    row: usize,
+    slope: Option<N>,
 }
 
-/// The signs of a list's inequalities, as they come in.
-struct Signs {
-    scales: [f64; 2],
-    /// Whether what is not told apart from zero, but very small, is zero.
-    last: bool,
-    negative: bool,
-    open: bool,
-    border: bool,
-}
-
-impl Signs {
-    /// How `number` compares with zero; none where it is not told.
-    fn of<N: Number>(&self, number: &N, kind: Kind) -> Option<Ordering> {
-        let small = || self.last && number.size() < ZERO * self.scales[kind as usize];
-        number.sign().or_else(|| small().then_some(Ordering::Equal))
+impl<N: Number> Unknown<N> {
+    /// An entry of L alone.
+    fn single(row: usize) -> Self {
+        Self { row, slope: None }
     }
 
-    /// The inequality number >= 0, or > 0 where it is `strict`.
-    fn require<N: Number>(&mut self, number: &N, kind: Kind, strict: bool) {
-        match self.of(number, kind) {
-            None => self.open = true,
-            Some(Ordering::Less) => self.negative = true,
-            Some(Ordering::Equal) if strict => self.negative = true,
-            Some(Ordering::Equal) => self.border = true,
-            Some(Ordering::Greater) => {}
+    /// What one unit of it adds to a contact velocity.
+    fn effect(&self, problem: &Problem<N>, row: usize) -> N {
+        let entry = &problem.delassus[row][self.row];
+        match &self.slope {
+            Some(slope) if !slope.is_zero() => entry.plus(&problem.delassus[row][self.row - 1].times(slope)),
+            _ => entry.clone(),
         }
     }
 }
 
-/// Solves the equations of `modes` and tests their strict inequalities (`paper`, section "The collision").
-fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], last: bool) -> Judgement {
-    let bits = problem.bits;
-    let zero = N::new(0.0, bits);
-    // An unknown is L_row of one entry, or L_n of a slide, which brings L_t = slope * L_n with it.
-    let mut unknowns: Vec<(usize, Option<N>)> = Vec::new();
-    let mut equations: Vec<usize> = Vec::new();
-    // Sign of what the unknowns that were put in lose against det A.
-    let mut index = 1;
+/// What a mode asks of its contact; rows are those of L and c+.
+enum Demand {
+    /// factor * L_row >= 0.
+    Push { row: usize, factor: f64 },
+    /// mu L_n - side * L_t >= 0, L_n being that row.
+    Cone { row: usize, mu: f64, side: f64 },
+    /// factor * c_row > 0 (xi_n for a normal row).
+    Speed { row: usize, factor: f64 },
+    /// c_row = 0.
+    Rest { row: usize },
+}
+
+/// The unknowns and equations (rows of c+) of a list of modes, and the sign of what putting in the known impulses takes
+/// from det A.
+fn equations<N: Number>(problem: &Problem<N>, modes: &[Mode]) -> (Vec<Unknown<N>>, Vec<usize>, i8) {
+    let (mut unknowns, mut equations, mut index) = (Vec::new(), Vec::new(), 1);
     for (k, &mode) in modes.iter().enumerate() {
         let (t, n) = (2 * k, 2 * k + 1);
         match (mode, problem.friction[k]) {
             (Mode::Separate, _) => {}
             (Mode::Stick, Friction::Finite(0.0)) => {
-                unknowns.push((n, None));
+                unknowns.push(Unknown::single(n));
                 equations.push(n);
             }
             (Mode::Stick, _) => {
-                unknowns.extend([(t, None), (n, None)]);
+                unknowns.extend([Unknown::single(t), Unknown::single(n)]);
                 equations.extend([t, n]);
             }
             (_, Friction::Finite(mu)) => {
-                unknowns.push((n, Some(N::new(-mu * mode.direction(), bits))));
+                let slope = N::new(-mu * mode.direction(), problem.bits);
+                unknowns.push(Unknown { row: n, slope: Some(slope) });
                 equations.push(n);
             }
             (_, Friction::Infinite) => {
                 // The rows (0, +-1) and (G_nt, G_nn) have the determinant -+G_nt.
-                unknowns.push((t, None));
+                unknowns.push(Unknown::single(t));
                 equations.push(n);
                 if mode == Mode::SlidePlus {
                     index = -index;
@@ -157,136 +161,150 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], last: bool) -> Judgeme
             }
         }
     }
-    // c_n- + e min(c_n-, 0) without an impulse; the law asks for zero of it, or more.
-    let scales = [largest(&problem.free), largest(&problem.free) / largest_diagonal(problem)];
-    let mut signs = Signs { scales, last, negative: false, open: false, border: false };
-    let mut resting = Vec::with_capacity(2 * modes.len());
-    for (row, free) in problem.free.iter().enumerate() {
-        let (contact, normal) = (row / 2, row % 2 == 1);
-        if !normal || problem.restitution[contact] == 0.0 {
-            resting.push(free.clone());
-            continue;
+    (unknowns, equations, index)
+}
+
+/// The inequalities of the modes, impulses first: most lists fail by them, and velocities cost more.
+fn demands(modes: &[Mode], friction: &[Friction]) -> Vec<Demand> {
+    let mut demands = Vec::new();
+    for (k, (&mode, &friction)) in modes.iter().zip(friction).enumerate() {
+        let (t, n) = (2 * k, 2 * k + 1);
+        match (mode, friction) {
+            (Mode::Separate, _) => {}
+            (Mode::Stick, Friction::Finite(mu)) if mu != 0.0 => {
+                demands.push(Demand::Push { row: n, factor: 1.0 });
+                demands.extend([1.0, -1.0].map(|side| Demand::Cone { row: n, mu, side }));
+            }
+            (Mode::Stick, _) | (_, Friction::Finite(_)) => demands.push(Demand::Push { row: n, factor: 1.0 }),
+            (_, Friction::Infinite) => demands.push(Demand::Push { row: t, factor: -mode.direction() }),
         }
-        let approach = &problem.approach[contact];
-        resting.push(match signs.of(approach, Kind::Speed) {
-            None => return Judgement::Open,
-            Some(Ordering::Less) => free.plus(&approach.times(&N::new(problem.restitution[contact], bits))),
-            Some(_) => free.clone(),
-        });
     }
-    let coefficient = |row: usize, (column, slope): &(usize, Option<N>)| {
-        let entry = &problem.delassus[row][*column];
-        match slope {
-            Some(slope) if !slope.is_zero() => entry.plus(&problem.delassus[row][column - 1].times(slope)),
-            _ => entry.clone(),
+    for (k, (&mode, friction)) in modes.iter().zip(friction).enumerate() {
+        let (t, n) = (2 * k, 2 * k + 1);
+        match mode {
+            Mode::Separate => demands.push(Demand::Speed { row: n, factor: 1.0 }),
+            Mode::Stick if friction.is_zero() => demands.push(Demand::Rest { row: t }),
+            Mode::Stick => {}
+            Mode::SlidePlus | Mode::SlideMinus => demands.push(Demand::Speed { row: t, factor: mode.direction() }),
         }
+    }
+    demands
+}
+
+/// c_t and xi_n of all contacts if the ground gives no impulse; none where the sign of an approach is not told.
+fn resting<N: Number>(problem: &Problem<N>, zero: Zero, scale: f64) -> Option<Vec<N>> {
+    let row = |(row, free): (usize, &N)| {
+        let (contact, normal) = (row / 2, row % 2 == 1);
+        let restitution = problem.restitution[contact];
+        if !normal || restitution == 0.0 {
+            return Some(free.clone());
+        }
+        // xi_n = c_n+ + e min(c_n-, 0).
+        let approach = &problem.approach[contact];
+        Some(match zero.sign(approach, scale)? {
+            Ordering::Less => free.plus(&approach.times(&N::new(restitution, problem.bits))),
+            _ => free.clone(),
+        })
     };
-    let rows = equations.iter().map(|&row| {
-        let mut entries: Vec<N> = unknowns.iter().map(|unknown| coefficient(row, unknown)).collect();
+    problem.free.iter().enumerate().map(row).collect()
+}
+
+/// Solves the equations of `modes` and tests their strict inequalities.
+fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgement {
+    let bits = problem.bits;
+    let speed = largest(problem.free.iter());
+    let mobility = largest((0..problem.delassus.len()).map(|i| &problem.delassus[i][i]));
+    let push = speed / mobility;
+    let Some(resting) = resting(problem, zero, speed) else { return Judgement::Open };
+    let (unknowns, equations, index) = equations(problem, modes);
+    let row = |&row: &usize| {
+        let mut entries: Vec<N> = unknowns.iter().map(|unknown| unknown.effect(problem, row)).collect();
         entries.push(resting[row].negative());
         entries
-    });
-    let Some((solution, sign)) = solve(rows.collect()) else { return Judgement::Open };
-    index *= sign;
-
-    let mut impulse = vec![zero.clone(); 2 * modes.len()];
-    for ((row, slope), value) in unknowns.iter().zip(&solution) {
-        impulse[*row] = value.clone();
-        if let Some(slope) = slope {
-            impulse[row - 1] = value.times(slope);
-        }
-    }
-    for (k, &mode) in modes.iter().enumerate() {
-        let (l_t, l_n) = (&impulse[2 * k], &impulse[2 * k + 1]);
-        match (mode, problem.friction[k]) {
-            (Mode::Separate, _) => {}
-            (Mode::Stick, friction) => {
-                signs.require(l_n, Kind::Impulse, false);
-                if let Friction::Finite(mu) = friction
-                    && mu != 0.0
-                {
-                    let bound = l_n.times(&N::new(mu, bits));
-                    signs.require(&bound.minus(l_t), Kind::Impulse, false);
-                    signs.require(&bound.plus(l_t), Kind::Impulse, false);
-                }
-            }
-            (_, Friction::Finite(_)) => signs.require(l_n, Kind::Impulse, false),
-            (Mode::SlidePlus, Friction::Infinite) => signs.require(&l_t.negative(), Kind::Impulse, false),
-            (Mode::SlideMinus, Friction::Infinite) => signs.require(l_t, Kind::Impulse, false),
-        }
-        if signs.negative {
-            return Judgement::None;
-        }
-    }
-    let after = |row: usize| {
+    };
+    let solution = match solve(equations.iter().map(row).collect(), zero, mobility, speed, bits) {
+        Solved::Open => return Judgement::Open,
+        Solved::Contradictory => return Judgement::None,
+        Solved::Solution(solution) => solution,
+    };
+    let free = solution.free;
+    let impulse = |row: usize| -> Affine<N> {
+        let of = |(unknown, value): (&Unknown<N>, &Affine<N>)| match &unknown.slope {
+            _ if unknown.row == row => Some(value.clone()),
+            Some(slope) if unknown.row == row + 1 => Some(value.times(slope)),
+            _ => None,
+        };
         unknowns
             .iter()
-            .zip(&solution)
-            .fold(resting[row].clone(), |sum, (unknown, value)| sum.plus(&coefficient(row, unknown).times(value)))
+            .zip(&solution.values)
+            .find_map(of)
+            .unwrap_or_else(|| Affine::constant(N::new(0.0, bits), free, bits))
     };
-    for (k, &mode) in modes.iter().enumerate() {
-        match mode {
-            Mode::Separate => signs.require(&after(2 * k + 1), Kind::Speed, true),
-            Mode::SlidePlus => signs.require(&after(2 * k), Kind::Speed, true),
-            Mode::SlideMinus => signs.require(&after(2 * k).negative(), Kind::Speed, true),
-            Mode::Stick if problem.friction[k].is_zero() => match signs.of(&after(2 * k), Kind::Speed) {
-                None => signs.open = true,
-                Some(Ordering::Equal) => {}
-                Some(_) => signs.negative = true,
-            },
-            Mode::Stick => {}
-        }
-        if signs.negative {
-            return Judgement::None;
-        }
-    }
-    if signs.open { Judgement::Open } else { Judgement::Outcome((!signs.border).then_some(index)) }
-}
-
-fn largest<N: Number>(numbers: &[N]) -> f64 {
-    numbers.iter().map(N::size).fold(0.0, f64::max)
-}
-
-fn largest_diagonal<N: Number>(problem: &Problem<N>) -> f64 {
-    (0..problem.delassus.len()).map(|i| problem.delassus[i][i].size()).fold(0.0, f64::max)
-}
-
-/// The solution of `rows` = [A | b] and the sign of det A, by Gauss; none where no pivot of a column has a sign.
-fn solve<N: Number>(mut rows: Vec<Vec<N>>) -> Option<(Vec<N>, i8)> {
-    let n = rows.len();
-    let mut sign = 1;
-    for k in 0..n {
-        let pivot = (k..n)
-            .filter(|&row| matches!(rows[row][k].sign(), Some(Ordering::Less | Ordering::Greater)))
-            .max_by(|&a, &b| rows[a][k].size().total_cmp(&rows[b][k].size()))?;
-        if pivot != k {
-            rows.swap(pivot, k);
-            sign = -sign;
-        }
-        if rows[k][k].sign() == Some(Ordering::Less) {
-            sign = -sign;
-        }
-        let (above, below) = rows.split_at_mut(k + 1);
-        let pivot_row = &above[k];
-        for row in below {
-            if row[k].is_zero() {
+    let velocity = |row: usize| -> Affine<N> {
+        let start = Affine::constant(resting[row].clone(), free, bits);
+        let add = |sum: Affine<N>, (unknown, value): (&Unknown<N>, &Affine<N>)| {
+            sum.plus(&value.times(&unknown.effect(problem, row)))
+        };
+        unknowns.iter().zip(&solution.values).fold(start, add)
+    };
+    let (mut open, mut border) = (false, false);
+    let mut inequalities = Vec::new();
+    for demand in demands(modes, &problem.friction) {
+        let number = |value: f64| N::new(value, bits);
+        let (value, scale, strict) = match demand {
+            Demand::Push { row, factor } => (impulse(row).times(&number(factor)), push, false),
+            Demand::Cone { row, mu, side } => {
+                let cone = impulse(row).times(&number(mu)).plus(&impulse(row - 1).times(&number(-side)));
+                (cone, push, false)
+            }
+            Demand::Speed { row, factor } => (velocity(row).times(&number(factor)), speed, true),
+            Demand::Rest { row } => {
+                let value = velocity(row);
+                if free == 0 {
+                    match zero.sign(&value.constant, speed) {
+                        None => open = true,
+                        Some(Ordering::Equal) => {}
+                        Some(_) => return Judgement::None,
+                    }
+                } else {
+                    let opposite = value.times(&number(-1.0));
+                    inequalities.push(Inequality { value: opposite, scale: speed, strict: false });
+                    inequalities.push(Inequality { value, scale: speed, strict: false });
+                }
                 continue;
             }
-            let factor = row[k].over(&pivot_row[k]);
-            for (entry, over) in row.iter_mut().zip(pivot_row).skip(k + 1) {
-                *entry = entry.minus(&factor.times(over));
-            }
+        };
+        if free > 0 {
+            inequalities.push(Inequality { value, scale, strict });
+            continue;
+        }
+        match zero.sign(&value.constant, scale) {
+            None => open = true,
+            Some(Ordering::Less) => return Judgement::None,
+            Some(Ordering::Equal) if strict => return Judgement::None,
+            Some(Ordering::Equal) => border = true,
+            Some(Ordering::Greater) => {}
         }
     }
-    let mut solution: Vec<N> = Vec::with_capacity(n);
-    // From the last unknown to the first.
-    for k in (0..n).rev() {
-        let mut rest = rows[k][n].clone();
-        for (entry, known) in rows[k][k + 1..n].iter().rev().zip(&solution) {
-            rest = rest.minus(&entry.times(known));
-        }
-        solution.push(rest.over(&rows[k][k]));
+    if free == 0 {
+        return match (open, border) {
+            (true, _) => Judgement::Open,
+            (false, true) => Judgement::Outcome(Index::Border),
+            (false, false) => Judgement::Outcome(Index::Sign(index * solution.sign)),
+        };
     }
-    solution.reverse();
-    Some((solution, sign))
+    // Where what is free changes a velocity, every value of it is an outcome of its own.
+    let family = || {
+        let moved = |row: usize| velocity(row).factors.iter().any(|f| zero.sign(f, mobility) != Some(Ordering::Equal));
+        (0..resting.len()).any(moved)
+    };
+    match feasible(inequalities, zero, push) {
+        Some(false) => Judgement::None,
+        Some(true) if !family() => Judgement::Outcome(Index::Redundant),
+        _ => Judgement::Open,
+    }
+}
+
+fn largest<'a, N: Number + 'a>(numbers: impl Iterator<Item = &'a N>) -> f64 {
+    numbers.map(N::size).fold(0.0, f64::max)
 }

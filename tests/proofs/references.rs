@@ -3,7 +3,7 @@
 
 use crate::dynamics::problem;
 use crate::number::{Ball, Number};
-use crate::oracle::answer;
+use crate::oracle::{Index, answer};
 use heelstrike::impact::Mode::{self, SlideMinus, SlidePlus, Stick};
 use heelstrike::robot::Robot;
 use heelstrike::state::{Defaults, State};
@@ -151,15 +151,15 @@ fn exact_borders_are_told() {
         answer.outcomes.into_iter().map(|outcome| (outcome.modes[0], outcome.index)).collect::<Vec<_>>()
     };
     // L = (1, 1) and (-1, 1) lie on the edges of the cone for friction 1, L = (1, 0) on that of infinite friction.
-    assert_eq!(outcomes(json!(1.0), [-3.0, -3.0]), [(Stick, None)]);
-    assert_eq!(outcomes(json!(1.0), [1.0, -1.0]), [(Stick, None)]);
-    assert_eq!(outcomes(json!("infinite"), [-2.0, -1.0]), [(Stick, None)]);
+    assert_eq!(outcomes(json!(1.0), [-3.0, -3.0]), [(Stick, Index::Border)]);
+    assert_eq!(outcomes(json!(1.0), [1.0, -1.0]), [(Stick, Index::Border)]);
+    assert_eq!(outcomes(json!("infinite"), [-2.0, -1.0]), [(Stick, Index::Border)]);
     // One unit in the last place beside it is no border.
     let less = 1.0_f64.next_down();
-    assert_eq!(outcomes(json!(1.0), [-3.0, -3.0 * less]), [(SlideMinus, Some(1))]);
-    assert_eq!(outcomes(json!(1.0_f64.next_up()), [-3.0, -3.0]), [(Stick, Some(1))]);
+    assert_eq!(outcomes(json!(1.0), [-3.0, -3.0 * less]), [(SlideMinus, Index::Sign(1))]);
+    assert_eq!(outcomes(json!(1.0_f64.next_up()), [-3.0, -3.0]), [(Stick, Index::Sign(1))]);
     // At rest everything is zero; at friction 0 L_t = 0 is no inequality.
-    assert_eq!(outcomes(json!(1.0), [0.0, 0.0]), [(Stick, None)]);
-    assert_eq!(outcomes(json!(0.0), [-0.5, -1.0]), [(Stick, Some(1))]);
-    assert_eq!(outcomes(json!(0.0), [0.5, -0.5]), [(SlidePlus, Some(1))]);
+    assert_eq!(outcomes(json!(1.0), [0.0, 0.0]), [(Stick, Index::Border)]);
+    assert_eq!(outcomes(json!(0.0), [-0.5, -1.0]), [(Stick, Index::Sign(1))]);
+    assert_eq!(outcomes(json!(0.0), [0.5, -0.5]), [(SlidePlus, Index::Sign(1))]);
 }

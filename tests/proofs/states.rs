@@ -13,7 +13,6 @@ pub struct Model {
     pub name: &'static str,
     /// The reduced robot.
     pub robot: Robot,
-    /// At most one contact per link, so that friction by link is friction by contact.
     feet: Vec<NamedContact>,
     /// How many of them touch in most states.
     touching: usize,
@@ -39,6 +38,12 @@ const TELESCOPE: &str = r#"<robot name="telescope">
     <origin xyz="0.1 0 -0.05"/><axis xyz="0 0 -1"/><limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
 </robot>"#;
 
+/// A body that stands on two corners, and has three ways to move for their four rows.
+const SLED: &str = r#"<robot name="sled">
+  <link name="sled"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="1"/></inertial></link>
+</robot>"#;
+
 /// The robots, each with up to four feet.
 pub fn models() -> Vec<Model> {
     let read = |path: &str| {
@@ -52,12 +57,14 @@ pub fn models() -> Vec<Model> {
             offset,
             radius,
         };
-        let most = feet.len().min(robot.dofs() / 2);
+        // With more rows than coordinates contacts depend on each other; of that only what two flat feet bring.
+        let most = if touching > 2 { touching } else { feet.len().min(robot.dofs() / 2).max(touching) };
         Model { name, feet: feet.iter().map(foot).collect(), robot, touching, most }
     };
     let end = |z: f64| [0.0, 0.0, z];
     let legs = [("left_leg", end(-1.0), 0.0), ("right_leg", end(-1.0), 0.0)];
     let round = [("left_foot", end(0.0), 0.02815), ("right_foot", end(0.0), 0.02815)];
+    let h1 = read("tests/data/gaits/h1_planar.urdf");
     let solo = ["FL_LOWER_LEG", "FR_LOWER_LEG", "HL_LOWER_LEG", "HR_LOWER_LEG"].map(|leg| (leg, end(-0.16), 0.0));
     vec![
         model("minimalistic", &read("urdf/minimalistic.urdf"), 2, &legs),
@@ -84,7 +91,7 @@ pub fn models() -> Vec<Model> {
         model("solo8", &read("tests/data/robots/solo8/solo.urdf"), 4, &solo),
         model(
             "h1_planar",
-            &read("tests/data/gaits/h1_planar.urdf"),
+            &h1,
             2,
             &[
                 ("left_ankle_link", [0.17, 0.0, -0.05], 0.0),
@@ -93,6 +100,18 @@ pub fn models() -> Vec<Model> {
                 ("left_knee_link", [0.03, 0.0, -0.2], 0.02),
             ],
         ),
+        model(
+            "h1_flat",
+            &h1,
+            2,
+            &[
+                ("left_ankle_link", [0.17, 0.0, -0.05], 0.0),
+                ("left_ankle_link", [-0.06, 0.0, -0.05], 0.0),
+                ("right_ankle_link", [0.17, 0.0, -0.05], 0.0),
+                ("right_ankle_link", [-0.06, 0.0, -0.05], 0.0),
+            ],
+        ),
+        model("sled", SLED, 2, &[("sled", [0.4, 0.0, 0.0], 0.0), ("sled", [-0.3, 0.0, 0.0], 0.0)]),
         model(
             "telescope",
             TELESCOPE,
@@ -136,7 +155,7 @@ impl Model {
                 }
             });
         }
-        if random.once_in(8) {
+        if random.once_in(8) && dofs > base {
             let joint = random.whole(base as i64, dofs as i64 - 1) as usize;
             // The feet of a walker with a hip alone would be one, and its legs of point masses one without inertia.
             let straight = if self.robot.joints.len() == 1 { [1e-4, 1e-2] } else { [0.0, 1e-9] };
@@ -155,19 +174,23 @@ impl Model {
         };
         let contacts: Vec<NamedContact> = order[..count].iter().map(|&foot| self.feet[foot]).collect();
         let alike = random.once_in(2).then(|| friction(random));
-        let by_contact = contacts.iter().map(|contact| (contact.link, alike.unwrap_or_else(|| friction(random))));
+        let mut links: Vec<usize> = contacts.iter().map(|contact| contact.link).collect();
+        links.sort_unstable();
+        links.dedup();
+        let by_link = links.iter().map(|&link| (link, alike.unwrap_or_else(|| friction(random)))).collect();
+        // A link stands on the lowest of its contacts; with one there is no question which that is.
+        let alone = contacts.iter().filter(|contact| contact.link == contacts[0].link).count() == 1;
         let mut scene = Scene {
-            friction: ByLink { default: None, links: by_contact.collect() },
+            friction: ByLink { default: None, links: by_link },
             slope: if random.once_in(2) { random.between(-0.6, 0.6) } else { 0.0 },
-            stance: random.once_in(4).then(|| contacts[0].link),
+            stance: (alone && random.once_in(4)).then(|| contacts[0].link),
             ..Scene::default()
         };
         if random.once_in(5) {
-            let bounce = |contact: &NamedContact| (contact.link, random.pick(&[0.0, 0.5, 1.0, 0.3]));
-            scene.restitution = ByLink { default: None, links: contacts.iter().map(bounce).collect() };
+            let bounce = |link: usize| (link, random.pick(&[0.0, 0.5, 1.0, 0.3]));
+            scene.restitution = ByLink { default: None, links: links.into_iter().map(bounce).collect() };
         }
-        // With fewer motions than contact rows the contacts depend on each other, which no precision shows.
-        if random.once_in(10) && self.robot.dofs() > 2 * count {
+        if random.once_in(10) && !self.robot.joints.is_empty() {
             scene.held = vec![random.whole(0, self.robot.joints.len() as i64 - 1) as usize];
         }
         if random.once_in(10) {
@@ -257,6 +280,9 @@ pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
         let Some(guessed) = bisect(start, far, guess) else { continue };
         let told = |value: f64| told(model, &parameter.with(&state, value));
         let Some([a, b]) = widen(guessed, told).and_then(|[a, b]| bisect(a, b, told)) else { continue };
+        if told(a).is_none() || told(b).is_none() {
+            continue;
+        }
         let mut off = |value: f64, away: f64| {
             let step = random.decades(-15.0, -6.0) * value.abs();
             if away < value { value + step } else { value - step }
@@ -266,10 +292,10 @@ pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
     }
 }
 
-/// The modes of all outcomes; empty where they are not told.
-fn told(model: &Model, state: &State) -> Vec<Vec<Mode>> {
-    let answer = oracle::answer(&model.robot, state).filter(|answer| answer.open == 0);
-    answer.map_or_else(Vec::new, |answer| answer.outcomes.into_iter().map(|outcome| outcome.modes).collect())
+/// The modes of all outcomes; none where they are not told.
+fn told(model: &Model, state: &State) -> Option<Vec<Vec<Mode>>> {
+    let answer = oracle::answer(&model.robot, state).filter(|answer| answer.open == 0)?;
+    Some(answer.outcomes.into_iter().map(|outcome| outcome.modes).collect())
 }
 
 /// Two neighbouring f64 from `a` to `b` that `property` tells apart; none if it does not tell `a` from `b`.
