@@ -127,8 +127,19 @@ pub struct Row {
 pub struct Census {
     /// Name and counts of each robot.
     pub rows: Vec<(&'static str, Row)>,
-    /// What is wrong and where.
-    pub failures: Vec<String>,
+    /// What is wrong and where, the worst first.
+    pub failures: Vec<Failure>,
+}
+
+/// A state that is answered wrongly.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Failure {
+    /// Whether it is only decided, not proven.
+    unproven: bool,
+    /// The block of states it is in.
+    block: u64,
+    /// What the answers are, and the state.
+    text: String,
 }
 
 /// As many as a reader can take.
@@ -184,7 +195,11 @@ impl fmt::Display for Census {
                 )?;
             }
         }
-        self.failures.iter().try_for_each(|failure| writeln!(f, "\n{failure}"))
+        for Failure { unproven, block, text } in &self.failures {
+            let claim = if *unproven { "not proven, and wrong" } else { "proven, but wrong" };
+            writeln!(f, "\nblock {block}, {claim}: {text}")?;
+        }
+        Ok(())
     }
 }
 
@@ -214,8 +229,10 @@ pub fn census(models: &[Model], states: u64, threads: usize) -> Census {
                     let mut census = census.lock().expect("no thread panics with it");
                     census.rows[number].1.random += row.random;
                     census.rows[number].1.near += row.near;
-                    let room = FAILURES.saturating_sub(census.failures.len());
-                    census.failures.extend(failures.into_iter().take(room));
+                    census.failures.extend(failures);
+                    // Wrong proofs first, then the order of the blocks.
+                    census.failures.sort();
+                    census.failures.truncate(FAILURES);
                 }
             });
         }
@@ -223,13 +240,16 @@ pub fn census(models: &[Model], states: u64, threads: usize) -> Census {
     census.into_inner().expect("no thread panicked")
 }
 
-fn answer_block(model: &Model, block: u64) -> (Row, Vec<String>) {
+fn answer_block(model: &Model, block: u64) -> (Row, Vec<Failure>) {
     let mut random = Random::new(block);
     let mut pipeline = Pipeline::new(&model.robot, Options::default());
     let mut failures = Vec::new();
     let mut counted = |state: &State| {
         let (counts, failure) = answer_state(model, &mut pipeline, state);
-        failures.extend(failure.map(|failure| format!("{}, block {block}: {failure}", model.name)));
+        failures.extend(failure.map(|text| {
+            let text = format!("{}, {text}\n{}", model.name, state_json(&model.robot, state));
+            Failure { unproven: counts.wrong == 0, block, text }
+        }));
         counts
     };
     let mut row = Row::default();
@@ -245,7 +265,6 @@ fn answer_block(model: &Model, block: u64) -> (Row, Vec<String>) {
 /// Counts one state, and tells what is wrong with it.
 fn answer_state(model: &Model, pipeline: &mut Pipeline<'_>, state: &State) -> (Counts, Option<String>) {
     let mut counts = Counts { states: 1, ..Counts::default() };
-    let place = |what: &str| Some(format!("{what}\n{}", state_json(&model.robot, state)));
     let Some(answer) = oracle::answer(&model.robot, state) else {
         counts.unknown += 1;
         return (counts, None);
@@ -278,11 +297,11 @@ fn answer_state(model: &Model, pipeline: &mut Pipeline<'_>, state: &State) -> (C
         Finding::Unknown => counts.unknown += 1,
         Finding::Wrong(difference) => {
             counts.wrong += 1;
-            return (counts, place(&format!("proven, but wrong: {difference}")));
+            return (counts, Some(difference));
         }
         Finding::Different(difference) => {
             counts.different += 1;
-            return (counts, place(&difference));
+            return (counts, Some(difference));
         }
     }
     (counts, None)
