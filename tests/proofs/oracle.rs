@@ -43,6 +43,8 @@ pub struct Answer {
     pub outcomes: Vec<Outcome>,
     /// Lists of modes that no precision told: whole families of velocities, or many free impulses.
     pub open: usize,
+    /// Whether the equations of some list depend on each other: then no outcome need exist, nor their indices add up.
+    pub dependent: bool,
     /// The precision that it took.
     pub bits: usize,
 }
@@ -50,6 +52,7 @@ pub struct Answer {
 /// Every outcome of the contacts that the state names; none where the mass matrix is singular.
 pub fn answer(robot: &Robot, state: &State) -> Option<Answer> {
     let mut outcomes = Vec::new();
+    let mut dependent = false;
     let mut open: Option<Vec<Vec<Mode>>> = None;
     for bits in BITS {
         let problem = problem::<Ball>(robot, state, bits)?;
@@ -58,14 +61,18 @@ pub fn answer(robot: &Robot, state: &State) -> Option<Answer> {
         let mut left = Vec::new();
         for modes in lists {
             match judge(&problem, &modes, Zero { last }) {
-                Judgement::Outcome(index) => outcomes.push(Outcome { modes, index }),
+                Judgement::Outcome(index) => {
+                    dependent |= index == Index::Redundant;
+                    outcomes.push(Outcome { modes, index });
+                }
                 Judgement::None => {}
+                Judgement::Dependent => dependent = true,
                 Judgement::Open => left.push(modes),
             }
         }
         if left.is_empty() || last {
             outcomes.sort();
-            return Some(Answer { outcomes, open: left.len(), bits });
+            return Some(Answer { outcomes, open: left.len(), dependent, bits });
         }
         open = Some(left);
     }
@@ -92,6 +99,8 @@ enum Judgement {
     Outcome(Index),
     /// No outcome.
     None,
+    /// No outcome, of equations that depend on each other.
+    Dependent,
     /// Not told by this precision.
     Open,
 }
@@ -224,7 +233,7 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgeme
     };
     let solution = match solve(equations.iter().map(row).collect(), zero, mobility, speed, bits) {
         Solved::Open => return Judgement::Open,
-        Solved::Contradictory => return Judgement::None,
+        Solved::Contradictory => return Judgement::Dependent,
         Solved::Solution(solution) => solution,
     };
     let free = solution.free;
@@ -299,7 +308,7 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgeme
         (0..resting.len()).any(moved)
     };
     match feasible(inequalities, zero, push) {
-        Some(false) => Judgement::None,
+        Some(false) => Judgement::Dependent,
         Some(true) if !family() => Judgement::Outcome(Index::Redundant),
         _ => Judgement::Open,
     }
