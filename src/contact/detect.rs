@@ -122,7 +122,9 @@ impl Contact {
         match self.offset {
             Some(offset) => {
                 let pose = robot.links[self.link].pose.iter();
-                pose.flat_map(|row| row.iter().zip([offset[0], offset[1], offset[2], 1.0])).map(|(a, b)| (a * b).abs()).sum()
+                pose.flat_map(|row| row.iter().zip([offset[0], offset[1], offset[2], 1.0]))
+                    .map(|(a, b)| (a * b).abs())
+                    .sum()
             }
             None => self.centre[0].abs() + self.centre[1].abs(),
         }
@@ -152,11 +154,9 @@ pub fn stance_foot(
     tolerance: f64,
 ) -> Result<Contact> {
     let candidates: Vec<Point> = match named {
-        Some(named) => named
-            .iter()
-            .filter(|contact| contact.link == link)
-            .map(|contact| Point::named(robot, contact))
-            .collect(),
+        Some(named) => {
+            named.iter().filter(|contact| contact.link == link).map(|contact| Point::named(robot, contact)).collect()
+        }
         None => feet.iter().filter(|foot| foot.link == link).flat_map(points).collect(),
     };
     let lowest = candidates.iter().map(|&point| placement.height(point)).fold(f64::INFINITY, f64::min);
@@ -192,10 +192,9 @@ pub fn detect(
     tolerance: f64,
 ) -> Result<Vec<Contact>> {
     let mut contacts = match named {
-        Some(named) => named
-            .iter()
-            .map(|contact| placement.contact(contact.link, Point::named(robot, contact)))
-            .collect(),
+        Some(named) => {
+            named.iter().map(|contact| placement.contact(contact.link, Point::named(robot, contact))).collect()
+        }
         None => detected(robot, feet, placement, tolerance)?,
     };
     name_contacts(robot, &mut contacts);

@@ -29,10 +29,8 @@ impl Feet {
     pub fn new(robot: &Robot, named: &[NamedContact]) -> Self {
         let mut feet = Vec::new();
         for (index, link) in robot.links.iter().enumerate() {
-            let own = named
-                .iter()
-                .filter(|contact| contact.link == index)
-                .map(|&NamedContact { offset, radius, .. }| {
+            let own =
+                named.iter().filter(|contact| contact.link == index).map(|&NamedContact { offset, radius, .. }| {
                     (FootShape::Disc { centre: link.point(offset), radius }, Some(offset))
                 });
             let outlines = link.shapes.iter().map(|shape| (shape.clone(), None)).chain(own);

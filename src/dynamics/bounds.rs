@@ -102,13 +102,7 @@ impl Bounds {
 
     /// Bounds c = J v. With the foot of a `stance` the base's velocity is computed from the others'; `rests` tells which
     /// contacts are exactly at rest.
-    pub fn velocities(
-        &mut self,
-        plan: &Plan,
-        velocity: &[f64],
-        stance: Option<Arm>,
-        rests: impl Fn(usize) -> bool,
-    ) {
+    pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let mut bounds = std::mem::take(&mut self.velocity);
         let eta = self.entry_error();
         let stretched = |contact: Arm| {

@@ -64,6 +64,7 @@ impl Scratch {
             return Err(Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
                 .hint("name the contacts that matter by hand, or lower the contact tolerance"));
         }
+        let asked = Asked { prove: asked.prove && source.is_exact(), ..asked };
         let errors = source.errors();
         self.scale.measure(problem, errors);
         self.tableau.load(problem);
@@ -83,25 +84,28 @@ impl Scratch {
         let FirstLook { regular, open, coarse, mut found, .. } = first;
         let scale = &self.scale;
         let was_open = !open.is_empty();
+        let mut coarse = coarse;
         if was_open {
-            let mut question = Open { problem, scale, open, found: &mut found };
+            let mut question = Open { problem, scale, open, coarse, found: &mut found };
             settle(source, Layer::Ball, &mut question);
-            for (number, modes) in std::mem::take(&mut question.open) {
+            coarse = question.coarse;
+            for (number, modes) in question.open {
                 found.leave_open(number, &modes, problem);
             }
         }
-        if !coarse.is_empty() {
+        let refined = !coarse.is_empty();
+        if refined {
             settle(source, Layer::DoubleDouble, &mut Coarse { problem, scale, coarse, found: &mut found });
         }
         found.join_families(scale);
         let (rank, condition) = rank_and_condition(problem, source, scale, regular);
         let Found { mut outcomes, mut rejected, mut effort, total, .. } = found;
-        if was_open {
-            outcomes.sort_by_key(|(number, _)| *number);
+        if was_open || refined {
+            outcomes.sort_by_key(|own| own.number);
             rejected.sort_by_key(|(number, _)| *number);
         }
         effort.bound = total - effort.ball - effort.double_double - effort.precise;
-        let outcomes: Vec<Outcome> = outcomes.into_iter().map(|(_, outcome)| outcome).collect();
+        let outcomes: Vec<Outcome> = outcomes.into_iter().map(|own| own.outcome).collect();
         let decided = outcomes.iter().all(|outcome| outcome.decided);
         Ok(Analysis {
             verdict: verdict(contacts, &outcomes),
@@ -168,11 +172,16 @@ impl Visitor<f64> for FirstLook<'_> {
 /// Beyond this growth of rounding, f64 has lost the digits that an answer is expected to have.
 const F64_SERVES: f64 = 1e4;
 
+/// What an answer's numbers may be off by, in the scale of margins.
+const DIGITS: f64 = 1e-12;
+
 /// Combinations whose signs hang on more digits.
 struct Open<'a> {
     problem: &'a ContactProblem,
     scale: &'a Scale,
     open: Vec<(usize, Vec<Mode>)>,
+    /// Outcomes that were settled with fewer digits than an answer is expected to have.
+    coarse: Vec<(usize, Vec<Mode>)>,
     found: &'a mut Found,
 }
 
@@ -181,9 +190,13 @@ impl Question for Open<'_> {
         let mut tableau = Tableau::<T>::new();
         tableau.load(exact);
         let before = self.open.len();
-        let Self { problem, scale, open, found } = self;
+        let Self { problem, scale, open, coarse, found } = self;
         open.retain(|(number, modes)| match combination(&mut tableau, exact, problem, scale, modes) {
+            Ok(settled) if found.asked.explain && layer != Layer::Precise && settled.is_vague() => true,
             Ok(settled) => {
+                if settled.error().is_some_and(|error| error > DIGITS && layer == Layer::Ball) {
+                    coarse.push((*number, modes.clone()));
+                }
                 found.take(*number, modes, problem, settled);
                 false
             }
@@ -207,13 +220,13 @@ impl Question for Coarse<'_> {
         let mut tableau = Tableau::<T>::new();
         tableau.load(exact);
         let Self { problem, scale, coarse, found } = self;
-        coarse.retain(|(number, modes)| {
-            let settled = combination(&mut tableau, exact, problem, scale, modes);
-            if let Ok(Settled::Regular { reading, motion, .. }) = settled {
-                found.refine(*number, modes, problem, reading.margin, motion);
-                return false;
+        coarse.retain(|(number, modes)| match combination(&mut tableau, exact, problem, scale, modes) {
+            Ok(settled) if settled.error().is_some_and(|error| error <= DIGITS) => {
+                found.outcomes.retain(|own| own.number != *number);
+                found.take(*number, modes, problem, settled);
+                false
             }
-            true
+            _ => true,
         });
         coarse.is_empty()
     }
@@ -302,10 +315,19 @@ pub(super) fn motion<T: Real>(
     }
 }
 
-/// What has been found so far, each with the number of its list of modes.
+/// An outcome and where it was found.
+struct Numbered {
+    /// The number of the list of modes that led to it.
+    number: usize,
+    /// An end of a family whose own modes are not those.
+    on_rim: bool,
+    outcome: Outcome,
+}
+
+/// What has been found so far.
 struct Found {
     asked: Asked,
-    outcomes: Vec<(usize, Outcome)>,
+    outcomes: Vec<Numbered>,
     rejected: Vec<(usize, Rejection)>,
     effort: Effort,
     /// Lists of modes in all.
@@ -322,7 +344,7 @@ impl Default for Found {
 impl Found {
     fn take(&mut self, number: usize, modes: &[Mode], problem: &ContactProblem, settled: Settled) {
         match settled {
-            Settled::Regular { reading, index, motion } => {
+            Settled::Regular { reading, index, motion, .. } => {
                 self.take_regular(number, modes, problem, reading, index, || motion);
             }
             Settled::Singular(Judged::Rejected { because, margin, motion }) => {
@@ -330,12 +352,13 @@ impl Found {
             }
             Settled::Singular(Judged::Valid(member)) => {
                 let outcome = self.outcome_of(member, problem);
-                self.outcomes.push((number, outcome));
+                self.outcomes.push(Numbered { number, on_rim: false, outcome });
             }
             Settled::Singular(Judged::Family(ends)) => {
                 for end in ends {
+                    let on_rim = end.modes != modes;
                     let outcome = Outcome { family: true, ..self.outcome_of(end, problem) };
-                    self.outcomes.push((number, outcome));
+                    self.outcomes.push(Numbered { number, on_rim, outcome });
                 }
             }
         }
@@ -359,7 +382,7 @@ impl Found {
         let mut outcome = self.outcome(modes, problem, motion(), &reading.at_zero);
         outcome.index = reading.at_zero.is_empty().then_some(index);
         outcome.margin = reading.margin.map(|margin| margin + 0.0);
-        self.outcomes.push((number, outcome));
+        self.outcomes.push(Numbered { number, on_rim: false, outcome });
     }
 
     fn outcome_of(&self, member: Member, problem: &ContactProblem) -> Outcome {
@@ -400,36 +423,27 @@ impl Found {
         outcome
     }
 
-    /// Gives an outcome the digits of better numbers.
-    fn refine(&mut self, number: usize, modes: &[Mode], problem: &ContactProblem, margin: Option<f64>, motion: Motion) {
-        let own = self.outcomes.iter_mut().find(|(own, outcome)| *own == number && outcome.modes == modes);
-        if let Some((_, outcome)) = own {
-            outcome.margin = margin;
-            outcome.set_motion(motion, problem.velocity_before());
-        }
-    }
-
     /// Lists a combination that no layer settled, with the impulse zero in place of one that is not known.
     fn leave_open(&mut self, number: usize, modes: &[Mode], problem: &ContactProblem) {
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after: problem.velocity_free().to_vec() };
         let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, problem, motion, &[]) };
-        self.outcomes.push((number, outcome));
+        self.outcomes.push(Numbered { number, on_rim: false, outcome });
     }
 
-    /// An end of a family may be the outcome of other modes, which then is that end.
+    /// An end of a family on its rim is the outcome, or the end, of other modes: it is told once, and as theirs.
     fn join_families(&mut self, scale: &Scale) {
         let same =
             |a: &Outcome, b: &Outcome| a.modes == b.modes && scale.same_velocity(&a.velocity_after, &b.velocity_after);
         let mut index = 0;
         while index < self.outcomes.len() {
-            let (number, end) = &self.outcomes[index];
-            let twin = self
-                .outcomes
-                .iter()
-                .position(|(own, outcome)| end.family && own != number && !outcome.family && same(outcome, end));
+            let end = &self.outcomes[index];
+            let twin = self.outcomes.iter().enumerate().position(|(other, own)| {
+                let again = end.on_rim || own.number == end.number;
+                end.outcome.family && other != index && again && same(&own.outcome, &end.outcome)
+            });
             match twin {
                 Some(twin) => {
-                    let (_, outcome) = &mut self.outcomes[twin];
+                    let outcome = &mut self.outcomes[twin].outcome;
                     outcome.family = true;
                     outcome.index = None;
                     self.outcomes.remove(index);
@@ -441,6 +455,7 @@ impl Found {
 
     fn reject(&mut self, number: usize, modes: &[Mode], because: Because, margin: Option<f64>, motion: Option<Motion>) {
         if self.asked.explain {
+            let (margin, motion) = (margin.filter(|margin| margin.is_finite()), motion.filter(Motion::is_finite));
             self.rejected.push((number, Rejection { modes: modes.to_vec(), because, margin, motion }));
         }
     }

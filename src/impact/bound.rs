@@ -160,7 +160,8 @@ impl Bounds {
         self.speed = scale.speed;
         self.depths.clear();
         self.depths.resize(scale.mobility.len() / 2 + 1, Bound::default());
-        let [delassus, noise] = if is_far_from_underflow(scale) { [delassus, noise] } else { [f64::INFINITY; 2] };
+        let known = delassus.is_finite() && is_far_from_underflow(scale);
+        let [delassus, noise] = if known { [delassus, noise] } else { [f64::INFINITY; 2] };
         let start = Bound {
             velocity: Class { size: 0.0, error: delassus },
             velocity_constant: Class { size: 0.0, error: noise },

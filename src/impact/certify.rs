@@ -78,9 +78,34 @@ pub enum Settled {
         index: i8,
         /// The solution.
         motion: Motion,
+        /// How far it may be off, in the scale of margins.
+        error: f64,
     },
     /// Its equations are singular.
     Singular(Judged),
+}
+
+impl Settled {
+    /// How far an outcome's numbers may be off, in the scale of margins; none of a combination that is rejected.
+    pub fn error(&self) -> Option<f64> {
+        match self {
+            Self::Regular { reading, error, .. } => (reading.sign != Sign::Negative).then_some(*error),
+            Self::Singular(Judged::Valid(member)) => Some(member.error),
+            Self::Singular(Judged::Family([one, other])) => Some(one.error.max(other.error)),
+            Self::Singular(Judged::Rejected { .. }) => None,
+        }
+    }
+
+    /// Whether a rejected combination tells numbers that are none.
+    pub fn is_vague(&self) -> bool {
+        match self {
+            Self::Regular { reading, motion, .. } => !(motion.is_finite() && reading.margin.is_none_or(f64::is_finite)),
+            Self::Singular(Judged::Rejected { margin, motion, .. }) => {
+                !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
+            }
+            Self::Singular(_) => false,
+        }
+    }
 }
 
 /// Settles one combination in one layer's numbers.
@@ -105,7 +130,10 @@ pub fn combination<T: Ordered>(
         return Err(Unsettled);
     }
     let motion = motion(&leaf, modes, problem, T::to_f64);
-    Ok(Settled::Regular { reading, index: index_of(&pivots), motion })
+    let contacts = 0..modes.len();
+    let velocity = contacts.clone().flat_map(|contact| leaf.velocity(contact));
+    let error = scale.error(velocity, contacts.flat_map(|contact| leaf.impulse(contact)));
+    Ok(Settled::Regular { reading, index: index_of(&pivots), motion, error })
 }
 
 /// The rank of G, and its inverse in the scale where it is regular.

@@ -83,9 +83,7 @@ impl<T: Real> Tableau<T> {
             for column in 0..2 * n {
                 self.depths[0][row * width + column] = problem.delassus(row, column);
             }
-            let (contact, normal) = (row / 2, row % 2);
-            let free = problem.velocity_free()[contact][normal];
-            self.depths[0][row * width + 2 * n] = if normal == 1 { free + problem.bounce(contact) } else { free };
+            self.depths[0][row * width + 2 * n] = problem.free_row(row);
         }
     }
 

@@ -129,6 +129,13 @@ pub struct Motion {
     pub velocity_after: Vec<Vector<f64>>,
 }
 
+impl Motion {
+    /// Whether every number is one.
+    pub(super) fn is_finite(&self) -> bool {
+        self.impulse.iter().chain(&self.velocity_after).flatten().all(|entry| entry.is_finite())
+    }
+}
+
 /// A combination of modes that is not an outcome, and what it would have been.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rejection {

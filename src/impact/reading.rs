@@ -32,9 +32,9 @@ pub fn read_f64(
 ) -> Reading {
     let (velocity, impulse) = (bound.velocity_error(), bound.impulse_error());
     let factor = |slack: &Slack<f64>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
-    let speed = |contact: usize, c_t: f64| Sign::within(c_t / (scale.speed * scale.mobility[2 * contact]), velocity);
+    let speed = |contact: usize, c_t: f64| Sign::within(c_t / scale.speed / scale.mobility[2 * contact], velocity);
     read(leaf, modes, problem.friction(), explain, speed, |slack| {
-        let scaled = slack.number * factor(slack);
+        let scaled = slack.number / scale.speed * factor(slack);
         (Sign::within(scaled, if slack.kind.is_strict() { velocity } else { impulse }), scaled)
     })
 }
@@ -48,7 +48,7 @@ pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &Con
         problem.friction(),
         true,
         |_, c_t| c_t.sign(),
-        |slack| (slack.number.sign(), slack.number.to_f64() * factor(slack)),
+        |slack| (slack.number.sign(), slack.number.to_f64() / scale.speed * factor(slack)),
     )
 }
 

@@ -57,6 +57,8 @@ pub struct Member {
     pub at_zero: Vec<(usize, SlackKind)>,
     /// Sign of det B; none on a border.
     pub index: Option<i8>,
+    /// How far velocity and impulse may be off, in the scale of margins.
+    pub error: f64,
 }
 
 /// An inequality on the solutions, in the scale of margins.
@@ -143,11 +145,12 @@ impl<T: Ordered> Combination<'_, T> {
     /// Every inequality of the modes.
     fn inequalities(&self, solutions: &Solutions<T>) -> Vec<Inequality<T>> {
         let problem = self.problem;
+        let by_speed = T::one() / T::from_f64(self.scale.speed);
         let mut all = Vec::new();
         for (contact, (&mode, &friction)) in self.modes.iter().zip(problem.friction()).enumerate() {
             let (t, n) = (2 * contact, 2 * contact + 1);
             let mut tell = |kind, constant: T, coefficients: Vec<T>| {
-                let factor = T::from_f64(self.scale.factor(kind, contact, friction));
+                let factor = T::from_f64(self.scale.factor(kind, contact, friction)) * by_speed;
                 let coefficients: Vec<T> = coefficients.into_iter().map(|entry| factor * entry).collect();
                 let function = solutions.affine(factor * constant, &coefficients);
                 all.push(Inequality { contact, kind, function });
@@ -223,8 +226,7 @@ impl<T: Ordered> Combination<'_, T> {
             if velocity.is_constant()? {
                 continue;
             }
-            let functions: Vec<Affine<T>> =
-                self.inequalities(&space).into_iter().map(|each| each.function).collect();
+            let functions: Vec<Affine<T>> = self.inequalities(&space).into_iter().map(|each| each.function).collect();
             let toward: Vec<T> = velocity.coefficients.iter().map(|&entry| sign * entry).collect();
             // Energy bounds every velocity.
             let best = maximize(&functions, &toward)?.ok_or(Unsettled)?;
@@ -304,7 +306,7 @@ impl<T: Ordered> Combination<'_, T> {
         }
         let lambda = if unique {
             at
-        } else if self.needs_no_impulse()? {
+        } else if self.needs_no_impulse(space)? {
             vec![T::zero(); at.len()]
         } else {
             let directions: Vec<Vec<T>> =
@@ -312,11 +314,14 @@ impl<T: Ordered> Combination<'_, T> {
             let start = Solutions { origin: at, directions: space.directions.clone() };
             start.at(&least_impulse(&self.generators.impulse(&start.origin), &directions, &shifted)?)
         };
-        let margin = (!inequalities.is_empty()).then(|| least.to_f64());
+        // A margin at the cap is that of impulses without bound.
+        let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
+        let margin = (!inequalities.is_empty() && bounded).then(|| least.to_f64());
+        let (motion, error) = self.motion_of(space, &lambda, &modes);
         Ok(Member {
-            motion: self.motion_of(space, &lambda, &modes),
-            // A margin at the cap is that of impulses without bound.
-            margin: margin.filter(|margin| *margin < UNBOUNDED),
+            motion,
+            error,
+            margin,
             range: (!unique).then(|| ranges.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()),
             index: if at_zero.is_empty() { index(self.problem, &modes)? } else { None },
             at_zero,
@@ -324,10 +329,10 @@ impl<T: Ordered> Combination<'_, T> {
         })
     }
 
-    /// Whether all that the modes hold at zero is at rest already.
-    fn needs_no_impulse(&self) -> Result<bool, Unsettled> {
-        for row in zero_rows(self.modes) {
-            if settled(self.problem.free_row(row))?.is_ne() {
+    /// Whether the only velocity of `space` is the one without impulses.
+    fn needs_no_impulse(&self, space: &Solutions<T>) -> Result<bool, Unsettled> {
+        for row in 0..2 * self.modes.len() {
+            if settled(self.velocity(space, row).constant - self.problem.free_row(row))?.is_ne() {
                 return Ok(false);
             }
         }
@@ -336,21 +341,23 @@ impl<T: Ordered> Combination<'_, T> {
 
     fn motion(&self, solutions: &Solutions<T>, y: &[T], modes: &[Mode]) -> Motion {
         let at = Solutions { origin: solutions.at(y), directions: Vec::new() };
-        self.motion_of(&at, &at.origin, modes)
+        self.motion_of(&at, &at.origin, modes).0
     }
 
-    /// The velocity of `space` at its origin, with the impulse that `lambda` gives.
-    fn motion_of(&self, space: &Solutions<T>, lambda: &[T], modes: &[Mode]) -> Motion {
-        let mut velocity: Vec<f64> =
-            (0..2 * modes.len()).map(|row| self.velocity(space, row).constant.to_f64()).collect();
+    /// The velocity of `space` at its origin, with the impulse that `lambda` gives, and how far they may be off.
+    fn motion_of(&self, space: &Solutions<T>, lambda: &[T], modes: &[Mode]) -> (Motion, f64) {
+        let rows: Vec<T> = (0..2 * modes.len()).map(|row| self.velocity(space, row).constant).collect();
+        let impulse = self.generators.impulse(lambda);
+        let error = self.scale.error(rows.iter().copied(), impulse.iter().copied());
+        let mut velocity: Vec<f64> = rows.iter().map(|row| row.to_f64()).collect();
         for row in zero_rows(modes) {
             velocity[row] = 0.0;
         }
         let bounced = velocity.chunks_exact(2).enumerate();
-        let impulse: Vec<f64> = self.generators.impulse(lambda).iter().map(|entry| entry.to_f64()).collect();
-        Motion {
-            impulse: impulse.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(),
+        let motion = Motion {
+            impulse: impulse.chunks_exact(2).map(|pair| [pair[0].to_f64(), pair[1].to_f64()]).collect(),
             velocity_after: bounced.map(|(i, pair)| [pair[0], pair[1] - self.rounded.bounce(i)]).collect(),
-        }
+        };
+        (motion, error)
     }
 }

@@ -11,7 +11,7 @@ use super::mode::{Friction, Mode};
 use super::outcome::Because;
 use super::problem::{ContactProblem, Errors};
 use crate::planar::Vector;
-use crate::scalar::Real;
+use crate::scalar::{Ordered, Real};
 
 /// What an inequality is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,19 +129,34 @@ impl Scale {
         }
     }
 
-    /// What a slack of this kind is multiplied by to be free of units.
+    /// What a slack of this kind, divided by S, is multiplied by to be free of units.
     pub fn factor(&self, kind: SlackKind, contact: usize, friction: Friction) -> f64 {
         let (d_t, d_n) = (self.mobility[2 * contact], self.mobility[2 * contact + 1]);
         match kind {
-            SlackKind::Separation => 1.0 / (self.speed * d_n),
-            SlackKind::Slip => 1.0 / (self.speed * d_t),
-            SlackKind::Pressure => d_n / self.speed,
-            SlackKind::Drag => d_t / self.speed,
+            SlackKind::Separation => 1.0 / d_n,
+            SlackKind::Slip => 1.0 / d_t,
+            SlackKind::Pressure => d_n,
+            SlackKind::Drag => d_t,
             SlackKind::Cone => {
                 let (a, b) = friction.pair();
-                1.0 / (self.speed * (a / d_n).hypot(b / d_t))
+                1.0 / (a / d_n).hypot(b / d_t)
             }
         }
+    }
+
+    /// How far velocities and impulses, by row, may be off: the largest error in the scale, relative to the largest of them
+    /// where that exceeds one.
+    pub fn error<T: Ordered>(&self, velocity: impl Iterator<Item = T>, impulse: impl Iterator<Item = T>) -> f64 {
+        let velocity = velocity.zip(&self.mobility).map(|(number, mobility)| (number, 1.0 / mobility));
+        let impulse = impulse.zip(&self.mobility).map(|(number, mobility)| (number, *mobility));
+        let (mut size, mut error) = (1.0_f64, 0.0_f64);
+        for (number, factor) in velocity.chain(impulse) {
+            size = size.max((number.to_f64() / self.speed * factor).abs());
+            let off = number.error() / self.speed * factor;
+            // `f64::max` would drop a NaN.
+            error = if off.is_nan() { f64::INFINITY } else { error.max(off) };
+        }
+        error / size
     }
 
     /// Whether two lists of contact velocities are the same but for rounding.

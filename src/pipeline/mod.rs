@@ -9,8 +9,8 @@ mod strike;
 use self::strike::Strike;
 use crate::contact::{self, Contact, Feet, Placement};
 use crate::dynamics::{
-    Arm, Bounds, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, kinetic_energy,
-    mass_matrix, point_velocity,
+    Arm, Bounds, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics,
+    kinetic_energy, mass_matrix, point_velocity,
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
@@ -328,13 +328,7 @@ impl<'r> Pipeline<'r> {
     }
 
     /// Bounds the rounding of G and c; without proofs that of G is taken for what was measured.
-    fn bound(
-        &mut self,
-        contacts: &[Contact],
-        velocity: &[f64],
-        foot: Option<&Contact>,
-        rests: impl Fn(usize) -> bool,
-    ) {
+    fn bound(&mut self, contacts: &[Contact], velocity: &[f64], foot: Option<&Contact>, rests: impl Fn(usize) -> bool) {
         let Self { robot, plan, posture, bounds, workspace, .. } = self;
         let arm = |contact: &Contact| Arm { body: contact.body, length: contact.stretch(robot) + contact.radius };
         bounds.stretch(plan, posture, contacts.iter().map(arm));

@@ -1,10 +1,11 @@
 //! Reading a contact problem that is given as matrices.
 
 use crate::impact::problem::check_matrix_size;
-use crate::impact::{ContactProblem, Friction};
+use crate::impact::{Analysis, ContactProblem, Friction};
 use crate::json::{Node, Value};
 use crate::state::{Defaults, read};
 use crate::{Error, Reason, Result};
+use std::borrow::Cow;
 
 /// A contact problem and what the user calls it and its contacts.
 #[derive(Debug, Clone)]
@@ -64,6 +65,25 @@ impl Problem {
         Ok(Self { id, names, contact })
     }
 
+    /// What a reader of its analysis should know, in whole sentences.
+    pub(super) fn notes(&self, analysis: &Analysis) -> Cow<'static, [String]> {
+        let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
+        let mended = || {
+            let rank = analysis.rank;
+            format!(
+                "the Delassus matrix is indefinite by its rounding: the nearest of rank {rank} that is not was taken; {keep}"
+            )
+        };
+        let vague = |condition: f64| {
+            format!(
+                "the Delassus matrix has condition {condition:.1e} and may be singular but for its rounding: {keep}"
+            )
+        };
+        let vague_from = |condition: &f64| *condition > VAGUE && self.contact.is_given();
+        let notes = self.contact.is_mended().then(mended).into_iter();
+        notes.chain(analysis.condition.filter(vague_from).map(vague)).chain(analysis.energy_note()).collect()
+    }
+
     /// G, two rows and columns per contact.
     pub fn delassus(&self) -> Vec<Vec<f64>> {
         let rows = 0..2 * self.contact.contacts();
@@ -120,6 +140,9 @@ impl Fields<'_> {
         }
     }
 }
+
+/// Beyond this condition a matrix is regular by its last digits alone.
+const VAGUE: f64 = 1e14;
 
 /// The two ways of giving a problem.
 enum Matrices {

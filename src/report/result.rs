@@ -376,7 +376,7 @@ impl<'a> Report<'a> {
         Self {
             id: problem.id.as_ref(),
             delassus: detail.matrices.then(|| Cow::Owned(problem.delassus())),
-            notes: analysis.energy_note().into_iter().collect(),
+            notes: problem.notes(analysis),
             ..Self::of_analysis(contacts, Ok(analysis), detail)
         }
     }

@@ -144,6 +144,10 @@ impl<M: Midpoint> Ordered for Ball<M> {
     fn to_f64(self) -> f64 {
         if self.radius.is_finite() { self.mid.to_f64() } else { f64::NAN }
     }
+
+    fn error(self) -> f64 {
+        self.radius
+    }
 }
 
 impl<M: Midpoint> Enclosure for Ball<M> {

@@ -56,6 +56,10 @@ impl<B: Ordered> Ordered for Certified<B> {
     fn to_f64(self) -> f64 {
         self.enclosure.to_f64()
     }
+
+    fn error(self) -> f64 {
+        self.enclosure.error()
+    }
 }
 
 impl<B: Ordered + Trigonometry> Trigonometry for Certified<B> {

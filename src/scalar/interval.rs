@@ -212,6 +212,10 @@ impl Ordered for Interval {
     fn to_f64(self) -> f64 {
         self.value().map_or(f64::NAN, |value| value.mid.to_f64().value())
     }
+
+    fn error(self) -> f64 {
+        self.radius()
+    }
 }
 
 impl Enclosure for Interval {

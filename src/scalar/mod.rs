@@ -82,6 +82,9 @@ pub trait Ordered: Real {
 
     /// The nearest f64, or one as near as the number is known; NaN where nothing is known.
     fn to_f64(self) -> f64;
+
+    /// How far the number may be from [`Ordered::to_f64`], beside that rounding; infinite where nothing is known.
+    fn error(self) -> f64;
 }
 
 /// A number in which the cosine and sine of an f64 angle can be told.

@@ -22,6 +22,8 @@ pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
 /// Diagonal entries of G outside these would let products of two of them underflow or overflow \[1/kg\].
 const SMALLEST_MOBILITY: f64 = 1e-120;
 const LARGEST_MOBILITY: f64 = 1e120;
+/// Beyond this an energy c^2 / G could overflow \[m/s\].
+const LARGEST_SPEED: f64 = 1e90;
 
 impl ContactProblem {
     /// Products of two entries of G must stay far from overflow and underflow.
@@ -43,6 +45,11 @@ impl ContactProblem {
         for (contact, velocity) in self.velocity_before.iter().enumerate() {
             for &entry in velocity {
                 finite(entry, || format!("velocity_before of contact {contact}"))?;
+                if entry.abs() > LARGEST_SPEED {
+                    let (what, allowed) = (format!("velocity_before of contact {contact}"), "below 1e90 m/s");
+                    return Err(Error::new(Reason::OutOfRange { what, allowed, value: entry })
+                        .hint("choose units of length and time nearer to the robot's own"));
+                }
             }
             for entry in self.velocity_free[contact] {
                 finite(entry, || format!("the velocity of contact {contact} after the applied impulses"))?;
@@ -65,14 +72,16 @@ impl ContactProblem {
     }
 
     /// Symmetry entry by entry, then definiteness by elimination with diagonal pivoting, both to n eps of the largest
-    /// entry.
-    pub(super) fn check_definite(&self) -> Result<()> {
+    /// entry. True where G is positive definite beyond doubt.
+    pub(super) fn check_definite(&self) -> Result<bool> {
         let rows = 2 * self.contacts();
         let largest = self.delassus.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let rounding = 4.0 * rows as f64 * f64::EPSILON * largest;
         let mut rest = nalgebra::DMatrix::from_row_slice(rows, rows, &self.delassus);
+        let mut symmetric = true;
         for i in 0..rows {
             for j in 0..i {
+                symmetric &= rest[(i, j)] == rest[(j, i)];
                 if (rest[(i, j)] - rest[(j, i)]).abs() > rounding {
                     return Err(Error::new(Reason::Inconsistent(format!(
                         "the Delassus matrix is not symmetric: {} against {}",
@@ -84,6 +93,7 @@ impl ContactProblem {
                 }
             }
         }
+        let mut beyond_doubt = 0;
         for _ in 0..rows {
             let Some(pivot) = (0..rows).max_by(|&i, &j| rest[(i, i)].total_cmp(&rest[(j, j)])) else { break };
             let indefinite = (0..rows).find(|&i| rest[(i, i)] < -rounding);
@@ -102,6 +112,8 @@ impl ContactProblem {
             if diagonal <= rounding {
                 break;
             }
+            // The elimination itself rounds by about as much.
+            beyond_doubt += usize::from(symmetric && diagonal > 16.0 * rounding);
             let column = rest.column(pivot).clone_owned();
             for i in 0..rows {
                 for j in 0..rows {
@@ -109,6 +121,6 @@ impl ContactProblem {
                 }
             }
         }
-        Ok(())
+        Ok(beyond_doubt == rows)
     }
 }

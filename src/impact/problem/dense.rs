@@ -1,13 +1,13 @@
 //! A problem from M, J and v as dense matrices.
 
-use super::ContactProblem;
 use super::checks::check_matrix_size;
+use super::{ContactProblem, Origin};
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::mode::Friction;
 use crate::planar::Vector;
 use crate::scalar::Real;
 
-/// M, J and v as they were given, every digit meant.
+/// M, J and v as they were given, every digit meant; of M only what is on and below its diagonal.
 #[derive(Debug, Clone)]
 pub(super) struct Dynamics {
     /// dofs x dofs.
@@ -22,10 +22,10 @@ impl Dynamics {
     /// G = J M^-1 J^T by rows and c = J v, in numbers of any kind. M is eliminated without pivoting: it is positive definite.
     pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Vector<T>>) {
         let dofs = self.velocity.len();
-        let number = |matrix: &[Vec<f64>]| -> Vec<Vec<T>> {
-            matrix.iter().map(|row| row.iter().map(|&entry| T::from_f64(entry)).collect()).collect()
-        };
-        let (mut mass, jacobian) = (number(&self.mass_matrix), number(&self.contact_jacobian));
+        let lower = |i: usize, j: usize| T::from_f64(self.mass_matrix[i.max(j)][i.min(j)]);
+        let mut mass: Vec<Vec<T>> = (0..dofs).map(|i| (0..dofs).map(|j| lower(i, j)).collect()).collect();
+        let jacobian: Vec<Vec<T>> =
+            self.contact_jacobian.iter().map(|row| row.iter().map(|&entry| T::from_f64(entry)).collect()).collect();
         let mut solved = jacobian.clone();
         for k in 0..dofs {
             for i in k + 1..dofs {
@@ -108,7 +108,7 @@ impl ContactProblem {
         let before: Vec<Vector<f64>> =
             contact_jacobian.chunks_exact(2).map(|pair| [speed(&pair[0]), speed(&pair[1])]).collect();
         let mut problem = Self::checked(delassus, (before.clone(), before), (friction, restitution))?;
-        problem.dynamics = Some(Box::new(Dynamics {
+        problem.origin = Origin::Dynamics(Box::new(Dynamics {
             mass_matrix: mass_matrix.to_vec(),
             contact_jacobian: contact_jacobian.to_vec(),
             velocity: velocity.to_vec(),

@@ -8,6 +8,7 @@
 
 mod checks;
 mod dense;
+mod mend;
 mod source;
 
 pub use checks::MATRIX_LIMIT;
@@ -15,6 +16,7 @@ pub(crate) use checks::check_matrix_size;
 pub use source::{Errors, Source};
 
 use self::dense::Dynamics;
+use self::mend::{Rows, is_semidefinite};
 use super::mode::Friction;
 use crate::error::{Error, Reason, Result, finite};
 use crate::planar::Vector;
@@ -35,8 +37,18 @@ pub struct ContactProblem<T = f64> {
     approach: Vec<T>,
     friction: Vec<Friction>,
     restitution: Vec<f64>,
-    /// What G and c- were computed from, where they were not given themselves.
-    dynamics: Option<Box<Dynamics>>,
+    origin: Origin,
+}
+
+/// What the numbers of a problem that is its own source come from.
+#[derive(Debug, Clone)]
+enum Origin {
+    /// They were given.
+    Given,
+    /// G and c- were computed from M, J and v.
+    Dynamics(Box<Dynamics>),
+    /// A given G was indefinite by its rounding, and is now Z Z^T.
+    Mended(Rows),
 }
 
 impl<T: Real> ContactProblem<T> {
@@ -91,7 +103,7 @@ impl<T: Real> ContactProblem<T> {
             approach: self.approach.iter().map(|&entry| number(entry)).collect(),
             friction: self.friction.clone(),
             restitution: self.restitution.clone(),
-            dynamics: None,
+            origin: Origin::Given,
         }
     }
 }
@@ -112,7 +124,7 @@ impl<T: Ordered> ContactProblem<T> {
             Sign::Undecided => T::one() / T::zero(),
         };
         let approach = velocity_before.iter().map(approach).collect();
-        Self { delassus, velocity_before, velocity_free, approach, friction, restitution, dynamics: None }
+        Self { delassus, velocity_before, velocity_free, approach, friction, restitution, origin: Origin::Given }
     }
 }
 
@@ -146,8 +158,21 @@ impl ContactProblem {
         }
         let free = velocity_before.clone();
         let problem = Self::checked(delassus, (velocity_before, free), (friction, restitution))?;
-        problem.check_definite()?;
-        Ok(problem)
+        if problem.check_definite()? || is_semidefinite(&problem) {
+            return Ok(problem);
+        }
+        let rows = Rows::of(&problem);
+        Ok(Self { delassus: rows.delassus(), origin: Origin::Mended(rows), ..problem })
+    }
+
+    /// Whether G and c- themselves were given, and every digit of them is meant.
+    pub fn is_given(&self) -> bool {
+        matches!(self.origin, Origin::Given)
+    }
+
+    /// Whether the G that was given is indefinite, by rounding alone, and was replaced by one that is not.
+    pub fn is_mended(&self) -> bool {
+        matches!(self.origin, Origin::Mended(_))
     }
 
     /// A problem from parts that the dynamics computed: G, c-, and c- with the change by applied impulses.
@@ -169,7 +194,7 @@ impl ContactProblem {
         }
         let approach = velocity_before.iter().map(|c| c[1].min(0.0)).collect();
         let problem =
-            Self { delassus, velocity_before, velocity_free, approach, friction, restitution, dynamics: None };
+            Self { delassus, velocity_before, velocity_free, approach, friction, restitution, origin: Origin::Given };
         problem.check_contacts()?;
         problem.check_range()?;
         Ok(problem)

@@ -1,6 +1,6 @@
 //! Where a contact problem's numbers come from, so that they can be computed again with more digits.
 
-use super::ContactProblem;
+use super::{ContactProblem, Origin};
 use crate::planar::Vector;
 use crate::scalar::{Ordered, Trigonometry};
 
@@ -11,12 +11,18 @@ pub trait Source {
 
     /// What the f64 problem may be off by.
     fn errors(&self) -> Errors<'_>;
+
+    /// Whether the numbers are what was asked about, so that what is shown of them is proven.
+    fn is_exact(&self) -> bool {
+        true
+    }
 }
 
 /// Error bounds of a problem in f64.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors<'a> {
-    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite where nothing is known.
+    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite where nothing is known, neither of it nor of
+    /// the velocities.
     pub delassus: f64,
     /// Of c- and c_free, per contact \[m/s\]; none where they are exact.
     pub velocity: Option<&'a [Vector<f64>]>,
@@ -32,17 +38,22 @@ impl Errors<'_> {
 /// A problem that is given as matrices is its own source: every f64 is meant as the number that it is.
 impl Source for ContactProblem {
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
-        match &self.dynamics {
-            None => self.map(T::from_f64),
-            Some(dynamics) => {
+        match &self.origin {
+            Origin::Given => self.map(T::from_f64),
+            Origin::Dynamics(dynamics) => {
                 let (delassus, before) = dynamics.numbers();
                 let (friction, restitution) = (self.friction.clone(), self.restitution.clone());
                 ContactProblem::of_parts(delassus, before.clone(), before, friction, restitution)
             }
+            Origin::Mended(rows) => ContactProblem { delassus: rows.delassus(), ..self.map(T::from_f64) },
         }
     }
 
     fn errors(&self) -> Errors<'_> {
-        if self.dynamics.is_none() { Errors::NONE } else { Errors::UNKNOWN }
+        if matches!(self.origin, Origin::Given) { Errors::NONE } else { Errors::UNKNOWN }
+    }
+
+    fn is_exact(&self) -> bool {
+        !self.is_mended()
     }
 }

@@ -1,0 +1,107 @@
+//! A Delassus matrix that its own rounding made indefinite: no impact has one, so the nearest that is semidefinite serves.
+
+use super::ContactProblem;
+use crate::impact::certify::{Layer, Question, settle};
+use crate::impact::linear::{Unsettled, settled};
+use crate::scalar::{Ordered, Real};
+
+/// Rows Z of G = Z Z^T, each digit meant.
+#[derive(Debug, Clone)]
+pub(super) struct Rows(Vec<Vec<f64>>);
+
+impl Rows {
+    /// Those of `problem`: elimination with diagonal pivoting, to the rounding of its entries.
+    pub fn of(problem: &ContactProblem) -> Self {
+        let count = 2 * problem.contacts();
+        let mut rest: Vec<Vec<f64>> = (0..count)
+            .map(|i| (0..count).map(|j| 0.5 * (problem.delassus(i, j) + problem.delassus(j, i))).collect())
+            .collect();
+        let whole: Vec<f64> = (0..count).map(|i| rest[i][i]).collect();
+        let mut rows = vec![Vec::new(); count];
+        // What is left of a row counts against what it was, so that units do not matter.
+        let part = |rest: &[Vec<f64>], i: usize| if whole[i] > 0.0 { rest[i][i] / whole[i] } else { 0.0 };
+        for _ in 0..count {
+            let Some(pivot) = (0..count).max_by(|&i, &j| part(&rest, i).total_cmp(&part(&rest, j))) else { break };
+            if part(&rest, pivot) <= 8.0 * count as f64 * f64::EPSILON {
+                break;
+            }
+            let diagonal = rest[pivot][pivot];
+            let column: Vec<f64> = rest.iter().map(|row| row[pivot] / diagonal.sqrt()).collect();
+            for (i, line) in rest.iter_mut().enumerate() {
+                rows[i].push(column[i]);
+                for (entry, other) in line.iter_mut().zip(&column) {
+                    *entry -= column[i] * other;
+                }
+                // What is left of the pivot is zero by construction, and its rounding must not count as rank again.
+                line[pivot] = 0.0;
+            }
+            rest[pivot].fill(0.0);
+        }
+        Self(rows)
+    }
+
+    /// G by rows.
+    pub fn delassus<T: Real>(&self) -> Vec<T> {
+        let dot = |a: &[f64], b: &[f64]| {
+            a.iter().zip(b).fold(T::zero(), |sum, (&x, &y)| sum + T::from_f64(x) * T::from_f64(y))
+        };
+        self.0.iter().flat_map(|row| self.0.iter().map(|other| dot(row, other))).collect()
+    }
+}
+
+/// Whether a matrix, every digit of it meant, is symmetric and has no negative eigenvalue.
+pub(super) fn is_semidefinite(problem: &ContactProblem) -> bool {
+    let rows = 0..2 * problem.contacts();
+    if rows.clone().any(|i| rows.clone().any(|j| problem.delassus(i, j) != problem.delassus(j, i))) {
+        return false;
+    }
+    let mut definiteness = Definiteness { found: false };
+    settle(problem, Layer::Ball, &mut definiteness);
+    definiteness.found
+}
+
+struct Definiteness {
+    found: bool,
+}
+
+impl Question for Definiteness {
+    fn ask<T: Ordered>(&mut self, problem: &ContactProblem<T>, _: Layer) -> bool {
+        match semidefinite(problem) {
+            Ok(found) => {
+                self.found = found;
+                true
+            }
+            Err(Unsettled) => false,
+        }
+    }
+}
+
+/// By symmetric elimination: a zero on the diagonal must have zeros beside it.
+fn semidefinite<T: Ordered>(problem: &ContactProblem<T>) -> Result<bool, Unsettled> {
+    let count = 2 * problem.contacts();
+    let mut rest: Vec<Vec<T>> = (0..count).map(|i| (0..count).map(|j| problem.delassus(i, j)).collect()).collect();
+    for pivot in 0..count {
+        let standing = settled(rest[pivot][pivot])?;
+        if standing.is_lt() {
+            return Ok(false);
+        }
+        let (above, below) = rest.split_at_mut(pivot + 1);
+        let row = &above[pivot];
+        if standing.is_eq() {
+            for &entry in &row[pivot + 1..] {
+                if settled(entry)?.is_ne() {
+                    return Ok(false);
+                }
+            }
+            continue;
+        }
+        let inverse = T::one() / row[pivot];
+        for line in below {
+            let factor = line[pivot] * inverse;
+            for (entry, &over) in line[pivot..].iter_mut().zip(&row[pivot..]) {
+                *entry = *entry - factor * over;
+            }
+        }
+    }
+    Ok(true)
+}
