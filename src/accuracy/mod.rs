@@ -5,10 +5,10 @@ mod pose;
 mod reference;
 mod robots;
 mod suite;
-mod wide;
+
 
 pub use number::Number;
 pub use pose::{Computation, Factorization, Pose};
 pub use reference::Reference;
 pub use suite::{Case, End, Subject, cases};
-pub use wide::{PRECISION, Wide};
+pub use reference::PRECISION;

@@ -1,10 +1,9 @@
 //! The numbers that are compared, and what each needs beside [`Real`]: its angles, and itself as f64s.
 
-use super::wide::Wide;
 use crate::planar::Rotation;
-use crate::scalar::Real;
+use crate::scalar::{Ball, DoubleDouble, Interval, Ordered, Real, Trigonometry};
 
-/// A number that a state can be computed in, from its f64 on.
+/// A number that a state can be computed in, from its f64s on.
 pub trait Number: Real {
     /// Cosine and sine of an f64 angle \[rad\], as well as this number knows them.
     fn rotation(angle: f64) -> Rotation<Self>;
@@ -13,7 +12,7 @@ pub trait Number: Real {
     fn parts(self) -> [f64; 2];
 }
 
-/// Half the digits of f64. It stands here to be compared; no part of the product runs on it.
+/// Half the digits of f64. It stands here to be compared; nothing outside of this module runs on it.
 impl Real for f32 {
     fn from_f64(value: f64) -> Self {
         value as f32
@@ -41,9 +40,20 @@ impl Number for f64 {
     }
 }
 
-impl Number for Wide {
+impl Number for DoubleDouble {
     fn rotation(angle: f64) -> Rotation<Self> {
-        let (cos, sin) = Self::cos_sin(angle);
+        let [cos, sin] = Ball::<DoubleDouble>::cos_sin(angle).map(|ball| ball.mid);
+        Rotation { cos, sin }
+    }
+
+    fn parts(self) -> [f64; 2] {
+        DoubleDouble::parts(self)
+    }
+}
+
+impl Number for Interval {
+    fn rotation(angle: f64) -> Rotation<Self> {
+        let [cos, sin] = Self::cos_sin(angle);
         Rotation { cos, sin }
     }
 

@@ -5,15 +5,18 @@
 
 use super::number::Number;
 use super::pose::{Computation, Pose};
-use super::wide::Wide;
+use crate::scalar::{Interval, Ordered, Real};
 use crate::plan::Motion;
 use crate::planar::{Inertia, Vector, difference, dot, scaled, sum, turned};
-use crate::scalar::Real;
 
-/// M, G and c of a pose in the reference's numbers; it must stay within one [`Wide::scope`].
+
+/// Bits of the reference. Its numbers are enclosures, so that what it does not know shows as an error of its own.
+pub const PRECISION: usize = 320;
+
+/// M, G and c of a pose in the reference's numbers; it must stay within one [`Interval::scope`].
 #[derive(Debug)]
 pub struct Reference {
-    computation: Computation<Wide>,
+    computation: Computation<Interval>,
     /// Each column's motion.
     columns: Vec<Column>,
 }
@@ -23,16 +26,16 @@ pub struct Reference {
 struct Column {
     axis: Axis,
     /// The joint's origin from the root's \[m\].
-    origin: Vector<Wide>,
+    origin: Vector<Interval>,
     /// All bodies beyond the joint, about its origin.
-    moved: Inertia<Wide>,
-    rotor: Wide,
+    moved: Inertia<Interval>,
+    rotor: Interval,
 }
 
 #[derive(Debug, Clone, Copy)]
 enum Axis {
-    Turn(Wide),
-    Slide(Vector<Wide>),
+    Turn(Interval),
+    Slide(Vector<Interval>),
 }
 
 impl Reference {
@@ -47,12 +50,12 @@ impl Reference {
     }
 
     /// G, 2n x 2n by rows.
-    pub fn delassus(&self) -> &[Wide] {
+    pub fn delassus(&self) -> &[Interval] {
         &self.computation.workspace().delassus
     }
 
     /// c, one entry per contact.
-    pub fn velocity(&self) -> &[Vector<Wide>] {
+    pub fn velocity(&self) -> &[Vector<Interval>] {
         &self.computation.workspace().contact_velocity
     }
 
@@ -72,12 +75,12 @@ impl Reference {
     pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
         let nv = self.columns.len();
         let parents = &self.computation.plan().parents;
-        let size: Vec<f64> = (0..nv).map(|i| Wide::scope(|| self.inertia(i, i).to_f64().sqrt())).collect();
+        let size: Vec<f64> = (0..nv).map(|i| Interval::scope(PRECISION, || self.inertia(i, i).to_f64().sqrt())).collect();
         worst((0..nv).flat_map(|i| {
             let below = std::iter::successors(Some(i), |&column| parents[column]);
             let size = &size;
             below.map(move |j| {
-                let error = Wide::scope(|| distance(mass[i * nv + j], self.inertia(i, j)));
+                let error = Interval::scope(PRECISION, || distance(mass[i * nv + j], self.inertia(i, j)));
                 relative(error, size[i] * size[j])
             })
         }))
@@ -86,7 +89,7 @@ impl Reference {
     /// Entry of M for two columns, the second one below the first or the same.
     ///
     /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.
-    fn inertia(&self, upper: usize, lower: usize) -> Wide {
+    fn inertia(&self, upper: usize, lower: usize) -> Interval {
         let (beyond, below) = (&self.columns[upper], &self.columns[lower]);
         let Inertia { mass, first, second } = beyond.moved;
         let (linear, angular) = match beyond.axis {
@@ -101,13 +104,13 @@ impl Reference {
     }
 }
 
-fn columns(computation: &Computation<Wide>) -> Vec<Column> {
+fn columns(computation: &Computation<Interval>) -> Vec<Column> {
     let (plan, workspace) = (computation.plan(), computation.workspace());
-    let mut composite: Vec<Inertia<Wide>> = Vec::new();
-    let mut origins: Vec<Vector<Wide>> = Vec::new();
+    let mut composite: Vec<Inertia<Interval>> = Vec::new();
+    let mut origins: Vec<Vector<Interval>> = Vec::new();
     for (index, body) in plan.bodies.iter().enumerate() {
         composite.push(Inertia { first: workspace.rotation[index].apply(body.inertia.first), ..body.inertia });
-        origins.push(body.parent.map_or([Wide::zero(); 2], |parent| sum(origins[parent], workspace.arm[index])));
+        origins.push(body.parent.map_or([Interval::zero(); 2], |parent| sum(origins[parent], workspace.arm[index])));
     }
     for (index, body) in plan.bodies.iter().enumerate().rev() {
         if let Some(parent) = body.parent {
@@ -124,9 +127,9 @@ fn columns(computation: &Computation<Wide>) -> Vec<Column> {
     for (index, body) in plan.bodies.iter().enumerate().filter(|(_, body)| body.column.is_some()) {
         match body.motion {
             Motion::Root => {
-                let axes = [[Wide::one(), Wide::zero()], [Wide::zero(), Wide::one()]];
+                let axes = [[Interval::one(), Interval::zero()], [Interval::zero(), Interval::one()]];
                 columns.extend(axes.map(|axis| column(Axis::Slide(axis), index)));
-                columns.push(column(Axis::Turn(Wide::one()), index));
+                columns.push(column(Axis::Turn(Interval::one()), index));
             }
             Motion::Turn { sign } => columns.push(column(Axis::Turn(sign), index)),
             Motion::Slide { .. } => columns.push(column(Axis::Slide(workspace.direction[index]), index)),
@@ -135,10 +138,11 @@ fn columns(computation: &Computation<Wide>) -> Vec<Column> {
     columns
 }
 
-/// How far `found` is from `exact`.
-pub fn distance<T: Number>(found: T, exact: Wide) -> f64 {
-    let [head, tail] = found.parts().map(Wide::from_f64);
-    (head + tail - exact).to_f64().abs()
+/// At most how far `found` is from `exact`.
+pub fn distance<T: Number>(found: T, exact: Interval) -> f64 {
+    let [head, tail] = found.parts().map(Interval::from_f64);
+    let difference = head + tail - exact;
+    difference.to_f64().abs() + difference.radius()
 }
 
 /// `error` as a part of `size`; no error of nothing is none.

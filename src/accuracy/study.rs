@@ -5,7 +5,7 @@ use super::pose::{Computation, Factorization, Pose};
 use super::reference::{Reference, distance, relative, worst};
 use super::suite::Subject;
 use super::timing::{Budget, Spread};
-use super::wide::Wide;
+use crate::scalar::Interval;
 use crate::impact::enumerate::Tableau;
 use crate::impact::problem::Entry;
 use crate::impact::{Analysis, ContactProblem, Scratch, Verdict};

@@ -17,12 +17,11 @@ use super::problem::{ContactProblem, Entry};
 use super::reading::{Reading, read_f64, read_signed};
 use super::redundant::{Judged, Rows};
 use super::region::explanation;
-use super::sign::{Scale, Sign};
+use super::sign::Scale;
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
-use crate::scalar::{Ball, Exact, Real};
+use crate::scalar::{Ball, Exact, Ordered, Real, Sign};
 use nalgebra::DMatrix;
-use std::cmp::Ordering;
 
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
@@ -181,7 +180,7 @@ impl SecondLook<'_> {
             self.loaded = true;
         }
         let leaf_of_balls = self.balls.leaf(modes);
-        let reading = read_signed(&leaf_of_balls, modes, self.problem, self.scale, |ball| ball.mid);
+        let reading = read_signed(&leaf_of_balls, modes, self.problem, self.scale);
         let pivots: Vec<f64> = leaf_of_balls.pivots.iter().map(|pivot| pivot.mid).collect();
         let (problem, scale) = (self.problem, self.scale);
         if reading.sign != Sign::Undecided {
@@ -224,7 +223,7 @@ fn exactly<R>(problem: &ContactProblem, modes: &[Mode], read: impl FnOnce(&Leaf<
 /// Reads a combination exactly, with its index; none where a pivot vanishes.
 fn read_exactly(problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Option<(Reading, i8, Motion)> {
     exactly(problem, modes, |leaf| {
-        let reading = read_signed(leaf, modes, problem, scale, Exact::to_f64);
+        let reading = read_signed(leaf, modes, problem, scale);
         let pivots: Vec<f64> = leaf.pivots.iter().map(|pivot| pivot.to_f64()).collect();
         let decided = reading.sign != Sign::Undecided;
         decided.then(|| (reading, index(&pivots), motion(leaf, modes, problem, Exact::to_f64)))
@@ -234,8 +233,9 @@ fn read_exactly(problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Opti
 /// Impulses and velocities of a combination: those of its leaf, or exact but for one rounding where the leaf is ill
 /// conditioned and the matrices were given.
 fn best_motion(leaf: &Leaf<'_, f64>, modes: &[Mode], problem: &ContactProblem, rounding: f64) -> Motion {
-    let regular =
-        |leaf: &Leaf<'_, Exact>| leaf.pivots.iter().all(|pivot| pivot.compare_with_zero().is_some_and(Ordering::is_ne));
+    let regular = |leaf: &Leaf<'_, Exact>| {
+        leaf.pivots.iter().all(|pivot| matches!(pivot.sign(), Sign::Negative | Sign::Positive))
+    };
     let given = problem.factor().is_none();
     let better = (given && rounding > F64_SERVES)
         .then(|| exactly(problem, modes, |leaf| regular(leaf).then(|| motion(leaf, modes, problem, Exact::to_f64))));

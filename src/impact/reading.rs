@@ -4,8 +4,8 @@ use super::enumerate::Leaf;
 use super::mode::{Friction, Mode};
 use super::outcome::Because;
 use super::problem::ContactProblem;
-use super::sign::{Scale, Sign, Slack, slacks};
-use crate::scalar::Real;
+use super::sign::{Scale, Slack, slacks};
+use crate::scalar::{Ordered, Real, Sign};
 
 /// What the slacks of a combination say.
 pub struct Reading {
@@ -36,25 +36,16 @@ pub fn read_f64(
     })
 }
 
-/// Reads a leaf whose numbers know their own sign; `nearest` is the f64 nearest to a number.
-pub fn read_signed<T: Real>(
-    leaf: &Leaf<'_, T>,
-    modes: &[Mode],
-    problem: &ContactProblem,
-    scale: &Scale,
-    nearest: impl Fn(T) -> f64,
-) -> Reading
-where
-    Sign: From<T>,
-{
+/// Reads a leaf whose numbers know their own sign.
+pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Reading {
     let factor = |slack: &Slack<T>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
     read(
         leaf,
         modes,
         problem.friction(),
         true,
-        |_, c_t| Sign::from(c_t),
-        |slack| (Sign::from(slack.number), nearest(slack.number) * factor(slack)),
+        |_, c_t| c_t.sign(),
+        |slack| (slack.number.sign(), slack.number.to_f64() * factor(slack)),
     )
 }
 

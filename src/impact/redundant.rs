@@ -16,7 +16,8 @@ use super::mode::{Friction, Mode};
 use super::outcome::{Because, Motion};
 use super::problem::ContactProblem;
 use super::program::{Affine, least_impulse, opens, widest_slack};
-use super::sign::{Scale, Sign, SlackKind};
+use super::sign::{Scale, SlackKind};
+use crate::scalar::Sign;
 
 /// A scaled number within this of zero is not told from zero: the tolerance of the programs, above that of the rank.
 const TOLERANCE: f64 = 1e-9;

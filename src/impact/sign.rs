@@ -12,53 +12,7 @@ use super::mode::{Friction, Mode};
 use super::outcome::Because;
 use super::problem::ContactProblem;
 use crate::planar::Vector;
-use crate::scalar::{Ball, Exact, Real};
-use std::cmp::Ordering;
-
-/// The sign of a number that may be known inexactly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sign {
-    /// Less than zero.
-    Negative,
-    /// Exactly zero.
-    Zero,
-    /// Greater than zero.
-    Positive,
-    /// Zero lies within the error.
-    Undecided,
-}
-
-impl Sign {
-    /// The sign of a number with an absolute error of at most `error`.
-    pub fn within(number: f64, error: f64) -> Self {
-        if number > error {
-            Sign::Positive
-        } else if number < -error {
-            Sign::Negative
-        } else if number == 0.0 && error == 0.0 {
-            Sign::Zero
-        } else {
-            Sign::Undecided
-        }
-    }
-}
-
-impl From<Ball> for Sign {
-    fn from(ball: Ball) -> Self {
-        Sign::within(ball.mid, ball.radius)
-    }
-}
-
-impl From<Exact> for Sign {
-    fn from(number: Exact) -> Self {
-        match number.compare_with_zero() {
-            Some(Ordering::Less) => Sign::Negative,
-            Some(Ordering::Equal) => Sign::Zero,
-            Some(Ordering::Greater) => Sign::Positive,
-            None => Sign::Undecided,
-        }
-    }
-}
+use crate::scalar::Real;
 
 /// What an inequality is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -222,21 +176,5 @@ impl Scale {
             }
         }
         (16.0 * leaf.modes.len() as f64 * f64::EPSILON + self.noise) * growth * largest
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_sign_is_told_only_outside_the_error() {
-        assert_eq!(Sign::within(1e-3, 1e-4), Sign::Positive);
-        assert_eq!(Sign::within(-1e-3, 1e-4), Sign::Negative);
-        assert_eq!(Sign::within(1e-5, 1e-4), Sign::Undecided);
-        assert_eq!(Sign::within(0.0, 1e-4), Sign::Undecided);
-        assert_eq!(Sign::within(0.0, 0.0), Sign::Zero);
-        assert_eq!(Sign::within(f64::NAN, 0.0), Sign::Undecided);
-        assert_eq!(Sign::from(Ball { mid: 1.0, radius: f64::INFINITY }), Sign::Undecided);
     }
 }

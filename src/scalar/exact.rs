@@ -1,6 +1,6 @@
 //! Exact rationals, for the few signs that rounding hides in data given exactly.
 
-use super::Real;
+use super::{Ordered, Real, Sign};
 use dashu_ratio::RBig;
 use std::cell::RefCell;
 use std::cmp::Ordering;
@@ -25,17 +25,6 @@ impl Exact {
         result
     }
 
-    /// How the number compares with zero; none after a division by zero.
-    pub fn compare_with_zero(self) -> Option<Ordering> {
-        VALUES.with_borrow(|values| values.get(self.0?).map(|value| value.cmp(&RBig::ZERO)))
-    }
-
-    /// The nearest f64; NaN after a division by zero.
-    pub fn to_f64(self) -> f64 {
-        let value = |index: usize| VALUES.with_borrow(|values| values.get(index).map(|value| value.to_f64().value()));
-        self.0.and_then(value).unwrap_or(f64::NAN)
-    }
-
     fn keep(value: RBig) -> Self {
         VALUES.with_borrow_mut(|values| {
             values.push(value);
@@ -52,6 +41,23 @@ impl Exact {
 impl Real for Exact {
     fn from_f64(value: f64) -> Self {
         RBig::try_from(value).map_or(Self(None), Self::keep)
+    }
+}
+
+impl Ordered for Exact {
+    fn sign(self) -> Sign {
+        let compared = || VALUES.with_borrow(|values| values.get(self.0?).map(|value| value.cmp(&RBig::ZERO)));
+        match compared() {
+            Some(Ordering::Less) => Sign::Negative,
+            Some(Ordering::Equal) => Sign::Zero,
+            Some(Ordering::Greater) => Sign::Positive,
+            None => Sign::Undecided,
+        }
+    }
+
+    fn to_f64(self) -> f64 {
+        let value = |index: usize| VALUES.with_borrow(|values| values.get(index).map(|value| value.to_f64().value()));
+        self.0.and_then(value).unwrap_or(f64::NAN)
     }
 }
 
@@ -98,15 +104,15 @@ mod tests {
     fn what_rounding_loses_is_kept() {
         let third = Exact::from_f64(1.0) / Exact::from_f64(3.0);
         let rest = third * Exact::from_f64(3.0) - Exact::from_f64(1.0);
-        assert_eq!(rest.compare_with_zero(), Some(Ordering::Equal));
+        assert_eq!(rest.sign(), Sign::Zero);
         let tenth = Exact::from_f64(0.1) - Exact::from_f64(1.0) / Exact::from_f64(10.0);
-        assert_eq!(tenth.compare_with_zero(), Some(Ordering::Greater), "0.1 as f64 lies above a tenth");
+        assert_eq!(tenth.sign(), Sign::Positive, "0.1 as f64 lies above a tenth");
     }
 
     #[test]
     fn a_division_by_zero_is_no_number() {
         let nothing = Exact::from_f64(1.0) / Exact::from_f64(0.0);
-        assert_eq!((nothing + Exact::from_f64(1.0)).compare_with_zero(), None);
+        assert_eq!((nothing + Exact::from_f64(1.0)).sign(), Sign::Undecided);
         assert!(nothing.to_f64().is_nan());
     }
 
@@ -115,7 +121,7 @@ mod tests {
         let outside = Exact::from_f64(2.0);
         let count = || VALUES.with_borrow(Vec::len);
         let before = count();
-        let sign = Exact::scope(|| (outside * Exact::from_f64(-1.5)).compare_with_zero());
-        assert_eq!((sign, count()), (Some(Ordering::Less), before));
+        let sign = Exact::scope(|| (outside * Exact::from_f64(-1.5)).sign());
+        assert_eq!((sign, count()), (Sign::Negative, before));
     }
 }

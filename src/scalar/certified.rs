@@ -1,0 +1,165 @@
+//! Enclosures that know exactly when they are zero.
+
+use super::{Enclosure, Ordered, Real, Residue, Sign, Trigonometry};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// An enclosure together with the [`Residue`] of the same number.
+///
+/// The enclosure proves every sign but zero, the residue proves that a number is not zero, and tells that it is (see there
+/// how surely). A number that the residue finds zero is zero in the enclosure too, so that it stays one in what follows. So a
+/// sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds is one that more digits decide.
+#[derive(Debug, Clone, Copy)]
+pub struct Certified<B> {
+    enclosure: B,
+    residue: Residue,
+}
+
+impl<B: Ordered> Certified<B> {
+    /// The enclosure.
+    pub fn enclosure(self) -> B {
+        self.enclosure
+    }
+
+    /// The residue.
+    pub fn residue(self) -> Residue {
+        self.residue
+    }
+
+    /// Whether the number is proved to differ from zero.
+    pub fn is_nonzero(self) -> bool {
+        self.residue.is_zero() == Some(false) || matches!(self.enclosure.sign(), Sign::Negative | Sign::Positive)
+    }
+
+    /// The number of a residue: zero, nothing (after a division by zero), or what the enclosure says.
+    #[inline]
+    fn paired(residue: Residue, enclosure: impl FnOnce() -> B) -> Self {
+        let enclosure = match residue.is_zero() {
+            Some(false) => enclosure(),
+            Some(true) => B::zero(),
+            None => B::from_f64(f64::NAN),
+        };
+        Self { enclosure, residue }
+    }
+}
+
+impl<B: Ordered> Real for Certified<B> {
+    fn from_f64(value: f64) -> Self {
+        Self { enclosure: B::from_f64(value), residue: Residue::from_f64(value) }
+    }
+}
+
+impl<B: Ordered> Ordered for Certified<B> {
+    fn sign(self) -> Sign {
+        if self.residue.is_zero() == Some(true) { Sign::Zero } else { self.enclosure.sign() }
+    }
+
+    fn to_f64(self) -> f64 {
+        self.enclosure.to_f64()
+    }
+}
+
+impl<B: Enclosure> Enclosure for Certified<B> {
+    /// The residue of a number that is known less well is unknown, unless nothing is added.
+    fn widened(self, by: Self) -> Self {
+        if by.sign() == Sign::Zero {
+            return self;
+        }
+        Self { enclosure: self.enclosure.widened(by.enclosure), residue: Residue::UNDEFINED }
+    }
+}
+
+impl<B: Ordered + Trigonometry> Trigonometry for Certified<B> {
+    fn cos_sin(angle: f64) -> [Self; 2] {
+        let ([cos, sin], residues) = (B::cos_sin(angle), Residue::cos_sin(angle));
+        [Self { enclosure: cos, residue: residues[0] }, Self { enclosure: sin, residue: residues[1] }]
+    }
+}
+
+impl<B: Ordered> Add for Certified<B> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::paired(self.residue + other.residue, || self.enclosure + other.enclosure)
+    }
+}
+
+impl<B: Ordered> Sub for Certified<B> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self::paired(self.residue - other.residue, || self.enclosure - other.enclosure)
+    }
+}
+
+impl<B: Ordered> Mul for Certified<B> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self::paired(self.residue * other.residue, || self.enclosure * other.enclosure)
+    }
+}
+
+impl<B: Ordered> Div for Certified<B> {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        Self::paired(self.residue / other.residue, || self.enclosure / other.enclosure)
+    }
+}
+
+impl<B: Ordered> Neg for Certified<B> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { enclosure: -self.enclosure, residue: -self.residue }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::{Ball, DoubleDouble, Interval};
+
+    fn decisions<B: Ordered + Trigonometry>() -> [Sign; 6] {
+        let number = Certified::<B>::from_f64;
+        let angle = 0.7391;
+        let [cos, sin] = Certified::<B>::cos_sin(angle);
+        let [twice, _] = Certified::<B>::cos_sin(2.0 * angle);
+        let third = number(1.0) / number(3.0);
+        let nothing = number(1.0) / (third * number(3.0) - number(1.0));
+        [
+            (third * number(3.0) - number(1.0)).sign(),
+            (cos * cos + sin * sin - number(1.0)).sign(),
+            (twice - (number(2.0) * cos * cos - number(1.0))).sign(),
+            (number(0.0) * nothing).sign(),
+            (nothing + number(1.0)).sign(),
+            (cos - sin).sign(),
+        ]
+    }
+
+    #[test]
+    fn borders_are_seen_as_zeros() {
+        use Sign::{Positive, Undecided, Zero};
+        let expected = [Zero, Zero, Zero, Undecided, Undecided, Positive];
+        assert_eq!(decisions::<Ball>(), expected);
+        assert_eq!(decisions::<Ball<DoubleDouble>>(), expected);
+        assert_eq!(Interval::scope(200, decisions::<Interval>), expected);
+    }
+
+    #[test]
+    fn what_is_not_zero_is_decided_by_more_digits() {
+        fn off<B: Ordered + Trigonometry>() -> (Sign, bool) {
+            let off = Certified::<B>::cos_sin(std::f64::consts::FRAC_PI_3)[0] - Certified::from_f64(0.5);
+            (off.sign(), off.is_nonzero())
+        }
+        // The f64 next to a third of pi lies above it by 1e-16.
+        assert_eq!(off::<Ball>(), (Sign::Undecided, true));
+        assert_eq!(off::<Ball<DoubleDouble>>(), (Sign::Negative, true));
+        assert_eq!(Interval::scope(40, off::<Interval>), (Sign::Undecided, true));
+        assert_eq!(Interval::scope(200, off::<Interval>), (Sign::Negative, true));
+    }
+
+    #[test]
+    fn a_certified_zero_annuls_what_is_not_known() {
+        let tiny = Certified::<Ball>::from_f64(1.0) / Certified::from_f64(3.0);
+        let hidden = tiny * tiny * Certified::from_f64(9.0) - Certified::from_f64(1.0 - f64::EPSILON);
+        let zero = tiny * Certified::from_f64(3.0) - Certified::one();
+        assert_eq!((zero / hidden).sign(), Sign::Zero);
+        assert_eq!((zero * hidden).enclosure(), Ball::zero());
+    }
+}

@@ -1,0 +1,517 @@
+//! Enclosures with as many digits as a decision needs.
+
+use super::{Enclosure, Ordered, Real, Sign, Trigonometry, series};
+use dashu_float::round::mode::HalfEven;
+use dashu_float::{Context, FBig, FpError, Repr, Word};
+use std::cell::RefCell;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Digits outside of every scope.
+const DEFAULT_BITS: usize = 256;
+/// Digits beyond those that the doublings of an angle lose.
+const GUARD_BITS: u32 = 16;
+/// Binary exponents beyond this one, which no robot reaches, tell nothing.
+const EXPONENT_LIMIT: i64 = 1 << 24;
+
+thread_local! {
+    static STORE: RefCell<Store> = const { RefCell::new(Store { values: Vec::new(), bits: DEFAULT_BITS }) };
+}
+
+struct Store {
+    values: Vec<Value>,
+    bits: usize,
+}
+
+/// A midpoint of as many bits as the scope says, and the greatest distance from it.
+#[derive(Clone)]
+struct Value {
+    mid: Repr<2>,
+    radius: Bound,
+}
+
+/// A real number enclosed with as many bits as its scope says, or nothing known after a division by what may be zero.
+///
+/// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; a handle must not leave its scope.
+#[derive(Debug, Clone, Copy)]
+pub struct Interval(Option<usize>);
+
+/// Frees a scope's numbers at its end, however it ends.
+struct Scope {
+    length: usize,
+    bits: usize,
+}
+
+impl Scope {
+    fn enter(bits: usize) -> Self {
+        STORE.with_borrow_mut(|store| {
+            let outer = std::mem::replace(&mut store.bits, bits.max(2));
+            Self { length: store.values.len(), bits: outer }
+        })
+    }
+}
+
+impl Drop for Scope {
+    fn drop(&mut self) {
+        STORE.with_borrow_mut(|store| {
+            store.values.truncate(self.length);
+            store.bits = self.bits;
+        });
+    }
+}
+
+impl Interval {
+    /// Runs `work` on numbers of `bits` bits and frees the numbers that it made.
+    pub fn scope<R>(bits: usize, work: impl FnOnce() -> R) -> R {
+        let _scope = Scope::enter(bits);
+        work()
+    }
+
+    /// At least the greatest distance of the number from its centre; infinite where nothing is known.
+    pub fn radius(self) -> f64 {
+        self.value().map_or(f64::INFINITY, |value| value.radius.to_f64())
+    }
+
+    fn value(self) -> Option<Value> {
+        STORE.with_borrow(|store| store.values.get(self.0?).cloned())
+    }
+
+    fn keep(value: Option<Value>) -> Self {
+        STORE.with_borrow_mut(|store| Self(store.push(value)))
+    }
+
+    #[inline]
+    fn combine(self, other: Self, operation: impl FnOnce(&Value, &Value, usize) -> Option<Value>) -> Self {
+        STORE.with_borrow_mut(|store| {
+            let value = match (self.0, other.0) {
+                (Some(a), Some(b)) => match (store.values.get(a), store.values.get(b)) {
+                    (Some(a), Some(b)) => operation(a, b, store.bits),
+                    _ => None,
+                },
+                _ => None,
+            };
+            Self(store.push(value))
+        })
+    }
+}
+
+impl Store {
+    fn push(&mut self, value: Option<Value>) -> Option<usize> {
+        self.values.push(value.filter(Value::is_told)?);
+        Some(self.values.len() - 1)
+    }
+}
+
+/// A rounded result and the greatest error of its rounding: a unit in the last place, twice what rounding to nearest needs.
+fn rounded(result: Result<dashu_float::round::Rounded<FBig<HalfEven, 2>>, FpError>, bits: usize) -> Option<Value> {
+    let result = result.ok()?;
+    let exact = matches!(result, dashu_float::round::Rounded::Exact(_));
+    let mid = result.value().into_repr();
+    if mid.is_infinite() {
+        return None;
+    }
+    let radius = if exact { Bound::ZERO } else { Bound::power(top(&mid)? - i64::try_from(bits).ok()?) };
+    Some(Value { mid, radius })
+}
+
+/// The least e with `|number| < 2^e`; none for zero, of which no rounding is inexact.
+fn top(number: &Repr<2>) -> Option<i64> {
+    let (_, words) = number.significand().as_sign_words();
+    let high = words.last()?;
+    let digits = words.len() * Word::BITS as usize - high.leading_zeros() as usize;
+    i64::try_from(number.exponent()).ok()?.checked_add(i64::try_from(digits).ok()?)
+}
+
+impl Value {
+    /// Whether its exponents are sensible.
+    fn is_told(&self) -> bool {
+        top(&self.mid).is_none_or(|top| top.abs() <= EXPONENT_LIMIT) && self.radius.exponent <= EXPONENT_LIMIT
+    }
+
+    fn is_exact_zero(&self) -> bool {
+        self.mid.significand().is_zero() && self.radius.is_zero()
+    }
+
+    fn zero() -> Self {
+        Self { mid: Repr::zero(), radius: Bound::ZERO }
+    }
+
+    fn sum(&self, other: &Self, bits: usize) -> Option<Self> {
+        if self.is_exact_zero() {
+            return Some(other.clone());
+        }
+        if other.is_exact_zero() {
+            return Some(self.clone());
+        }
+        let sum = rounded(Context::new(bits).add(&self.mid, &other.mid), bits)?;
+        Some(Self { radius: sum.radius + self.radius + other.radius, mid: sum.mid })
+    }
+
+    fn difference(&self, other: &Self, bits: usize) -> Option<Self> {
+        if other.is_exact_zero() {
+            return Some(self.clone());
+        }
+        let sum = rounded(Context::new(bits).sub(&self.mid, &other.mid), bits)?;
+        Some(Self { radius: sum.radius + self.radius + other.radius, mid: sum.mid })
+    }
+
+    fn product(&self, other: &Self, bits: usize) -> Option<Self> {
+        if self.is_exact_zero() || other.is_exact_zero() {
+            return Some(Self::zero());
+        }
+        let product = rounded(Context::new(bits).mul(&self.mid, &other.mid), bits)?;
+        let mut radius = product.radius;
+        if !self.radius.is_zero() {
+            radius = radius + self.radius * (Bound::above(&other.mid) + other.radius);
+        }
+        if !other.radius.is_zero() {
+            radius = radius + other.radius * Bound::above(&self.mid);
+        }
+        Some(Self { mid: product.mid, radius })
+    }
+
+    fn quotient(&self, other: &Self, bits: usize) -> Option<Self> {
+        let least = Bound::below(&other.mid).less(other.radius)?;
+        if self.is_exact_zero() {
+            return Some(Self::zero());
+        }
+        let quotient = rounded(Context::new(bits).div(&self.mid, &other.mid), bits)?;
+        let mut radius = quotient.radius;
+        if !self.radius.is_zero() || !other.radius.is_zero() {
+            let most = Bound::above(&quotient.mid) + quotient.radius;
+            radius = radius + (self.radius + most * other.radius) / least;
+        }
+        Some(Self { mid: quotient.mid, radius })
+    }
+
+    fn sign(&self) -> Sign {
+        if self.is_exact_zero() {
+            Sign::Zero
+        } else if Bound::below(&self.mid).less(self.radius).is_none() {
+            Sign::Undecided
+        } else if self.mid < Repr::zero() {
+            Sign::Negative
+        } else {
+            Sign::Positive
+        }
+    }
+}
+
+impl Real for Interval {
+    fn from_f64(value: f64) -> Self {
+        let exact = |mid: Repr<2>| (!mid.is_infinite()).then_some(Value { mid, radius: Bound::ZERO });
+        Self::keep(Repr::try_from(value).ok().and_then(exact))
+    }
+}
+
+impl Ordered for Interval {
+    fn sign(self) -> Sign {
+        let sign = || STORE.with_borrow(|store| Some(store.values.get(self.0?)?.sign()));
+        sign().unwrap_or(Sign::Undecided)
+    }
+
+    fn to_f64(self) -> f64 {
+        self.value().map_or(f64::NAN, |value| value.mid.to_f64().value())
+    }
+}
+
+impl Enclosure for Interval {
+    fn widened(self, by: Self) -> Self {
+        self.combine(by, |value, by, _| {
+            Some(Value { mid: value.mid.clone(), radius: value.radius + (Bound::above(&by.mid) + by.radius) })
+        })
+    }
+}
+
+impl Trigonometry for Interval {
+    /// Computed with more bits, as the doublings lose them, and returned with those of the scope.
+    fn cos_sin(angle: f64) -> [Self; 2] {
+        let bits = STORE.with_borrow(|store| store.bits);
+        let wanted = u32::try_from(bits).unwrap_or(u32::MAX / 4);
+        let halvings = series::halvings(angle, wanted);
+        let raised = wanted.saturating_add(2 * halvings + GUARD_BITS);
+        let values = Self::scope(raised as usize, || series::cos_sin::<Self>(angle, halvings, raised).map(Self::value));
+        values.map(|value| {
+            Self::keep(value.and_then(|Value { mid, radius }| {
+                let fewer = rounded(Context::new(bits).add(&mid, &Repr::zero()), bits)?;
+                Some(Value { radius: fewer.radius + radius, mid: fewer.mid })
+            }))
+        })
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        self.combine(other, Value::sum)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self.combine(other, Value::difference)
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        self.combine(other, Value::product)
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        self.combine(other, Value::quotient)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+    fn neg(self) -> Self {
+        self.combine(self, |value, _, _| Some(Value { mid: -value.mid.clone(), radius: value.radius }))
+    }
+}
+
+/// Covers the roundings of one operation on bounds.
+const UP: f64 = 1.0 + 4.0 * f64::EPSILON;
+const DOWN: f64 = 1.0 - 4.0 * f64::EPSILON;
+/// Bits of f64's significand.
+const DIGITS: u32 = 53;
+/// f64's exponent bits hold the exponent plus this.
+const BIAS: i64 = 1023;
+
+/// A bound `significand 2^exponent` of a magnitude, with the exponents that f64 lacks; every operation rounds upwards.
+///
+/// The significand is zero or lies in \[1, 2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bound {
+    significand: f64,
+    exponent: i64,
+}
+
+impl Bound {
+    const ZERO: Self = Self { significand: 0.0, exponent: 0 };
+
+    fn is_zero(self) -> bool {
+        self.significand == 0.0
+    }
+
+    fn power(exponent: i64) -> Self {
+        Self { significand: 1.0, exponent }
+    }
+
+    /// The bound of a significand that is a positive normal number.
+    #[inline]
+    fn normalized(significand: f64, exponent: i64) -> Self {
+        let bits = significand.to_bits();
+        let shift = (bits >> (DIGITS - 1)) as i64 - BIAS;
+        let kept = bits & ((1 << (DIGITS - 1)) - 1) | ((BIAS as u64) << (DIGITS - 1));
+        // No exponent falls without end: a larger bound is one, too.
+        Self { significand: f64::from_bits(kept), exponent: (exponent + shift).max(-4 * EXPONENT_LIMIT) }
+    }
+
+    /// 2^-shift of 0 to 63.
+    #[inline]
+    fn down(shift: i64) -> f64 {
+        f64::from_bits(((BIAS - shift) as u64) << (DIGITS - 1))
+    }
+
+    /// The top bits of a number and their exponent, and whether these are all.
+    #[inline]
+    fn leading(number: &Repr<2>) -> (u64, i64, bool) {
+        let (_, words) = number.significand().as_sign_words();
+        let Some(&high) = words.last() else { return (0, 0, true) };
+        let low = if words.len() > 1 { words[words.len() - 2] } else { 0 };
+        // The two top words end at bit `width` of `both`.
+        let both = (u128::from(high) << Word::BITS) | u128::from(low);
+        let dropped = (128 - both.leading_zeros()).saturating_sub(DIGITS);
+        let significand = both >> dropped;
+        let all = words.len() <= 2 && significand << dropped == both;
+        let words_below = words.len() as i64 - 2;
+        let exponent = number.exponent() as i64 + words_below * i64::from(Word::BITS) + i64::from(dropped);
+        (significand as u64, exponent, all)
+    }
+
+    /// At least the magnitude of a number.
+    fn above(number: &Repr<2>) -> Self {
+        let (significand, exponent, all) = Self::leading(number);
+        let significand = if all { significand } else { significand + 1 };
+        if significand == 0 { Self::ZERO } else { Self::normalized(significand as f64, exponent) }
+    }
+
+    /// At most the magnitude of a number.
+    fn below(number: &Repr<2>) -> Self {
+        let (significand, exponent, _) = Self::leading(number);
+        if significand == 0 { Self::ZERO } else { Self::normalized(significand as f64, exponent) }
+    }
+
+    /// At most `self - other`, if that is positive.
+    fn less(self, other: Self) -> Option<Self> {
+        if self.is_zero() {
+            return None;
+        }
+        if other.is_zero() {
+            return Some(self);
+        }
+        let significand = match self.exponent - other.exponent {
+            64.. => self.significand,
+            shift @ 0..64 => self.significand - other.significand * Self::down(shift),
+            _ => return None,
+        };
+        (significand > 0.0).then(|| Self::normalized(significand * DOWN, self.exponent))
+    }
+
+    /// The nearest f64, infinite above and tiny below the range of f64.
+    fn to_f64(self) -> f64 {
+        if self.is_zero() {
+            0.0
+        } else if self.exponent < -1022 {
+            f64::MIN_POSITIVE
+        } else {
+            libm::scalbn(self.significand, i32::try_from(self.exponent).unwrap_or(i32::MAX))
+        }
+    }
+}
+
+impl Add for Bound {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        if self.is_zero() {
+            return other;
+        }
+        if other.is_zero() {
+            return self;
+        }
+        let (high, low) = if self.exponent >= other.exponent { (self, other) } else { (other, self) };
+        let shift = high.exponent - low.exponent;
+        let low = if shift < 64 { low.significand * Self::down(shift) } else { 0.0 };
+        Self::normalized((high.significand + low) * UP, high.exponent)
+    }
+}
+
+impl Mul for Bound {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        if self.is_zero() || other.is_zero() {
+            return Self::ZERO;
+        }
+        Self::normalized(self.significand * other.significand * UP, self.exponent + other.exponent)
+    }
+}
+
+impl Div for Bound {
+    type Output = Self;
+    /// By a lower bound of the divisor that is not zero.
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        if self.is_zero() {
+            return self;
+        }
+        Self::normalized(self.significand / other.significand * UP, self.exponent - other.exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dashu::rational::RBig;
+    use proptest::prelude::*;
+
+    fn exact(value: f64) -> RBig {
+        RBig::try_from(value).expect("finite")
+    }
+
+    fn encloses(interval: Interval, truth: &RBig) -> bool {
+        let Some(value) = interval.value() else { return true };
+        let mid: RBig = value.mid.clone().try_into().expect("finite");
+        let distance = mid - truth;
+        let distance = if distance < RBig::ZERO { -distance } else { distance };
+        if value.radius.is_zero() {
+            return distance == RBig::ZERO;
+        }
+        let power = RBig::from(2u8).pow(value.radius.exponent as isize);
+        distance <= exact(value.radius.significand) * power
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1000))]
+        #[test]
+        fn every_operation_encloses_its_exact_result(
+            a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e-3..1e-3f64, k in -90..90i32, bits in 20..400usize,
+        ) {
+            let b = b * f64::from(k).exp2();
+            let [p, q, r] = [a, b, c].map(exact);
+            Interval::scope(bits, || {
+                let [x, y, z] = [a, b, c].map(Interval::from_f64);
+                prop_assert!(encloses(x * y + z, &(&p * &q + &r)));
+                prop_assert!(encloses(-(x + y) * (z - x), &(-(&p + &q) * (&r - &p))));
+                if c != 0.0 && b != 0.0 {
+                    let quotient = (x + z) / y / z;
+                    let truth = (&p + &r) / &q / &r;
+                    prop_assert!(encloses(quotient, &truth));
+                    prop_assert!(encloses(quotient * quotient - x, &(&truth * &truth - &p)));
+                    prop_assert!(encloses((quotient - x) / (quotient * y), &((&truth - &p) / (&truth * &q))));
+                    if bits > 60 && a != 0.0 {
+                        prop_assert!(quotient.sign() != Sign::Undecided);
+                    }
+                }
+                Ok(())
+            })?;
+        }
+    }
+
+    #[test]
+    fn the_digits_asked_for_are_there() {
+        for bits in [100, 1000, 4096] {
+            let (off, wide) = Interval::scope(bits, || {
+                let number = Interval::from_f64;
+                let tiny = (0..bits / 10).fold(number(1.0), |product, _| product * number(1.0 / 1024.0));
+                let off = number(1.0) / number(3.0) * (number(1.0) + tiny * number(1e6)) * number(3.0) - number(1.0);
+                (off.sign(), (number(1.0) / number(3.0)).radius())
+            });
+            assert_eq!(off, Sign::Positive);
+            assert!(wide <= 0.5f64.powi(bits.min(1022) as i32));
+        }
+    }
+
+    #[test]
+    fn signs_and_middles() {
+        Interval::scope(256, || {
+            let number = Interval::from_f64;
+            let third = number(1.0) / number(3.0);
+            assert_eq!((third * number(3.0) - number(1.0)).sign(), Sign::Undecided);
+            assert_eq!((number(1.0) / (third * number(3.0) - number(1.0))).sign(), Sign::Undecided);
+            assert_eq!((number(0.5) - number(0.5)).sign(), Sign::Zero);
+            assert_eq!((number(-0.0)).sign(), Sign::Zero);
+            assert_eq!((-third).sign(), Sign::Negative);
+            assert_eq!(third.to_f64(), 1.0 / 3.0);
+            assert!(number(f64::NAN).to_f64().is_nan());
+            assert!(number(f64::INFINITY).to_f64().is_nan());
+            assert!(number(1.0).div(number(0.0)).radius().is_infinite());
+            assert_eq!((number(0.1) - number(1.0) / number(10.0)).sign(), Sign::Positive);
+        });
+    }
+
+    #[test]
+    fn an_endless_power_tells_nothing_in_the_end() {
+        Interval::scope(64, || {
+            for start in [3.0, 1.0 / 3.0] {
+                let last = (0..80).fold(Interval::from_f64(start), |power, _| power * power);
+                assert_eq!(last.sign(), Sign::Undecided);
+            }
+        });
+    }
+
+    #[test]
+    fn a_scope_frees_its_numbers() {
+        let count = || STORE.with_borrow(|store| (store.values.len(), store.bits));
+        let outside = Interval::from_f64(2.0);
+        let before = count();
+        let sign = Interval::scope(99, || (outside * Interval::from_f64(-1.5)).sign());
+        assert_eq!((sign, count()), (Sign::Negative, before));
+    }
+}

@@ -1,0 +1,401 @@
+//! Numbers modulo two primes: whether a number is exactly zero.
+
+use super::{Real, Trigonometry};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number modulo two primes just below 2^61, with the angles' cosines and sines replaced by a point of the circle.
+///
+/// It tells whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these angles
+/// are multiples of one 2^-k, so such a number is a rational function R, with rational coefficients, of w = e^(i 2^-k). By
+/// the theorem of Lindemann and Weierstrass w is transcendental, so R(w) vanishes only if R does identically. Here R is
+/// evaluated at a point of the circle x^2 + y^2 = 1 over a finite field instead of w. A residue other than zero therefore
+/// proves that the number is not zero. Zero modulo both primes proves that it is, but for chance: an R other than zero would
+/// have to vanish at both points, which are fixed but unrelated to any robot; of a random point that has the probability
+/// (degree of R / 2^59)^2, about 2^-100 at a degree of a few hundred.
+///
+/// A division by a residue of zero leaves nothing known modulo that prime.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Residue([u64; 2]);
+
+/// The primes 2^61 - c for these c are the largest that are 3 modulo 8 and whose (p + 1) / 4 is prime, too. So -1 is no
+/// square, the circle has p + 1 points, and their order is a prime times 1, 2 or 4.
+const FIRST: u64 = 11_029;
+const SECOND: u64 = 13_669;
+
+type FirstField = Modulus<61, FIRST>;
+type SecondField = Modulus<61, SECOND>;
+/// The orders (p + 1) / 4 = 2^59 - (c - 1) / 4 of the points that stand for angles.
+type FirstOrder = Modulus<59, { (FIRST - 1) / 4 }>;
+type SecondOrder = Modulus<59, { (SECOND - 1) / 4 }>;
+
+/// What is no number modulo a prime.
+const NONE: u64 = u64::MAX;
+
+static FIRST_TABLES: Tables =
+    Tables::new::<61, FIRST, 59, { (FIRST - 1) / 4 }>(0x243F_6A88_85A3_08D3, 0x1319_8A2E_0370_7344);
+static SECOND_TABLES: Tables =
+    Tables::new::<61, SECOND, 59, { (SECOND - 1) / 4 }>(0xA409_3822_299F_31D0, 0x082E_FA98_EC4E_6C89);
+
+/// Arithmetic modulo 2^BITS - C, with a small C.
+struct Modulus<const BITS: u32, const C: u64>;
+
+impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
+    const PRIME: u64 = (1 << BITS) - C;
+    const HALF: u64 = Self::PRIME.div_ceil(2);
+    const MASK: u64 = (1 << BITS) - 1;
+
+    /// A number below 2^122, reduced: 2^BITS is C.
+    #[inline]
+    const fn reduced(number: u128) -> u64 {
+        let folded = (number as u64 & Self::MASK) as u128 + (number >> BITS) * C as u128;
+        let folded = (folded as u64 & Self::MASK) + (folded >> BITS) as u64 * C;
+        if folded >= Self::PRIME { folded - Self::PRIME } else { folded }
+    }
+
+    #[inline]
+    const fn times(a: u64, b: u64) -> u64 {
+        Self::reduced(a as u128 * b as u128)
+    }
+
+    #[inline]
+    const fn plus(a: u64, b: u64) -> u64 {
+        let sum = a + b;
+        if sum >= Self::PRIME { sum - Self::PRIME } else { sum }
+    }
+
+    #[inline]
+    const fn minus(a: u64, b: u64) -> u64 {
+        if a >= b { a - b } else { a + Self::PRIME - b }
+    }
+
+    const fn power(base: u64, mut exponent: u64) -> u64 {
+        let (mut result, mut square) = (1, base);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = Self::times(result, square);
+            }
+            square = Self::times(square, square);
+            exponent >>= 1;
+        }
+        result
+    }
+
+    /// The inverse of a number other than zero, by Euclid's algorithm.
+    fn inverse(number: u64) -> u64 {
+        let (mut last, mut rest) = (Self::PRIME, number);
+        // `factor * number` is `rest`, modulo the prime; no factor exceeds the prime.
+        let (mut last_factor, mut factor) = (0i64, 1i64);
+        while rest > 1 {
+            let quotient = last / rest;
+            (last, rest) = (rest, last - quotient * rest);
+            (last_factor, factor) = (factor, last_factor - quotient as i64 * factor);
+        }
+        if factor < 0 { factor.wrapping_add(Self::PRIME as i64) as u64 } else { factor as u64 }
+    }
+
+    /// The product of two points of the circle, as complex numbers.
+    #[inline]
+    const fn turned([a, b]: [u64; 2], [c, d]: [u64; 2]) -> [u64; 2] {
+        [
+            Self::minus(Self::times(a, c), Self::times(b, d)),
+            Self::reduced(a as u128 * d as u128 + b as u128 * c as u128),
+        ]
+    }
+}
+
+/// Exponents of two in f64, in steps of this many.
+const STEP: i32 = 32;
+const STEPS: usize = 65;
+/// The least exponent, below that of the least f64.
+const LEAST: i32 = -1088;
+/// Multiples of angles are taken by digits of four bits.
+const DIGITS: usize = 15;
+
+/// What is known of a prime beforehand.
+struct Tables {
+    /// 2^(LEAST + STEP i) modulo the prime and modulo the order of the circle's points.
+    powers: [[u64; 2]; STEPS],
+    /// The point of the angle 1 to the power of `j 16^i`.
+    turns: [[[u64; 2]; 16]; DIGITS],
+}
+
+impl Tables {
+    /// The point is ((a + ib)^2 / (a^2 + b^2))^4 of a fixed (a, b), here of digits of pi.
+    const fn new<const BITS: u32, const C: u64, const ORDER_BITS: u32, const ORDER_C: u64>(a: u64, b: u64) -> Self {
+        let mut powers = [[0; 2]; STEPS];
+        let mut power = [
+            Modulus::<BITS, C>::power(Modulus::<BITS, C>::HALF, LEAST.unsigned_abs() as u64),
+            Modulus::<ORDER_BITS, ORDER_C>::power(Modulus::<ORDER_BITS, ORDER_C>::HALF, LEAST.unsigned_abs() as u64),
+        ];
+        let mut i = 0;
+        while i < STEPS {
+            powers[i] = power;
+            power = [
+                Modulus::<BITS, C>::times(power[0], 1 << STEP),
+                Modulus::<ORDER_BITS, ORDER_C>::times(power[1], 1 << STEP),
+            ];
+            i += 1;
+        }
+        let (a, b) = (Modulus::<BITS, C>::reduced(a as u128), Modulus::<BITS, C>::reduced(b as u128));
+        let [x, y] = Modulus::<BITS, C>::turned([a, b], [a, b]);
+        let square = Modulus::<BITS, C>::reduced(a as u128 * a as u128 + b as u128 * b as u128);
+        let inverse = Modulus::<BITS, C>::power(square, Modulus::<BITS, C>::PRIME - 2);
+        let point = [Modulus::<BITS, C>::times(x, inverse), Modulus::<BITS, C>::times(y, inverse)];
+        let twice = Modulus::<BITS, C>::turned(point, point);
+        let mut point = Modulus::<BITS, C>::turned(twice, twice);
+        let mut turns = [[[1, 0]; 16]; DIGITS];
+        let mut i = 0;
+        while i < DIGITS {
+            let mut j = 1;
+            while j < 16 {
+                turns[i][j] = Modulus::<BITS, C>::turned(turns[i][j - 1], point);
+                j += 1;
+            }
+            point = Modulus::<BITS, C>::turned(turns[i][15], point);
+            i += 1;
+        }
+        Self { powers, turns }
+    }
+}
+
+/// The integer and the exponent of a finite f64's magnitude.
+#[inline]
+fn decomposed(value: f64) -> (u64, i32) {
+    let bits = value.to_bits();
+    let (fraction, exponent) = (bits & ((1 << 52) - 1), ((bits >> 52) & 0x7FF) as i32);
+    if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
+}
+
+impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
+    /// `value` modulo the prime, where `part` says which of the powers belong to it.
+    #[inline]
+    fn of(value: f64, powers: &[[u64; 2]; STEPS], part: usize) -> u64 {
+        let (integer, exponent) = decomposed(value);
+        let from_least = exponent - LEAST;
+        let scaled = Self::reduced(u128::from(integer) << (from_least % STEP));
+        let residue = Self::times(scaled, powers[(from_least / STEP) as usize][part]);
+        if value < 0.0 { Self::minus(0, residue) } else { residue }
+    }
+
+    /// The point of `multiple` times the angle 1.
+    fn point(multiple: u64, turns: &[[[u64; 2]; 16]; DIGITS]) -> [u64; 2] {
+        let (mut point, mut rest) = ([1, 0], multiple);
+        for digit in turns {
+            point = Self::turned(point, digit[(rest & 15) as usize]);
+            rest >>= 4;
+        }
+        point
+    }
+
+    #[inline]
+    fn both(a: u64, b: u64, operation: impl FnOnce(u64, u64) -> u64) -> u64 {
+        if a == NONE || b == NONE { NONE } else { operation(a, b) }
+    }
+}
+
+impl Residue {
+    /// Nothing known modulo either prime.
+    pub const UNDEFINED: Self = Self([NONE; 2]);
+
+    /// Whether the number is zero: proved if it is not, and nearly so if it is; nothing after a division by zero.
+    #[inline]
+    pub fn is_zero(self) -> Option<bool> {
+        let [first, second] = self.0;
+        if first == 0 && second == 0 {
+            Some(true)
+        } else if (first != 0 && first != NONE) || (second != 0 && second != NONE) {
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
+
+impl Real for Residue {
+    fn from_f64(value: f64) -> Self {
+        if value == 0.0 {
+            return Self([0; 2]);
+        }
+        if !value.is_finite() {
+            return Self::UNDEFINED;
+        }
+        Self([FirstField::of(value, &FIRST_TABLES.powers, 0), SecondField::of(value, &SECOND_TABLES.powers, 0)])
+    }
+}
+
+impl Trigonometry for Residue {
+    /// The point of an angle: a homomorphism from the f64 angles to the circle, so that all relations between angles hold.
+    fn cos_sin(angle: f64) -> [Self; 2] {
+        if !angle.is_finite() {
+            return [Self::UNDEFINED; 2];
+        }
+        let first = FirstOrder::of(angle, &FIRST_TABLES.powers, 1);
+        let second = SecondOrder::of(angle, &SECOND_TABLES.powers, 1);
+        let first = FirstField::point(first, &FIRST_TABLES.turns);
+        let second = SecondField::point(second, &SECOND_TABLES.turns);
+        [Self([first[0], second[0]]), Self([first[1], second[1]])]
+    }
+}
+
+impl Add for Residue {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        Self([FirstField::both(a, c, FirstField::plus), SecondField::both(b, d, SecondField::plus)])
+    }
+}
+
+impl Sub for Residue {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        Self([FirstField::both(a, c, FirstField::minus), SecondField::both(b, d, SecondField::minus)])
+    }
+}
+
+impl Neg for Residue {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self([0; 2]) - self
+    }
+}
+
+impl Mul for Residue {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        Self([FirstField::both(a, c, FirstField::times), SecondField::both(b, d, SecondField::times)])
+    }
+}
+
+impl Div for Residue {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        Self([
+            FirstField::both(a, c, |a, c| if c == 0 { NONE } else { FirstField::times(a, FirstField::inverse(c)) }),
+            SecondField::both(b, d, |b, d| if d == 0 { NONE } else { SecondField::times(b, SecondField::inverse(d)) }),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dashu::integer::IBig;
+    use dashu::rational::RBig;
+    use proptest::prelude::*;
+
+    /// The test of Miller and Rabin, which these bases decide below 2^64.
+    fn is_prime(n: u64) -> bool {
+        let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(n)) as u64;
+        let twos = (n - 1).trailing_zeros();
+        [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37].into_iter().all(|base: u64| {
+            let (mut power, mut square, mut exponent) = (1, base, (n - 1) >> twos);
+            while exponent > 0 {
+                if exponent & 1 == 1 {
+                    power = times(power, square);
+                }
+                square = times(square, square);
+                exponent >>= 1;
+            }
+            if power == 1 || power == n - 1 {
+                return true;
+            }
+            (1..twos).any(|_| {
+                power = times(power, power);
+                power == n - 1
+            })
+        })
+    }
+
+    #[test]
+    fn the_primes_are_what_they_are_said_to_be() {
+        for (prime, order) in [(FirstField::PRIME, FirstOrder::PRIME), (SecondField::PRIME, SecondOrder::PRIME)] {
+            assert!(is_prime(prime) && is_prime(order) && !is_prime(prime - 2));
+            assert_eq!((prime % 8, prime + 1), (3, 4 * order));
+        }
+        let turns = [FIRST_TABLES.turns[0][1], SECOND_TABLES.turns[0][1]];
+        assert!(turns.iter().all(|turn| *turn != [1, 0]));
+        assert_eq!(FirstField::point(FirstOrder::PRIME, &FIRST_TABLES.turns), [1, 0]);
+        assert_eq!(SecondField::point(SecondOrder::PRIME, &SECOND_TABLES.turns), [1, 0]);
+    }
+
+    fn remainder(number: &RBig, prime: u64) -> u64 {
+        let prime = IBig::from(prime);
+        let reduce = |value: IBig| ((value % &prime) + &prime) % &prime;
+        let power = |base: IBig, mut exponent: u64| {
+            let (mut result, mut square) = (IBig::ONE, base);
+            while exponent > 0 {
+                if exponent & 1 == 1 {
+                    result = reduce(result * &square);
+                }
+                square = reduce(&square * &square);
+                exponent >>= 1;
+            }
+            result
+        };
+        let exponent = u64::try_from(&prime - IBig::from(2)).expect("small");
+        let inverse = power(reduce(number.denominator().clone().into()), exponent);
+        u64::try_from(reduce(number.numerator().clone() * inverse)).expect("reduced")
+    }
+
+    fn residue(number: &RBig) -> Residue {
+        Residue([FirstField::PRIME, SecondField::PRIME].map(|prime| remainder(number, prime)))
+    }
+
+    /// f64 of all sizes.
+    fn number() -> impl Strategy<Value = f64> {
+        any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |value| value.is_finite())
+    }
+
+    proptest! {
+        #[test]
+        fn every_f64_is_its_rational(value in number()) {
+            prop_assert_eq!(Residue::from_f64(value), residue(&RBig::try_from(value).expect("finite")));
+        }
+
+        #[test]
+        fn every_operation_is_that_of_the_rationals(a in -1e9..1e9f64, b in -1e-9..1e-9f64) {
+            let (x, y) = (Residue::from_f64(a), Residue::from_f64(b));
+            let (p, q) = (RBig::try_from(a).expect("finite"), RBig::try_from(b).expect("finite"));
+            prop_assert_eq!(x + y, residue(&(&p + &q)));
+            prop_assert_eq!(x - y, residue(&(&p - &q)));
+            prop_assert_eq!(-x, residue(&-&p));
+            prop_assert_eq!(x * y, residue(&(&p * &q)));
+            if b != 0.0 {
+                prop_assert_eq!(x / y, residue(&(&p / &q)));
+            }
+        }
+
+        #[test]
+        fn angles_add_on_the_circle(a in any::<i32>(), b in any::<i32>(), k in -900..900i32) {
+            let scale = f64::from(k).exp2();
+            let (a, b) = (f64::from(a), f64::from(b));
+            let [[ca, sa], [cb, sb]] = [a, b].map(|angle| Residue::cos_sin(angle * scale));
+            let [c, s] = Residue::cos_sin((a + b) * scale);
+            prop_assert_eq!(c, ca * cb - sa * sb);
+            prop_assert_eq!(s, sa * cb + ca * sb);
+            prop_assert_eq!(c * c + s * s, Residue::one());
+            prop_assert_eq!(Residue::cos_sin(-a * scale), [ca, -sa]);
+        }
+    }
+
+    #[test]
+    fn zero_and_its_quotients() {
+        let [one, zero] = Residue::cos_sin(0.0);
+        assert_eq!((one, zero), (Residue::one(), Residue::zero()));
+        let third = Residue::one() / Residue::from_f64(3.0);
+        assert_eq!((third * Residue::from_f64(3.0) - one).is_zero(), Some(true));
+        assert_eq!(third.is_zero(), Some(false));
+        assert_eq!((third / zero).is_zero(), None);
+        assert_eq!((third / zero * zero - one).is_zero(), None);
+        assert_eq!(Residue([NONE, 5]).is_zero(), Some(false));
+        assert_eq!(Residue([NONE, 0]).is_zero(), None);
+        assert_eq!(Residue::from_f64(f64::INFINITY), Residue::UNDEFINED);
+    }
+}

@@ -1,0 +1,180 @@
+//! Cosine and sine of an exact angle by the Taylor series, in any number that encloses.
+
+use super::Enclosure;
+
+/// How often an angle is halved before the series: until it is below 2^-r, where r doublings and the terms of the series
+/// cost about the same.
+pub(super) fn halvings(angle: f64, bits: u32) -> u32 {
+    let below = i32::try_from(bits.isqrt() / 2).unwrap_or(i32::MAX / 2);
+    let exponent = if angle.is_finite() { libm::frexp(angle).1 } else { 0 };
+    u32::try_from(exponent.saturating_add(below)).unwrap_or(0)
+}
+
+/// Cosine and sine of `angle` \[rad\], of which the series gives `bits` before each doubling loses up to two.
+///
+/// The halved angle is exact and at most 1, so that the series alternate with falling terms, and the first term left out
+/// bounds the rest.
+pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N; 2] {
+    if angle == 0.0 {
+        return [N::one(), N::zero()];
+    }
+    if !angle.is_finite() {
+        return [N::from_f64(f64::NAN); 2];
+    }
+    let mut angle = angle;
+    for _ in 0..halvings {
+        angle *= 0.5;
+    }
+    let square = N::from_f64(angle) * N::from_f64(angle);
+    let fewer = f64::from(-libm::frexp(angle).1) * 2.0;
+    let (mut cos, mut sin) = (N::one(), N::one());
+    let (mut cos_term, mut sin_term) = (N::one(), N::one());
+    let (mut order, mut reached) = (0.0, 0.0);
+    loop {
+        cos_term = -(cos_term * square) / N::from_f64((order + 1.0) * (order + 2.0));
+        sin_term = -(sin_term * square) / N::from_f64((order + 2.0) * (order + 3.0));
+        reached += fewer + f64::from(libm::frexp((order + 1.0) * (order + 2.0)).1 - 1);
+        order += 2.0;
+        if reached > f64::from(bits) {
+            break;
+        }
+        cos = cos + cos_term;
+        sin = sin + sin_term;
+    }
+    cos = cos.widened(cos_term);
+    sin = sin.widened(sin_term) * N::from_f64(angle);
+    for _ in 0..halvings {
+        let both = sin * cos;
+        (cos, sin) = (cos * cos - sin * sin, both + both);
+    }
+    [cos, sin]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scalar::{Ball, DoubleDouble, Interval, Ordered, Real, Sign, Trigonometry};
+    use proptest::prelude::*;
+
+    /// Whether `truth`, known far better, is not proved to lie beyond `radius` of the sum of `mid`.
+    fn near(truth: Interval, mid: &[f64], radius: f64) -> bool {
+        let mid = mid.iter().fold(Interval::zero(), |sum, part| sum + Interval::from_f64(*part));
+        let bound = Interval::from_f64(radius);
+        (truth - mid - bound).sign() != Sign::Positive && (mid - truth - bound).sign() != Sign::Positive
+    }
+
+    fn check(angle: f64) -> std::result::Result<(), String> {
+        Interval::scope(400, || {
+            let truth = Interval::cos_sin(angle);
+            let balls = Ball::<f64>::cos_sin(angle);
+            let wide = Ball::<DoubleDouble>::cos_sin(angle);
+            for ((truth, ball), wide) in truth.into_iter().zip(balls).zip(wide) {
+                if angle.is_normal() && truth.radius() > 1e-100 {
+                    return Err(format!("the truth at {angle:e} is known to {:e}", truth.radius()));
+                }
+                if !near(truth, &[ball.mid], ball.radius) || !near(truth, &wide.mid.parts(), wide.radius) {
+                    return Err(format!("{angle:e}: {ball:?}, {wide:?}"));
+                }
+                let limit = if angle.abs() < 10.0 {
+                    1e-25
+                } else if angle.abs() < 1e6 {
+                    1e-18
+                } else {
+                    1.0
+                };
+                if wide.radius > limit {
+                    return Err(format!("wide at {angle:e}: {wide:?}"));
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Angles of every size, most of them ordinary.
+    fn angle() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            6 => -10.0..10.0f64,
+            2 => -1e6..1e6f64,
+            1 => (-1.0..1.0f64, -1070..0i32).prop_map(|(angle, k)| libm::scalbn(angle, k)),
+            1 => (-1.0..1.0f64, 20..1024i32).prop_map(|(angle, k)| libm::scalbn(angle, k)),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+        #[test]
+        fn every_enclosure_holds_the_same_cosine(angle in angle()) {
+            prop_assert_eq!(check(angle), Ok(()));
+        }
+    }
+
+    /// The assumption about `libm`, near its worst places as well: next to the multiples of half a right angle.
+    #[test]
+    fn libm_keeps_its_promise() {
+        for turn in -3000..3000 {
+            let border = f64::from(turn) * std::f64::consts::FRAC_PI_4;
+            for step in [border, border.next_up(), border.next_down(), border + 1e-9] {
+                check(step).unwrap();
+            }
+        }
+        let mut state = 1u64;
+        for _ in 0..100_000 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let angle = (state >> 11) as f64 / (1u64 << 53) as f64 * 20.0 - 10.0;
+            let (sin, cos) = libm::sincos(angle);
+            // Double-doubles, checked above, are sharp enough to tell.
+            let wide = Ball::<DoubleDouble>::cos_sin(angle);
+            for (value, wide) in [cos, sin].into_iter().zip(wide) {
+                let error = (wide - Ball::from_f64(value)).to_f64().abs() + wide.radius;
+                assert!(error <= f64::EPSILON * value.abs(), "{angle}: {error:e}");
+            }
+        }
+    }
+
+    fn pythagoras<N: Ordered + Trigonometry>(angle: f64) -> N {
+        let [cos, sin] = N::cos_sin(angle);
+        cos * cos + sin * sin - N::one()
+    }
+
+    #[test]
+    fn the_squares_enclose_one() {
+        for angle in [1e-300, 1e-9, 0.5, 1.0, 3.0, 1e3, 1e9, 1e22, 1e300] {
+            assert_eq!(pythagoras::<Ball>(angle).sign(), Sign::Undecided);
+            assert_eq!(pythagoras::<Ball<DoubleDouble>>(angle).sign(), Sign::Undecided);
+            let sign = Interval::scope(300, || pythagoras::<Interval>(angle).sign());
+            assert_eq!(sign, Sign::Undecided);
+        }
+    }
+
+    #[test]
+    fn no_angle_is_exact_and_none_is_nothing() {
+        let exact = [Sign::Positive, Sign::Zero];
+        assert_eq!(Ball::<f64>::cos_sin(0.0).map(Ordered::sign), exact);
+        assert_eq!(Ball::<DoubleDouble>::cos_sin(-0.0).map(Ordered::sign), exact);
+        assert_eq!(Interval::cos_sin(0.0).map(Ordered::sign), exact);
+        for angle in [f64::NAN, f64::INFINITY] {
+            assert_eq!(Ball::<f64>::cos_sin(angle).map(Ordered::sign), [Sign::Undecided; 2]);
+            assert_eq!(Ball::<DoubleDouble>::cos_sin(angle).map(Ordered::sign), [Sign::Undecided; 2]);
+            assert_eq!(Interval::cos_sin(angle).map(Ordered::sign), [Sign::Undecided; 2]);
+        }
+    }
+
+    #[test]
+    fn many_digits_are_all_there() {
+        for (bits, angle) in [(64, 1.0), (256, 1e6), (4096, -3.7), (300, 1e300), (300, 1e-300)] {
+            let radii = Interval::scope(bits, || Interval::cos_sin(angle).map(Interval::radius));
+            assert!(radii.into_iter().all(|radius| radius <= 2.0 * 0.5f64.powi(bits.min(1000) as i32)), "{radii:?}");
+        }
+        let digits = Interval::scope(128, || {
+            let [cos, _] = Interval::cos_sin(1.0);
+            let known = "54030230586813971740093660744297660373231042061792222767009725538110039477447";
+            let known = known.bytes().fold(Interval::zero(), |sum, digit| {
+                sum * Interval::from_f64(10.0) + Interval::from_f64(f64::from(digit - b'0'))
+            });
+            let scale = (0..77).fold(Interval::one(), |power, _| power * Interval::from_f64(10.0));
+            let off = cos - known / scale;
+            (off.sign(), off.to_f64())
+        });
+        assert_eq!(digits.0, Sign::Undecided);
+        assert!(digits.1.abs() < 1e-36);
+    }
+}
