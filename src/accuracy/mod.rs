@@ -1,14 +1,18 @@
 //! Error against run time, stiff and extreme cases, and compliant contact beside the rigid impact.
 
+mod condition;
 mod number;
 mod pose;
 mod reference;
 mod robots;
+mod study;
 mod suite;
+mod timing;
 
-
+pub use condition::mass_matrix_condition;
 pub use number::Number;
 pub use pose::{Computation, Factorization, Pose};
-pub use reference::Reference;
+pub use reference::{PRECISION, Reference, with_precision};
+pub use study::{Answer, Condition, Errors, Method, Study, Work, of_problem, of_state, study};
 pub use suite::{Case, End, Subject, cases};
-pub use reference::PRECISION;
+pub use timing::{Budget, Spread, time};

@@ -10,8 +10,9 @@ use crate::dynamics::{
     ContactPoint, Workspace, articulated_delassus, articulated_inertias, contact_jacobian, delassus, factorize,
     kinematics, mass_matrix, point_velocity,
 };
-use crate::plan::{Plan, Posture};
+use crate::impact::ContactProblem;
 use crate::pipeline::Impact;
+use crate::plan::{Plan, Posture};
 use crate::planar::Rotation;
 use crate::robot::Robot;
 use crate::state::State;
@@ -37,6 +38,8 @@ pub struct Pose<'a> {
     pub(super) state: &'a State,
     /// The closed contacts.
     pub(super) points: Vec<ContactPoint>,
+    /// The link of each contact.
+    links: Vec<usize>,
     /// The contact (an index) that is at rest whatever the base velocity says.
     pub(super) stance: Option<usize>,
 }
@@ -46,17 +49,27 @@ impl<'a> Pose<'a> {
     pub fn new(robot: &'a Robot, state: &'a State, impact: &Impact) -> Self {
         let ground = state.scene.ground();
         let stands = |link: usize| {
-            let at_rest = |&(contact, speed): &(&crate::contact::Contact, &[f64; 2])| {
-                contact.link == link && *speed == [0.0; 2]
-            };
-            impact.contacts.iter().zip(&impact.velocity_before).position(|pair| at_rest(&pair))
+            let mut speeds = impact.contacts.iter().zip(&impact.velocity_before);
+            speeds.position(|(contact, speed)| contact.link == link && *speed == [0.0; 2])
         };
         Self {
             robot,
             state,
             points: impact.contacts.iter().map(|contact| contact.point_of(ground)).collect(),
+            links: impact.contacts.iter().map(|contact| contact.link).collect(),
             stance: state.scene.stance.and_then(stands),
         }
+    }
+
+    /// Friction and restitution of the contacts as a problem whose matrices are still to be filled in; none without
+    /// friction.
+    pub(super) fn shape(&self) -> Option<ContactProblem> {
+        let scene = &self.state.scene;
+        let friction = self.links.iter().map(|&link| scene.friction.of(link)).collect::<Option<Vec<_>>>()?;
+        let restitution = self.links.iter().map(|&link| scene.restitution.of(link).unwrap_or(0.0)).collect();
+        let contacts = self.links.len();
+        let unit = (0..4 * contacts * contacts).map(|at| f64::from(u8::from(at % (2 * contacts + 1) == 0))).collect();
+        ContactProblem::new(unit, vec![[0.0; 2]; contacts], friction, restitution).ok()
     }
 }
 

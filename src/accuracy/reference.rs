@@ -5,15 +5,23 @@
 
 use super::number::Number;
 use super::pose::{Computation, Pose};
-use crate::scalar::{Interval, Ordered, Real};
 use crate::plan::Motion;
 use crate::planar::{Inertia, Vector, difference, dot, scaled, sum, turned};
+use crate::robot::Robot;
+use crate::scalar::{Interval, Ordered, Real};
 
-
-/// Bits of the reference. Its numbers are enclosures, so that what it does not know shows as an error of its own.
+/// Bits of the reference beside those that a long chain of bodies needs. Its numbers are enclosures, so that what they do
+/// not know shows as an error of their own.
 pub const PRECISION: usize = 320;
+/// Bits for each body: its articulated inertia is that much less sharp than its children's.
+const PRECISION_PER_BODY: usize = 4;
 
-/// M, G and c of a pose in the reference's numbers; it must stay within one [`Interval::scope`].
+/// Runs `work` on numbers with bits enough for `robot`.
+pub fn with_precision<R>(robot: &Robot, work: impl FnOnce() -> R) -> R {
+    Interval::scope(PRECISION + PRECISION_PER_BODY * robot.bodies.len(), work)
+}
+
+/// M, G and c of a pose in the reference's numbers; it must stay within one [`with_precision`].
 #[derive(Debug)]
 pub struct Reference {
     computation: Computation<Interval>,
@@ -59,6 +67,14 @@ impl Reference {
         &self.computation.workspace().contact_velocity
     }
 
+    /// How well G itself is known.
+    pub fn own_error(&self) -> f64 {
+        let exact = self.delassus();
+        let rows = exact.len().isqrt();
+        let size = |row: usize| exact[row * rows + row].to_f64().sqrt();
+        worst((0..exact.len()).map(|at| relative(exact[at].radius(), size(at / rows) * size(at % rows))))
+    }
+
     /// The largest error of a G; NaN where it holds no number.
     pub fn delassus_error<T: Number>(&self, delassus: &[T]) -> f64 {
         let exact = self.delassus();
@@ -75,7 +91,8 @@ impl Reference {
     pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
         let nv = self.columns.len();
         let parents = &self.computation.plan().parents;
-        let size: Vec<f64> = (0..nv).map(|i| Interval::scope(PRECISION, || self.inertia(i, i).to_f64().sqrt())).collect();
+        let size: Vec<f64> =
+            (0..nv).map(|i| Interval::scope(PRECISION, || self.inertia(i, i).to_f64().sqrt())).collect();
         worst((0..nv).flat_map(|i| {
             let below = std::iter::successors(Some(i), |&column| parents[column]);
             let size = &size;
@@ -152,5 +169,7 @@ pub fn relative(error: f64, size: f64) -> f64 {
 
 /// The largest of the errors, or NaN if one is none.
 pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
-    errors.into_iter().fold(0.0, |worst: f64, error| if worst.is_nan() || error.is_nan() { f64::NAN } else { worst.max(error) })
+    errors
+        .into_iter()
+        .fold(0.0, |worst: f64, error| if worst.is_nan() || error.is_nan() { f64::NAN } else { worst.max(error) })
 }

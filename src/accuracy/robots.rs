@@ -1,8 +1,8 @@
 //! The robots of the suite, from this repository's URDFs or link by link.
 
+use crate::Result;
 use crate::planar::scaled;
 use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, Robot};
-use crate::Result;
 
 /// The paper's minimalistic biped: two point masses on hinged legs.
 pub fn minimalistic() -> Result<Robot> {

@@ -149,9 +149,13 @@ impl Suite {
         self.state("coincident feet", robot.clone(), legs([0.4, -0.8], [0.4, -0.8]));
         self.state("feet 1e-8 apart", robot.clone(), legs([0.4, -0.8], [0.4 + 1e-8, -0.8 - 2e-8]));
         for (name, alpha) in [("a split", FRAC_PI_2), ("1e-9 before a split", FRAC_PI_2 - 1e-9)] {
-            let robot = robots::minimalistic()?;
+            let robot = robots::walker(0.04)?;
             let state = walker(&robot, alpha);
             self.state(name, robot, state);
+            // Point masses on flat legs let the hip rise freely.
+            let robot = robots::minimalistic()?;
+            let state = walker(&robot, alpha);
+            self.ending(format!("{name}, point masses"), robot, state, End::Singular);
         }
         // At this moment of inertia and angle every outcome touches every other.
         for (name, angle) in [("degenerate walker", FRAC_PI_4), ("one ulp beside it", FRAC_PI_4.next_up())] {
@@ -179,7 +183,8 @@ impl Suite {
     }
 
     fn speeds(&mut self) -> Result<()> {
-        for (name, speed) in [("grazing contact", 0.0), ("approach at 1e-300 m/s", -1e-300), ("leaving at 1e-300 m/s", 1e-300)]
+        for (name, speed) in
+            [("grazing contact", 0.0), ("approach at 1e-300 m/s", -1e-300), ("leaving at 1e-300 m/s", 1e-300)]
         {
             let robot = robots::block()?;
             let mut state = blank(&robot);
