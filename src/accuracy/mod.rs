@@ -1,5 +1,6 @@
 //! Error against run time, stiff and extreme cases, and compliant contact beside the rigid impact.
 
+pub mod compliant;
 mod condition;
 mod number;
 mod pose;

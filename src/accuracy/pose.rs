@@ -61,6 +61,14 @@ impl<'a> Pose<'a> {
         }
     }
 
+    /// Everything in f64, by the sparse factorization of M.
+    pub(super) fn computed(&self) -> Computation<f64> {
+        let mut computation = Computation::new(self);
+        computation.place(self);
+        computation.by_ltl(self);
+        computation
+    }
+
     /// Friction and restitution of the contacts as a problem whose matrices are still to be filled in; none without
     /// friction.
     pub(super) fn shape(&self) -> Option<ContactProblem> {
@@ -152,6 +160,11 @@ impl<T: Number> Computation<T> {
     /// J and the contact velocities c = J v.
     pub fn velocities(&mut self, pose: &Pose) {
         contact_jacobian(&self.plan, &self.points, &self.velocity, pose.stance, &mut self.workspace);
+    }
+
+    /// v, by coordinate; that of a base which a foot places included.
+    pub fn velocity(&self) -> &[T] {
+        &self.velocity
     }
 
     /// What was computed.

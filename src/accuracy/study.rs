@@ -224,9 +224,7 @@ struct Bench<'a> {
 
 impl Bench<'_> {
     fn condition(&self) -> f64 {
-        let mut computation = Computation::<f64>::new(self.pose);
-        computation.place(self.pose);
-        computation.by_ltl(self.pose);
+        let computation = self.pose.computed();
         mass_matrix_condition(computation.plan(), computation.workspace())
     }
 
