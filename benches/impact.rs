@@ -5,7 +5,8 @@
 use divan::{Bencher, black_box};
 use heelstrike::Robot;
 use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
-use heelstrike::impact::{ContactProblem, Friction, Mode, Scratch, enumerate::Tableau};
+use heelstrike::impact::enumerate::{Leaf, Tableau};
+use heelstrike::impact::{Asked, ContactProblem, Friction, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::plan::{Plan, Posture};
 use heelstrike::planar::Rotation;
@@ -78,7 +79,9 @@ fn enumeration(bencher: Bencher) {
     bencher.bench_local(move || {
         tableau.load(black_box(&problem));
         let mut sum = 0.0;
-        tableau.visit(|leaf| sum += leaf.numbers(0)[0] + f64::from(u8::from(leaf.modes[1] == Mode::Stick)));
+        tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
+            sum += leaf.numbers(0)[0] + f64::from(u8::from(leaf.modes[1] == Mode::Stick));
+        });
         sum
     });
 }
@@ -89,7 +92,9 @@ fn analysis(bencher: Bencher) {
     let robot = ramone();
     let problem = problem(&robot, &state(&robot));
     let mut scratch = Scratch::default();
-    bencher.bench_local(move || scratch.analyse(black_box(&problem), false));
+    bencher.bench_local(move || {
+        scratch.analyse(black_box(&problem), black_box(&problem), Asked { explain: false, prove: true })
+    });
 }
 
 /// A state as numbers to its whole answer.

@@ -4,7 +4,7 @@
 use dashu::rational::RBig;
 use heelstrike::Robot;
 use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
-use heelstrike::impact::enumerate::Tableau;
+use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{ContactProblem, Friction};
 use heelstrike::plan::{Plan, Posture};
 use heelstrike::planar::Rotation;
@@ -175,7 +175,7 @@ fn combinations<T: Real>(problem: &ContactProblem) -> Vec<T> {
     let mut tableau = Tableau::<T>::new();
     tableau.load(&problem.map(T::from_f64));
     let mut numbers = Vec::new();
-    tableau.visit(|leaf| (0..2).for_each(|contact| numbers.extend(leaf.numbers(contact))));
+    tableau.visit(&mut |leaf: &Leaf<'_, T>| (0..2).for_each(|contact| numbers.extend(leaf.numbers(contact))));
     numbers
 }
 

@@ -8,7 +8,6 @@ use super::suite::Subject;
 use super::timing::{Budget, Spread, time};
 use crate::Error;
 use crate::impact::enumerate::Tableau;
-use crate::impact::problem::Entry;
 use crate::impact::{Analysis, ContactProblem, Verdict, analyse};
 use crate::pipeline::{Options, Pipeline};
 use crate::planar::Vector;
@@ -16,6 +15,7 @@ use crate::robot::Robot;
 use crate::scalar::{DoubleDouble, Interval, Ordered, Real};
 use crate::state::State;
 use serde::{Serialize, Serializer};
+use std::cell::RefCell;
 
 /// Beyond so many coordinates the factorizations of M are left to f32 and f64: in other numbers they take seconds.
 const LONGEST_FACTORIZED: usize = 300;
@@ -142,10 +142,13 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
         bench.every_method();
         study.methods = bench.methods;
     });
-    let whole = time(budget, || {
-        std::hint::black_box(&pipeline.impact(state));
-    });
-    study.methods.push(Method::answer("f64", whole));
+    let mut plain = Pipeline::new(robot, Options { no_proof: true, ..options.clone() });
+    for (number, pipeline) in [("f64", &mut plain), ("f64 with proof", &mut pipeline)] {
+        let whole = time(budget, || {
+            std::hint::black_box(&pipeline.impact(state));
+        });
+        study.methods.push(Method::answer(number, whole));
+    }
     study
 }
 
@@ -171,7 +174,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, budget: Budget) -> Study
         row("f64", outcome_error(&analysis, problem, &exact));
         row("double-double", outcome_error(&analysis, &problem.map(DoubleDouble::from_f64), &exact));
     });
-    study.methods.push(Method::answer("f64", whole));
+    study.methods.push(Method::answer("f64 with proof", whole));
     study
 }
 
@@ -307,23 +310,23 @@ impl Bench<'_> {
         });
     }
 
-    /// The error of the outcomes, which applied impulses would need more than G for.
+    /// The error of the outcomes; none with applied impulses, which need more than G, or with restitution.
     fn outcome_error<T: Number>(&self, computation: &Computation<T>) -> Option<f64> {
         let analysis = self.analysis.filter(|_| self.pose.state.scene.impulses.is_empty())?;
-        let shape = self.pose.shape()?;
+        let shape = self.pose.shape().filter(|shape| shape.restitution().iter().all(|&e| e == 0.0))?;
         let problem = filled(&shape, &computation.workspace().delassus, &computation.workspace().contact_velocity);
         let exact = filled(&shape, self.reference.delassus(), self.reference.velocity());
         outcome_error(analysis, &problem, &exact)
     }
 }
 
-/// A problem of the friction and restitution of `shape` with these matrices.
+/// A problem of the friction of `shape` with these matrices.
 fn filled<T: Number>(shape: &ContactProblem, delassus: &[T], velocity: &[Vector<T>]) -> ContactProblem<T> {
-    let rows = 2 * velocity.len();
-    shape.map_entries(|entry, _| match entry {
-        Entry::Delassus { row, column } => delassus[row * rows + column],
-        Entry::Velocity { row } => velocity[row / 2][row % 2],
-    })
+    let speeds = velocity.iter().flatten();
+    // `map` takes G by rows, the velocities with and without applied impulses, and their normal parts.
+    let normal = velocity.iter().map(|c| &c[1]);
+    let numbers = RefCell::new(delassus.iter().chain(speeds.clone()).chain(speeds).chain(normal));
+    shape.map(|zero| numbers.borrow_mut().next().copied().unwrap_or(T::from_f64(zero)))
 }
 
 /// The largest error of the outcomes' impulses and velocities by their modes, free of units: of those that are unique.

@@ -46,6 +46,9 @@ pub(super) struct DetailOptions {
     /// Tell only the verdict and each outcome's modes, index and margin
     #[arg(long, conflicts_with_all = ["explain", "matrices"])]
     pub brief: bool,
+    /// Do without error bounds: a little faster, and nothing is proven
+    #[arg(long)]
+    pub no_proof: bool,
 }
 
 impl DetailOptions {
@@ -66,6 +69,7 @@ pub(super) fn pipeline_options(
         resting_speed: contacts.resting_speed,
         explain_up_to: if detail.explain { usize::MAX } else { 0 },
         matrices: detail.matrices,
+        no_proof: detail.no_proof,
     }
 }
 

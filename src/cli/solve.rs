@@ -4,7 +4,7 @@ use super::options::{DetailOptions, SceneOptions};
 use super::output::{Format, OutputOptions};
 use super::stream::{Answers, SUMMED_UP, answer_all};
 use super::{Outcome, input};
-use heelstrike::impact::analyse;
+use heelstrike::impact::{Analysis, Asked, Scratch};
 use heelstrike::report::{Detail, Palette, Problem, Report, Subject, text};
 use heelstrike::state::Defaults;
 use heelstrike::{Error, Result};
@@ -32,7 +32,12 @@ pub(super) fn run(args: &Args) -> Outcome {
     let to_a_file_or_lines = args.output.output.is_some() || input::is_ndjson(&args.problem);
     let otherwise = if to_a_file_or_lines { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(otherwise);
-    let mut problems = Problems { defaults: args.scene.defaults(), detail: args.detail.detail() };
+    let mut problems = Problems {
+        defaults: args.scene.defaults(),
+        detail: args.detail.detail(),
+        prove: !args.detail.no_proof,
+        scratch: Scratch::default(),
+    };
     args.output.spare(&[&args.problem])?;
     answer_all(&mut problems, &args.problem, format, &args.output)
 }
@@ -40,6 +45,14 @@ pub(super) fn run(args: &Args) -> Outcome {
 struct Problems {
     defaults: Defaults,
     detail: Detail,
+    prove: bool,
+    scratch: Scratch,
+}
+
+impl Problems {
+    fn analyse(&mut self, problem: &Problem, explain: bool) -> Result<Analysis> {
+        self.scratch.analyse(&problem.contact, &problem.contact, Asked { explain, prove: self.prove })
+    }
 }
 
 impl Answers for Problems {
@@ -47,7 +60,7 @@ impl Answers for Problems {
 
     fn json(&mut self, problem: &str, out: &mut Vec<u8>) -> Result<Option<Error>> {
         let problem = Problem::from_json(problem, &self.defaults)?;
-        let analysis = analyse(&problem.contact, self.detail.explain)?;
+        let analysis = self.analyse(&problem, self.detail.explain)?;
         Report::of_problem(&problem, &analysis, self.detail).append_json(self.detail, out);
         Ok(None)
     }
@@ -55,7 +68,7 @@ impl Answers for Problems {
     fn text(&mut self, problem: &str, palette: &Palette) -> Result<(String, Option<Error>)> {
         let problem = Problem::from_json(problem, &self.defaults)?;
         let summed_up = !self.detail.brief && problem.contact.contacts() <= SUMMED_UP;
-        let analysis = analyse(&problem.contact, self.detail.explain || summed_up)?;
+        let analysis = self.analyse(&problem, self.detail.explain || summed_up)?;
         let report = Report::of_problem(&problem, &analysis, self.detail);
         Ok((text(&report, &Subject::of_problem(&problem, &analysis), self.detail, palette), None))
     }

@@ -38,15 +38,6 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     }
 }
 
-/// Rows Z = Y^T D^-1/2 with G = Z Z^T (2n x nv), whose rank is not hidden by the squaring. D must be positive.
-pub fn factor_rows(plan: &Plan<f64>, workspace: &Workspace<f64>, rows: &mut Vec<f64>) {
-    let nv = plan.columns();
-    rows.clear();
-    for y in workspace.half.chunks_exact(nv.max(1)) {
-        rows.extend(y.iter().enumerate().map(|(i, entry)| entry / workspace.factor[i * nv + i].sqrt()));
-    }
-}
-
 /// y := L^-T y.
 fn half_solve<T: Real>(plan: &Plan<T>, factor: &[T], y: &mut [T]) {
     let nv = plan.columns();

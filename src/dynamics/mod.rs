@@ -9,6 +9,7 @@
 //! Every function reads a [`Plan`](crate::plan::Plan) and writes into a [`Workspace`].
 
 mod articulated;
+mod bounds;
 mod crba;
 mod delassus;
 mod energy;
@@ -18,8 +19,9 @@ mod ltl;
 mod workspace;
 
 pub use articulated::{Articulated, add_articulated_impulse, articulated_delassus, articulated_inertias};
+pub use bounds::Bounds;
 pub use crba::mass_matrix;
-pub use delassus::{add_impulse, delassus, factor_rows};
+pub use delassus::{add_impulse, delassus};
 pub use energy::kinetic_energy;
 pub use jacobian::{ContactPoint, contact_jacobian, point_velocity};
 pub use kinematics::kinematics;

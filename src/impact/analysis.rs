@@ -1,101 +1,222 @@
 //! Every outcome of a contact problem, and the verdict.
 //!
 //! ```text
-//!     problem --enumerate--> numbers of each combination --sign--> valid | rejected | undecided --> Analysis
+//!     problem --enumerate--> numbers of each combination --bound, sign--> valid | rejected | open --certify--> Analysis
 //! ```
 //!
-//! Each combination is first read in f64 with an estimate of its rounding; what lies within it is read again in
-//! [`Ball`] arithmetic, which knows exact zeros; what is still open (vanishing pivots, contacts that depend on each other)
-//! goes to the redundant stage, and, where the matrices were given and so are exact, to exact rationals. What none of them
-//! tells is undecided, and nothing is guessed.
+//! Each combination is first read in f64 with a bound of its error; what lies within it is settled with more digits
+//! ([`super::certify`]). So a sign is told only where it was shown, and nothing is guessed.
 
-use super::enumerate::{Leaf, Tableau};
+use super::border::border;
+use super::bound::Bounds;
+use super::certify::{Inverse, Layer, Question, Settled, combination, settle};
+use super::enumerate::{Leaf, Tableau, Visitor};
 use super::labels::Labels;
 use super::mode::Mode;
-use super::outcome::{Analysis, Because, Motion, Outcome, Rejection, Verdict};
-use super::problem::{ContactProblem, Entry};
-use super::reading::{Reading, read_f64, read_signed};
-use super::redundant::{Judged, Rows};
+use super::outcome::{Analysis, Because, Effort, Motion, Outcome, Rejection, Verdict};
+use super::problem::{ContactProblem, Source};
+use super::reading::{Reading, read_f64};
+use super::redundant::{Judged, Member};
 use super::region::explanation;
-use super::sign::Scale;
+use super::sign::{Scale, SlackKind};
 use crate::error::{Error, Reason, Result};
-use crate::planar::Vector;
-use crate::scalar::{Ball, Exact, Ordered, Real, Sign};
+use crate::scalar::{Ordered, Real, Sign};
 use nalgebra::DMatrix;
 
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
 
+/// What an analysis is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Asked {
+    /// Every rejected combination, and the paper's section 4 for each contact.
+    pub explain: bool,
+    /// Whether the errors of the source are bounds, so that what is decided is proven.
+    pub prove: bool,
+}
+
 /// Memory that is reused from problem to problem.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
     tableau: Tableau<f64>,
-    balls: Tableau<Ball>,
     scale: Scale,
+    bounds: Bounds,
     labels: Labels,
 }
 
-/// Every outcome of `problem`; with `explain` also every rejected combination and the paper's section 4 for each contact.
+/// Every outcome of a `problem` given as matrices, every digit of which is meant; with `explain` also every rejected
+/// combination and the paper's section 4 for each contact.
 ///
 /// # Errors
 /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
 pub fn analyse(problem: &ContactProblem, explain: bool) -> Result<Analysis> {
-    Scratch::default().analyse(problem, explain)
+    Scratch::default().analyse(problem, problem, Asked { explain, prove: true })
 }
 
 impl Scratch {
-    /// As [`analyse`], with memory that is kept.
+    /// As [`analyse`], with memory that is kept, of a `problem` that was rounded from a `source`.
     ///
     /// # Errors
     /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
-    pub fn analyse(&mut self, problem: &ContactProblem, explain: bool) -> Result<Analysis> {
+    pub fn analyse<S: Source>(&mut self, problem: &ContactProblem, source: &S, asked: Asked) -> Result<Analysis> {
         let contacts = problem.contacts();
         if contacts > CONTACT_LIMIT {
             return Err(Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
                 .hint("name the contacts that matter by hand, or lower the contact tolerance"));
         }
-        self.scale.measure(problem);
+        let errors = source.errors();
+        self.scale.measure(problem, errors);
         self.tableau.load(problem);
-        let (scale, labels) = (&self.scale, &mut self.labels);
-        let mut second =
-            SecondLook { problem, scale, rows: None, regular: None, balls: &mut self.balls, loaded: false };
-        let mut found = Found { explain, ..Found::default() };
-        let mut regular = contacts == 0;
-        self.tableau.visit(|leaf| {
-            let rounding = scale.rounding(&leaf, problem);
-            // Where all contacts stick, the pivots are those of the whole matrix.
-            regular |= rounding < 1.0 && leaf.modes.iter().all(|&mode| mode == Mode::Stick) && !frictionless(problem);
-            labels.start(leaf.modes, problem.friction());
-            while let Some(modes) = labels.next() {
-                let reading = read_f64(&leaf, modes, problem, scale, rounding, explain);
-                if reading.sign == Sign::Undecided {
-                    second.look(&leaf, modes, &mut found);
-                } else {
-                    let motion = || best_motion(&leaf, modes, problem, rounding);
-                    found.take_leaf(modes, problem, &reading, index(leaf.pivots), motion);
-                }
+        self.bounds.load(&self.tableau, &self.scale, errors.delassus, self.scale.noise);
+        let mut first = FirstLook {
+            problem,
+            scale: &self.scale,
+            bounds: &mut self.bounds,
+            labels: &mut self.labels,
+            number: 0,
+            regular: contacts == 0,
+            open: Vec::new(),
+            coarse: Vec::new(),
+            found: Found { asked, ..Found::default() },
+        };
+        self.tableau.visit(&mut first);
+        let FirstLook { regular, open, coarse, mut found, .. } = first;
+        let scale = &self.scale;
+        let was_open = !open.is_empty();
+        if was_open {
+            let mut question = Open { problem, scale, open, found: &mut found };
+            settle(source, Layer::Ball, &mut question);
+            for (number, modes) in std::mem::take(&mut question.open) {
+                found.leave_open(number, &modes, problem);
             }
-        });
-        found.settle(problem, scale);
-        let rank = if regular { 2 * contacts } else { second.rows().rank() };
-        let regular = rank == 2 * contacts;
-        let Found { outcomes, rejected, .. } = found;
+        }
+        if !coarse.is_empty() {
+            settle(source, Layer::DoubleDouble, &mut Coarse { problem, scale, coarse, found: &mut found });
+        }
+        found.join_families(scale);
+        let (rank, condition) = rank_and_condition(problem, source, scale, regular);
+        let Found { mut outcomes, mut rejected, mut effort, total, .. } = found;
+        if was_open {
+            outcomes.sort_by_key(|(number, _)| *number);
+            rejected.sort_by_key(|(number, _)| *number);
+        }
+        effort.bound = total - effort.ball - effort.double_double - effort.precise;
+        let outcomes: Vec<Outcome> = outcomes.into_iter().map(|(_, outcome)| outcome).collect();
+        let decided = outcomes.iter().all(|outcome| outcome.decided);
         Ok(Analysis {
             verdict: verdict(contacts, &outcomes),
-            proven: false,
+            proven: asked.prove && decided,
             index_sum: outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum(),
             rank,
-            condition: if regular { condition(problem, scale) } else { None },
+            condition,
             no_slip_consistent: no_slip_consistent(&outcomes),
-            explanation: if explain && regular { explanation(problem, scale) } else { None },
+            explanation: if asked.explain && rank == 2 * contacts { explanation(problem, scale) } else { None },
             outcomes,
-            rejected,
+            rejected: rejected.into_iter().map(|(_, rejection)| rejection).collect(),
+            effort,
         })
     }
 }
 
-fn frictionless(problem: &ContactProblem) -> bool {
-    problem.friction().iter().any(|friction| friction.is_zero())
+/// All combinations in f64.
+struct FirstLook<'a> {
+    problem: &'a ContactProblem,
+    scale: &'a Scale,
+    bounds: &'a mut Bounds,
+    labels: &'a mut Labels,
+    /// Of the next list of modes.
+    number: usize,
+    /// Whether G was shown to be regular.
+    regular: bool,
+    /// What f64 does not decide.
+    open: Vec<(usize, Vec<Mode>)>,
+    /// Outcomes that f64 decides, but with few digits.
+    coarse: Vec<(usize, Vec<Mode>)>,
+    found: Found,
+}
+
+impl Visitor<f64> for FirstLook<'_> {
+    fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
+        self.bounds.follow(tableau, self.problem.friction(), contact, source);
+    }
+
+    fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
+        let bound = self.bounds.at(leaf.depth());
+        // Where all contacts stick, the pivots are those of the whole matrix.
+        self.regular |= bound.impulse_error().is_finite()
+            && leaf.modes.iter().all(|&mode| mode == Mode::Stick)
+            && !self.problem.friction().iter().any(|friction| friction.is_zero());
+        self.labels.start(leaf.modes, self.problem.friction());
+        while let Some(modes) = self.labels.next() {
+            let reading = read_f64(leaf, modes, self.problem, self.scale, bound, self.found.asked.explain);
+            match reading.sign {
+                Sign::Undecided => self.open.push((self.number, modes.to_vec())),
+                sign => {
+                    if sign != Sign::Negative && bound.growth() > F64_SERVES {
+                        self.coarse.push((self.number, modes.to_vec()));
+                    }
+                    let motion = || motion(leaf, modes, self.problem, |number| number);
+                    self.found.take_regular(self.number, modes, self.problem, reading, index_of(leaf.pivots), motion);
+                }
+            }
+            self.number += 1;
+        }
+        self.found.total = self.number;
+    }
+}
+
+/// Beyond this growth of rounding, f64 has lost the digits that an answer is expected to have.
+const F64_SERVES: f64 = 1e4;
+
+/// Combinations whose signs hang on more digits.
+struct Open<'a> {
+    problem: &'a ContactProblem,
+    scale: &'a Scale,
+    open: Vec<(usize, Vec<Mode>)>,
+    found: &'a mut Found,
+}
+
+impl Question for Open<'_> {
+    fn ask<T: Ordered>(&mut self, exact: &ContactProblem<T>, layer: Layer) -> bool {
+        let mut tableau = Tableau::<T>::new();
+        tableau.load(exact);
+        let before = self.open.len();
+        let Self { problem, scale, open, found } = self;
+        open.retain(|(number, modes)| match combination(&mut tableau, exact, problem, scale, modes) {
+            Ok(settled) => {
+                found.take(*number, modes, problem, settled);
+                false
+            }
+            Err(_) => true,
+        });
+        layer.count(&mut self.found.effort, before - self.open.len());
+        self.open.is_empty()
+    }
+}
+
+/// Outcomes whose numbers are worth more digits.
+struct Coarse<'a> {
+    problem: &'a ContactProblem,
+    scale: &'a Scale,
+    coarse: Vec<(usize, Vec<Mode>)>,
+    found: &'a mut Found,
+}
+
+impl Question for Coarse<'_> {
+    fn ask<T: Ordered>(&mut self, exact: &ContactProblem<T>, _: Layer) -> bool {
+        let mut tableau = Tableau::<T>::new();
+        tableau.load(exact);
+        let Self { problem, scale, coarse, found } = self;
+        coarse.retain(|(number, modes)| {
+            let settled = combination(&mut tableau, exact, problem, scale, modes);
+            if let Ok(Settled::Regular { reading, motion, .. }) = settled {
+                found.refine(*number, modes, problem, reading.margin, motion);
+                return false;
+            }
+            true
+        });
+        coarse.is_empty()
+    }
 }
 
 fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
@@ -122,131 +243,53 @@ fn no_slip_consistent(outcomes: &[Outcome]) -> Option<bool> {
     }
 }
 
-/// Condition number of a regular G scaled to a unit diagonal; by the rows of its factor where G itself is too ill
-/// conditioned to tell and they are known.
-fn condition(problem: &ContactProblem, scale: &Scale) -> Option<f64> {
+/// Rank of G and, where it is regular, the condition number of G scaled to a unit diagonal.
+fn rank_and_condition<S: Source>(
+    problem: &ContactProblem,
+    source: &S,
+    scale: &Scale,
+    regular: bool,
+) -> (usize, Option<f64>) {
     let rows = 2 * problem.contacts();
     if rows == 0 {
-        return None;
+        return (0, None);
     }
     let mobility = &scale.mobility;
     let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
     let values = scaled.symmetric_eigenvalues();
-    let condition = values.max() / values.min();
-    if (0.0..SQUARED_CONDITION_LIMIT).contains(&condition) {
-        return Some(condition);
+    let (least, greatest) = (values.min(), values.max());
+    if regular && greatest < F64_CONDITION_LIMIT * least {
+        return (rows, Some(greatest / least));
     }
-    let factor = problem.factor()?;
-    let entry = |i: usize, j: usize| factor.rows[i * factor.columns + j] / mobility[i];
-    let lengths = DMatrix::from_fn(rows, factor.columns, entry).singular_values();
-    let ratio = lengths.max() / lengths.min();
-    (ratio * ratio).is_finite().then_some(ratio * ratio)
+    let mut inverse = Inverse { mobility: mobility.clone(), ..Inverse::default() };
+    settle(source, Layer::Ball, &mut inverse);
+    match inverse.rank {
+        Some(rank) if rank < rows => (rank, None),
+        Some(rank) => {
+            let inverse = DMatrix::from_fn(rows, rows, |i, j| 0.5 * (inverse.rows[i][j] + inverse.rows[j][i]));
+            let condition = greatest * inverse.symmetric_eigenvalues().max();
+            (rank, condition.is_finite().then_some(condition))
+        }
+        // No precision tells a rank that is not the whole from one that is.
+        None => (rows, None),
+    }
 }
 
 /// Beyond this the least eigenvalue of G has lost half of its digits.
-const SQUARED_CONDITION_LIMIT: f64 = 1e8;
+const F64_CONDITION_LIMIT: f64 = 1e8;
 
 /// The sign of the product of the pivots.
-fn index(pivots: &[f64]) -> i8 {
+pub(super) fn index_of(pivots: &[f64]) -> i8 {
     pivots.iter().fold(1, |sign, &pivot| if pivot < 0.0 { -sign } else { sign })
 }
 
-/// What the first reading left open.
-struct SecondLook<'a> {
-    problem: &'a ContactProblem,
-    scale: &'a Scale,
-    rows: Option<Rows>,
-    regular: Option<bool>,
-    balls: &'a mut Tableau<Ball>,
-    loaded: bool,
-}
-
-impl SecondLook<'_> {
-    fn rows(&mut self) -> &Rows {
-        self.rows.get_or_insert_with(|| Rows::of(self.problem, self.scale))
-    }
-
-    fn regular(&mut self) -> bool {
-        if let Some(regular) = self.regular {
-            return regular;
-        }
-        let regular = self.rows().rank() == 2 * self.problem.contacts();
-        *self.regular.insert(regular)
-    }
-
-    fn look(&mut self, leaf: &Leaf<'_, f64>, modes: &[Mode], found: &mut Found) {
-        if !self.loaded {
-            self.balls.load(&enclosed(self.problem, self.scale));
-            self.loaded = true;
-        }
-        let leaf_of_balls = self.balls.leaf(modes);
-        let reading = read_signed(&leaf_of_balls, modes, self.problem, self.scale);
-        let pivots: Vec<f64> = leaf_of_balls.pivots.iter().map(|pivot| pivot.mid).collect();
-        let (problem, scale) = (self.problem, self.scale);
-        if reading.sign != Sign::Undecided {
-            let rounding = scale.rounding(leaf, problem);
-            let motion = || best_motion(leaf, modes, problem, rounding);
-            found.take_leaf(modes, problem, &reading, index(&pivots), motion);
-            return;
-        }
-        // Exact elimination decides all but vanishing pivots, which a singular matrix is full of.
-        let given = problem.factor().is_none();
-        let judged = if given && self.regular() { None } else { Some(self.rows().judge(problem, scale, modes)) };
-        // An outcome with a single impulse gains digits by it, too.
-        let exact_serves = |judged: &Judged| match judged.sign {
-            Sign::Undecided => true,
-            sign => sign == Sign::Positive && judged.impulse_unique,
-        };
-        let open = judged.as_ref().is_none_or(exact_serves);
-        if open
-            && given
-            && let Some((reading, index, motion)) = read_exactly(problem, scale, modes)
-        {
-            found.take_leaf(modes, problem, &reading, index, || motion);
-            return;
-        }
-        let judged = judged.unwrap_or_else(|| self.rows().judge(problem, scale, modes));
-        let index = self.rows().index(problem, scale, modes);
-        found.take_judged(modes, self.problem, judged, index);
-    }
-}
-
-/// What `read` sees in a combination's exact numbers, of matrices that were given and so are exact.
-fn exactly<R>(problem: &ContactProblem, modes: &[Mode], read: impl FnOnce(&Leaf<'_, Exact>) -> R) -> R {
-    Exact::scope(|| {
-        let mut tableau = Tableau::<Exact>::new();
-        tableau.load(&problem.map(Exact::from_f64));
-        read(&tableau.leaf(modes))
-    })
-}
-
-/// Reads a combination exactly, with its index; none where a pivot vanishes.
-fn read_exactly(problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Option<(Reading, i8, Motion)> {
-    exactly(problem, modes, |leaf| {
-        let reading = read_signed(leaf, modes, problem, scale);
-        let pivots: Vec<f64> = leaf.pivots.iter().map(|pivot| pivot.to_f64()).collect();
-        let decided = reading.sign != Sign::Undecided;
-        decided.then(|| (reading, index(&pivots), motion(leaf, modes, problem, Exact::to_f64)))
-    })
-}
-
-/// Impulses and velocities of a combination: those of its leaf, or exact but for one rounding where the leaf is ill
-/// conditioned and the matrices were given.
-fn best_motion(leaf: &Leaf<'_, f64>, modes: &[Mode], problem: &ContactProblem, rounding: f64) -> Motion {
-    let regular = |leaf: &Leaf<'_, Exact>| {
-        leaf.pivots.iter().all(|pivot| matches!(pivot.sign(), Sign::Negative | Sign::Positive))
-    };
-    let given = problem.factor().is_none();
-    let better = (given && rounding > F64_SERVES)
-        .then(|| exactly(problem, modes, |leaf| regular(leaf).then(|| motion(leaf, modes, problem, Exact::to_f64))));
-    better.flatten().unwrap_or_else(|| motion(leaf, modes, problem, |number| number))
-}
-
-/// Scaled numbers whose rounding is below this are told as f64 has them.
-const F64_SERVES: f64 = 1e-12;
-
 /// Impulses and velocities of a leaf.
-fn motion<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem, nearest: impl Fn(T) -> f64) -> Motion {
+pub(super) fn motion<T: Real>(
+    leaf: &Leaf<'_, T>,
+    modes: &[Mode],
+    problem: &ContactProblem,
+    nearest: impl Fn(T) -> f64,
+) -> Motion {
     let contacts = 0..problem.contacts();
     let velocity = |contact: usize| {
         let [c_t, xi_n] = leaf.velocity(contact).map(&nearest);
@@ -259,121 +302,147 @@ fn motion<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem,
     }
 }
 
-/// A problem as balls. Matrices that were given are exact; what the dynamics computed is known to its rounding, except for
-/// zeros, which are those of the tree's structure or of a stance.
-fn enclosed(problem: &ContactProblem, scale: &Scale) -> ContactProblem<Ball> {
-    let rounding = if problem.factor().is_some() { DYNAMICS_ROUNDING } else { 0.0 };
-    problem.map_entries(|place, value| {
-        let size = match place {
-            Entry::Delassus { row, column } => scale.mobility[row] * scale.mobility[column],
-            Entry::Velocity { row } => value.abs() + scale.speed * scale.mobility[row],
-        };
-        let noise = match (place, problem.noise()) {
-            (Entry::Velocity { row }, Some(noise)) => noise[row / 2][row % 2],
-            _ => 0.0,
-        };
-        Ball { mid: value, radius: if value == 0.0 && noise == 0.0 { 0.0 } else { rounding * size + noise } }
-    })
+/// What has been found so far, each with the number of its list of modes.
+struct Found {
+    asked: Asked,
+    outcomes: Vec<(usize, Outcome)>,
+    rejected: Vec<(usize, Rejection)>,
+    effort: Effort,
+    /// Lists of modes in all.
+    total: usize,
 }
 
-/// What G and c of a robot lose to rounding, relative to their rows' own scale: measured below 3e-15 against 640 bits on
-/// chains, straight legs and extreme mass ratios. An estimate; a proof needs the dynamics in balls, too.
-const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// What has been found so far.
-#[derive(Default)]
-struct Found {
-    explain: bool,
-    outcomes: Vec<Outcome>,
-    rejected: Vec<Rejection>,
-    /// Combinations with a velocity that vanishes to rounding although the modes exclude zero.
-    twins: Vec<(Vec<Mode>, Judged, Option<i8>)>,
+impl Default for Found {
+    fn default() -> Self {
+        let asked = Asked { explain: false, prove: true };
+        Self { asked, outcomes: Vec::new(), rejected: Vec::new(), effort: Effort::default(), total: 0 }
+    }
 }
 
 impl Found {
-    fn take_leaf(
+    fn take(&mut self, number: usize, modes: &[Mode], problem: &ContactProblem, settled: Settled) {
+        match settled {
+            Settled::Regular { reading, index, motion } => {
+                self.take_regular(number, modes, problem, reading, index, || motion);
+            }
+            Settled::Singular(Judged::Rejected { because, margin, motion }) => {
+                self.reject(number, modes, because, margin, motion);
+            }
+            Settled::Singular(Judged::Valid(member)) => {
+                let outcome = self.outcome_of(member, problem);
+                self.outcomes.push((number, outcome));
+            }
+            Settled::Singular(Judged::Family(ends)) => {
+                for end in ends {
+                    let outcome = Outcome { family: true, ..self.outcome_of(end, problem) };
+                    self.outcomes.push((number, outcome));
+                }
+            }
+        }
+    }
+
+    fn take_regular(
         &mut self,
+        number: usize,
         modes: &[Mode],
         problem: &ContactProblem,
-        reading: &Reading,
+        reading: Reading,
         index: i8,
         motion: impl FnOnce() -> Motion,
     ) {
-        if reading.sign != Sign::Negative {
-            let mut outcome = outcome(modes, problem, motion());
-            outcome.index = (!reading.border).then_some(index);
-            outcome.margin = reading.margin.map(|margin| margin + 0.0);
-            self.outcomes.push(outcome);
-        } else if self.explain {
+        if reading.sign == Sign::Negative {
             let solved = !matches!(reading.because, Because::NothingHolds { .. });
-            self.reject(modes, reading.because, reading.margin, solved.then(motion));
+            let motion = (self.asked.explain && solved).then(motion);
+            self.reject(number, modes, reading.because, reading.margin, motion);
+            return;
+        }
+        let mut outcome = self.outcome(modes, problem, motion(), &reading.at_zero);
+        outcome.index = reading.at_zero.is_empty().then_some(index);
+        outcome.margin = reading.margin.map(|margin| margin + 0.0);
+        self.outcomes.push((number, outcome));
+    }
+
+    fn outcome_of(&self, member: Member, problem: &ContactProblem) -> Outcome {
+        Outcome {
+            index: member.index,
+            margin: member.margin,
+            impulse_unique: member.range.is_none(),
+            impulse_range: member.range,
+            ..self.outcome(&member.modes, problem, member.motion, &member.at_zero)
         }
     }
 
-    fn take_judged(&mut self, modes: &[Mode], problem: &ContactProblem, judged: Judged, index: Option<i8>) {
-        if judged.sign == Sign::Negative {
-            if self.explain {
-                self.reject(modes, judged.because, judged.margin, judged.motion);
+    /// A decided outcome with a unique impulse; index and margin are the caller's.
+    fn outcome(
+        &self,
+        modes: &[Mode],
+        problem: &ContactProblem,
+        motion: Motion,
+        at_zero: &[(usize, SlackKind)],
+    ) -> Outcome {
+        let border = border(modes, problem.friction(), at_zero, &motion);
+        let mut outcome = Outcome {
+            modes: modes.to_vec(),
+            impulse: Vec::new(),
+            velocity_after: Vec::new(),
+            energy_loss: 0.0,
+            impulse_unique: true,
+            impulse_range: None,
+            friction_needed: Vec::new(),
+            index: None,
+            margin: None,
+            border,
+            family: false,
+            proven: self.asked.prove,
+            decided: true,
+        };
+        outcome.set_motion(motion, problem.velocity_before());
+        outcome
+    }
+
+    /// Gives an outcome the digits of better numbers.
+    fn refine(&mut self, number: usize, modes: &[Mode], problem: &ContactProblem, margin: Option<f64>, motion: Motion) {
+        let own = self.outcomes.iter_mut().find(|(own, outcome)| *own == number && outcome.modes == modes);
+        if let Some((_, outcome)) = own {
+            outcome.margin = margin;
+            outcome.set_motion(motion, problem.velocity_before());
+        }
+    }
+
+    /// Lists a combination that no layer settled, with the impulse zero in place of one that is not known.
+    fn leave_open(&mut self, number: usize, modes: &[Mode], problem: &ContactProblem) {
+        let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after: problem.velocity_free().to_vec() };
+        let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, problem, motion, &[]) };
+        self.outcomes.push((number, outcome));
+    }
+
+    /// An end of a family may be the outcome of other modes, which then is that end.
+    fn join_families(&mut self, scale: &Scale) {
+        let same =
+            |a: &Outcome, b: &Outcome| a.modes == b.modes && scale.same_velocity(&a.velocity_after, &b.velocity_after);
+        let mut index = 0;
+        while index < self.outcomes.len() {
+            let (number, end) = &self.outcomes[index];
+            let twin = self
+                .outcomes
+                .iter()
+                .position(|(own, outcome)| end.family && own != number && !outcome.family && same(outcome, end));
+            match twin {
+                Some(twin) => {
+                    let (_, outcome) = &mut self.outcomes[twin];
+                    outcome.family = true;
+                    outcome.index = None;
+                    self.outcomes.remove(index);
+                }
+                None => index += 1,
             }
-            return;
-        }
-        if judged.sign == Sign::Zero {
-            self.twins.push((modes.to_vec(), judged, index));
-            return;
-        }
-        let decided = judged.sign == Sign::Positive;
-        let Some(motion) = judged.motion else { return };
-        self.outcomes.push(Outcome {
-            impulse_unique: judged.impulse_unique,
-            index: index.filter(|_| decided && !judged.border),
-            margin: judged.margin,
-            decided,
-            ..outcome(modes, problem, motion)
-        });
-    }
-
-    /// A twin is dropped where its velocity is that of a decided outcome; otherwise it stays undecided.
-    fn settle(&mut self, problem: &ContactProblem, scale: &Scale) {
-        for (modes, mut judged, index) in std::mem::take(&mut self.twins) {
-            let velocity = judged.motion.as_ref().map(|motion| motion.velocity_after.as_slice());
-            let told = |outcome: &Outcome| {
-                outcome.decided && velocity.is_some_and(|own| scale.same_velocity(own, &outcome.velocity_after))
-            };
-            judged.sign = if self.outcomes.iter().any(told) { Sign::Negative } else { Sign::Undecided };
-            judged.because = Because::RedundantTwin;
-            self.take_judged(&modes, problem, judged, index);
         }
     }
 
-    fn reject(&mut self, modes: &[Mode], because: Because, margin: Option<f64>, motion: Option<Motion>) {
-        self.rejected.push(Rejection { modes: modes.to_vec(), because, margin, motion });
-    }
-}
-
-/// A decided outcome with a unique impulse; index and margin are the caller's.
-fn outcome(modes: &[Mode], problem: &ContactProblem, motion: Motion) -> Outcome {
-    // Adding zero turns a negative zero into the one that people expect to read.
-    let unsigned = |list: Vec<Vector<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
-    let (impulse, velocity_after): (Vec<Vector<f64>>, Vec<Vector<f64>>) =
-        (unsigned(motion.impulse), unsigned(motion.velocity_after));
-    let before = problem.velocity_before();
-    let work: f64 = impulse
-        .iter()
-        .zip(before.iter().zip(&velocity_after))
-        .map(|(l, (c, after))| l[0] * (c[0] + after[0]) + l[1] * (c[1] + after[1]))
-        .sum();
-    let needed = |(&mode, l): (&Mode, &Vector<f64>)| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
-    Outcome {
-        modes: modes.to_vec(),
-        energy_loss: 0.0 - 0.5 * work,
-        impulse_unique: true,
-        friction_needed: modes.iter().zip(&impulse).map(needed).collect(),
-        index: None,
-        margin: None,
-        proven: false,
-        decided: true,
-        impulse,
-        velocity_after,
+    fn reject(&mut self, number: usize, modes: &[Mode], because: Because, margin: Option<f64>, motion: Option<Motion>) {
+        if self.asked.explain {
+            self.rejected.push((number, Rejection { modes: modes.to_vec(), because, margin, motion }));
+        }
     }
 }
 

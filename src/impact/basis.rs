@@ -69,12 +69,6 @@ impl Basis {
         rest
     }
 
-    /// Whether `row`, of length about one, is a combination of the basis to rounding.
-    pub fn spans(&self, row: &[f64]) -> bool {
-        let rest = self.rest(row);
-        dot(&rest, &rest).sqrt() <= RANK_TOLERANCE
-    }
-
     /// Adds the rows that are independent, the one with the longest rest first, and returns their order.
     pub fn extend(&mut self, rows: &[&[f64]]) -> Vec<usize> {
         let mut left: Vec<usize> = (0..rows.len()).collect();
@@ -100,6 +94,18 @@ impl Basis {
         whole.extend(&units.iter().map(Vec::as_slice).collect::<Vec<_>>());
         Basis { columns: self.columns, rows: whole.rows.split_off(self.rows.len()) }
     }
+}
+
+/// Orthonormal vectors that span the same as `vectors`, which are independent.
+pub fn orthonormal(vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let unit = |vector: &Vec<f64>| {
+        let length = dot(vector, vector).sqrt();
+        vector.iter().map(|entry| entry / length).collect::<Vec<f64>>()
+    };
+    let vectors: Vec<Vec<f64>> = vectors.iter().map(unit).collect();
+    let mut basis = Basis::new(vectors.first().map_or(0, Vec::len));
+    basis.extend(&vectors.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    basis.rows().map(<[f64]>::to_vec).collect()
 }
 
 /// The shortest w with rows . w = right, the basis of the rows, and whether the dependent equations agree. Rows should be
@@ -143,6 +149,5 @@ mod tests {
         }
         assert_eq!(solve(3, &rows, &[1.0, 2.2, 2.5]).2, Agreement::Fails);
         assert_eq!(basis.complement().rank(), 1);
-        assert!(basis.spans(&[0.8, -0.6, 0.0]) && !basis.spans(&[0.8, -0.6, 1e-9]));
     }
 }

@@ -40,6 +40,22 @@ pub struct Leaf<'a, T> {
     pub pivots: &'a [T],
     tableau: &'a [T],
     friction: &'a [Friction],
+    depth: usize,
+}
+
+/// Whoever looks at all combinations.
+pub trait Visitor<T> {
+    /// A combination is complete.
+    fn leaf(&mut self, leaf: &Leaf<'_, T>);
+
+    /// The impulses of `contact` were eliminated from the tableau of depth `source`; that of depth `contact` + 1 is new.
+    fn eliminated(&mut self, _tableau: &Tableau<T>, _contact: usize, _source: usize) {}
+}
+
+impl<T, F: FnMut(&Leaf<'_, T>)> Visitor<T> for F {
+    fn leaf(&mut self, leaf: &Leaf<'_, T>) {
+        self(leaf);
+    }
 }
 
 impl<T: Real> Tableau<T> {
@@ -74,8 +90,8 @@ impl<T: Real> Tableau<T> {
     }
 
     /// Visits every combination, in the order of [`Mode::ALL`] with the last contact changing fastest.
-    pub fn visit(&mut self, mut visitor: impl FnMut(Leaf<'_, T>)) {
-        self.descend(0, 0, &mut visitor);
+    pub fn visit(&mut self, visitor: &mut impl Visitor<T>) {
+        self.descend(0, 0, visitor);
     }
 
     /// The numbers of a single combination.
@@ -90,18 +106,22 @@ impl<T: Real> Tableau<T> {
     }
 
     fn at(&self, depth: usize) -> Leaf<'_, T> {
-        Leaf { modes: &self.modes, pivots: &self.pivots, tableau: &self.depths[depth], friction: &self.friction }
+        let tableau = &self.depths[depth];
+        Leaf { modes: &self.modes, pivots: &self.pivots, tableau, friction: &self.friction, depth }
     }
 
-    fn descend(&mut self, contact: usize, source: usize, visitor: &mut impl FnMut(Leaf<'_, T>)) {
+    fn descend(&mut self, contact: usize, source: usize, visitor: &mut impl Visitor<T>) {
         if contact == self.contacts {
-            visitor(self.at(source));
+            visitor.leaf(&self.at(source));
             return;
         }
         let modes = if self.friction[contact].is_zero() { &Mode::ALL[..2] } else { &Mode::ALL[..] };
         for &mode in modes {
             self.modes[contact] = mode;
             let depth = self.decide(contact, mode, source);
+            if mode != Mode::Separate {
+                visitor.eliminated(self, contact, source);
+            }
             self.descend(contact + 1, depth, visitor);
         }
     }
@@ -158,6 +178,19 @@ impl<T: Real> Tableau<T> {
     }
 }
 
+impl<T: Copy> Tableau<T> {
+    /// The mode and the pivot of a decided contact.
+    pub fn decided(&self, contact: usize) -> (Mode, T) {
+        (self.modes[contact], self.pivots[contact])
+    }
+
+    /// A row of the tableau of this depth: the coefficients of all impulses, then the constant.
+    pub fn row(&self, depth: usize, row: usize) -> &[T] {
+        let width = 2 * self.contacts + 1;
+        &self.depths[depth][row * width..(row + 1) * width]
+    }
+}
+
 impl<T: Real> Default for Tableau<T> {
     fn default() -> Self {
         Self::new()
@@ -165,6 +198,11 @@ impl<T: Real> Default for Tableau<T> {
 }
 
 impl<T: Real> Leaf<'_, T> {
+    /// The depth of the tableau that the leaf is read from: the last closed contact's number, from 1.
+    pub fn depth(&self) -> usize {
+        self.depth
+    }
+
     fn constant(&self, row: usize) -> T {
         let columns = 2 * self.modes.len();
         self.tableau[row * (columns + 1) + columns]
@@ -215,7 +253,9 @@ mod tests {
         let mut tableau = Tableau::<f64>::new();
         tableau.load(&body(Friction::Finite(6.0), [1.0, -1.0]));
         let mut seen = Vec::new();
-        tableau.visit(|leaf| seen.push((leaf.modes[0], leaf.impulse(0), leaf.velocity(0), leaf.pivots[0])));
+        tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
+            seen.push((leaf.modes[0], leaf.impulse(0), leaf.velocity(0), leaf.pivots[0]));
+        });
         assert_eq!(
             seen,
             [
@@ -252,7 +292,7 @@ mod tests {
         all.load(&problem);
         one.load(&problem);
         let mut visited = 0;
-        all.visit(|leaf| {
+        all.visit(&mut |leaf: &Leaf<'_, f64>| {
             visited += 1;
             let single = one.leaf(leaf.modes);
             for contact in 0..2 {

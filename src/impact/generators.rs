@@ -3,85 +3,75 @@
 //! ```text
 //!     L = B lambda      separate: none    slide+-: the ray (-+a, b)    stick: both axes (frictionless: the normal)
 //! ```
-//!
-//! Everything is in the scale of the rows: L_i sqrt(G_ii) / S.
 
-use super::basis::dot;
-use super::mode::Mode;
+use super::mode::{Friction, Mode};
 use super::problem::ContactProblem;
-use super::sign::Scale;
 use crate::planar::Vector;
+use crate::scalar::Real;
 
-/// Direction of a sliding (or frictionless) contact's impulse in the scale of the rows, of length one.
-pub fn slide_ray(problem: &ContactProblem, scale: &Scale, contact: usize, mode: Mode) -> Vector<f64> {
-    let (a, b) = problem.friction()[contact].pair();
-    let ray = [-mode.direction() * a * scale.mobility[2 * contact], b * scale.mobility[2 * contact + 1]];
-    let length = ray[0].hypot(ray[1]);
-    ray.map(|entry| entry / length)
-}
-
-/// The rays and planes that the modes allow for the impulses: L (scaled) = sum of lambda_j times generator j.
+/// The rays and planes that the modes allow: L = sum of lambda_j times generator j, each of one contact.
 pub struct Generators {
-    /// Row and entry of each generator's one or two non-zero rows.
-    entries: Vec<Vec<(usize, f64)>>,
-    /// Z^T times each generator.
-    images: Vec<Vec<f64>>,
+    rows: usize,
+    /// The contact and the two entries of each generator.
+    rays: Vec<(usize, Vector<f64>)>,
 }
 
 impl Generators {
-    /// Of a combination of modes, with the scaled rows Z.
-    pub fn of(rows: &[Vec<f64>], problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Self {
-        let mut entries = Vec::new();
-        for (contact, &mode) in modes.iter().enumerate() {
-            let (t, n) = (2 * contact, 2 * contact + 1);
+    /// Direction (-+a, b) of a sliding contact's impulse; of a frictionless one the normal.
+    pub fn slide_ray(friction: Friction, mode: Mode) -> Vector<f64> {
+        let (a, b) = friction.pair();
+        [-mode.direction() * a, b]
+    }
+
+    /// Of a combination of modes.
+    pub fn of(modes: &[Mode], friction: &[Friction]) -> Self {
+        let mut rays = Vec::new();
+        for (contact, (&mode, &friction)) in modes.iter().zip(friction).enumerate() {
             if mode == Mode::Stick {
-                if !problem.friction()[contact].is_zero() {
-                    entries.push(vec![(t, 1.0)]);
+                if !friction.is_zero() {
+                    rays.push((contact, [1.0, 0.0]));
                 }
-                entries.push(vec![(n, 1.0)]);
+                rays.push((contact, [0.0, 1.0]));
             } else if mode.slides() {
-                let ray = slide_ray(problem, scale, contact, mode);
-                entries.push(vec![(t, ray[0]), (n, ray[1])]);
+                rays.push((contact, Self::slide_ray(friction, mode)));
             }
         }
-        let image = |generator: &Vec<(usize, f64)>| {
-            let mut image = vec![0.0; rows.first().map_or(0, Vec::len)];
-            for &(row, factor) in generator {
-                for (entry, part) in image.iter_mut().zip(&rows[row]) {
-                    *entry += factor * part;
-                }
-            }
-            image
-        };
-        let images = entries.iter().map(image).collect();
-        Self { entries, images }
+        Self { rows: 2 * modes.len(), rays }
     }
 
     /// How many.
     pub fn count(&self) -> usize {
-        self.entries.len()
+        self.rays.len()
     }
 
-    /// The inner products of a direction of w with every generator's image.
-    pub fn against(&self, direction: &[f64]) -> Vec<f64> {
-        self.images.iter().map(|image| dot(direction, image)).collect()
-    }
-
-    /// `factor` times the scaled impulse of a row, by lambda.
-    pub fn impulse_row(&self, row: usize, factor: f64) -> Vec<f64> {
-        let of = |generator: &Vec<(usize, f64)>| {
-            generator.iter().find(|(own, _)| *own == row).map_or(0.0, |(_, entry)| factor * entry)
+    /// The coefficients by lambda of a row's velocity: that row of G B.
+    pub fn velocity_row<T: Real>(&self, problem: &ContactProblem<T>, row: usize) -> Vec<T> {
+        let part = |column: usize, factor: f64| match factor {
+            0.0 => None,
+            1.0 => Some(problem.delassus(row, column)),
+            factor => Some(T::from_f64(factor) * problem.delassus(row, column)),
         };
-        self.entries.iter().map(of).collect()
+        let entry =
+            |&(contact, ray): &(usize, Vector<f64>)| match (part(2 * contact, ray[0]), part(2 * contact + 1, ray[1])) {
+                (Some(t), Some(n)) => t + n,
+                (one, other) => one.or(other).unwrap_or(T::zero()),
+            };
+        self.rays.iter().map(entry).collect()
+    }
+
+    /// The coefficients by lambda of a row's impulse.
+    pub fn impulse_row<T: Real>(&self, row: usize) -> Vec<T> {
+        let entry =
+            |&(contact, ray): &(usize, Vector<f64>)| T::from_f64(if contact == row / 2 { ray[row % 2] } else { 0.0 });
+        self.rays.iter().map(entry).collect()
     }
 
     /// The impulse of every row \[N s\].
-    pub fn raw_impulse(&self, lambda: &[f64], scale: &Scale) -> Vec<f64> {
-        let mut impulse = vec![0.0; scale.mobility.len()];
-        for (generator, factor) in self.entries.iter().zip(lambda) {
-            for &(row, entry) in generator {
-                impulse[row] += factor * entry * scale.speed / scale.mobility[row];
-            }
+    pub fn impulse(&self, lambda: &[f64]) -> Vec<f64> {
+        let mut impulse = vec![0.0; self.rows];
+        for ((contact, ray), factor) in self.rays.iter().zip(lambda) {
+            impulse[2 * contact] += factor * ray[0];
+            impulse[2 * contact + 1] += factor * ray[1];
         }
         impulse
     }

@@ -4,9 +4,14 @@
 
 pub mod analysis;
 mod basis;
+mod border;
+mod bound;
+pub mod certify;
 pub mod enumerate;
 mod generators;
+mod index;
 mod labels;
+mod linear;
 pub mod mode;
 pub mod outcome;
 pub mod problem;
@@ -16,7 +21,7 @@ mod redundant;
 mod region;
 pub mod sign;
 
-pub use analysis::{CONTACT_LIMIT, Scratch, analyse};
+pub use analysis::{Asked, CONTACT_LIMIT, Scratch, analyse};
 pub use mode::{Friction, Mode};
-pub use outcome::{Analysis, Because, Explanation, Motion, Outcome, Region, Rejection, Verdict};
-pub use problem::{ContactProblem, MATRIX_LIMIT};
+pub use outcome::{Analysis, Because, Border, Effort, Explanation, Motion, Outcome, Region, Rejection, Verdict, Zero};
+pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

@@ -57,10 +57,67 @@ pub struct Outcome {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units; none where there is no inequality.
     pub margin: Option<f64>,
-    /// True where an error bound shows every sign.
+    /// Least and greatest of every impulse's entry; none where the impulse is the only one.
+    pub impulse_range: Option<Vec<Vector<Range>>>,
+    /// What is exactly zero, where an impulse inequality is.
+    pub border: Option<Border>,
+    /// An end of a family: every velocity between both ends is an outcome.
+    pub family: bool,
+    /// True where every sign was shown by an error bound.
     pub proven: bool,
-    /// False where a sign lies within its rounding: the combination is not excluded, but neither shown.
+    /// False where a sign was settled by no precision: the combination is not excluded, but neither shown.
     pub decided: bool,
+}
+
+/// Least and greatest value; none where there is no bound.
+pub type Range = [Option<f64>; 2];
+
+/// Where an outcome turns into others: impulse inequalities that are zero for every admissible impulse.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Border {
+    /// The contact, from 0, and what is zero there.
+    pub at_zero: Vec<(usize, Zero)>,
+    /// The lists of modes beyond; each differs in one contact. Where several inequalities are zero, so do combinations.
+    pub neighbours: Vec<Vec<Mode>>,
+}
+
+/// An impulse inequality that is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Zero {
+    /// The contact is closed without being pressed, L_n = 0.
+    NormalImpulse,
+    /// With infinite friction: it slides without friction, L_t = 0.
+    TangentialImpulse,
+    /// It sticks with all its friction, |L_t| = mu L_n.
+    FrictionCone,
+}
+
+impl fmt::Display for Zero {
+    /// As an equation.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::NormalImpulse => "L_n = 0",
+            Self::TangentialImpulse => "L_t = 0",
+            Self::FrictionCone => "|L_t| = mu L_n",
+        })
+    }
+}
+
+impl Outcome {
+    /// Takes over impulses and velocities after, and what follows from them with the contact velocities `before`.
+    pub(super) fn set_motion(&mut self, motion: Motion, before: &[Vector<f64>]) {
+        // Adding zero turns a negative zero into the one that people expect to read.
+        let unsigned = |list: Vec<Vector<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
+        self.impulse = unsigned(motion.impulse);
+        self.velocity_after = unsigned(motion.velocity_after);
+        let moves = self.impulse.iter().zip(before.iter().zip(&self.velocity_after));
+        let work: f64 = moves.map(|(l, (c, after))| l[0] * (c[0] + after[0]) + l[1] * (c[1] + after[1])).sum();
+        self.energy_loss = 0.0 - 0.5 * work;
+        let needed = |(&mode, l): (&Mode, &Vector<f64>)| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
+        self.friction_needed = self.modes.iter().zip(&self.impulse).map(needed).collect();
+    }
 }
 
 /// Impulses and velocities of a combination, [tangential, normal] per contact.
@@ -167,6 +224,19 @@ pub enum Region {
     E,
 }
 
+/// How many combinations each layer of the proof settled (see [`super::certify`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Effort {
+    /// f64 with an error bound.
+    pub bound: usize,
+    /// Balls around f64.
+    pub ball: usize,
+    /// Balls around pairs of f64.
+    pub double_double: usize,
+    /// More digits than that.
+    pub precise: usize,
+}
+
 /// Everything that is known about a contact problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
@@ -186,6 +256,8 @@ pub struct Analysis {
     pub condition: Option<f64>,
     /// Whether some outcome has no sliding contact; none where that hangs on an undecided combination.
     pub no_slip_consistent: Option<bool>,
+    /// What settled the combinations.
+    pub effort: Effort,
     /// The paper's section 4 for each contact, if asked for; none for a singular Delassus matrix.
     pub explanation: Option<Explanation>,
 }

@@ -1,87 +1,17 @@
-//! The two small convex programs that free impulses ask for (the only user of clarabel).
-//!
-//! The points are y; every slack is affine in y: `slack = constant + coefficients . y`.
+//! The least impulse among those that free impulses leave.
 //!
 //! ```text
-//!     widest slack     max_y min_i slack_i(y)
-//!     least impulse    min_y |L0 + D y|^2   with   slack_i(y) >= 0
+//!     min_y |L0 + D y|^2   with   slack_i(y) = constant + coefficients . y >= 0
 //! ```
 
-use super::basis::{Basis, dot, solve};
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
-
-/// An affine function of y.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Affine {
-    /// Its value at y = 0.
-    pub constant: f64,
-    /// One coefficient per entry of y.
-    pub coefficients: Vec<f64>,
-}
-
-impl Affine {
-    /// Its value at `y`.
-    pub fn at(&self, y: &[f64]) -> f64 {
-        self.constant + dot(&self.coefficients, y)
-    }
-}
-
-/// The point whose smallest slack is the greatest, and that slack, at most `cap` (without a cap an unbounded set of
-/// impulses would have no answer). None where the program fails numerically.
-pub fn widest_slack(slacks: &[Affine], dimension: usize, cap: f64) -> Option<(Vec<f64>, f64)> {
-    // x = (y, s): -coefficients . y + s <= constant, s <= cap; least -s.
-    let rows = slacks.len() + 1;
-    let mut entries = Triplets::default();
-    let mut right = Vec::with_capacity(rows);
-    for (row, slack) in slacks.iter().enumerate() {
-        for (column, &coefficient) in slack.coefficients.iter().enumerate() {
-            entries.push(row, column, -coefficient);
-        }
-        entries.push(row, dimension, 1.0);
-        right.push(slack.constant);
-    }
-    entries.push(slacks.len(), dimension, 1.0);
-    right.push(cap);
-    let mut cost = vec![0.0; dimension + 1];
-    cost[dimension] = -1.0;
-    let mut x = minimize(&cost, &entries.matrix(rows, dimension + 1), &right)?;
-    x.truncate(dimension);
-    let least = slacks.iter().map(|slack| slack.at(&x)).fold(cap, f64::min);
-    Some((x, least))
-}
-
-/// Whether some y other than 0 has no negative slack, for slacks without a constant.
-pub fn opens(slacks: &[Affine], dimension: usize) -> bool {
-    let rows: Vec<&[f64]> = slacks.iter().map(|slack| slack.coefficients.as_slice()).collect();
-    let mut basis = Basis::new(dimension);
-    basis.extend(&rows);
-    if basis.rank() < dimension {
-        return true;
-    }
-    // The sum of all slacks vanishes at y = 0 alone; can it be one?
-    let mut entries = Triplets::default();
-    let mut sum = vec![0.0; dimension];
-    for (row, slack) in slacks.iter().enumerate() {
-        for (column, &coefficient) in slack.coefficients.iter().enumerate() {
-            entries.push(row, column, -coefficient);
-            sum[column] += coefficient;
-        }
-    }
-    for (column, &coefficient) in sum.iter().enumerate() {
-        entries.push(slacks.len(), column, coefficient);
-    }
-    let mut right = vec![0.0; slacks.len() + 1];
-    right[slacks.len()] = 1.0;
-    let cost: Vec<f64> = sum.iter().map(|entry| -entry).collect();
-    minimize(&cost, &entries.matrix(slacks.len() + 1, dimension), &right).is_none_or(|y| dot(&sum, &y) > 0.5)
-}
+use super::basis::{dot, solve};
+use super::linear::Affine;
 
 /// The y that makes |L0 + D y| least among those with no negative slack; `directions` are the columns of D, and `inside`
 /// is a y with no negative slack to begin at.
 ///
 /// A primal active-set method (Nocedal and Wright 2006, section 16.5): few slacks, an answer exact to rounding.
-pub fn least_impulse(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine], inside: &[f64]) -> Vec<f64> {
+pub fn least_impulse(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine<f64>], inside: &[f64]) -> Vec<f64> {
     let mut y = inside.to_vec();
     let mut binding: Vec<usize> = Vec::new();
     // Each round adds or drops one slack; rounding could make it turn in circles on a degenerate corner.
@@ -114,7 +44,13 @@ pub fn least_impulse(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine],
 }
 
 /// The binding slack that keeps L from growing shorter the most: the one with the most negative multiplier.
-fn pulling(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine], binding: &[usize], y: &[f64]) -> Option<usize> {
+fn pulling(
+    origin: &[f64],
+    directions: &[Vec<f64>],
+    slacks: &[Affine<f64>],
+    binding: &[usize],
+    y: &[f64],
+) -> Option<usize> {
     let at: Vec<f64> = origin.iter().zip(combination(directions, y, origin.len())).map(|(a, b)| a + b).collect();
     let gradient: Vec<f64> = directions.iter().map(|direction| dot(direction, &at)).collect();
     // gradient = sum of multiplier * coefficients, one equation per entry of y.
@@ -131,7 +67,7 @@ fn pulling(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine], binding: 
 const ADMISSIBLE: f64 = 1e-11;
 
 /// The y of the shortest L0 + D y with the chosen slacks at zero.
-fn shortest_on_face(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine], chosen: &[usize]) -> Vec<f64> {
+fn shortest_on_face(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine<f64>], chosen: &[usize]) -> Vec<f64> {
     let rows: Vec<&[f64]> = chosen.iter().map(|&index| slacks[index].coefficients.as_slice()).collect();
     let right: Vec<f64> = chosen.iter().map(|&index| -slacks[index].constant).collect();
     let (mut y, basis, _) = solve(directions.len(), &rows, &right);
@@ -164,74 +100,12 @@ fn combination(columns: &[Vec<f64>], factors: &[f64], length: usize) -> Vec<f64>
     sum
 }
 
-/// Entries of a sparse matrix in any order.
-#[derive(Default)]
-struct Triplets {
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl Triplets {
-    fn push(&mut self, row: usize, column: usize, value: f64) {
-        if value != 0.0 {
-            self.rows.push(row);
-            self.columns.push(column);
-            self.values.push(value);
-        }
-    }
-
-    fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
-        CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values)
-    }
-}
-
-/// x that makes q.x least with A x <= b.
-fn minimize(q: &[f64], a: &CscMatrix<f64>, b: &[f64]) -> Option<Vec<f64>> {
-    let settings = DefaultSettings {
-        verbose: false,
-        tol_gap_abs: 1e-12,
-        tol_gap_rel: 1e-12,
-        tol_feas: 1e-12,
-        ..DefaultSettings::default()
-    };
-    let linear = CscMatrix::zeros((q.len(), q.len()));
-    let cones = [SupportedConeT::NonnegativeConeT(b.len())];
-    let mut solver = DefaultSolver::new(&linear, q, a, b, &cones, settings).ok()?;
-    solver.solve();
-    // The last digits may be out of reach; every use checks the point it gets.
-    let usable = matches!(
-        solver.solution.status,
-        SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
-    );
-    usable.then(|| solver.solution.x.clone())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn affine(constant: f64, coefficients: &[f64]) -> Affine {
+    fn affine(constant: f64, coefficients: &[f64]) -> Affine<f64> {
         Affine { constant, coefficients: coefficients.to_vec() }
-    }
-
-    #[test]
-    fn the_widest_slack_is_in_the_middle() {
-        // 0 <= y <= 3.
-        let (y, slack) = widest_slack(&[affine(0.0, &[1.0]), affine(3.0, &[-1.0])], 1, 10.0).unwrap();
-        // The interior-point method's own tolerance.
-        assert!((y[0] - 1.5).abs() < 1e-9 && (slack - 1.5).abs() < 1e-9);
-        let (_, slack) = widest_slack(&[affine(0.0, &[1.0]), affine(-2.0, &[-1.0])], 1, 10.0).unwrap();
-        assert!((slack + 1.0).abs() < 1e-9, "an empty set has a negative slack");
-        assert_eq!(widest_slack(&[affine(0.0, &[1.0])], 1, 10.0).unwrap().1.round(), 10.0);
-    }
-
-    #[test]
-    fn a_pointed_cone_that_meets_the_plane_at_its_tip_does_not_open() {
-        // |y| <= mu s and s = 0, against a half line.
-        assert!(!opens(&[affine(0.0, &[1.0]), affine(0.0, &[-1.0])], 1));
-        assert!(opens(&[affine(0.0, &[1.0]), affine(0.0, &[2.0])], 1));
-        assert!(opens(&[affine(0.0, &[1.0, 0.0])], 2), "a direction that no slack sees");
     }
 
     #[test]

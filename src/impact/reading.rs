@@ -1,13 +1,15 @@
 //! The signs of all inequalities of a combination as one.
 
+use super::bound::Bound;
 use super::enumerate::Leaf;
 use super::mode::{Friction, Mode};
 use super::outcome::Because;
 use super::problem::ContactProblem;
-use super::sign::{Scale, Slack, slacks};
+use super::sign::{Scale, Slack, SlackKind, slacks};
 use crate::scalar::{Ordered, Real, Sign};
 
 /// What the slacks of a combination say.
+#[derive(Debug)]
 pub struct Reading {
     /// Valid, rejected or not told; never zero.
     pub sign: Sign,
@@ -15,24 +17,25 @@ pub struct Reading {
     pub because: Because,
     /// The smallest slack, free of units.
     pub margin: Option<f64>,
-    /// An impulse inequality is exactly zero.
-    pub border: bool,
+    /// The impulse inequalities that are exactly zero, by contact.
+    pub at_zero: Vec<(usize, SlackKind)>,
 }
 
-/// Reads a leaf's f64 numbers, each scaled one known to `rounding`.
+/// Reads a leaf's f64 numbers, known to `bound`.
 pub fn read_f64(
     leaf: &Leaf<'_, f64>,
     modes: &[Mode],
     problem: &ContactProblem,
     scale: &Scale,
-    rounding: f64,
+    bound: &Bound,
     explain: bool,
 ) -> Reading {
+    let (velocity, impulse) = (bound.velocity_error(), bound.impulse_error());
     let factor = |slack: &Slack<f64>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
-    let speed = |contact: usize, c_t: f64| Sign::within(c_t / (scale.speed * scale.mobility[2 * contact]), rounding);
+    let speed = |contact: usize, c_t: f64| Sign::within(c_t / (scale.speed * scale.mobility[2 * contact]), velocity);
     read(leaf, modes, problem.friction(), explain, speed, |slack| {
         let scaled = slack.number * factor(slack);
-        (Sign::within(scaled, rounding), scaled)
+        (Sign::within(scaled, if slack.kind.is_strict() { velocity } else { impulse }), scaled)
     })
 }
 
@@ -58,7 +61,7 @@ fn read<T: Real>(
     speed: impl Fn(usize, T) -> Sign,
     slack: impl Fn(&Slack<T>) -> (Sign, f64),
 ) -> Reading {
-    let mut reading = Reading { sign: Sign::Positive, because: Because::NoSolution, margin: None, border: false };
+    let mut reading = Reading { sign: Sign::Positive, because: Because::NoSolution, margin: None, at_zero: Vec::new() };
     for (contact, &mode) in modes.iter().enumerate() {
         if mode == Mode::Stick && friction[contact].is_zero() {
             match speed(contact, leaf.numbers(contact)[0]) {
@@ -92,7 +95,10 @@ fn read<T: Real>(
         } else if sign == Sign::Undecided && reading.sign == Sign::Positive {
             reading.sign = Sign::Undecided;
         }
-        reading.border |= sign == Sign::Zero;
+        let place = (entry.contact, entry.kind);
+        if sign == Sign::Zero && !reading.at_zero.contains(&place) {
+            reading.at_zero.push(place);
+        }
         if least {
             reading.margin = Some(scaled);
         }

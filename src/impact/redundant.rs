@@ -1,366 +1,364 @@
-//! Combinations that elimination cannot decide: contacts that depend on each other, vanishing pivots.
+//! Combinations whose equations are singular: contacts that depend on each other, vanishing pivots.
 //!
 //! ```text
-//!     G = Z Z^T      c = c_free + Z w,  w = Z^T L      rows of the modes: Z_E w = -c_E,  L = B lambda in the cones
+//!     L = B lambda      c = c_free + G B lambda      rows that the modes hold at zero: linear equations for lambda
 //! ```
 //!
-//! Rank is decided on the rows of Z scaled to length one (the condition of G squares theirs). Where the rows of the modes
-//! determine the velocity but not the impulses, the impulses form a convex set; the combination is an outcome exactly when
-//! that set is not empty, which a linear program answers, and the impulse told is its member of least norm. A velocity that
-//! the modes exclude only by depending on others (a flat foot whose heel sticks cannot slide at the toe) belongs to the list
-//! of modes that says so: its redundant twin.
+//! The equations leave lambda = origin + free y. Where they determine the velocity but not the impulses, the impulses form a
+//! convex set; the combination is an outcome exactly when that set is not empty, which a linear program answers, and the
+//! impulse told is its member of least norm. A velocity that the modes exclude only by depending on others (a flat foot
+//! whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin. Where even
+//! the velocity depends on y it is a family, told by its two ends. Nothing here has a tolerance: see [`super::linear`].
 
-use super::basis::{Agreement, Basis, dot, solve};
-use super::generators::{Generators, slide_ray};
+use super::generators::Generators;
+use super::index::index;
+use super::linear::{Affine, Solutions, Unsettled, maximize, settled, solve, widest};
 use super::mode::{Friction, Mode};
-use super::outcome::{Because, Motion};
+use super::outcome::{Because, Motion, Range};
 use super::problem::ContactProblem;
-use super::program::{Affine, least_impulse, opens, widest_slack};
+use super::program::least_impulse;
 use super::sign::{Scale, SlackKind};
-use crate::scalar::Sign;
+use crate::scalar::{Ordered, Real};
+use std::cmp::Ordering;
 
-/// A scaled number within this of zero is not told from zero: the tolerance of the programs, above that of the rank.
-const TOLERANCE: f64 = 1e-9;
-/// A margin within this of zero, where the modes ask for a velocity that is not, is the rounding of one that the equations
-/// hold at zero (heel and toe of a flat foot cannot slide apart); so is a coefficient of rows of length one.
-const ROUNDING: f64 = 1e-12;
 /// Slacks are not followed beyond this: the impulses are then unbounded.
 const UNBOUNDED: f64 = 1e3;
 
-/// A problem's rows Z, scaled to length one, and c_free (with the bounce on normal rows) in the same scale.
-#[derive(Debug, Clone)]
-pub struct Rows {
-    columns: usize,
-    rows: Vec<Vec<f64>>,
-    free: Vec<f64>,
-}
-
 /// What became of a combination.
 #[derive(Debug, Clone)]
-pub struct Judged {
-    /// Positive: valid. Negative: rejected with a reason. Zero: a velocity that must differ from zero vanishes to rounding,
-    /// so that this is a redundant twin of the outcome with the same velocity, if there is one. Else not told.
-    pub sign: Sign,
-    /// Why not, where rejected.
-    pub because: Because,
+pub enum Judged {
+    /// It is no outcome.
+    Rejected {
+        /// Why.
+        because: Because,
+        /// The smallest slack, where there is one.
+        margin: Option<f64>,
+        /// What it would have been, where its equations have a solution.
+        motion: Option<Motion>,
+    },
+    /// Its velocity is the only one of these modes.
+    Valid(Member),
+    /// Its velocities form a set: the two ends. An end's own modes may be others, where it lies on the set's rim.
+    Family([Member; 2]),
+}
+
+/// One velocity and the impulses that lead to it.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// The strict modes of the velocity.
+    pub modes: Vec<Mode>,
+    /// The velocity and the least impulse.
+    pub motion: Motion,
     /// The smallest slack, where there is one.
     pub margin: Option<f64>,
-    /// Impulse and velocity after, where the combination has a solution.
-    pub motion: Option<Motion>,
-    /// Whether the impulse is the only one.
-    pub impulse_unique: bool,
-    /// Whether an impulse inequality is zero for every admissible impulse.
-    pub border: bool,
+    /// Least and greatest of every impulse's entry; none where the impulse is the only one.
+    pub range: Option<Vec<[Range; 2]>>,
+    /// The impulse inequalities that are zero for every admissible impulse, by contact.
+    pub at_zero: Vec<(usize, SlackKind)>,
+    /// Sign of det B; none on a border.
+    pub index: Option<i8>,
 }
 
-impl Judged {
-    fn without_solution(because: Because) -> Self {
-        Self { sign: Sign::Negative, because, margin: None, motion: None, impulse_unique: false, border: false }
-    }
+/// An inequality on the solutions, in the scale of margins.
+struct Inequality<T> {
+    contact: usize,
+    kind: SlackKind,
+    function: Affine<T>,
 }
 
-impl Rows {
-    /// The rows of a problem: those it was built from, else by elimination of G with diagonal pivoting.
-    pub fn of(problem: &ContactProblem, scale: &Scale) -> Self {
-        let count = 2 * problem.contacts();
-        let rows: Vec<Vec<f64>> = match problem.factor() {
-            Some(factor) => (0..count)
-                .map(|row| {
-                    let entries = &factor.rows[row * factor.columns..(row + 1) * factor.columns];
-                    entries.iter().map(|entry| entry / scale.mobility[row]).collect()
-                })
-                .collect(),
-            None => factorized(problem, scale),
-        };
-        let columns = rows.first().map_or(0, Vec::len);
-        let free = problem
-            .velocity_free()
-            .iter()
-            .enumerate()
-            .flat_map(|(contact, &[t, n])| [t, n + problem.bounce(contact)])
-            .zip(&scale.mobility)
-            .map(|(c, mobility)| c / (mobility * scale.speed))
-            .collect();
-        Self { columns, rows, free }
-    }
-
-    /// Rank of G.
-    pub fn rank(&self) -> usize {
-        let mut basis = Basis::new(self.columns);
-        basis.extend(&self.rows.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        basis.rank()
-    }
-
-    /// Judges one combination; frictionless contacts have their own mode here.
-    pub fn judge(&self, problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Judged {
-        let zero = zero_rows(modes);
-        let rows: Vec<&[f64]> = zero.iter().map(|&row| self.rows[row].as_slice()).collect();
-        let right: Vec<f64> = zero.iter().map(|&row| -self.free[row]).collect();
-        let (w, basis, agreement) = solve(self.columns, &rows, &right);
-        if agreement == Agreement::Fails {
-            return Judged::without_solution(Because::NoSolution);
-        }
-        let mut doubtful = agreement == Agreement::Doubtful;
-        for (contact, &mode) in modes.iter().enumerate() {
-            let row = match mode {
-                Mode::Separate => 2 * contact + 1,
-                Mode::SlidePlus | Mode::SlideMinus => 2 * contact,
-                Mode::Stick => continue,
-            };
-            let reach = TOLERANCE * (1.0 + dot(&w, &w).sqrt());
-            if basis.spans(&self.rows[row]) && (self.free[row] + dot(&self.rows[row], &w)).abs() <= reach {
-                return Judged::without_solution(Because::RedundantTwin);
-            }
-        }
-        let generators = Generators::of(&self.rows, problem, scale, modes);
-        let equations: Vec<Vec<f64>> = basis.rows().map(|unit| generators.against(unit)).collect();
-        let right: Vec<f64> = basis.rows().map(|unit| dot(unit, &w)).collect();
-        let rows: Vec<&[f64]> = equations.iter().map(Vec::as_slice).collect();
-        let (origin, span, agreement) = solve(generators.count(), &rows, &right);
-        if agreement == Agreement::Fails {
-            return Judged::without_solution(Because::NoSolution);
-        }
-        doubtful |= agreement == Agreement::Doubtful;
-        let free: Vec<Vec<f64>> = span.complement().rows().map(<[f64]>::to_vec).collect();
-        let slacks = self.slacks(problem, scale, modes, &generators, &origin, &free);
-        let judged = self.weigh(problem, scale, modes, &generators, (origin, free), slacks);
-        let sign = if doubtful && judged.sign != Sign::Negative { Sign::Undecided } else { judged.sign };
-        Judged { sign, ..judged }
-    }
-
-    /// Every slack of the combination as a function of the free parameters y of lambda = origin + free y.
-    fn slacks(
-        &self,
-        problem: &ContactProblem,
-        scale: &Scale,
-        modes: &[Mode],
-        generators: &Generators,
-        origin: &[f64],
-        free: &[Vec<f64>],
-    ) -> Vec<(usize, SlackKind, Affine)> {
-        let affine = |constant: f64, of_lambda: &[f64]| Affine {
-            constant: constant + dot(of_lambda, origin),
-            coefficients: free.iter().map(|direction| without_noise(dot(of_lambda, direction))).collect(),
-        };
-        let velocity = |row: usize, sign: f64| {
-            let of_lambda: Vec<f64> = generators.against(&self.rows[row]).iter().map(|entry| sign * entry).collect();
-            affine(sign * self.free[row], &of_lambda)
-        };
-        let impulse = |row: usize, factor: f64| generators.impulse_row(row, factor);
-        let mut slacks = Vec::new();
-        for (contact, &mode) in modes.iter().enumerate() {
-            let (t, n) = (2 * contact, 2 * contact + 1);
-            let friction = problem.friction()[contact];
-            match mode {
-                Mode::Separate => slacks.push((contact, SlackKind::Separation, velocity(n, 1.0))),
-                Mode::Stick => {
-                    slacks.push((contact, SlackKind::Pressure, affine(0.0, &impulse(n, 1.0))));
-                    if let Friction::Finite(mu) = friction
-                        && mu > 0.0
-                    {
-                        let (by_n, by_t) = (mu / scale.mobility[n], 1.0 / scale.mobility[t]);
-                        let length = by_n.hypot(by_t);
-                        for side in [-1.0, 1.0] {
-                            let reach = impulse(n, by_n / length);
-                            let pull = impulse(t, side * by_t / length);
-                            let both: Vec<f64> = reach.iter().zip(&pull).map(|(a, b)| a + b).collect();
-                            slacks.push((contact, SlackKind::Cone, affine(0.0, &both)));
-                        }
-                    }
-                }
-                Mode::SlidePlus | Mode::SlideMinus => {
-                    let (kind, row, factor) = match friction {
-                        Friction::Infinite => (SlackKind::Drag, t, -mode.direction()),
-                        Friction::Finite(_) => (SlackKind::Pressure, n, 1.0),
-                    };
-                    slacks.push((contact, kind, affine(0.0, &impulse(row, factor))));
-                    slacks.push((contact, SlackKind::Slip, velocity(t, mode.direction())));
-                }
-            }
-        }
-        slacks
-    }
-
-    /// Chooses among the free impulses and reads the signs.
-    fn weigh(
-        &self,
-        problem: &ContactProblem,
-        scale: &Scale,
-        modes: &[Mode],
-        generators: &Generators,
-        (origin, free): (Vec<f64>, Vec<Vec<f64>>),
-        slacks: Vec<(usize, SlackKind, Affine)>,
-    ) -> Judged {
-        // Whatever the velocities are off by is as good as the programs' own tolerance.
-        let size = (1.0 + scale.noise / TOLERANCE) * (1.0 + dot(&origin, &origin).sqrt());
-        let functions: Vec<Affine> = slacks.iter().map(|(_, _, slack)| slack.clone()).collect();
-        let strict = |index: usize| slacks[index].1.is_strict();
-        let widest = if free.is_empty() { None } else { widest_slack(&functions, free.len(), UNBOUNDED) };
-        // Where the velocities themselves form a set, no single one may be told as the outcome.
-        let family = self.rows.iter().any(|row| {
-            let of_lambda = generators.against(row);
-            free.iter().any(|direction| dot(&of_lambda, direction).abs() > TOLERANCE)
-        });
-        let open = family || (widest.is_none() && !free.is_empty());
-        let inside = widest.as_ref().is_some_and(|(_, least)| *least > TOLERANCE * size);
-        // What the modes hold at zero is at rest already: no impulse is needed, and its own inequalities are all zero.
-        let resting = !open && !origin.is_empty() && origin.iter().all(|&entry| entry == 0.0);
-        let border = resting && !inside;
-        let mut y = vec![0.0; free.len()];
-        if let Some((widest, _)) = widest
-            && !border
-        {
-            y = widest;
-        }
-        let values: Vec<f64> = functions.iter().map(|slack| slack.at(&y)).collect();
-        let decisive = (0..values.len()).filter(|&index| !border || strict(index));
-        let least = decisive.min_by(|&i, &j| values[i].total_cmp(&values[j]));
-        let margin = least.map(|least| values[least]);
-        let vanishes = |(index, value): (usize, &f64)| strict(index) && value.abs() <= TOLERANCE * size;
-        let sign = match margin.map_or(Sign::Positive, |margin| Sign::within(margin, TOLERANCE * size)) {
-            Sign::Undecided if margin >= Some(-ROUNDING * size) && values.iter().enumerate().any(vanishes) => {
-                Sign::Zero
-            }
-            Sign::Positive if open => Sign::Undecided,
-            sign => sign,
-        };
-        // Generators are independent, so that a free direction always changes the impulses.
-        let mut impulse_unique = free.is_empty();
-        if border {
-            let pressing: Vec<Affine> =
-                (0..values.len()).filter(|&index| !strict(index)).map(|index| functions[index].clone()).collect();
-            impulse_unique |= !opens(&pressing, free.len());
-        } else if sign == Sign::Positive && resting {
-            y = vec![0.0; free.len()];
-        } else if sign == Sign::Positive && !impulse_unique {
-            let directions: Vec<Vec<f64>> = free.iter().map(|lambda| generators.raw_impulse(lambda, scale)).collect();
-            y = least_impulse(&generators.raw_impulse(&origin, scale), &directions, &functions, &y);
-        }
-        let margin = if border && sign == Sign::Positive { Some(0.0) } else { margin };
-        let mut lambda = origin;
-        for (direction, factor) in free.iter().zip(&y) {
-            for (entry, part) in lambda.iter_mut().zip(direction) {
-                *entry += factor * part;
-            }
-        }
-        let impulse = generators.raw_impulse(&lambda, scale).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        let mut velocity: Vec<f64> = (0..self.rows.len())
-            .map(|row| {
-                let scaled = self.free[row] + dot(&generators.against(&self.rows[row]), &lambda);
-                scaled * scale.mobility[row] * scale.speed
-            })
-            .collect();
-        for row in zero_rows(modes) {
-            velocity[row] = 0.0;
-        }
-        let velocity_after = velocity
-            .chunks_exact(2)
-            .enumerate()
-            .map(|(contact, pair)| [pair[0], pair[1] - problem.bounce(contact)])
-            .collect();
-        Judged {
-            sign,
-            because: least.map_or(Because::NoSolution, |least| slacks[least].1.violation(slacks[least].0)),
-            // A margin at the cap is that of impulses without bound.
-            margin: margin.filter(|margin| *margin < UNBOUNDED * (1.0 - TOLERANCE)),
-            motion: Some(Motion { impulse, velocity_after }),
-            impulse_unique,
-            border,
-        }
-    }
-
-    /// Sign of det B, where B is the Schur complement on the sliding contacts (normal row x slide direction) after the
-    /// sticking rows are eliminated by rank; none where B is singular.
-    pub fn index(&self, problem: &ContactProblem, scale: &Scale, modes: &[Mode]) -> Option<i8> {
-        let holds = |contact: usize| modes[contact] == Mode::Stick && !problem.friction()[contact].is_zero();
-        let contacts = 0..modes.len();
-        let stuck: Vec<&[f64]> = contacts
-            .clone()
-            .filter(|&contact| holds(contact))
-            .flat_map(|contact| [self.rows[2 * contact].as_slice(), self.rows[2 * contact + 1].as_slice()])
-            .collect();
-        let mut basis = Basis::new(self.columns);
-        basis.extend(&stuck);
-        let sliding: Vec<usize> =
-            contacts.filter(|&contact| modes[contact] != Mode::Separate && !holds(contact)).collect();
-        let rests: Vec<Vec<f64>> = sliding.iter().map(|&contact| basis.rest(&self.rows[2 * contact + 1])).collect();
-        let rays: Vec<Vec<f64>> = sliding
-            .iter()
-            .map(|&contact| {
-                let ray = slide_ray(problem, scale, contact, modes[contact]);
-                let [t, n] = [&self.rows[2 * contact], &self.rows[2 * contact + 1]];
-                t.iter().zip(n).map(|(t, n)| ray[0] * t + ray[1] * n).collect()
-            })
-            .collect();
-        let mut schur: Vec<Vec<f64>> = rests.iter().map(|row| rays.iter().map(|ray| dot(row, ray)).collect()).collect();
-        let mut sign = 1;
-        while !schur.is_empty() {
-            let last = schur.len() - 1;
-            let places = (0..=last).flat_map(|i| (0..=last).map(move |j| (i, j)));
-            let (i, j) = places.max_by(|&(i, j), &(k, l)| schur[i][j].abs().total_cmp(&schur[k][l].abs()))?;
-            let pivot = schur[i][j];
-            if pivot.abs() <= TOLERANCE {
-                return None;
-            }
-            // Moving the pivot to the last row and column by swaps changes the sign once for each real swap.
-            for swapped in [i, j] {
-                sign = if swapped == last { sign } else { -sign };
-            }
-            schur.swap(i, last);
-            schur.iter_mut().for_each(|row| row.swap(j, last));
-            sign = if pivot < 0.0 { -sign } else { sign };
-            let pivot_row = schur.pop()?;
-            for row in &mut schur {
-                let factor = row[last] / pivot;
-                row.truncate(last);
-                for (entry, above) in row.iter_mut().zip(&pivot_row) {
-                    *entry -= factor * above;
-                }
-            }
-        }
-        Some(sign)
-    }
-}
-
-/// A coefficient of rows and directions of length one, unless it is no more than their rounding: a program would follow
-/// such a slope to any distance.
-fn without_noise(coefficient: f64) -> f64 {
-    if coefficient.abs() <= ROUNDING { 0.0 } else { coefficient }
+/// Judges one combination; frictionless contacts have their own mode here. `rounded` is the same problem in f64.
+pub fn judge<T: Ordered>(
+    problem: &ContactProblem<T>,
+    rounded: &ContactProblem,
+    scale: &Scale,
+    modes: &[Mode],
+) -> Result<Judged, Unsettled> {
+    let generators = Generators::of(modes, problem.friction());
+    let equations = zero_rows(modes)
+        .map(|row| {
+            let mut equation = generators.velocity_row(problem, row);
+            equation.push(-problem.free_row(row));
+            equation
+        })
+        .collect();
+    let Some(solutions) = solve(generators.count(), equations)? else {
+        return Ok(Judged::Rejected { because: Because::NoSolution, margin: None, motion: None });
+    };
+    Combination { problem, rounded, scale, modes, generators }.weigh(&solutions)
 }
 
 /// The velocity rows that a combination sets to zero.
-fn zero_rows(modes: &[Mode]) -> Vec<usize> {
-    let of = |(contact, &mode): (usize, &Mode)| {
+fn zero_rows(modes: &[Mode]) -> impl Iterator<Item = usize> {
+    modes.iter().enumerate().flat_map(|(contact, &mode)| {
         let tangential = (mode == Mode::Stick).then_some(2 * contact);
         let normal = (mode != Mode::Separate).then_some(2 * contact + 1);
         tangential.into_iter().chain(normal)
-    };
-    modes.iter().enumerate().flat_map(of).collect()
+    })
 }
 
-/// Z with G = Z Z^T to rounding, rows scaled to length one: elimination with diagonal pivoting.
-fn factorized(problem: &ContactProblem, scale: &Scale) -> Vec<Vec<f64>> {
-    let count = 2 * problem.contacts();
-    let mut rest: Vec<Vec<f64>> = (0..count)
-        .map(|i| (0..count).map(|j| problem.delassus(i, j) / (scale.mobility[i] * scale.mobility[j])).collect())
-        .collect();
-    let mut rows = vec![Vec::new(); count];
-    for _ in 0..count {
-        let Some(pivot) = (0..count).max_by(|&i, &j| rest[i][i].total_cmp(&rest[j][j])) else { break };
-        let diagonal = rest[pivot][pivot];
-        if diagonal <= 8.0 * count as f64 * f64::EPSILON {
-            break;
-        }
-        let column: Vec<f64> = rest.iter().map(|row| row[pivot] / diagonal.sqrt()).collect();
-        for (i, line) in rest.iter_mut().enumerate() {
-            rows[i].push(column[i]);
-            for (entry, other) in line.iter_mut().zip(&column) {
-                *entry -= column[i] * other;
+/// A combination of modes and all that it is read with.
+struct Combination<'a, T> {
+    problem: &'a ContactProblem<T>,
+    rounded: &'a ContactProblem,
+    scale: &'a Scale,
+    modes: &'a [Mode],
+    generators: Generators,
+}
+
+impl<T: Ordered> Combination<'_, T> {
+    fn weigh(&self, solutions: &Solutions<T>) -> Result<Judged, Unsettled> {
+        let inequalities = self.inequalities(self.problem, solutions);
+        let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
+        for inequality in inequalities.iter().filter(|inequality| inequality.kind.is_strict()) {
+            if inequality.function.is_constant()? && settled(inequality.function.constant)?.is_eq() {
+                return Ok(Judged::Rejected { because: Because::RedundantTwin, margin: None, motion: None });
             }
-            // What is left of the pivot is zero by construction, and its rounding must not count as rank again.
-            line[pivot] = 0.0;
         }
-        rest[pivot].fill(0.0);
+        let dimension = solutions.directions.len();
+        let functions: Vec<Affine<T>> = inequalities.iter().map(|inequality| inequality.function.clone()).collect();
+        let (inside, least) = widest(&functions, dimension, T::from_f64(UNBOUNDED))?;
+        let standing = settled(least)?;
+        if standing.is_lt() {
+            return Ok(self.rejected(solutions, &inequalities, &inside));
+        }
+        let mut family = false;
+        for velocity in &velocities {
+            family |= !velocity.is_constant()?;
+        }
+        if !family {
+            return Ok(Judged::Valid(self.member(solutions, self.modes.to_vec(), &inside, least)?));
+        }
+        // The rim of a family belongs to other modes; some velocity of its own must be left.
+        if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
+            return Ok(Judged::Rejected { because: Because::RedundantTwin, margin: None, motion: None });
+        }
+        let end = |sign: T| self.end(solutions, &inside, sign);
+        Ok(Judged::Family([end(T::one())?, end(-T::one())?]))
     }
-    rows
+
+    fn velocity(&self, solutions: &Solutions<T>, row: usize) -> Affine<T> {
+        solutions.affine(self.problem.free_row(row), &self.generators.velocity_row(self.problem, row))
+    }
+
+    /// Every inequality of the modes, in numbers of any kind.
+    fn inequalities<R: Real>(&self, problem: &ContactProblem<R>, solutions: &Solutions<R>) -> Vec<Inequality<R>> {
+        let mut all = Vec::new();
+        for (contact, (&mode, &friction)) in self.modes.iter().zip(problem.friction()).enumerate() {
+            let (t, n) = (2 * contact, 2 * contact + 1);
+            let mut tell = |kind, constant: R, coefficients: Vec<R>| {
+                let factor = R::from_f64(self.scale.factor(kind, contact, friction));
+                let coefficients: Vec<R> = coefficients.into_iter().map(|entry| factor * entry).collect();
+                let function = solutions.affine(factor * constant, &coefficients);
+                all.push(Inequality { contact, kind, function });
+            };
+            let (along, pressed) = (self.generators.impulse_row::<R>(t), self.generators.impulse_row::<R>(n));
+            match mode {
+                Mode::Separate => {
+                    tell(SlackKind::Separation, problem.free_row(n), self.generators.velocity_row(problem, n));
+                }
+                Mode::Stick => {
+                    if let Friction::Finite(mu) = friction
+                        && mu > 0.0
+                    {
+                        for side in [-1.0, 1.0] {
+                            let (reach, side) = (R::from_f64(mu), R::from_f64(side));
+                            let cone = pressed.iter().zip(&along).map(|(&l_n, &l_t)| reach * l_n + side * l_t);
+                            tell(SlackKind::Cone, R::zero(), cone.collect());
+                        }
+                    }
+                    tell(SlackKind::Pressure, R::zero(), pressed);
+                }
+                Mode::SlidePlus | Mode::SlideMinus => {
+                    let direction = R::from_f64(mode.direction());
+                    match friction {
+                        Friction::Infinite => {
+                            tell(SlackKind::Drag, R::zero(), along.iter().map(|&entry| -direction * entry).collect());
+                        }
+                        Friction::Finite(_) => tell(SlackKind::Pressure, R::zero(), pressed),
+                    }
+                    let slip = self.generators.velocity_row(problem, t);
+                    let slip = slip.iter().map(|&entry| direction * entry).collect();
+                    tell(SlackKind::Slip, direction * problem.free_row(t), slip);
+                }
+            }
+        }
+        all
+    }
+
+    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Inequality<T>], y: &[T]) -> Judged {
+        let values = inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
+        let worst = values.min_by(|a, b| a.1.total_cmp(&b.1));
+        Judged::Rejected {
+            because: worst.map_or(Because::NoSolution, |(worst, _)| worst.kind.violation(worst.contact)),
+            margin: worst.map(|(_, value)| value),
+            motion: Some(self.motion(solutions, y, self.modes)),
+        }
+    }
+
+    /// Whether some point where no inequality is negative has every strict one above zero.
+    fn has_own_velocity(&self, inequalities: &[Inequality<T>], inside: &[T]) -> Result<bool, Unsettled> {
+        // Unknowns y and s, s at most every strict inequality and at most 1: can it be positive?
+        let shifted = |inequality: &Inequality<T>| {
+            let mut coefficients = inequality.function.coefficients.clone();
+            coefficients.push(if inequality.kind.is_strict() { -T::one() } else { T::zero() });
+            Affine { constant: inequality.function.at(inside), coefficients }
+        };
+        let mut rows: Vec<Affine<T>> = inequalities.iter().map(shifted).collect();
+        let mut rise = vec![T::zero(); inside.len()];
+        rise.push(-T::one());
+        rows.push(Affine { constant: T::one(), coefficients: rise });
+        let mut objective = vec![T::zero(); inside.len()];
+        objective.push(T::one());
+        let best = maximize(&rows, &objective)?.ok_or(Unsettled)?;
+        best.last().map_or(Ok(false), |&rise| Ok(settled(rise)?.is_gt()))
+    }
+
+    /// The end of a family at which its velocities, in the order of the rows, are greatest (`sign` 1) or least (-1).
+    fn end(&self, solutions: &Solutions<T>, inside: &[T], sign: T) -> Result<Member, Unsettled> {
+        let mut space = solutions.clone();
+        space.origin = solutions.at(inside);
+        for row in 0..2 * self.modes.len() {
+            let velocity = self.velocity(&space, row);
+            if velocity.is_constant()? {
+                continue;
+            }
+            let functions: Vec<Affine<T>> =
+                self.inequalities(self.problem, &space).into_iter().map(|each| each.function).collect();
+            let toward: Vec<T> = velocity.coefficients.iter().map(|&entry| sign * entry).collect();
+            // Energy bounds every velocity.
+            let best = maximize(&functions, &toward)?.ok_or(Unsettled)?;
+            let point = space.at(&best);
+            let rest = Affine { constant: velocity.constant - velocity.at(&best), ..velocity };
+            space = space.where_zero(&rest)?.ok_or(Unsettled)?;
+            space.origin = point;
+        }
+        let modes = self.modes_of(&space)?;
+        let y = vec![T::zero(); space.directions.len()];
+        let mut member = self.member(&space, modes, &y, T::zero())?;
+        (member.index, member.margin) = (None, None);
+        Ok(member)
+    }
+
+    /// The strict modes of the only velocity of `space`.
+    fn modes_of(&self, space: &Solutions<T>) -> Result<Vec<Mode>, Unsettled> {
+        let mut modes = self.modes.to_vec();
+        for (contact, mode) in modes.iter_mut().enumerate() {
+            let closed = *mode != Mode::Separate || settled(self.velocity(space, 2 * contact + 1).constant)?.is_eq();
+            if closed && *mode != Mode::Stick {
+                *mode = match settled(self.velocity(space, 2 * contact).constant)? {
+                    Ordering::Greater => Mode::SlidePlus,
+                    Ordering::Equal => Mode::Stick,
+                    Ordering::Less => Mode::SlideMinus,
+                };
+            }
+        }
+        Ok(modes)
+    }
+
+    /// The only velocity of `space`, with its impulses; at `inside` no inequality is negative, and the smallest is `least`.
+    fn member(&self, space: &Solutions<T>, modes: Vec<Mode>, inside: &[T], least: T) -> Result<Member, Unsettled> {
+        let inequalities = self.inequalities(self.problem, space);
+        let dimension = space.directions.len();
+        // Velocities are settled; only impulses still depend on y.
+        let pressing: Vec<&Inequality<T>> =
+            inequalities.iter().filter(|inequality| !inequality.kind.is_strict()).collect();
+        let shifted: Vec<Affine<T>> = pressing
+            .iter()
+            .map(|each| Affine { constant: each.function.at(inside), coefficients: each.function.coefficients.clone() })
+            .collect();
+        let mut at_zero: Vec<(usize, SlackKind)> = Vec::new();
+        if settled(least)?.is_eq() {
+            for (inequality, function) in pressing.iter().zip(&shifted) {
+                let vanishes = settled(function.constant)?.is_eq()
+                    && match maximize(&shifted, &function.coefficients)? {
+                        Some(best) => settled(function.at(&best))?.is_eq(),
+                        None => false,
+                    };
+                let entry = (inequality.contact, inequality.kind);
+                if vanishes && !at_zero.contains(&entry) {
+                    at_zero.push(entry);
+                }
+            }
+        }
+        let at = space.at(inside);
+        let mut ranges = Vec::new();
+        let mut unique = true;
+        if dimension > 0 {
+            for row in 0..2 * modes.len() {
+                let entry = space.affine(T::zero(), &self.generators.impulse_row::<T>(row));
+                let here = entry.at(inside);
+                let mut bound = |sign: T| -> Result<Option<f64>, Unsettled> {
+                    let toward: Vec<T> = entry.coefficients.iter().map(|&each| sign * each).collect();
+                    let Some(best) = maximize(&shifted, &toward)? else {
+                        unique = false;
+                        return Ok(None);
+                    };
+                    let change = Affine { constant: T::zero(), coefficients: entry.coefficients.clone() }.at(&best);
+                    unique &= settled(change)?.is_eq();
+                    Ok(Some((here + change).to_f64()))
+                };
+                let least = bound(-T::one())?;
+                ranges.push([least, bound(T::one())?]);
+            }
+        }
+        let lambda = if unique {
+            at.iter().map(|entry| entry.to_f64()).collect()
+        } else if self.needs_no_impulse()? {
+            vec![0.0; at.len()]
+        } else {
+            self.least(space, &at)
+        };
+        let margin = (!inequalities.is_empty()).then(|| least.to_f64());
+        Ok(Member {
+            motion: self.motion_of(space, &lambda, &modes),
+            // A margin at the cap is that of impulses without bound.
+            margin: margin.filter(|margin| *margin < UNBOUNDED),
+            range: (!unique).then(|| ranges.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()),
+            index: if at_zero.is_empty() { index(self.problem, &modes)? } else { None },
+            at_zero,
+            modes,
+        })
+    }
+
+    /// Whether all that the modes hold at zero is at rest already.
+    fn needs_no_impulse(&self) -> Result<bool, Unsettled> {
+        for row in zero_rows(self.modes) {
+            if settled(self.problem.free_row(row))?.is_ne() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The lambda of the shortest impulse; `inside` is one that no inequality forbids.
+    fn least(&self, space: &Solutions<T>, inside: &[T]) -> Vec<f64> {
+        let number = |list: &[T]| -> Vec<f64> { list.iter().map(|entry| entry.to_f64()).collect() };
+        let free: Vec<Vec<f64>> = space.directions.iter().map(|direction| number(direction)).collect();
+        let space = Solutions { origin: number(inside), directions: super::basis::orthonormal(&free) };
+        let pressing = self.inequalities(self.rounded, &space).into_iter().filter(|each| !each.kind.is_strict());
+        let functions: Vec<Affine<f64>> = pressing.map(|each| each.function).collect();
+        let directions: Vec<Vec<f64>> = space.directions.iter().map(|each| self.generators.impulse(each)).collect();
+        let start = vec![0.0; directions.len()];
+        space.at(&least_impulse(&self.generators.impulse(&space.origin), &directions, &functions, &start))
+    }
+
+    fn motion(&self, solutions: &Solutions<T>, y: &[T], modes: &[Mode]) -> Motion {
+        let at = Solutions { origin: solutions.at(y), directions: Vec::new() };
+        let lambda: Vec<f64> = at.origin.iter().map(|entry| entry.to_f64()).collect();
+        self.motion_of(&at, &lambda, modes)
+    }
+
+    /// The velocity of `space` at its origin, with the impulse that `lambda` gives.
+    fn motion_of(&self, space: &Solutions<T>, lambda: &[f64], modes: &[Mode]) -> Motion {
+        let mut velocity: Vec<f64> =
+            (0..2 * modes.len()).map(|row| self.velocity(space, row).constant.to_f64()).collect();
+        for row in zero_rows(modes) {
+            velocity[row] = 0.0;
+        }
+        let bounced = velocity.chunks_exact(2).enumerate();
+        Motion {
+            impulse: self.generators.impulse(lambda).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(),
+            velocity_after: bounced.map(|(i, pair)| [pair[0], pair[1] - self.rounded.bounce(i)]).collect(),
+        }
+    }
 }

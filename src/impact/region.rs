@@ -60,7 +60,7 @@ fn mirrored(gamma: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::Friction;
+    use crate::impact::{Errors, Friction};
 
     /// The paper's body: m = 1, CoG at (-1, 1), j = 1; beta = -26.565 degrees.
     fn explain(taken: [f64; 2]) -> (f64, f64, Region) {
@@ -69,7 +69,7 @@ mod tests {
         let problem =
             ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![Friction::Infinite], vec![0.0]).unwrap();
         let mut scale = Scale::default();
-        scale.measure(&problem);
+        scale.measure(&problem, Errors::NONE);
         let found = explanation(&problem, &scale).unwrap();
         (found.beta[0], found.gamma[0], found.region[0])
     }

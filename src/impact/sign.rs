@@ -4,13 +4,12 @@
 //!     separate  xi_n > 0      stick  L_n >= 0,  a L_n -+ b L_t >= 0      slide+-  +-c_t > 0,  lambda >= 0
 //! ```
 //!
-//! This is the only place of the impact module that compares a number with zero. A [`Sign`] is told only where the
-//! number's error bound allows it.
+//! A [`Sign`](crate::scalar::Sign) is told only where the number's error bound allows it.
 
 use super::enumerate::Leaf;
 use super::mode::{Friction, Mode};
 use super::outcome::Because;
-use super::problem::ContactProblem;
+use super::problem::{ContactProblem, Errors};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
@@ -95,13 +94,13 @@ pub struct Scale {
     pub speed: f64,
     /// sqrt(G_ii) of every row \[1/sqrt(kg)\]; of a row that nothing moves the largest of the others.
     pub mobility: Vec<f64>,
-    /// What the scaled velocities may be off by before anything is computed from them.
+    /// What the scaled velocities of the f64 problem may be off by.
     pub noise: f64,
 }
 
 impl Scale {
-    /// Takes the magnitudes of a problem, reusing the memory.
-    pub fn measure(&mut self, problem: &ContactProblem) {
+    /// Takes the magnitudes of a problem, reusing the memory; `errors` are those of its numbers.
+    pub fn measure(&mut self, problem: &ContactProblem, errors: Errors<'_>) {
         let rows = 2 * problem.contacts();
         self.mobility.clear();
         self.mobility.extend((0..rows).map(|row| problem.delassus(row, row).max(0.0).sqrt()));
@@ -122,8 +121,12 @@ impl Scale {
         if self.speed == 0.0 {
             self.speed = 1.0;
         }
-        let noise = problem.noise().unwrap_or_default().iter().flatten().zip(&self.mobility);
+        let noise = errors.velocity.unwrap_or_default().iter().flatten().zip(&self.mobility);
         self.noise = noise.map(|(noise, mobility)| noise / (mobility * self.speed)).fold(0.0, f64::max);
+        if (0..problem.contacts()).any(|contact| problem.bounce(contact) != 0.0) {
+            // The bounce and its sum with c_n, each at most S sqrt(G_nn), are rounded.
+            self.noise += 4.0 * f64::EPSILON;
+        }
     }
 
     /// What a slack of this kind is multiplied by to be free of units.
@@ -141,40 +144,9 @@ impl Scale {
         }
     }
 
-    /// Whether two lists of contact velocities differ by no more than the programs' tolerance.
+    /// Whether two lists of contact velocities are the same but for rounding.
     pub fn same_velocity(&self, a: &[Vector<f64>], b: &[Vector<f64>]) -> bool {
         let differences = a.iter().flatten().zip(b.iter().flatten()).zip(&self.mobility);
         differences.map(|((a, b), mobility)| (a - b).abs() / (mobility * self.speed)).all(|far| far < 1e-8)
-    }
-
-    /// How far the scaled numbers of a leaf may be off by rounding: the elimination loses what its pivots are smaller
-    /// than the rows they came from. An estimate that errs on the safe side, not a proof.
-    pub fn rounding(&self, leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> f64 {
-        let mut growth: f64 = 1.0;
-        let mut largest: f64 = 1.0;
-        for (contact, (&mode, &pivot)) in leaf.modes.iter().zip(leaf.pivots).enumerate() {
-            let (d_t, d_n) = (self.mobility[2 * contact], self.mobility[2 * contact + 1]);
-            let friction = problem.friction()[contact];
-            if mode != Mode::Separate {
-                let (a, b) = friction.pair();
-                let size = if mode.slides() {
-                    d_n * (a * d_t + b * d_n)
-                } else if friction.is_zero() {
-                    d_n * d_n
-                } else {
-                    (d_t * d_n).powi(2)
-                };
-                let loss = size / pivot.abs();
-                growth *= if loss.is_nan() { f64::INFINITY } else { loss.max(1.0) };
-            }
-            let [l_t, l_n] = leaf.impulse(contact);
-            let [c_t, xi_n] = leaf.velocity(contact);
-            for scaled in [l_t * d_t, l_n * d_n, c_t / d_t, xi_n / d_n] {
-                let scaled = scaled.abs() / self.speed;
-                // `f64::max` would drop a NaN.
-                largest = if scaled.is_nan() { f64::INFINITY } else { largest.max(scaled) };
-            }
-        }
-        (16.0 * leaf.modes.len() as f64 * f64::EPSILON + self.noise) * growth * largest
     }
 }

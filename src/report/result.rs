@@ -7,7 +7,8 @@
 use super::schema::Id;
 use super::touchdown::{CarriedFields, Touchdown};
 use super::{Detail, Problem};
-use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, outcome};
+use crate::impact::outcome::{self, Range};
+use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, Zero};
 use crate::pipeline::{Impact, Matrices};
 use crate::planar::Vector;
 use crate::state::State;
@@ -132,17 +133,47 @@ pub struct Outcome<'a> {
     pub energy_loss: f64,
     /// False where other impulses give the same velocities.
     pub impulse_unique: bool,
+    /// Least and greatest of every entry of `impulse`, null where it has no bound; where other impulses give the same
+    /// velocities.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impulse_range: Option<&'a [Vector<Range>]>,
     /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others.
     pub friction_needed: &'a [Option<f64>],
-    /// Sign of det A.
+    /// Sign of det A; null on a border.
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
+    /// What is exactly zero, and the lists of modes beyond; on a border only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub border: Option<Border<'a>>,
+    /// True, and only then present, of an end of a family: every velocity between both ends is an outcome.
+    #[serde(skip_serializing_if = "is_false")]
+    pub family: bool,
     /// Every sign is shown by an error bound.
     pub proven: bool,
     /// False, and only then present, where the combination is neither shown nor excluded.
     #[serde(skip_serializing_if = "is_true")]
     pub decided: bool,
+}
+
+/// Where an outcome turns into others.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Border<'a> {
+    /// The impulse inequalities that are exactly zero.
+    pub at_zero: Vec<AtZero<'a>>,
+    /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are combinations.
+    pub neighbours: &'a [Vec<Mode>],
+}
+
+/// An impulse inequality that is zero.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct AtZero<'a> {
+    /// The contact's name.
+    pub contact: &'a str,
+    /// What is zero there.
+    pub inequality: Zero,
 }
 
 /// Something of the robot's file that does not enter the analysis.
@@ -243,6 +274,10 @@ fn is_true(flag: &bool) -> bool {
     *flag
 }
 
+fn is_false(flag: &bool) -> bool {
+    !*flag
+}
+
 /// An outcome in brief.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -253,6 +288,9 @@ pub struct OutcomeInBrief<'a> {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
+    /// True, and only then present, where an inequality is exactly zero.
+    #[serde(skip_serializing_if = "is_false")]
+    pub border: bool,
     /// False, and only then present, where the combination is neither shown nor excluded.
     #[serde(skip_serializing_if = "is_true")]
     pub decided: bool,
@@ -355,12 +393,16 @@ impl<'a> Report<'a> {
             let names: Vec<String> = contacts.iter().map(|contact| contact.name.to_owned()).collect();
             analysis.rejected.iter().map(|rejection| Rejected::new(rejection, &names)).collect()
         });
+        let outcomes = known.map(|analysis| {
+            let name = |contact: usize| contacts[contact].name;
+            analysis.outcomes.iter().map(|outcome| Outcome::new(outcome, name)).collect()
+        });
         Self {
             id: None,
             touchdown: None,
             verdict: known.map(|analysis| analysis.verdict),
             proven: known.map(|analysis| analysis.proven),
-            outcomes: known.map(|analysis| analysis.outcomes.iter().map(Outcome::new).collect()),
+            outcomes,
             rejected,
             kinetic_energy: None,
             no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
@@ -386,6 +428,7 @@ impl<'a> Report<'a> {
             modes: outcome.modes,
             index: outcome.index,
             margin: outcome.margin,
+            border: outcome.border.is_some(),
             decided: outcome.decided,
         };
         Brief {
@@ -422,7 +465,8 @@ impl<'a> Contact<'a> {
 }
 
 impl<'a> Outcome<'a> {
-    fn new(outcome: &'a outcome::Outcome) -> Self {
+    fn new(outcome: &'a outcome::Outcome, name: impl Fn(usize) -> &'a str) -> Self {
+        let at_zero = |&(contact, inequality): &(usize, Zero)| AtZero { contact: name(contact), inequality };
         Self {
             modes: &outcome.modes,
             impulse: &outcome.impulse,
@@ -431,9 +475,15 @@ impl<'a> Outcome<'a> {
             joint_velocity_after: None,
             energy_loss: outcome.energy_loss,
             impulse_unique: outcome.impulse_unique,
+            impulse_range: outcome.impulse_range.as_deref(),
             friction_needed: &outcome.friction_needed,
             index: outcome.index,
             margin: outcome.margin,
+            border: outcome.border.as_ref().map(|border| Border {
+                at_zero: border.at_zero.iter().map(at_zero).collect(),
+                neighbours: &border.neighbours,
+            }),
+            family: outcome.family,
             proven: outcome.proven,
             decided: outcome.decided,
         }

@@ -1,6 +1,6 @@
 //! Enclosures that know exactly when they are zero.
 
-use super::{Enclosure, Ordered, Real, Residue, Sign, Trigonometry};
+use super::{Ordered, Real, Residue, Sign, Trigonometry};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An enclosure together with the [`Residue`] of the same number.
@@ -55,16 +55,6 @@ impl<B: Ordered> Ordered for Certified<B> {
 
     fn to_f64(self) -> f64 {
         self.enclosure.to_f64()
-    }
-}
-
-impl<B: Enclosure> Enclosure for Certified<B> {
-    /// The residue of a number that is known less well is unknown, unless nothing is added.
-    fn widened(self, by: Self) -> Self {
-        if by.sign() == Sign::Zero {
-            return self;
-        }
-        Self { enclosure: self.enclosure.widened(by.enclosure), residue: Residue::UNDEFINED }
     }
 }
 

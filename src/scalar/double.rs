@@ -218,6 +218,33 @@ mod tests {
         }
     }
 
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        /// Significands of a few bits meet every tie and every cancellation.
+        #[test]
+        fn a_sum_that_cancels_knows_its_error(
+            a in -9..=9i32, b in -9..=9i32, c in -9..=9i32, d in -9..=9i32, i in 48..60i32, j in 48..60i32, k in -3..=3i32,
+        ) {
+            let number = |hi: i32, lo: i32, k: i32| {
+                let (hi, lo) = two_sum(f64::from(hi), libm::scalbn(f64::from(lo), -k));
+                DoubleDouble { hi, lo }
+            };
+            let near = DoubleDouble { hi: libm::scalbn(1.0, k), lo: 0.0 };
+            for (x, y) in [
+                (number(a, c, i), number(b, d, j)),
+                (number(a, c, i), -number(a, d, j)),
+                (number(a, c, i) * near, number(-a, b, j) + number(d, c, 60)),
+            ] {
+                let (sum, error) = x.sum(y);
+                prop_assert_eq!(sum, x + y);
+                prop_assert_eq!(sum.hi, sum.hi + sum.lo);
+                let rest = exact(x) + exact(y) - exact(sum);
+                let rest = if rest < RBig::ZERO { -rest } else { rest };
+                prop_assert!(rest <= RBig::try_from(error * (1.0 + f64::EPSILON)).expect("finite"));
+            }
+        }
+    }
+
     #[test]
     fn an_overflow_is_no_number() {
         let huge = DoubleDouble::from_f64(1e305);

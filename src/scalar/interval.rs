@@ -441,7 +441,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(1000))]
         #[test]
         fn every_operation_encloses_its_exact_result(
-            a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e-3..1e-3f64, k in -90..90i32, bits in 20..400usize,
+            a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e-3..1e-3f64, k in -600..600i32, bits in 20..400usize,
         ) {
             let b = b * f64::from(k).exp2();
             let [p, q, r] = [a, b, c].map(exact);
@@ -455,7 +455,7 @@ mod tests {
                     prop_assert!(encloses(quotient, &truth));
                     prop_assert!(encloses(quotient * quotient - x, &(&truth * &truth - &p)));
                     prop_assert!(encloses((quotient - x) / (quotient * y), &((&truth - &p) / (&truth * &q))));
-                    if bits > 60 && a != 0.0 {
+                    if bits > 100 && a != 0.0 {
                         prop_assert!(quotient.sign() != Sign::Undecided);
                     }
                 }

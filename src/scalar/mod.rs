@@ -3,14 +3,12 @@
 //! From kinematics to the slacks of the modes every algorithm is written once over [`Real`]: it neither branches on a
 //! number nor takes a root, so that eight lanes, a ball, a double-double or an exact rational run the same code as `f64`.
 //! [`Ball`] is the instance that knows its own rounding, over f64 or over [`DoubleDouble`], [`Interval`] the one with as many
-//! digits as asked for, [`Exact`] the one that rounds nothing, and [`Residue`] the one that tells only whether a number is
-//! zero; [`Certified`] carries an enclosure and a residue in step, so that enough digits decide every sign. Only the stage
+//! digits as asked for, and [`Residue`] the one that tells only whether a number is zero; [`Certified`] carries an enclosure and a residue in step, so that enough digits decide every sign. Only the stage
 //! that turns numbers into signs looks inside.
 
 mod ball;
 mod certified;
 mod double;
-mod exact;
 mod interval;
 mod residue;
 mod series;
@@ -18,7 +16,6 @@ mod series;
 pub use ball::{Ball, Midpoint};
 pub use certified::Certified;
 pub use double::DoubleDouble;
-pub use exact::Exact;
 pub use interval::Interval;
 pub use residue::Residue;
 

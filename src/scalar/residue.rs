@@ -11,7 +11,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// evaluated at a point of the circle x^2 + y^2 = 1 over a finite field instead of w. A residue other than zero therefore
 /// proves that the number is not zero. Zero modulo both primes proves that it is, but for chance: an R other than zero would
 /// have to vanish at both points, which are fixed but unrelated to any robot; of a random point that has the probability
-/// (degree of R / 2^59)^2, about 2^-100 at a degree of a few hundred.
+/// (degree of R / 2^59)^2, about 2^-100 at a degree of a few hundred. (Or its coefficients would have to be divisible by
+/// both primes, as likely.)
 ///
 /// A division by a residue of zero leaves nothing known modulo that prime.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,9 +5,10 @@ use super::Enclosure;
 /// How often an angle is halved before the series: until it is below 2^-r, where r doublings and the terms of the series
 /// cost about the same.
 pub(super) fn halvings(angle: f64, bits: u32) -> u32 {
-    let below = i32::try_from(bits.isqrt() / 2).unwrap_or(i32::MAX / 2);
+    // No halving may underflow.
+    let below = (bits.isqrt() / 2).min(900) as i32;
     let exponent = if angle.is_finite() { libm::frexp(angle).1 } else { 0 };
-    u32::try_from(exponent.saturating_add(below)).unwrap_or(0)
+    u32::try_from(exponent + below).unwrap_or(0)
 }
 
 /// Cosine and sine of `angle` \[rad\], of which the series gives `bits` before each doubling loses up to two.

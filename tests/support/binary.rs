@@ -15,6 +15,8 @@ pub struct Answer {
     pub id: Option<Value>,
     pub verdict: Option<String>,
     #[serde(default)]
+    pub proven: bool,
+    #[serde(default)]
     pub contacts: Vec<Contact>,
     #[serde(default)]
     pub outcomes: Vec<Outcome>,
@@ -52,8 +54,13 @@ pub struct Outcome {
     pub impulse: Vec<[f64; 2]>,
     pub velocity_after: Vec<[f64; 2]>,
     pub impulse_unique: bool,
+    pub impulse_range: Option<Vec<[[Option<f64>; 2]; 2]>>,
     pub index: Option<i64>,
+    pub margin: Option<f64>,
     pub border: Option<Value>,
+    #[serde(default)]
+    pub family: bool,
+    pub proven: bool,
     pub energy_loss: f64,
     pub base_velocity_after: Option<BTreeMap<String, f64>>,
     pub joint_velocity_after: Option<BTreeMap<String, f64>>,

@@ -46,6 +46,7 @@ pub fn largest(numbers: &[f64]) -> f64 {
 }
 
 /// The rows as a matrix.
+#[allow(dead_code, reason = "not every test file builds matrices")]
 pub fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
 }

@@ -1,9 +1,58 @@
 //! A problem from M, J and v as dense matrices.
 
+use super::ContactProblem;
 use super::checks::check_matrix_size;
-use super::{ContactProblem, Factor, VELOCITY_ROUNDING};
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::mode::Friction;
+use crate::planar::Vector;
+use crate::scalar::Real;
+
+/// M, J and v as they were given, every digit meant.
+#[derive(Debug, Clone)]
+pub(super) struct Dynamics {
+    /// dofs x dofs.
+    mass_matrix: Vec<Vec<f64>>,
+    /// Two rows per contact, dofs columns.
+    contact_jacobian: Vec<Vec<f64>>,
+    /// dofs.
+    velocity: Vec<f64>,
+}
+
+impl Dynamics {
+    /// G = J M^-1 J^T by rows and c = J v, in numbers of any kind. M is eliminated without pivoting: it is positive definite.
+    pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Vector<T>>) {
+        let dofs = self.velocity.len();
+        let number = |matrix: &[Vec<f64>]| -> Vec<Vec<T>> {
+            matrix.iter().map(|row| row.iter().map(|&entry| T::from_f64(entry)).collect()).collect()
+        };
+        let (mut mass, jacobian) = (number(&self.mass_matrix), number(&self.contact_jacobian));
+        let mut solved = jacobian.clone();
+        for k in 0..dofs {
+            for i in k + 1..dofs {
+                let factor = mass[i][k] / mass[k][k];
+                let (above, below) = mass.split_at_mut(i);
+                for (entry, &pivot) in below[0][k..].iter_mut().zip(&above[k][k..]) {
+                    *entry = *entry - factor * pivot;
+                }
+                for right in &mut solved {
+                    right[i] = right[i] - factor * right[k];
+                }
+            }
+        }
+        for right in &mut solved {
+            for i in (0..dofs).rev() {
+                let known = (i + 1..dofs).fold(right[i], |rest, j| rest - mass[i][j] * right[j]);
+                right[i] = known / mass[i][i];
+            }
+        }
+        let dot = |a: &[T], b: &[T]| a.iter().zip(b).fold(T::zero(), |sum, (&x, &y)| sum + x * y);
+        let delassus = jacobian.iter().flat_map(|row| solved.iter().map(|column| dot(row, column))).collect();
+        let velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
+        let before =
+            jacobian.chunks_exact(2).map(|pair| [dot(&pair[0], &velocity), dot(&pair[1], &velocity)]).collect();
+        (delassus, before)
+    }
+}
 
 impl ContactProblem {
     /// A problem from the dynamics, so that exact redundancy survives where a rounded G would lose it: M (dofs x dofs), J
@@ -42,12 +91,29 @@ impl ContactProblem {
         for row in contact_jacobian {
             rows.extend(forward_substituted(&cholesky, row));
         }
-        let pairs = || contact_jacobian.chunks_exact(2);
-        let products =
-            |row: &[f64], size: fn(f64) -> f64| row.iter().zip(velocity).map(|(j, v)| size(j * v)).sum::<f64>();
-        let before = pairs().map(|pair| [0, 1].map(|k| products(&pair[k], |product| product))).collect();
-        let noise = pairs().map(|pair| [0, 1].map(|k| VELOCITY_ROUNDING * products(&pair[k], f64::abs))).collect();
-        Self::from_factor(Factor { rows, columns: dofs }, before, noise, friction, restitution)
+        let entry = |i: usize, j: usize| -> f64 {
+            let [one, other] = [i, j].map(|row| &rows[row * dofs..(row + 1) * dofs]);
+            one.iter().zip(other).map(|(a, b)| a * b).sum()
+        };
+        let count = contact_jacobian.len();
+        let mut delassus = vec![0.0; count * count];
+        for i in 0..count {
+            for j in 0..=i {
+                let entry = finite(entry(i, j), || format!("entry [{i}][{j}] of J M^-1 J^T"))?;
+                delassus[i * count + j] = entry;
+                delassus[j * count + i] = entry;
+            }
+        }
+        let speed = |row: &[f64]| row.iter().zip(velocity).map(|(j, v)| j * v).sum::<f64>();
+        let before: Vec<Vector<f64>> =
+            contact_jacobian.chunks_exact(2).map(|pair| [speed(&pair[0]), speed(&pair[1])]).collect();
+        let mut problem = Self::checked(delassus, (before.clone(), before), (friction, restitution))?;
+        problem.dynamics = Some(Box::new(Dynamics {
+            mass_matrix: mass_matrix.to_vec(),
+            contact_jacobian: contact_jacobian.to_vec(),
+            velocity: velocity.to_vec(),
+        }));
+        Ok(problem)
     }
 }
 

@@ -8,14 +8,17 @@
 
 mod checks;
 mod dense;
+mod source;
 
 pub use checks::MATRIX_LIMIT;
 pub(crate) use checks::check_matrix_size;
+pub use source::{Errors, Source};
 
+use self::dense::Dynamics;
 use super::mode::Friction;
 use crate::error::{Error, Reason, Result, finite};
 use crate::planar::Vector;
-use crate::scalar::Real;
+use crate::scalar::{Ordered, Real, Sign};
 
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
 ///
@@ -32,36 +35,8 @@ pub struct ContactProblem<T = f64> {
     approach: Vec<T>,
     friction: Vec<Friction>,
     restitution: Vec<f64>,
-    /// Z, 2n rows with G = Z Z^T, where it is known better than from G.
-    factor: Option<Factor>,
-    /// What the velocities may be off by, where they were computed; none where they were given \[m/s\].
-    noise: Option<Vec<Vector<f64>>>,
-}
-
-/// Rows Z with G = Z Z^T; their singular values show the rank that rounding hides in G.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Factor {
-    /// Two rows per contact, one after the other \[1/sqrt(kg)\].
-    pub rows: Vec<f64>,
-    /// Length of a row.
-    pub columns: usize,
-}
-
-/// What a number of a problem is; rows 2i (tangential) and 2i + 1 (normal) belong to contact i.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Entry {
-    /// An entry of the Delassus matrix.
-    Delassus {
-        /// Its row.
-        row: usize,
-        /// Its column.
-        column: usize,
-    },
-    /// An entry of a contact velocity.
-    Velocity {
-        /// Its row.
-        row: usize,
-    },
+    /// What G and c- were computed from, where they were not given themselves.
+    dynamics: Option<Box<Dynamics>>,
 }
 
 impl<T: Real> ContactProblem<T> {
@@ -100,30 +75,44 @@ impl<T: Real> ContactProblem<T> {
         T::from_f64(self.restitution[contact]) * self.approach[contact]
     }
 
-    /// The same problem in another number.
-    pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> ContactProblem<U> {
-        self.map_entries(|_, value| number(value))
+    /// A row's velocity without impulses, with the bounce on a normal row: c_t, or xi_n = c_n + bounce.
+    pub fn free_row(&self, row: usize) -> T {
+        let free = self.velocity_free[row / 2][row % 2];
+        if row % 2 == 1 && self.restitution[row / 2] != 0.0 { free + self.bounce(row / 2) } else { free }
     }
 
-    /// The same problem in another number, which may depend on what the entry is.
-    pub fn map_entries<U: Real>(&self, number: impl Fn(Entry, T) -> U) -> ContactProblem<U> {
-        let rows = 2 * self.contacts();
-        let delassus = |index: usize| Entry::Delassus { row: index / rows, column: index % rows };
-        let vectors = |list: &[Vector<T>]| -> Vec<Vector<U>> {
-            let vector = |(i, c): (usize, &Vector<T>)| [0, 1].map(|k| number(Entry::Velocity { row: 2 * i + k }, c[k]));
-            list.iter().enumerate().map(vector).collect()
-        };
-        let approach = |(i, &c): (usize, &T)| number(Entry::Velocity { row: 2 * i + 1 }, c);
+    /// The same problem in another number.
+    pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> ContactProblem<U> {
+        let vectors = |list: &[Vector<T>]| list.iter().map(|c| c.map(&number)).collect();
         ContactProblem {
-            delassus: self.delassus.iter().enumerate().map(|(index, &entry)| number(delassus(index), entry)).collect(),
+            delassus: self.delassus.iter().map(|&entry| number(entry)).collect(),
             velocity_before: vectors(&self.velocity_before),
             velocity_free: vectors(&self.velocity_free),
-            approach: self.approach.iter().enumerate().map(approach).collect(),
+            approach: self.approach.iter().map(|&entry| number(entry)).collect(),
             friction: self.friction.clone(),
             restitution: self.restitution.clone(),
-            factor: None,
-            noise: None,
+            dynamics: None,
         }
+    }
+}
+
+impl<T: Ordered> ContactProblem<T> {
+    /// A problem from numbers whose signs hang on their precision, already known to be one in f64.
+    pub(crate) fn of_parts(
+        delassus: Vec<T>,
+        velocity_before: Vec<Vector<T>>,
+        velocity_free: Vec<Vector<T>>,
+        friction: Vec<Friction>,
+        restitution: Vec<f64>,
+    ) -> Self {
+        let approach = |c: &Vector<T>| match c[1].sign() {
+            Sign::Negative => c[1],
+            Sign::Zero | Sign::Positive => T::zero(),
+            // No number at all, so that whatever hangs on it stays open.
+            Sign::Undecided => T::one() / T::zero(),
+        };
+        let approach = velocity_before.iter().map(approach).collect();
+        Self { delassus, velocity_before, velocity_free, approach, friction, restitution, dynamics: None }
     }
 }
 
@@ -156,76 +145,22 @@ impl ContactProblem {
             finite(entry, || format!("entry [{}][{}] of delassus", index / rows, index % rows))?;
         }
         let free = velocity_before.clone();
-        let problem = Self::checked(delassus, (velocity_before, free), (friction, restitution), None)?;
+        let problem = Self::checked(delassus, (velocity_before, free), (friction, restitution))?;
         problem.check_definite()?;
         Ok(problem)
     }
 
-    /// A problem from the rows Z of G = Z Z^T (two per contact, each of `columns` entries), and from velocities known up to
-    /// `noise`.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`].
-    pub fn from_factor(
-        factor: Factor,
-        velocity_before: Vec<Vector<f64>>,
-        noise: Vec<Vector<f64>>,
-        friction: Vec<Friction>,
-        restitution: Vec<f64>,
-    ) -> Result<Self> {
-        check_matrix_size(velocity_before.len())?;
-        let count = 2 * velocity_before.len();
-        if factor.rows.len() != count * factor.columns {
-            return Err(Error::new(Reason::Inconsistent(format!(
-                "{count} rows of {} entries are needed, not {} entries",
-                factor.columns,
-                factor.rows.len()
-            )))
-            .at("factor")
-            .hint("give two rows per contact: tangential, normal"));
-        }
-        let row = |i: usize| &factor.rows[i * factor.columns..(i + 1) * factor.columns];
-        let mut delassus = vec![0.0; count * count];
-        for i in 0..count {
-            for j in 0..=i {
-                let entry = row(i).iter().zip(row(j)).map(|(a, b)| a * b).sum();
-                let entry = finite(entry, || format!("entry [{i}][{j}] of J M^-1 J^T"))?;
-                delassus[i * count + j] = entry;
-                delassus[j * count + i] = entry;
-            }
-        }
-        let free = velocity_before.clone();
-        Self::checked(delassus, (velocity_before, free), (friction, restitution), Some((factor, noise)))
-    }
-
-    /// A problem from parts that the dynamics computed: G with its factor, c-, the change by applied impulses included in
-    /// `velocity_free`, and what these velocities may be off by.
+    /// A problem from parts that the dynamics computed: G, c-, and c- with the change by applied impulses.
     ///
     /// # Errors
     /// As [`ContactProblem::new`], of numbers that overflowed or lie outside the range.
-    pub(crate) fn from_parts(
-        (delassus, factor): (Vec<f64>, Factor),
-        velocity_before: Vec<Vector<f64>>,
-        velocity_free: Vec<Vector<f64>>,
-        noise: Vec<Vector<f64>>,
-        friction: Vec<Friction>,
-        restitution: Vec<f64>,
-    ) -> Result<Self> {
-        Self::checked(delassus, (velocity_before, velocity_free), (friction, restitution), Some((factor, noise)))
-    }
-
-    /// The one place where a problem is put together; `computed` is its factor and noise, none where G was given.
-    fn checked(
+    pub(crate) fn checked(
         delassus: Vec<f64>,
         (velocity_before, velocity_free): (Vec<Vector<f64>>, Vec<Vector<f64>>),
         (friction, restitution): (Vec<Friction>, Vec<f64>),
-        computed: Option<(Factor, Vec<Vector<f64>>)>,
     ) -> Result<Self> {
         let contacts = velocity_before.len();
-        let noise = computed.as_ref().map_or(contacts, |(_, noise)| noise.len());
-        for (place, length) in
-            [("friction", friction.len()), ("restitution", restitution.len()), ("noise of the velocities", noise)]
-        {
+        for (place, length) in [("friction", friction.len()), ("restitution", restitution.len())] {
             if length != contacts {
                 return Err(Error::new(Reason::Inconsistent(format!("{contacts} contacts, but {length} values")))
                     .at(place)
@@ -233,26 +168,13 @@ impl ContactProblem {
             }
         }
         let approach = velocity_before.iter().map(|c| c[1].min(0.0)).collect();
-        let (factor, noise) = computed.unzip();
-        let problem = Self { delassus, velocity_before, velocity_free, approach, friction, restitution, factor, noise };
+        let problem =
+            Self { delassus, velocity_before, velocity_free, approach, friction, restitution, dynamics: None };
         problem.check_contacts()?;
         problem.check_range()?;
         Ok(problem)
     }
-
-    /// Z with G = Z Z^T, where the problem was built from the dynamics.
-    pub fn factor(&self) -> Option<&Factor> {
-        self.factor.as_ref()
-    }
-
-    /// What the velocities may be off by \[m/s\]; none where they were given.
-    pub fn noise(&self) -> Option<&[Vector<f64>]> {
-        self.noise.as_deref()
-    }
 }
-
-/// What a product J v loses to rounding, relative to the sum of its terms' magnitudes.
-pub(crate) const VELOCITY_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 #[cfg(test)]
 mod tests {
@@ -280,11 +202,6 @@ mod tests {
         assert_eq!(place(given).as_deref(), Some("friction"));
         let dynamics = ContactProblem::from_dynamics(&identity, &identity, &[0.0, -1.0], one.clone(), vec![]);
         assert_eq!(place(dynamics).as_deref(), Some("restitution"));
-        let factor = |rows: usize| Factor { rows: vec![1.0; rows], columns: 2 };
-        let build =
-            |rows, noise| ContactProblem::from_factor(factor(rows), vec![[0.0, -1.0]], noise, one.clone(), vec![0.0]);
-        assert_eq!(place(build(3, vec![[0.0; 2]])).as_deref(), Some("factor"));
-        assert_eq!(place(build(4, vec![])).as_deref(), Some("noise of the velocities"));
     }
 
     #[test]

@@ -1,0 +1,210 @@
+//! How far G and c in f64 may be from those of the exact state: the first layer of every proof.
+//!
+//! With u the unit roundoff, D the depth of the tree, nb its bodies, nv its columns:
+//!
+//! 1. *Kinematics.* Cosines and sines are off by 2 u each (see [`Ball`](crate::scalar::Ball)), each product of rotations adds 3 u; so after D joints a
+//!    rotation is off by at most 7 D u, and an arm by that part of its length.
+//! 2. *M and J.* Each entry is a sum of products of masses and arms, collected over at most D levels and nb bodies. Replacing
+//!    every term by its magnitude gives K_i, the moment that column i would have to move if all arms were stretched, and by
+//!    Cauchy and Schwarz |dM_ij| <= eta sqrt(K_i K_j), |dJ_ri| <= eta A_ri with A_ri the stretched arm from joint i to the
+//!    contact, and eta = [`ENTRY`] (D + nb) u.
+//! 3. *M = L^T D L* is the factorization of a matrix that differs from M by gamma sqrt(K_i K_j) more, with gamma = 2 (nv + 2) u
+//!    (Higham 2002, theorem 10.3). In the energy norm that is eps = nv (eta + gamma) tau with tau = sum K_i (M^-1)_ii, which
+//!    bounds |S M^-1 S| for S = diag(sqrt K_i). So |dG_rs| <= eps / (1 - eps) sqrt(G_rr G_ss).
+//! 4. *J* adds eta a_r with a_r = sum A_ri sqrt((M^-1)_ii) to the length sqrt(G_rr) of its row in the energy norm, and the
+//!    triangular solves add gamma sqrt(nv tau) of it (Higham 2002, theorem 8.5).
+//! 5. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
+//!
+//! Everything is doubled for the terms of second order, which are small because the bound counts as unknown beyond a
+//! tenth. The constants are generous: a sign that falls within them is settled by balls.
+
+use super::jacobian::ContactPoint;
+use super::workspace::Workspace;
+use crate::plan::{Motion, Plan, Posture};
+use crate::planar::Vector;
+
+/// Half the distance from 1 to the next f64.
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+/// Roundings in an entry of M or J, per level and body: twice those of step 2.
+const ENTRY: f64 = 96.0;
+/// Beyond this the terms of second order are no longer covered.
+const SMALL: f64 = 0.1;
+
+/// Error bounds of one state, in memory that is reused.
+#[derive(Debug, Clone, Default)]
+pub struct Bounds {
+    /// Of an entry G_ij, relative to sqrt(G_ii G_jj); infinite where nothing is known.
+    pub delassus: f64,
+    /// Of c, per contact \[m/s\].
+    pub velocity: Vec<Vector<f64>>,
+    bodies: Vec<Stretched>,
+    /// sqrt((M^-1)_ii) per column.
+    ease: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+/// A body and all that it carries, with every arm stretched.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stretched {
+    /// Length of the arm from the parent's origin \[m\].
+    arm: f64,
+    mass: f64,
+    first: f64,
+    second: f64,
+    depth: usize,
+}
+
+impl Bounds {
+    /// Takes the lengths of a posture; the others read them.
+    pub fn stretch(&mut self, plan: &Plan, posture: &Posture) {
+        let length = |[x, z]: Vector<f64>| x.abs() + z.abs();
+        self.bodies.clear();
+        for body in &plan.bodies {
+            let shift = match body.motion {
+                Motion::Slide { direction } => posture.displacement[body.coordinate].abs() * length(direction),
+                Motion::Root | Motion::Turn { .. } => 0.0,
+            };
+            self.bodies.push(Stretched {
+                arm: length(body.origin) + shift,
+                mass: body.inertia.mass,
+                first: length(body.inertia.first),
+                second: body.inertia.second,
+                depth: body.parent.map_or(0, |parent| self.bodies[parent].depth + 1),
+            });
+        }
+        for index in (0..plan.bodies.len()).rev() {
+            let own = self.bodies[index];
+            if let Some(parent) = plan.bodies[index].parent {
+                let parent = &mut self.bodies[parent];
+                parent.mass += own.mass;
+                parent.first += own.first + own.mass * own.arm;
+                parent.second += own.second + (2.0 * own.first + own.mass * own.arm) * own.arm;
+            }
+        }
+    }
+
+    /// Relative error of an entry of M or J against its stretched magnitude.
+    fn entry_error(&self) -> f64 {
+        let depth = self.bodies.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
+        ENTRY * (depth + self.bodies.len()) as f64 * UNIT_ROUNDOFF
+    }
+
+    /// Bounds c = J v. With the foot of a `stance` the base's velocity is computed from the others'; `rests` tells which
+    /// contacts are exactly at rest.
+    pub fn velocities(
+        &mut self,
+        plan: &Plan,
+        contacts: &[ContactPoint],
+        velocity: &[f64],
+        stance: Option<&ContactPoint>,
+        rests: impl Fn(usize) -> bool,
+    ) {
+        let mut bounds = std::mem::take(&mut self.velocity);
+        let eta = self.entry_error();
+        let stretched = |contact: &ContactPoint| {
+            let mut sum = 0.0;
+            self.walk(plan, contact, |_, coordinate, arm| sum += arm * velocity[coordinate].abs());
+            sum
+        };
+        let base = stance.map_or(0.0, |foot| 2.0 * stretched(foot));
+        bounds.clear();
+        bounds.extend(contacts.iter().enumerate().map(|(index, contact)| {
+            let bound = if rests(index) { 0.0 } else { eta * (stretched(contact) + base) };
+            [bound; 2]
+        }));
+        self.velocity = bounds;
+    }
+
+    /// Bounds G, from the factorized mass matrix and the Delassus matrix.
+    pub fn delassus(&mut self, plan: &Plan, contacts: &[ContactPoint], workspace: &Workspace) {
+        let nv = plan.columns();
+        let (eta, gamma) = (self.entry_error(), 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
+        let mut tau = 0.0;
+        self.ease.clear();
+        for column in 0..nv {
+            let ease = squared_ease(plan, workspace, column, &mut self.scratch);
+            self.ease.push(ease.sqrt());
+        }
+        for (body, stretched) in plan.bodies.iter().zip(&self.bodies) {
+            let Some(column) = body.column else { continue };
+            let moment = match body.motion {
+                Motion::Root => {
+                    tau += stretched.mass * (self.ease[0] * self.ease[0] + self.ease[1] * self.ease[1]);
+                    stretched.second
+                }
+                Motion::Turn { .. } => stretched.second + body.rotor,
+                Motion::Slide { .. } => stretched.mass + body.rotor,
+            };
+            tau += moment * self.ease[column] * self.ease[column];
+        }
+        let solve = gamma * (nv as f64 * tau).sqrt();
+        let short = 1.0 - solve;
+        let eps = nv as f64 * (eta + gamma) * tau / (short * short);
+        let rows = 2 * contacts.len();
+        let mut jacobian = 0.0_f64;
+        for (index, contact) in contacts.iter().enumerate() {
+            let mut length = 0.0;
+            self.walk(plan, contact, |column, _, arm| {
+                if let Some(column) = column {
+                    length += arm * self.ease[column];
+                }
+            });
+            for row in [2 * index, 2 * index + 1] {
+                let own = workspace.delassus[row * rows + row];
+                if length > 0.0 {
+                    // A row of G that vanishes although its contact can move is known to no relative error.
+                    jacobian = jacobian.max(eta * length / (short * own.sqrt()));
+                }
+            }
+        }
+        let sum = eps + jacobian + solve + gamma;
+        self.delassus =
+            if sum < SMALL { 2.0 * (2.0 * eps + 2.0 * jacobian + 4.0 * solve + 2.0 * gamma) } else { f64::INFINITY };
+    }
+
+    /// Walks from a contact to the root and tells each joint's column, coordinate and stretched arm (1 of a slide).
+    fn walk(&self, plan: &Plan, contact: &ContactPoint, mut tell: impl FnMut(Option<usize>, usize, f64)) {
+        let mut arm = contact.centre[0].abs() + contact.centre[1].abs() + contact.radius;
+        let mut at = contact.body;
+        loop {
+            let body = &plan.bodies[at];
+            match body.motion {
+                Motion::Root => break,
+                Motion::Turn { .. } => tell(body.column, body.coordinate, arm),
+                Motion::Slide { .. } => tell(body.column, body.coordinate, 1.0),
+            }
+            arm += self.bodies[at].arm;
+            match body.parent {
+                Some(parent) => at = parent,
+                None => break,
+            }
+        }
+        if plan.floating {
+            for (coordinate, arm) in [1.0, 1.0, arm].into_iter().enumerate() {
+                tell(Some(coordinate), coordinate, arm);
+            }
+        }
+    }
+}
+
+/// (M^-1)_ii of one column: |D^-1/2 L^-T e_i|^2.
+fn squared_ease(plan: &Plan, workspace: &Workspace, column: usize, y: &mut Vec<f64>) -> f64 {
+    let nv = plan.columns();
+    let factor = &workspace.factor;
+    y.clear();
+    y.resize(nv, 0.0);
+    y[column] = 1.0;
+    let mut sum = 0.0;
+    let mut at = Some(column);
+    while let Some(i) = at {
+        // Entries off the branch of the column stay zero.
+        let mut below = plan.parents[i];
+        while let Some(j) = below {
+            y[j] -= factor[i * nv + j] * y[i];
+            below = plan.parents[j];
+        }
+        sum += y[i] * y[i] / factor[i * nv + i];
+        at = plan.parents[i];
+    }
+    sum
+}

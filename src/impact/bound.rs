@@ -1,0 +1,310 @@
+//! How far the f64 numbers of an elimination may be off: the first layer of every proof.
+//!
+//! In the scale of [`Scale`] (velocities c_i / (S sqrt(G_ii)), impulses L_i sqrt(G_ii) / S) a tableau has two classes of rows,
+//! velocities and impulses, and each row coefficients of the impulses still open and a constant. For each of the four one
+//! [`Class`] holds how large its f64 entries are and how far they may be from the true ones. Every step of the elimination is
+//! a sum of products and a quotient, so the bounds of the next tableau follow from those of the last:
+//!
+//! ```text
+//!     x y:    |x| e_y + |y| e_x + e_x e_y + rounding      x / p:   (e_x + |x / p| e_p) / (|p| - e_p) + rounding
+//! ```
+//!
+//! (Higham 2002, chapter 3). Rounding is relative, so the scale may be applied after the fact. A pivot that may be zero
+//! makes every bound infinite. The bounds' own rounding is covered by [`SLACK`].
+
+use super::enumerate::Tableau;
+use super::mode::{Friction, Mode};
+use super::sign::Scale;
+
+/// Half the distance from 1 to the next f64.
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+/// Covers the roundings of the bounds themselves, a few dozen operations per contact.
+const SLACK: f64 = 1.0 + 1e-6;
+
+/// Entries of one kind: none is larger than `size` in f64, none farther than `error` from the truth.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Class {
+    /// Largest magnitude.
+    pub size: f64,
+    /// Largest error.
+    pub error: f64,
+}
+
+impl Class {
+    fn product(self, other: Self) -> Self {
+        let size = self.size * other.size;
+        let error = self.size * other.error + other.size * self.error + self.error * other.error;
+        Self { size, error: error + UNIT_ROUNDOFF * size }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        let size = self.size + other.size;
+        Self { size, error: self.error + other.error + UNIT_ROUNDOFF * (size + self.error + other.error) }
+    }
+
+    /// Divided by a number of exactly this computed magnitude.
+    fn over(self, pivot: f64, error: f64) -> Self {
+        let least = pivot - error;
+        if least > 0.0 {
+            let size = self.size / pivot;
+            Self { size, error: (self.error + size * error) / least + UNIT_ROUNDOFF * size }
+        } else {
+            Self { size: f64::INFINITY, error: f64::INFINITY }
+        }
+    }
+
+    fn or(self, other: Self) -> Self {
+        Self { size: self.size.max(other.size), error: self.error.max(other.error) }
+    }
+}
+
+/// The bounds of one tableau.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Bound {
+    /// Coefficients of velocity rows.
+    pub velocity: Class,
+    /// Constants of velocity rows.
+    pub velocity_constant: Class,
+    /// Coefficients of impulse rows; a slide's lambda counts as the larger entry of its impulse.
+    pub impulse: Class,
+    /// Constants of impulse rows.
+    pub impulse_constant: Class,
+    /// The error that the problem came with.
+    given: f64,
+}
+
+impl Bound {
+    /// After the elimination of `unknowns` (1 or 2) impulses: `top` is what is divided by the pivot or determinant.
+    fn eliminated(self, unknowns: usize, pivot: f64, pivot_error: f64, top: [Class; 2]) -> Self {
+        let [coefficient, constant] = top.map(|class| class.over(pivot, pivot_error));
+        let along = |factor: Class, solved: Class, own: Class| {
+            let part = factor.product(solved);
+            if unknowns == 1 { own.plus(part) } else { own.plus(part).plus(part) }
+        };
+        Self {
+            velocity: along(self.velocity, coefficient, self.velocity),
+            velocity_constant: along(self.velocity, constant, self.velocity_constant),
+            impulse: along(self.impulse, coefficient, self.impulse).or(coefficient),
+            impulse_constant: along(self.impulse, constant, self.impulse_constant).or(constant),
+            given: self.given,
+        }
+    }
+
+    /// After a contact slides: its row along its ray, both scaled to length one, is the pivot.
+    pub fn slide(self, pivot: f64) -> Self {
+        // Along a ray of two parts whose sizes add up to one: one more rounding for each product, one for the sum.
+        let along = |class: Class| Class { error: class.error + 3.0 * UNIT_ROUNDOFF * class.size, ..class };
+        let bent = Self { velocity: along(self.velocity), impulse: along(self.impulse), ..self };
+        bent.eliminated(1, pivot, bent.velocity.error, [self.velocity, self.velocity_constant])
+    }
+
+    /// After a contact sticks: the determinant of its block, scaled to a unit diagonal.
+    pub fn stick(self, determinant: f64) -> Self {
+        let square = self.velocity.product(self.velocity);
+        let twice = square.plus(square);
+        let right = self.velocity.product(self.velocity_constant);
+        self.eliminated(2, determinant, twice.error, [twice, right.plus(right)])
+    }
+
+    /// With the sizes that the entries have in place of the ones that they may have.
+    pub fn measured(mut self, [velocity, velocity_constant, impulse, impulse_constant]: [f64; 4]) -> Self {
+        self.velocity.size = velocity;
+        self.velocity_constant.size = velocity_constant;
+        self.impulse.size = impulse;
+        self.impulse_constant.size = impulse_constant;
+        self
+    }
+
+    /// How many times the errors of single roundings the leaf's numbers may be off by.
+    pub fn growth(&self) -> f64 {
+        self.velocity_constant.error.max(self.impulse_constant.error) / (self.given + 16.0 * f64::EPSILON)
+    }
+
+    /// How far a scaled velocity (or its constant's slack) may be off.
+    pub fn velocity_error(&self) -> f64 {
+        (self.velocity_constant.error + 4.0 * UNIT_ROUNDOFF * self.velocity_constant.size) * SLACK
+    }
+
+    /// How far a scaled impulse or cone slack may be off: a cone's is a combination of two impulses of length one.
+    pub fn impulse_error(&self) -> f64 {
+        let Class { size, error } = self.impulse_constant;
+        (1.5 * error + 8.0 * UNIT_ROUNDOFF * size) * SLACK
+    }
+}
+
+/// Whether products of the problem's magnitudes stay so far from underflow that all rounding is relative.
+fn is_far_from_underflow(scale: &Scale) -> bool {
+    let (least, most) = scale
+        .mobility
+        .iter()
+        .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), &mobility| (least.min(mobility), most.max(mobility)));
+    scale.mobility.is_empty() || (scale.speed * least > 1e-200 && scale.speed * most < 1e200 && most < 1e60 * least)
+}
+
+/// Bounds of every tableau on the way to a leaf; memory that is reused.
+#[derive(Debug, Clone, Default)]
+pub struct Bounds {
+    depths: Vec<Bound>,
+    /// 1 / sqrt(G_ii) of every row.
+    inverse: Vec<f64>,
+    /// S.
+    speed: f64,
+}
+
+impl Bounds {
+    /// Begins with a problem whose G is off by `delassus` (relative to sqrt(G_ii G_jj)) and whose scaled velocities are off
+    /// by `noise`.
+    pub fn load(&mut self, tableau: &Tableau<f64>, scale: &Scale, delassus: f64, noise: f64) {
+        self.inverse.clear();
+        self.inverse.extend(scale.mobility.iter().map(|mobility| 1.0 / mobility));
+        self.speed = scale.speed;
+        self.depths.clear();
+        self.depths.resize(scale.mobility.len() / 2 + 1, Bound::default());
+        let [delassus, noise] = if is_far_from_underflow(scale) { [delassus, noise] } else { [f64::INFINITY; 2] };
+        let start = Bound {
+            velocity: Class { size: 0.0, error: delassus },
+            velocity_constant: Class { size: 0.0, error: noise },
+            given: delassus + noise,
+            ..Bound::default()
+        };
+        self.depths[0] = start.measured(self.sizes(tableau, 0, |_| None));
+    }
+
+    /// The bound of the tableau of this depth.
+    pub fn at(&self, depth: usize) -> &Bound {
+        &self.depths[depth]
+    }
+
+    /// Follows the elimination of `contact` from the tableau of depth `source`.
+    pub fn follow(&mut self, tableau: &Tableau<f64>, friction: &[Friction], contact: usize, source: usize) {
+        let (mode, pivot) = tableau.decided(contact);
+        let [t, n] = [self.inverse[2 * contact], self.inverse[2 * contact + 1]];
+        let next = if mode == Mode::Stick && !friction[contact].is_zero() {
+            self.depths[source].stick((pivot * (t * n) * (t * n)).abs())
+        } else {
+            self.depths[source].slide((pivot * n / self.ray(contact, friction[contact], mode)).abs())
+        };
+        // The last contact leaves no coefficients, and no later step asks how large its constants are.
+        let last = contact + 2 == self.depths.len();
+        self.depths[contact + 1] = if last {
+            next
+        } else {
+            let of = |decided: usize| {
+                let mode = (decided <= contact).then(|| tableau.decided(decided).0)?;
+                (mode != Mode::Separate).then_some((mode, friction[decided]))
+            };
+            next.measured(self.sizes(tableau, contact + 1, of))
+        };
+    }
+
+    /// The largest of the scaled entries that later steps read: coefficients and constants of velocity rows, then of
+    /// impulse rows; `closed` tells mode and friction of the contacts that are decided to be closed.
+    fn sizes(
+        &self,
+        tableau: &Tableau<f64>,
+        depth: usize,
+        closed: impl Fn(usize) -> Option<(Mode, Friction)>,
+    ) -> [f64; 4] {
+        let mut sizes = [0.0_f64; 4];
+        for row in 0..self.inverse.len() {
+            let (contact, normal) = (row / 2, row % 2 == 1);
+            let impulse = match closed(contact) {
+                Some((Mode::Stick, friction)) if !friction.is_zero() => Some(1.0 / self.inverse[row]),
+                Some((mode, friction)) if normal => Some(self.ray(contact, friction, mode)),
+                _ => None,
+            };
+            let (class, factor, speed) = match impulse {
+                Some(factor) => (2, factor, self.speed),
+                None => (0, self.inverse[row], self.speed),
+            };
+            let entries = tableau.row(depth, row);
+            for (entry, inverse) in entries.iter().zip(&self.inverse).skip(2 * depth) {
+                sizes[class] = sizes[class].max((entry * factor * inverse).abs());
+            }
+            sizes[class + 1] = sizes[class + 1].max((entries[self.inverse.len()] * factor / speed).abs());
+        }
+        sizes
+    }
+
+    /// The size of a ray (-+a, b) in the scale: the sum of its parts a sqrt(G_tt) and b sqrt(G_nn).
+    fn ray(&self, contact: usize, friction: Friction, mode: Mode) -> f64 {
+        let (a, b) = if mode.slides() { friction.pair() } else { (0.0, 1.0) };
+        a / self.inverse[2 * contact] + b / self.inverse[2 * contact + 1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::enumerate::Leaf;
+    use super::super::problem::{ContactProblem, Errors};
+    use super::*;
+    use crate::scalar::{Interval, Ordered, Real};
+    use proptest::prelude::*;
+
+    /// Follows the bounds and keeps those of every leaf beside its numbers.
+    struct Watch<'a> {
+        bounds: Bounds,
+        scale: &'a Scale,
+        problem: &'a ContactProblem,
+        worst: f64,
+    }
+
+    impl super::super::enumerate::Visitor<f64> for Watch<'_> {
+        fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
+            self.bounds.follow(tableau, self.problem.friction(), contact, source);
+        }
+
+        fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
+            let bound = self.bounds.at(leaf.depth());
+            let mobility = &self.scale.mobility;
+            Interval::scope(512, || {
+                let mut tableau = Tableau::<Interval>::new();
+                tableau.load(&self.problem.map(Interval::from_f64));
+                let exact = tableau.leaf(leaf.modes);
+                for (row, mobility) in mobility.iter().enumerate() {
+                    let far = |own: f64, exact: Interval| (exact - Interval::from_f64(own)).to_f64().abs();
+                    let velocity = far(leaf.velocity(row / 2)[row % 2], exact.velocity(row / 2)[row % 2]);
+                    let impulse = far(leaf.impulse(row / 2)[row % 2], exact.impulse(row / 2)[row % 2]);
+                    for (error, allowed) in [
+                        (velocity / (mobility * self.scale.speed), bound.velocity_error()),
+                        (impulse * mobility / self.scale.speed, bound.impulse_error()),
+                    ] {
+                        if !error.is_nan() {
+                            assert!(error <= allowed, "{:?}: {error:e} > {allowed:e}", leaf.modes);
+                            self.worst = self.worst.max(error / allowed);
+                        }
+                    }
+                }
+            });
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_number_is_farther_from_the_exact_one_than_its_bound(
+            rows in prop::collection::vec(prop::collection::vec(-1.0..1.0f64, 7), 6),
+            before in prop::collection::vec(prop::array::uniform2(-1.0..1.0f64), 3),
+            friction in prop::collection::vec(
+                prop_oneof![Just(Friction::ZERO), Just(Friction::Infinite), (0.01..10.0f64).prop_map(Friction::Finite)], 3,
+            ),
+            light in -8..8i32,
+        ) {
+            let mut rows = rows;
+            for entry in &mut rows[2] {
+                *entry *= 10f64.powi(light);
+            }
+            let delassus = rows
+                .iter()
+                .flat_map(|a| rows.iter().map(|b| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>()))
+                .collect();
+            let problem = ContactProblem::new(delassus, before, friction, vec![0.5, 0.0, 0.0]).unwrap();
+            let mut scale = Scale::default();
+            scale.measure(&problem, Errors::NONE);
+            let mut tableau = Tableau::new();
+            tableau.load(&problem);
+            let mut bounds = Bounds::default();
+            bounds.load(&tableau, &scale, 0.0, 0.0);
+            tableau.visit(&mut Watch { bounds, scale: &scale, problem: &problem, worst: 0.0 });
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The index of an outcome whose equations are singular: the sign of det B (paper, section 2).
+//!
+//! ```text
+//!     B = G_NR - G_NS G_SS^+ G_SR     S: rows of sticking contacts, N: normal rows of sliding ones, R: their slide directions
+//! ```
+
+use super::generators::Generators;
+use super::linear::{Unsettled, settled};
+use super::mode::Mode;
+use super::problem::ContactProblem;
+use crate::scalar::Ordered;
+use std::cmp::Ordering;
+
+/// The sign of det B, or where it vanishes that of the lowest coefficient of det(B + s I) that does not; none where all do.
+pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
+    let holds = |contact: &usize| modes[*contact] == Mode::Stick && !problem.friction()[*contact].is_zero();
+    let stuck: Vec<usize> = (0..modes.len()).filter(holds).flat_map(|contact| [2 * contact, 2 * contact + 1]).collect();
+    let sliding: Vec<usize> =
+        (0..modes.len()).filter(|contact| modes[*contact] != Mode::Separate && !holds(contact)).collect();
+    // Rows S then N, columns S then R.
+    let rows = stuck.iter().copied().chain(sliding.iter().map(|contact| 2 * contact + 1));
+    let mut whole: Vec<Vec<T>> = rows
+        .map(|row| {
+            let held = stuck.iter().map(|&column| problem.delassus(row, column));
+            let slid = sliding.iter().map(|&contact| {
+                let [t, n] = Generators::slide_ray(problem.friction()[contact], modes[contact]).map(T::from_f64);
+                problem.delassus(row, 2 * contact) * t + problem.delassus(row, 2 * contact + 1) * n
+            });
+            held.chain(slid).collect()
+        })
+        .collect();
+    let mut open: Vec<usize> = (0..stuck.len()).collect();
+    // Where every diagonal entry left is zero, so is the whole rest: G_SS is positive semidefinite.
+    while let Some(pivot) = regular(&open, |&index| whole[index][index])? {
+        let place = open.swap_remove(pivot);
+        let inverse = T::one() / whole[place][place];
+        let pivot_row = whole[place].clone();
+        for row in (0..whole.len()).filter(|row| open.contains(row) || *row >= stuck.len()) {
+            let factor = whole[row][place] * inverse;
+            for (entry, &above) in whole[row].iter_mut().zip(&pivot_row) {
+                *entry = *entry - factor * above;
+            }
+        }
+    }
+    let schur: Vec<Vec<T>> = whole[stuck.len()..].iter().map(|row| row[stuck.len()..].to_vec()).collect();
+    lowest_coefficient(&schur)
+}
+
+/// The place of the entry that is farthest from zero among those shown not to be zero; none where all are zero.
+fn regular<T: Ordered, I>(candidates: &[I], number: impl Fn(&I) -> T) -> Result<Option<usize>, Unsettled> {
+    let mut best: Option<(usize, f64)> = None;
+    for (place, candidate) in candidates.iter().enumerate() {
+        let number = number(candidate);
+        if settled(number)?.is_ne() && best.is_none_or(|(_, size)| number.to_f64().abs() > size) {
+            best = Some((place, number.to_f64().abs()));
+        }
+    }
+    Ok(best.map(|(place, _)| place))
+}
+
+/// Sign of the lowest coefficient of det(B + s I) that is not zero (Faddeev and LeVerrier: M_k = B M_(k-1) + c_k I,
+/// c_k = -trace(B M_(k-1)) / k, of det(s I - B) with -B in place of B).
+fn lowest_coefficient<T: Ordered>(matrix: &[Vec<T>]) -> Result<Option<i8>, Unsettled> {
+    let size = matrix.len();
+    let negative: Vec<Vec<T>> = matrix.iter().map(|row| row.iter().map(|&entry| -entry).collect()).collect();
+    let mut power: Vec<Vec<T>> =
+        (0..size).map(|i| (0..size).map(|j| if i == j { T::one() } else { T::zero() }).collect()).collect();
+    let mut coefficients = vec![T::one()];
+    for k in 1..=size {
+        let product: Vec<Vec<T>> = negative
+            .iter()
+            .map(|row| {
+                let entry = |j: usize| row.iter().zip(&power).fold(T::zero(), |sum, (&a, other)| sum + a * other[j]);
+                (0..size).map(entry).collect()
+            })
+            .collect();
+        let trace = (0..size).fold(T::zero(), |sum, i| sum + product[i][i]);
+        let coefficient = -(trace / T::from_f64(k as f64));
+        power = product;
+        for (i, row) in power.iter_mut().enumerate() {
+            row[i] = row[i] + coefficient;
+        }
+        coefficients.push(coefficient);
+    }
+    for &coefficient in coefficients.iter().rev() {
+        match settled(coefficient)? {
+            Ordering::Less => return Ok(Some(-1)),
+            Ordering::Greater => return Ok(Some(1)),
+            Ordering::Equal => {}
+        }
+    }
+    Ok(None)
+}

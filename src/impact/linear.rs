@@ -1,0 +1,374 @@
+//! Linear equations and linear programs whose every branch hangs on a sign that was shown.
+//!
+//! Sizes are those of a few contacts, so plain dense elimination and the simplex method with Bland's rule serve
+//! (Chvatal, *Linear Programming*, 1983, chapters 2, 3 and 8). No tolerance decides anything: a number that its precision
+//! cannot tell from zero ends the work as [`Unsettled`], to be begun again in a more precise one.
+
+use crate::scalar::{Ordered, Real, Sign};
+use std::cmp::Ordering;
+
+/// A sign that hangs on more digits than the numbers have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unsettled;
+
+/// How a number compares with zero.
+pub fn settled<T: Ordered>(number: T) -> Result<Ordering, Unsettled> {
+    match number.sign() {
+        Sign::Negative => Ok(Ordering::Less),
+        Sign::Zero => Ok(Ordering::Equal),
+        Sign::Positive => Ok(Ordering::Greater),
+        Sign::Undecided => Err(Unsettled),
+    }
+}
+
+/// An affine function of y: `constant + coefficients . y`.
+#[derive(Debug, Clone)]
+pub struct Affine<T> {
+    /// Its value at y = 0.
+    pub constant: T,
+    /// One coefficient per entry of y.
+    pub coefficients: Vec<T>,
+}
+
+impl<T: Real> Affine<T> {
+    /// Its value at `y`.
+    pub fn at(&self, y: &[T]) -> T {
+        self.coefficients.iter().zip(y).fold(self.constant, |sum, (&coefficient, &entry)| sum + coefficient * entry)
+    }
+}
+
+impl<T: Ordered> Affine<T> {
+    /// Whether every coefficient is zero.
+    pub fn is_constant(&self) -> Result<bool, Unsettled> {
+        for &coefficient in &self.coefficients {
+            if settled(coefficient)?.is_ne() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// All solutions of linear equations: origin + sum of y_j times direction j, the directions independent.
+#[derive(Debug, Clone)]
+pub struct Solutions<T> {
+    /// One solution.
+    pub origin: Vec<T>,
+    /// What may be added to it.
+    pub directions: Vec<Vec<T>>,
+}
+
+impl<T: Real> Solutions<T> {
+    /// `constant + coefficients . x` on the solutions, as a function of y.
+    pub fn affine(&self, constant: T, coefficients: &[T]) -> Affine<T> {
+        let along = |x: &[T]| coefficients.iter().zip(x).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+        Affine {
+            constant: constant + along(&self.origin),
+            coefficients: self.directions.iter().map(|direction| along(direction)).collect(),
+        }
+    }
+
+    /// The solution at `y`.
+    pub fn at(&self, y: &[T]) -> Vec<T> {
+        let mut x = self.origin.clone();
+        for (direction, &factor) in self.directions.iter().zip(y) {
+            for (entry, &part) in x.iter_mut().zip(direction) {
+                *entry = *entry + factor * part;
+            }
+        }
+        x
+    }
+}
+
+impl<T: Ordered> Solutions<T> {
+    /// The solutions on which `function`, one of y, is also zero; none where it is nowhere.
+    pub fn where_zero(&self, function: &Affine<T>) -> Result<Option<Self>, Unsettled> {
+        let mut equation = function.coefficients.clone();
+        equation.push(-function.constant);
+        let Some(inner) = solve(self.directions.len(), vec![equation])? else { return Ok(None) };
+        let directions = inner
+            .directions
+            .iter()
+            .map(|z| {
+                let mut direction = vec![T::zero(); self.origin.len()];
+                for (outer, &factor) in self.directions.iter().zip(z) {
+                    for (entry, &part) in direction.iter_mut().zip(outer) {
+                        *entry = *entry + factor * part;
+                    }
+                }
+                direction
+            })
+            .collect();
+        Ok(Some(Self { origin: self.at(&inner.origin), directions }))
+    }
+}
+
+/// The solutions x of `equations`, each its coefficients of the `unknowns` followed by the right-hand side; none where they
+/// contradict each other.
+pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<Option<Solutions<T>>, Unsettled> {
+    let mut pivots = Vec::new();
+    for column in 0..unknowns {
+        let rank = pivots.len();
+        let Some(row) = largest(&equations[rank..], column)? else { continue };
+        equations.swap(rank, rank + row);
+        let inverse = T::one() / equations[rank][column];
+        for entry in &mut equations[rank][column..] {
+            *entry = *entry * inverse;
+        }
+        let pivot = equations[rank].clone();
+        for (other, equation) in equations.iter_mut().enumerate() {
+            let factor = equation[column];
+            if other != rank {
+                for (entry, &above) in equation[column..].iter_mut().zip(&pivot[column..]).skip(1) {
+                    *entry = *entry - factor * above;
+                }
+                equation[column] = T::zero();
+            }
+        }
+        pivots.push(column);
+    }
+    for equation in &equations[pivots.len()..] {
+        if settled(equation[unknowns])?.is_ne() {
+            return Ok(None);
+        }
+    }
+    let mut origin = vec![T::zero(); unknowns];
+    for (equation, &column) in equations.iter().zip(&pivots) {
+        origin[column] = equation[unknowns];
+    }
+    let free = (0..unknowns).filter(|column| !pivots.contains(column));
+    let direction = |own: usize| {
+        let mut direction = vec![T::zero(); unknowns];
+        direction[own] = T::one();
+        for (equation, &column) in equations.iter().zip(&pivots) {
+            direction[column] = -equation[own];
+        }
+        direction
+    };
+    Ok(Some(Solutions { origin, directions: free.map(direction).collect() }))
+}
+
+/// The row with the entry of a column that is farthest from zero; none where all are zero.
+fn largest<T: Ordered>(rows: &[Vec<T>], column: usize) -> Result<Option<usize>, Unsettled> {
+    let size = |row: &usize| rows[*row][column].to_f64().abs();
+    let Some(row) = (0..rows.len()).max_by(|i, j| size(i).total_cmp(&size(j))) else { return Ok(None) };
+    if settled(rows[row][column])?.is_ne() {
+        return Ok(Some(row));
+    }
+    for (other, row) in rows.iter().enumerate() {
+        if settled(row[column])?.is_ne() {
+            return Ok(Some(other));
+        }
+    }
+    Ok(None)
+}
+
+/// The y at which `objective . y` is greatest among those where no function is negative; none where it grows without
+/// bound. At y = 0 no function may be negative.
+pub fn maximize<T: Ordered>(functions: &[Affine<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
+    let free = objective.len();
+    let mut dictionary = Dictionary {
+        rows: functions
+            .iter()
+            .map(|function| {
+                let mut row = function.coefficients.clone();
+                row.push(function.constant);
+                row
+            })
+            .collect(),
+        gain: objective.to_vec(),
+        // Labels below `free` are entries of y, which may take any sign; the others are the functions' own values.
+        basic: (free..free + functions.len()).collect(),
+        nonbasic: (0..free).collect(),
+        free,
+    };
+    while let Some((column, rising)) = dictionary.entering()? {
+        let Some(row) = dictionary.leaving(column, rising)? else { return Ok(None) };
+        dictionary.pivot(row, column);
+    }
+    let mut y = vec![T::zero(); free];
+    for (row, &label) in dictionary.rows.iter().zip(&dictionary.basic) {
+        if label < free {
+            y[label] = row[free];
+        }
+    }
+    Ok(Some(y))
+}
+
+/// Basic variables as affine functions of the nonbasic ones, which are zero.
+struct Dictionary<T> {
+    /// Per basic variable its coefficients of the nonbasic ones, then its value.
+    rows: Vec<Vec<T>>,
+    /// What the objective gains by each nonbasic variable.
+    gain: Vec<T>,
+    basic: Vec<usize>,
+    nonbasic: Vec<usize>,
+    /// Labels below this belong to variables of any sign.
+    free: usize,
+}
+
+impl<T: Ordered> Dictionary<T> {
+    /// The variable of the lowest label that improves the objective, and whether it must rise. Entries of y come first, and
+    /// never leave the basis again.
+    fn entering(&self) -> Result<Option<(usize, bool)>, Unsettled> {
+        let mut order: Vec<usize> = (0..self.nonbasic.len()).collect();
+        order.sort_by_key(|&column| self.nonbasic[column]);
+        for column in order {
+            match settled(self.gain[column])? {
+                Ordering::Greater => return Ok(Some((column, true))),
+                Ordering::Less if self.nonbasic[column] < self.free => return Ok(Some((column, false))),
+                _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    /// The basic variable that reaches zero first, of several the one with the lowest label.
+    fn leaving(&self, column: usize, rising: bool) -> Result<Option<usize>, Unsettled> {
+        let mut least: Option<(usize, T)> = None;
+        for (row, entries) in self.rows.iter().enumerate() {
+            let slope = if rising { entries[column] } else { -entries[column] };
+            if self.basic[row] < self.free || settled(slope)?.is_ge() {
+                continue;
+            }
+            let reach = entries[self.nonbasic.len()] / -slope;
+            let first = match least {
+                None => true,
+                Some((other, best)) => match settled(reach - best)? {
+                    Ordering::Less => true,
+                    Ordering::Equal => self.basic[row] < self.basic[other],
+                    Ordering::Greater => false,
+                },
+            };
+            if first {
+                least = Some((row, reach));
+            }
+        }
+        Ok(least.map(|(row, _)| row))
+    }
+
+    fn pivot(&mut self, row: usize, column: usize) {
+        let inverse = T::one() / self.rows[row][column];
+        let mut solved: Vec<T> = self.rows[row].iter().map(|&entry| -(entry * inverse)).collect();
+        solved[column] = inverse;
+        let substitute = |line: &mut Vec<T>| {
+            let factor = line[column];
+            for (index, entry) in line.iter_mut().enumerate() {
+                *entry = if index == column { factor * inverse } else { *entry + factor * solved[index] };
+            }
+        };
+        for (other, line) in self.rows.iter_mut().enumerate() {
+            if other != row {
+                substitute(line);
+            }
+        }
+        substitute(&mut self.gain);
+        self.rows[row] = solved;
+        std::mem::swap(&mut self.basic[row], &mut self.nonbasic[column]);
+    }
+}
+
+/// The y whose smallest function is greatest, and that value, at most `cap` (without a cap an unbounded set would have no
+/// answer).
+pub fn widest<T: Ordered>(functions: &[Affine<T>], dimension: usize, cap: T) -> Result<(Vec<T>, T), Unsettled> {
+    let mut least = cap;
+    for function in functions {
+        if settled(function.constant - least)?.is_lt() {
+            least = function.constant;
+        }
+    }
+    // Unknowns y and s = rise above `least`; at y = 0, s = 0 every function is where it must be.
+    let one = T::one();
+    let mut rows: Vec<Affine<T>> = functions
+        .iter()
+        .map(|function| {
+            let mut coefficients = function.coefficients.clone();
+            coefficients.push(-one);
+            Affine { constant: function.constant - least, coefficients }
+        })
+        .collect();
+    let mut top = vec![T::zero(); dimension];
+    top.push(-one);
+    rows.push(Affine { constant: cap - least, coefficients: top });
+    let mut objective = vec![T::zero(); dimension];
+    objective.push(one);
+    // The cap bounds the program.
+    let mut y = maximize(&rows, &objective)?.ok_or(Unsettled)?;
+    let rise = y.pop().ok_or(Unsettled)?;
+    Ok((y, least + rise))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::{Ball, Certified, DoubleDouble};
+
+    type Number = Certified<Ball<DoubleDouble>>;
+
+    fn numbers(entries: &[f64]) -> Vec<Number> {
+        entries.iter().map(|&entry| Number::from_f64(entry)).collect()
+    }
+
+    fn affine(constant: f64, coefficients: &[f64]) -> Affine<Number> {
+        Affine { constant: Number::from_f64(constant), coefficients: numbers(coefficients) }
+    }
+
+    fn f64s(entries: &[Number]) -> Vec<f64> {
+        entries.iter().map(|entry| entry.to_f64()).collect()
+    }
+
+    #[test]
+    fn dependent_equations_leave_directions_free_and_contradictions_are_seen() {
+        // x + 3y = 1 twice, in thirds that no f64 holds; z = 2.
+        let rows =
+            || vec![numbers(&[1.0, 3.0, 0.0, 1.0]), numbers(&[0.1, 0.3, 0.0, 0.1]), numbers(&[0.0, 0.0, 1.0, 2.0])];
+        // 0.1 and 0.3 are not exactly one to three.
+        assert!(solve(3, rows()).unwrap().unwrap().directions.is_empty());
+        let mut equal = rows();
+        equal[1] = numbers(&[2.0, 6.0, 0.0, 2.0]);
+        let found = solve(3, equal.clone()).unwrap().unwrap();
+        assert_eq!((f64s(&found.origin), f64s(&found.directions[0])), (vec![1.0, 0.0, 2.0], vec![-3.0, 1.0, 0.0]));
+        equal[1][3] = Number::from_f64(2.5);
+        assert!(solve(3, equal).unwrap().is_none());
+    }
+
+    #[test]
+    fn the_widest_point_is_in_the_middle_and_an_empty_set_has_a_negative_one() {
+        let cap = Number::from_f64(10.0);
+        // 0 <= y <= 3.
+        let (y, least) = widest(&[affine(0.0, &[1.0]), affine(3.0, &[-1.0])], 1, cap).unwrap();
+        assert_eq!((f64s(&y), least.to_f64()), (vec![1.5], 1.5));
+        let (_, least) = widest(&[affine(0.0, &[1.0]), affine(-2.0, &[-1.0])], 1, cap).unwrap();
+        assert_eq!(least.to_f64(), -1.0);
+        let (_, least) = widest(&[affine(0.0, &[1.0])], 1, cap).unwrap();
+        assert_eq!(least.to_f64(), 10.0, "unbounded up to the cap");
+    }
+
+    #[test]
+    fn a_program_ends_at_a_corner_or_tells_that_it_does_not_end() {
+        // y1 <= 4, y2 <= 3, y1 + y2 <= 5, greatest 2 y1 + 3 y2 = 13 at (2, 3).
+        let rows = [affine(4.0, &[-1.0, 0.0]), affine(3.0, &[0.0, -1.0]), affine(5.0, &[-1.0, -1.0])];
+        let y = maximize(&rows, &numbers(&[2.0, 3.0])).unwrap().unwrap();
+        assert_eq!(f64s(&y), vec![2.0, 3.0]);
+        assert!(maximize(&rows, &numbers(&[-1.0, 0.0])).unwrap().is_none());
+    }
+
+    #[test]
+    fn a_degenerate_program_does_not_cycle() {
+        // Beale's example, which cycles under the largest-coefficient rule; x >= 0 are rows here. Greatest 1/20.
+        let rows = [
+            affine(0.0, &[-0.25, 60.0, 0.04, -9.0]),
+            affine(0.0, &[-0.5, 90.0, 0.02, -3.0]),
+            affine(1.0, &[0.0, 0.0, -1.0, 0.0]),
+            affine(0.0, &[1.0, 0.0, 0.0, 0.0]),
+            affine(0.0, &[0.0, 1.0, 0.0, 0.0]),
+            affine(0.0, &[0.0, 0.0, 1.0, 0.0]),
+            affine(0.0, &[0.0, 0.0, 0.0, 1.0]),
+        ];
+        let objective = numbers(&[0.75, -150.0, 0.02, -6.0]);
+        let y = maximize(&rows, &objective).unwrap().unwrap();
+        let value = affine(0.0, &[0.75, -150.0, 0.02, -6.0]).at(&y).to_f64();
+        // 0.04 and 0.02 are not exact, so neither is the corner.
+        assert!((value - 0.05).abs() < 1e-15, "{value}");
+    }
+}

@@ -1,0 +1,48 @@
+//! Where a contact problem's numbers come from, so that they can be computed again with more digits.
+
+use super::ContactProblem;
+use crate::planar::Vector;
+use crate::scalar::{Ordered, Trigonometry};
+
+/// What stands behind the rounded numbers of a [`ContactProblem`]: data that are exact, and the way from them to G and c.
+pub trait Source {
+    /// The contact problem itself, in numbers of any kind.
+    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T>;
+
+    /// What the f64 problem may be off by.
+    fn errors(&self) -> Errors<'_>;
+}
+
+/// Error bounds of a problem in f64.
+#[derive(Debug, Clone, Copy)]
+pub struct Errors<'a> {
+    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite where nothing is known.
+    pub delassus: f64,
+    /// Of c- and c_free, per contact \[m/s\]; none where they are exact.
+    pub velocity: Option<&'a [Vector<f64>]>,
+}
+
+impl Errors<'_> {
+    /// Those of numbers that are exact.
+    pub const NONE: Self = Self { delassus: 0.0, velocity: None };
+    /// Those of numbers of which no bound is known.
+    pub const UNKNOWN: Self = Self { delassus: f64::INFINITY, velocity: None };
+}
+
+/// A problem that is given as matrices is its own source: every f64 is meant as the number that it is.
+impl Source for ContactProblem {
+    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+        match &self.dynamics {
+            None => self.map(T::from_f64),
+            Some(dynamics) => {
+                let (delassus, before) = dynamics.numbers();
+                let (friction, restitution) = (self.friction.clone(), self.restitution.clone());
+                ContactProblem::of_parts(delassus, before.clone(), before, friction, restitution)
+            }
+        }
+    }
+
+    fn errors(&self) -> Errors<'_> {
+        if self.dynamics.is_none() { Errors::NONE } else { Errors::UNKNOWN }
+    }
+}

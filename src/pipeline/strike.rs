@@ -1,0 +1,101 @@
+//! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
+
+use crate::dynamics::{
+    ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
+    point_velocity,
+};
+use crate::impact::{ContactProblem, Errors, Friction, Source};
+use crate::plan::{Plan, Posture};
+use crate::planar::{Rotation, dot, sum};
+use crate::robot::{Axis, Robot};
+use crate::scalar::{Ordered, Real, Trigonometry};
+use crate::scene::Scene;
+
+/// A state with its contacts, every f64 of which is meant as the number that it is.
+pub struct Strike<'a> {
+    pub robot: &'a Robot,
+    pub scene: &'a Scene,
+    /// q; with a foot x and z are not read.
+    pub position: &'a [f64],
+    /// dq/dt; with a foot x and z are such that it rests.
+    pub velocity: &'a [f64],
+    /// The foot of the stance.
+    pub foot: Option<ContactPoint>,
+    /// Its place among the contacts.
+    pub stance: Option<usize>,
+    pub contacts: &'a [ContactPoint],
+    /// Contacts that are taken as exactly at rest.
+    pub resting: &'a [bool],
+    pub friction: &'a [Friction],
+    pub restitution: &'a [f64],
+    pub errors: Errors<'a>,
+}
+
+impl Source for Strike<'_> {
+    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+        let Self { robot, scene, .. } = *self;
+        let plan = Plan::<T>::new(robot, &scene.held, &scene.rotor_inertia);
+        let mut workspace = Workspace::default();
+        kinematics(&plan, &posture(robot, self.position), &mut workspace);
+        mass_matrix(&plan, &mut workspace);
+        factorize(&plan, &mut workspace);
+
+        let [cos, sin] = T::cos_sin(-scene.slope);
+        let point = |contact: &ContactPoint| ContactPoint {
+            body: contact.body,
+            centre: contact.centre.map(T::from_f64),
+            radius: T::from_f64(contact.radius),
+            ground: Rotation { cos, sin },
+        };
+        let contacts: Vec<ContactPoint<T>> = self.contacts.iter().map(point).collect();
+        let mut velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
+        if let Some(foot) = self.foot.as_ref().map(point) {
+            velocity[..2].fill(T::zero());
+            let moving = point_velocity(&plan, foot.body, foot.arm(&workspace), &velocity, &workspace);
+            velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
+        }
+        contact_jacobian(&plan, &contacts, &velocity, self.stance, &mut workspace);
+        delassus(&plan, &mut workspace);
+        for (speed, _) in workspace.contact_velocity.iter_mut().zip(self.resting).filter(|(_, rests)| **rests) {
+            *speed = [T::zero(); 2];
+        }
+        let before = workspace.contact_velocity.clone();
+        let mut free = before.clone();
+        if !scene.impulses.is_empty() {
+            let mut change = vec![T::zero(); velocity.len()];
+            for applied in &scene.impulses {
+                let link = &robot.links[applied.link];
+                let arm = workspace.rotation[link.body].apply(link.point(applied.offset).map(T::from_f64));
+                let vector = applied.vector.map(T::from_f64);
+                add_impulse(&plan, &workspace, (link.body, arm), vector, &mut Vec::new(), &mut change);
+            }
+            for (point, speed) in contacts.iter().zip(&mut free) {
+                let more = point_velocity(&plan, point.body, point.arm(&workspace), &change, &workspace);
+                *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));
+            }
+        }
+        let (friction, restitution) = (self.friction.to_vec(), self.restitution.to_vec());
+        ContactProblem::of_parts(workspace.delassus, before, free, friction, restitution)
+    }
+
+    fn errors(&self) -> Errors<'_> {
+        self.errors
+    }
+}
+
+/// Cosines, sines and displacements of exactly `position`.
+fn posture<T: Real + Trigonometry>(robot: &Robot, position: &[f64]) -> Posture<T> {
+    let base = robot.base_dofs();
+    let turns = |coordinate: usize| match coordinate.checked_sub(base) {
+        Some(joint) => matches!(robot.joints[joint].axis, Axis::Turn { .. }),
+        None => coordinate == 2,
+    };
+    let mut posture = Posture::default();
+    for (coordinate, &entry) in position.iter().enumerate() {
+        let [cos, sin] = if turns(coordinate) { T::cos_sin(entry) } else { [T::one(), T::zero()] };
+        posture.cos.push(cos);
+        posture.sin.push(sin);
+        posture.displacement.push(T::from_f64(entry));
+    }
+    posture
+}
