@@ -183,8 +183,8 @@ mod tests {
 
     #[test]
     fn runs_end_at_lift_off_or_stop_and_never_at_the_slide() {
-        let map = Biped::new(Friction::Infinite).unwrap().map(9, 9).unwrap();
-        assert_eq!(map.runs().count(), 81);
+        let map = Biped::new(Friction::Infinite).unwrap().map(11, 9).unwrap();
+        assert_eq!(map.runs().count(), 99);
         assert_eq!(map.near_negative_index(0.01).count(), 0);
         for (speed, ratio, cell) in map.runs() {
             assert_eq!(cell.index, Some(1), "{speed} {ratio} {cell:?}");
