@@ -69,6 +69,14 @@ impl<'a> Pose<'a> {
         computation
     }
 
+    /// The contact problem in f64, without applied impulses; none without friction.
+    pub fn problem(&self) -> Option<ContactProblem> {
+        let (shape, computation) = (self.shape()?, self.computed());
+        let Workspace { delassus, contact_velocity, .. } = computation.workspace();
+        let (friction, restitution) = (shape.friction().to_vec(), shape.restitution().to_vec());
+        ContactProblem::new(delassus.clone(), contact_velocity.clone(), friction, restitution).ok()
+    }
+
     /// Friction and restitution of the contacts as a problem whose matrices are still to be filled in; none without
     /// friction.
     pub(super) fn shape(&self) -> Option<ContactProblem> {

@@ -32,6 +32,20 @@ pub(super) trait Answers {
     fn text(&mut self, object: &str, palette: &Palette) -> Result<(String, Option<Error>)>;
 }
 
+/// The one object of a file.
+pub(super) fn only_document<'t>(bytes: &'t [u8], name: &str) -> Result<&'t str> {
+    let text = utf8(bytes).map_err(|error| error.in_file(name))?;
+    let mut found = documents(text);
+    match (found.next(), found.next()) {
+        (Some(document), None) if !document.text.trim_ascii().is_empty() => Ok(document.text),
+        (Some(_), Some(second)) => {
+            let reason = Reason::Inconsistent("one state is expected, and here a second one begins".into());
+            Err(second.locate(Error::new(reason)).in_file(name).hint("give the states one by one"))
+        }
+        _ => Err(Error::new(Reason::Missing("a state".into())).in_file(name).hint("the input is empty")),
+    }
+}
+
 /// Answers every object of a file.
 pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Format, options: &OutputOptions) -> Outcome {
     let name = input::name(path);

@@ -5,9 +5,14 @@
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
+//!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy.rs
 //! ```
 
+#[cfg(feature = "accuracy")]
+mod accuracy;
 mod inspection;
+#[cfg(feature = "plot")]
+pub mod picture;
 mod problem;
 mod result;
 #[cfg(feature = "schema")]
@@ -16,7 +21,11 @@ mod table;
 mod text;
 mod touchdown;
 
+#[cfg(feature = "accuracy")]
+pub use accuracy::{ADVICE, Accuracy, Compliant};
 pub use inspection::Inspection;
+#[cfg(feature = "plot")]
+pub use picture::Picture;
 pub use problem::Problem;
 pub use result::{
     Brief, Contact, ErrorObject, Explained, LeftOut, NamedVelocities, Outcome, OutcomeInBrief, Refused, Rejected,

@@ -23,6 +23,8 @@ const STIFFNESSES: [f64; 5] = [1e4, 1e6, 1e8, 1e10, 1e12];
 pub struct Comparison {
     /// The rigid outcomes, in the order of the analysis.
     pub outcomes: Vec<Target>,
+    /// Runs that the integrator gave up, or that did not come to an end; they count nowhere else.
+    pub unsettled: usize,
     /// All runs, then those of each value of each parameter.
     pub groups: Vec<Group>,
     /// What the integrator's tolerance changes, on a ground of damping ratio 1 with equal springs and dampers.
@@ -80,10 +82,10 @@ pub struct ByTolerance {
 pub struct ByStiffness {
     /// k_n \[N/m\].
     pub stiffness: f64,
-    /// Distance from the run with the configuration frozen.
-    pub change: f64,
+    /// Distance from the run with the configuration frozen; none where the integrator gave up.
+    pub change: Option<f64>,
     /// Distance to the nearest outcome.
-    pub distance: f64,
+    pub distance: Option<f64>,
 }
 
 /// Where a run ends among the outcomes.
@@ -115,16 +117,20 @@ pub fn landing(problem: &ContactProblem, outcomes: &[Outcome], energy: f64, run:
 /// Runs through every combination of the parameters.
 ///
 /// # Errors
-/// Whatever the runs refuse.
+/// More contacts than a run takes, and whatever the runs of the finest tolerance refuse.
 pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energy: f64) -> Result<Comparison> {
     let outcomes = &analysis.outcomes;
-    let mut landings = Vec::new();
+    let (mut landings, mut unsettled) = (Vec::new(), 0);
     for &damping_ratio in &DAMPING_RATIOS {
         for &stiffness_ratio in &STIFFNESS_RATIOS {
             for &tangential_damping in &TANGENTIAL_DAMPING {
                 let ground = Ground { damping_ratio, stiffness_ratio, tangential_damping };
-                let run = run(problem, ground, TOLERANCE)?;
-                landings.extend(landing(problem, outcomes, energy, &run).map(|landing| (ground, landing)));
+                match run(problem, ground, TOLERANCE) {
+                    Ok(run) if run.ended => {
+                        landings.extend(landing(problem, outcomes, energy, &run).map(|landing| (ground, landing)));
+                    }
+                    _ => unsettled += 1,
+                }
             }
         }
     }
@@ -150,6 +156,7 @@ pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energ
     });
     Ok(Comparison {
         outcomes: targets.collect(),
+        unsettled,
         tolerances: by_tolerance(problem, outcomes, energy)?,
         stiffnesses: by_stiffness_of_moving(pose, problem, outcomes, energy)?,
         groups,
@@ -216,9 +223,11 @@ fn by_stiffness_of_moving(
         Moving { plan, position: &pose.state.position, velocity: before, contacts: &pose.points, friction: &friction };
     let mut rows = Vec::new();
     for stiffness in STIFFNESSES {
-        let Some(end) = moving.run(PLAIN, stiffness, MOVING_TOLERANCE)? else { continue };
-        let distance = outcomes.iter().map(|outcome| apart(&end, outcome)).fold(f64::INFINITY, f64::min);
-        rows.push(ByStiffness { stiffness, change: apart(&end, &frozen), distance });
+        // Where the integrator gives up, the row ends and not the study.
+        let end = moving.run(PLAIN, stiffness, MOVING_TOLERANCE).ok();
+        let nearest = |end: &Vec<f64>| outcomes.iter().map(|outcome| apart(end, outcome)).fold(f64::INFINITY, f64::min);
+        let change = end.as_ref().map(|end| apart(end, &frozen));
+        rows.push(ByStiffness { stiffness, change, distance: end.as_ref().map(nearest) });
     }
     Ok(rows)
 }

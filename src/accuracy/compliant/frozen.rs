@@ -81,7 +81,7 @@ pub(super) fn gave_up(error: &impl std::fmt::Debug) -> Error {
 /// The first step, in the model's own time: the damper's force is there at once.
 const FIRST_STEP: f64 = 1e-6;
 /// Steps after which a run is given up.
-const MOST_STEPS: usize = 50_000;
+const MOST_STEPS: usize = 5_000;
 /// The longest run, in the model's own time.
 const HORIZON: f64 = 1e9;
 /// Forces and approaches of less than this part of the first ones change nothing any more.

@@ -27,9 +27,9 @@ use std::cell::RefCell;
 /// Downward, as everywhere on Earth \[m/s^2\].
 const GRAVITY: f64 = 9.81;
 /// The longest run, in units of sqrt(m / k_n) (1 + damping ratio).
-const HORIZON: f64 = 1e3;
+const HORIZON: f64 = 1e2;
 /// Steps after which a run is given up.
-const MOST_STEPS: usize = 50_000;
+const MOST_STEPS: usize = 5_000;
 
 /// A robot just before it strikes, ready to be integrated.
 #[derive(Debug)]
@@ -47,12 +47,11 @@ pub struct Moving<'a> {
 }
 
 impl Moving<'_> {
-    /// v when all contacts have come free, on a ground of `stiffness` k_n \[N/m\]; none where they have not within the
-    /// longest run.
+    /// v when all contacts have come free, or after the longest run, on a ground of `stiffness` k_n \[N/m\].
     ///
     /// # Errors
     /// [`Reason::Unsupported`] where the integrator gives up, and for robots of more than 60 coordinates and contacts.
-    pub fn run(&self, ground: Ground, stiffness: f64, tolerance: f64) -> Result<Option<Vec<f64>>> {
+    pub fn run(&self, ground: Ground, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         match 2 * self.position.len() + self.contacts.len() {
             0..=16 => self.integrate::<16>(ground, stiffness, tolerance),
             17..=32 => self.integrate::<32>(ground, stiffness, tolerance),
@@ -63,26 +62,24 @@ impl Moving<'_> {
         }
     }
 
-    fn integrate<const N: usize>(&self, ground: Ground, stiffness: f64, tolerance: f64) -> Result<Option<Vec<f64>>> {
+    fn integrate<const N: usize>(&self, ground: Ground, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         let model = Model::new(self, ground, stiffness);
         let dofs = self.position.len();
-        let speed = self.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs()));
         let mut start = [0.0; N];
-        start[dofs..2 * dofs].copy_from_slice(self.velocity);
-        let least = |index: usize| if (dofs..2 * dofs).contains(&index) { speed } else { speed * model.period };
-        let mut method = ImplicitRungeKutta::radau5()
-            .rtol([tolerance; N])
-            .atol(std::array::from_fn::<f64, N, _>(|index| tolerance * least(index)))
-            .h0(1e-6 * model.period)
-            .max_steps(MOST_STEPS);
-        let mut watch = Watch { model: &model, state: start, steps: 0, ended: false };
-        let horizon = HORIZON * model.period * (1.0 + ground.damping_ratio);
+        for (entry, rate) in start[dofs..].iter_mut().zip(self.velocity) {
+            *entry = rate / model.speed;
+        }
+        let mut method =
+            ImplicitRungeKutta::radau5().rtol([tolerance; N]).atol([tolerance; N]).h0(1e-6).max_steps(MOST_STEPS);
+        let mut watch = Watch { model: &model, state: start, steps: 0 };
+        let horizon = HORIZON * (1.0 + ground.damping_ratio);
         solve_ode(&mut method, &model, 0.0, horizon, &start, &mut watch).map_err(|error| gave_up(&error))?;
-        Ok(watch.ended.then(|| watch.state[dofs..2 * dofs].to_vec()))
+        Ok(watch.state[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
     }
 }
 
-/// The equations; the first entries of a state are what q has changed by, then follow v and the stretches.
+/// The equations; the first entries of a state are what q has changed by, then follow v and the stretches, in units of
+/// `period` and `speed`, in which all of them are of order one.
 #[derive(Debug)]
 struct Model<'a> {
     robot: &'a Moving<'a>,
@@ -93,6 +90,8 @@ struct Model<'a> {
     start: Vec<Vector<f64>>,
     /// sqrt(m / k_n), m the inverse of the contacts' mean mobility \[s\].
     period: f64,
+    /// The greatest rate.
+    speed: f64,
     memory: RefCell<Memory>,
 }
 
@@ -131,6 +130,7 @@ impl<'a> Model<'a> {
                 .collect(),
             start,
             period: (1.0 / (stiffness * mean_mobility)).sqrt(),
+            speed: robot.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
             memory: RefCell::new(memory),
             robot,
         }
@@ -139,18 +139,20 @@ impl<'a> Model<'a> {
     /// Accelerations, rates of the stretches, and for each contact its normal force and speed.
     fn evaluate(&self, state: &[f64], rates: &mut [f64]) -> Vec<Vector<f64>> {
         let (plan, dofs) = (self.robot.plan, self.robot.position.len());
-        let (moved, rest) = state.split_at(dofs);
-        let (velocity, stretches) = rest.split_at(dofs);
+        let length = self.speed * self.period;
+        let moved: Vec<f64> = state[..dofs].iter().map(|entry| entry * length).collect();
+        let velocity: Vec<f64> = state[dofs..2 * dofs].iter().map(|entry| entry * self.speed).collect();
+        let stretches = &state[2 * dofs..];
         let Memory { workspace, posture, column } = &mut *self.memory.borrow_mut();
-        let position: Vec<f64> = self.robot.position.iter().zip(moved).map(|(q, moved)| q + moved).collect();
+        let position: Vec<f64> = self.robot.position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
         posture.set(&position);
         kinematics(plan, posture, workspace);
         mass_matrix(plan, workspace);
         factorize(plan, workspace);
-        contact_jacobian(plan, self.robot.contacts, velocity, None, workspace);
+        contact_jacobian(plan, self.robot.contacts, &velocity, None, workspace);
 
         let mut accelerations = vec![0.0; dofs];
-        for (body, force) in inertial_forces(plan, velocity, workspace).into_iter().enumerate() {
+        for (body, force) in inertial_forces(plan, &velocity, workspace).into_iter().enumerate() {
             let com = workspace.rotation[body].apply(com(plan, body));
             add_impulse(plan, workspace, (body, com), force, column, &mut accelerations);
         }
@@ -163,15 +165,18 @@ impl<'a> Model<'a> {
             let push = self.stiffness[1] * depth - self.damping[1] * c[1];
             let normal = if depth < 0.0 { 0.0 } else { push.max(0.0) };
             let bound = self.friction[index] * normal;
-            let tangential = (-self.stiffness[0] * stretches[index] - self.damping[0] * c[0]).clamp(-bound, bound);
-            rates[2 * dofs + index] = -(tangential + self.stiffness[0] * stretches[index]) / self.damping[0];
+            let spring = self.stiffness[0] * stretches[index] * length;
+            let tangential = (-spring - self.damping[0] * c[0]).clamp(-bound, bound);
+            rates[2 * dofs + index] = -(tangential + spring) / self.damping[0] / self.speed;
             let force = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
             let arm = contact.arm(workspace);
             add_impulse(plan, workspace, (contact.body, arm), force, column, &mut accelerations);
             touching.push([normal, c[1]]);
         }
-        rates[..dofs].copy_from_slice(velocity);
-        rates[dofs..2 * dofs].copy_from_slice(&accelerations);
+        rates[..dofs].copy_from_slice(&state[dofs..2 * dofs]);
+        for (rate, acceleration) in rates[dofs..].iter_mut().zip(&accelerations) {
+            *rate = acceleration * self.period / self.speed;
+        }
         touching
     }
 }
@@ -234,7 +239,6 @@ struct Watch<'m, const N: usize> {
     model: &'m Model<'m>,
     state: [f64; N],
     steps: usize,
-    ended: bool,
 }
 
 impl<const N: usize> Solout<f64, [f64; N]> for Watch<'_, N> {
@@ -250,7 +254,7 @@ impl<const N: usize> Solout<f64, [f64; N]> for Watch<'_, N> {
         self.steps += 1;
         self.state = *state;
         let touching = self.model.evaluate(state, &mut [0.0; N]);
-        self.ended = self.steps > 2 && touching.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0);
-        if self.ended { ControlFlag::Terminate } else { ControlFlag::Continue }
+        let free = touching.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0);
+        if free && self.steps > 2 { ControlFlag::Terminate } else { ControlFlag::Continue }
     }
 }
