@@ -72,6 +72,7 @@
 //! ```
 
 pub mod error;
+pub mod excerpt;
 pub mod scalar;
 pub mod planar;
 pub mod description;

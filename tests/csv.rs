@@ -285,9 +285,9 @@ fn the_header_has_every_contact_that_the_feet_can_give() {
     let foot = NamedContact { link: 1, offset: [0.1, 0.0, -0.5], radius: 0.0 };
     assert_eq!(modes(&header(&[foot], false)), ["body", "body/0", "body/1", "shin", "shin/0", "shin/1"]);
     assert_eq!(modes(&header(&[], true)), ["body", "body/0", "body/1", "body/2", "body/3", "shin"]);
-    assert!(
-        header(&[], true).contains(",v_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,error")
-    );
+    assert!(header(&[], true).contains(
+        ",v_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,touchdown_at,touchdown_touching,error"
+    ));
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! Records of a stream, a few at a time.
 
+use super::foreign::foreign;
 use super::run::Source;
 use crate::table::Quotes;
+use crate::{Error, Reason, Result};
 use memchr::memchr;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 
@@ -13,6 +15,9 @@ const RECORDS: usize = 16;
 
 /// A record longer than this is passed over and refused \[bytes\].
 pub const RECORD_LIMIT: usize = 1 << 24;
+
+/// A record behind the line on which it begins, from 1.
+pub type Numbered = (usize, Vec<u8>);
 
 /// Some consecutive whole records.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -31,12 +36,14 @@ pub struct Chunks<R> {
     /// Where a line break may stand within a record.
     quotes: Option<Quotes>,
     line: usize,
+    /// Nothing was read yet.
+    fresh: bool,
 }
 
 impl<R: Read> Chunks<R> {
     /// An input with one record per line.
     pub fn of_lines(input: R) -> Self {
-        Self { input: BufReader::with_capacity(READ, input), quotes: None, line: 1 }
+        Self { input: BufReader::with_capacity(READ, input), quotes: None, line: 1, fresh: true }
     }
 
     /// An input as CSV.
@@ -47,6 +54,31 @@ impl<R: Read> Chunks<R> {
     /// Whether it is read as CSV.
     pub fn is_table(&self) -> bool {
         self.quotes.is_some()
+    }
+
+    /// Why the input as a whole is refused: its first bytes tell that it is packed, a spreadsheet or the like.
+    ///
+    /// # Errors
+    /// Whatever keeps the input from being read.
+    pub fn foreign(&mut self) -> io::Result<Option<Error>> {
+        Ok(foreign(self.fill()?))
+    }
+
+    /// The first record that is not blank, or why it is refused; none where there is none.
+    ///
+    /// # Errors
+    /// Whatever keeps the input from being read.
+    pub fn first(&mut self) -> io::Result<Option<Result<Numbered>>> {
+        while let Some(chunk) = self.record()? {
+            if let Some(line) = chunk.too_long {
+                return Ok(Some(Err(too_long().on(line, 1))));
+            }
+            let found = chunk.records().find(|(_, record)| !record.trim_ascii().is_empty());
+            if let Some((line, record)) = found {
+                return Ok(Some(Ok((line, record.to_vec()))));
+            }
+        }
+        Ok(None)
     }
 
     /// The next record alone; none at the end of the input.
@@ -63,11 +95,7 @@ impl<R: Read> Chunks<R> {
         // Where the current record and its last line begin, the record's first line and its length so far.
         let (mut start, mut line_start, mut first, mut length) = (0, 0, self.line, 0);
         loop {
-            let ready = match self.input.fill_buf() {
-                Ok(ready) => ready,
-                Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-                Err(error) => return Err(error),
-            };
+            let ready = self.fill()?;
             let newline = memchr(b'\n', ready);
             let taken = newline.map_or(ready.len(), |newline| newline + 1);
             length += taken;
@@ -98,10 +126,31 @@ impl<R: Read> Chunks<R> {
         }
     }
 
+    /// What is at hand, at least a byte unless the input has ended; without a byte order mark.
+    fn fill(&mut self) -> io::Result<&[u8]> {
+        loop {
+            match self.input.fill_buf() {
+                Ok(ready) if std::mem::take(&mut self.fresh) && ready.starts_with(b"\xEF\xBB\xBF") => {
+                    self.input.consume(3);
+                }
+                Ok(_) => break,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(self.input.buffer())
+    }
+
     /// Whether no whole line is at hand.
     fn keeps_waiting(&self) -> bool {
         memchr(b'\n', self.input.buffer()).is_none()
     }
+}
+
+/// The refusal of a record longer than [`RECORD_LIMIT`].
+pub(super) fn too_long() -> Error {
+    let reason = Reason::Unsupported(format!("the record is longer than {} MiB", RECORD_LIMIT >> 20));
+    Error::new(reason).hint("is a line break or a closing quote missing?")
 }
 
 impl<R: Read + Send> Source for Chunks<R> {

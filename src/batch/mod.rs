@@ -8,19 +8,23 @@
 //! Nothing here opens a file, and threads are started by [`run`] alone, where it is told to.
 
 mod chunk;
+mod foreign;
 mod recording;
 mod run;
 mod summary;
 
-pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
+use chunk::too_long;
+pub use chunk::{Chunk, Chunks, Numbered, RECORD_LIMIT};
 pub use recording::{Landing, Origin, Recorded, Recording, samples};
-pub use run::{Block, Broken, Form, Sink, Source, run};
+pub use run::{Block, Broken, Form, Refusal, Sink, Source, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, Place, Summary, Verdicts};
 
 use crate::documents::utf8;
+use crate::error::Location;
+use crate::excerpt::Excerpt;
 use crate::impact::{Analysis, Friction, Mode, Outcome, Verdict};
 use crate::pipeline::{Options, Pipeline};
-use crate::report::{self, CarriedFields, Detail, Refused, Report};
+use crate::report::{self, CarriedFields, Detail, Refused, Report, short_id};
 use crate::scene::ByLink;
 use crate::state::{Defaults, State};
 use crate::table::{Carried, Columns, Header, Rows};
@@ -58,8 +62,27 @@ pub struct Batch<'q> {
 #[derive(Debug, Clone, Copy)]
 struct Around<'a> {
     line: usize,
+    text: Text<'a>,
     carried: Option<&'a Carried>,
     touchdown: Option<&'a Landing>,
+}
+
+/// What can be shown of the input where a state is refused.
+#[derive(Debug, Clone, Copy)]
+enum Text<'a> {
+    /// The record, which begins on the state's line.
+    Record(&'a [u8]),
+    /// What was kept of it.
+    Kept(Option<&'a Excerpt>),
+}
+
+impl Text<'_> {
+    fn around(self, first: usize, place: Location) -> Option<Excerpt> {
+        match self {
+            Self::Record(record) => Excerpt::around(record, first, place),
+            Self::Kept(excerpt) => excerpt.cloned(),
+        }
+    }
 }
 
 impl<'q> Batch<'q> {
@@ -71,31 +94,38 @@ impl<'q> Batch<'q> {
 
     /// Answers a line of JSON; a blank one has no answer.
     fn line(&mut self, line: usize, record: &[u8], block: &mut Block) {
-        if record.trim_ascii().is_empty() {
+        // Without its end: a line that is cut off would seem to end on the next one.
+        let record = record.trim_ascii_end();
+        if record.is_empty() {
             return;
         }
         let Question { robot, defaults, .. } = self.question;
         let state = utf8(record).and_then(|text| State::from_json(text, robot, defaults));
-        // The error's place is that in its line alone.
         let state = state.map_err(|error| {
-            let column = error.location().map_or(1, |location| location.column);
-            error.on(line, column)
+            let error = with_remedy(error, record);
+            // Its place is that in the line alone.
+            match error.location() {
+                Some(Location { column, .. }) => error.on(line, column),
+                None => error,
+            }
         });
-        let unread = || std::str::from_utf8(record).ok().and_then(State::id_in);
-        self.answer(state, unread, Around { line, carried: None, touchdown: None }, block);
+        let unread = || utf8(record).ok().and_then(State::id_in);
+        let around = Around { line, text: Text::Record(record), carried: None, touchdown: None };
+        self.answer(state, unread, around, block);
     }
 
     /// Answers a row of a table; a blank one has no answer.
     fn row(&mut self, rows: &mut Rows, line: usize, record: &[u8], block: &mut Block) {
         let Question { robot, defaults, .. } = self.question;
+        let around = Around { line, text: Text::Record(record), carried: None, touchdown: None };
         match rows.row(record, line) {
             Ok(None) => {}
             Ok(Some(row)) => {
                 let carried = row.carried();
-                let around = Around { line, carried: Some(&carried), touchdown: None };
+                let around = Around { carried: Some(&carried), ..around };
                 self.answer(row.state(robot, defaults), || row.id(), around, block);
             }
-            Err(error) => self.refuse(error, None, Around { line, carried: None, touchdown: None }, block),
+            Err(error) => self.refuse(error, None, around, block),
         }
     }
 
@@ -120,7 +150,7 @@ impl<'q> Batch<'q> {
     /// Appends the result of a state.
     fn result(&mut self, state: &mut State, around: Around<'_>, block: &mut Block) -> Result<()> {
         let Question { robot, detail, header, columns, .. } = *self.question;
-        let impact = self.pipeline.impact(state)?;
+        let impact = self.pipeline.impact(state).map_err(|error| self.in_its_form(error))?;
         let mut report = Report::of_state(robot, state, &impact, detail)?;
         report.touchdown = around.touchdown.zip(self.question.touchdowns).map(|(landing, choice)| landing.told(choice));
         if let Some(columns) = columns {
@@ -133,11 +163,11 @@ impl<'q> Batch<'q> {
         match &impact.analysis {
             Ok(analysis) => {
                 let needed = self.friction_needed(state, analysis);
-                let place = || Place { id: state.id.clone(), line: around.line };
+                let place = || Place { id: state.id.clone().map(short_id), line: around.line };
                 block.summary.count(place, &impact, analysis, needed);
             }
             // It stands in the result, beside the matrices.
-            Err(error) => block.refuse(error.clone(), around.line),
+            Err(error) => block.refuse(error.clone(), around),
         }
         Ok(())
     }
@@ -149,7 +179,17 @@ impl<'q> Batch<'q> {
             Some(columns) => columns.append_refused(&refused, around.carried, &mut block.out),
             None => report::append_line(&mut block.out, &refused),
         }
-        block.refuse(error, around.line);
+        block.refuse(error, around);
+    }
+
+    /// The error with the remedy for the form of the input.
+    fn in_its_form(&self, error: Error) -> Error {
+        match error.reason() {
+            Reason::Missing(_) if self.question.header.is_some() && error.place() == Some("friction") => {
+                error.hint("add a column friction, or give --friction 0.8 (or infinite)")
+            }
+            _ => error,
+        }
     }
 
     /// The friction with which no contact would have to slide, where one has to; see [`MoreFriction`].
@@ -179,32 +219,48 @@ impl Form<Chunk> for Batch<'_> {
         }
         self.rows = rows;
         if let Some(line) = chunk.too_long {
-            self.refuse(too_long(), None, Around { line, carried: None, touchdown: None }, block);
+            let around = Around { line, text: Text::Kept(None), carried: None, touchdown: None };
+            self.refuse(too_long(), None, around, block);
         }
     }
 }
 
 impl Form<Vec<Recorded>> for Batch<'_> {
     fn answer(&mut self, found: Vec<Recorded>, block: &mut Block) {
-        for Recorded { origin: Origin { line, id, carried }, state, touchdown } in found {
-            let around = Around { line, carried: Some(&carried), touchdown: touchdown.as_ref() };
+        for Recorded { origin: Origin { line, id, carried, excerpt }, state, touchdown } in found {
+            let text = Text::Kept(excerpt.as_ref());
+            let around = Around { line, text, carried: Some(&carried), touchdown: touchdown.as_ref() };
             self.answer(state, || id, around, block);
         }
     }
 }
 
-/// The refusal of a record longer than [`RECORD_LIMIT`].
-fn too_long() -> Error {
-    let reason = Reason::Unsupported(format!("the record is longer than {} MiB", RECORD_LIMIT >> 20));
-    Error::new(reason).hint("is a line break or a closing quote missing?")
+/// The error with a remedy for a line that is not of this form: a table's, or one of JSON that holds no state or many.
+fn with_remedy(error: Error, record: &[u8]) -> Error {
+    if record.trim_ascii_start().starts_with(b"[") {
+        return error.hint("each line must hold one state; `jq -c '.[]'` takes a list apart");
+    }
+    let Reason::Syntax(reason) = error.reason() else { return error };
+    if reason.starts_with("EOF while parsing") {
+        return error.hint("each line must hold a whole state; `jq -c .` writes JSON so");
+    }
+    if reason == "trailing characters" {
+        return error.hint("a line holds one state and nothing after it");
+    }
+    // The names of a table's columns.
+    let column = |name: &[u8]| [&b"q_"[..], b"v_"].iter().any(|prefix| name.starts_with(prefix));
+    let header = record.split(|&byte| byte == b',').any(column);
+    if header { error.hint("is this a table? then say --input-format csv") } else { error }
 }
 
 impl Block {
-    /// Counts and keeps the refusal of what begins on `line`.
-    fn refuse(&mut self, error: Error, line: usize) {
+    /// Counts and keeps a refusal.
+    fn refuse(&mut self, error: Error, around: Around<'_>) {
         self.summary.refuse();
-        let located = error.location().is_some();
-        self.refused.push(if located { error } else { error.on(line, 1) });
+        let place = error.location();
+        let excerpt = place.and_then(|place| around.text.around(around.line, place));
+        let error = if place.is_some() { error } else { error.on(around.line, 1) };
+        self.refused.push(Refusal { error, excerpt });
     }
 }
 

@@ -1,9 +1,9 @@
 //! Tables whose rows are not independent of each other: they are read one after the other, and what comes of it is answered
 //! like any other state.
 
-use super::chunk::Chunks;
+use super::chunk::{Chunks, too_long};
 use super::run::Source;
-use super::too_long;
+use crate::excerpt::Excerpt;
 use crate::report;
 use crate::state::{Defaults, State};
 use crate::table::{Carried, Header};
@@ -24,6 +24,8 @@ pub struct Origin {
     pub id: Option<Value>,
     /// What is carried through.
     pub carried: Carried,
+    /// The line that is refused, where it is.
+    pub excerpt: Option<Excerpt>,
 }
 
 /// A state of a recording, or why there is none.
@@ -89,13 +91,16 @@ pub fn samples<'h, R: Read>(
     let mut read = move |line: usize, record: &[u8]| match rows.row(record, line) {
         Ok(None) => None,
         Ok(Some(row)) => {
-            let source = Origin { line, id: row.id(), carried: row.carried() };
+            let source = Origin { line, id: row.id(), carried: row.carried(), excerpt: None };
             Some(match row.time().and_then(|time| Ok((time, row.state(robot, defaults)?))) {
-                Ok((time, state)) => Ok(Sample { time, state, source }),
-                Err(error) => Err((source, error)),
+                Ok((time, state)) => Ok(Sample { time, state, rate_over: [time; 2], source }),
+                Err(error) => Err((Origin { excerpt: excerpt(record, line, &error), ..source }, error)),
             })
         }
-        Err(error) => Some(Err((Origin { line, ..Origin::default() }, error))),
+        Err(error) => {
+            let source = Origin { line, excerpt: excerpt(record, line, &error), ..Origin::default() };
+            Some(Err((source, error)))
+        }
     };
     let chunks = std::iter::from_fn(move || chunks.record().transpose());
     chunks.flat_map(move |chunk| match chunk {
@@ -107,6 +112,11 @@ pub fn samples<'h, R: Read>(
         }
         Err(error) => vec![Err((Origin::default(), Reason::Io(error.to_string()).into()))],
     })
+}
+
+/// The line of a record that an error is about.
+fn excerpt(record: &[u8], first: usize, error: &Error) -> Option<Excerpt> {
+    Excerpt::around(record, first, error.location()?)
 }
 
 /// States of a recording as tasks.

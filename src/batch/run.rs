@@ -10,10 +10,11 @@
 
 use super::Summary;
 use crate::Error;
+use crate::excerpt::Excerpt;
 use std::io;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
-use std::thread;
+use std::thread::{self, Builder};
 
 /// Tasks in flight per thread.
 const AHEAD: usize = 4;
@@ -44,10 +45,19 @@ pub trait Form<T> {
 pub struct Block {
     /// What is written.
     pub out: Vec<u8>,
-    /// Why records were refused, each with its line and column in the input.
-    pub refused: Vec<Error>,
+    /// Why records were refused.
+    pub refused: Vec<Refusal>,
     /// What is to be said of these records at the end; see [`Summary::merge`].
     pub summary: Summary,
+}
+
+/// A refused record.
+#[derive(Debug)]
+pub struct Refusal {
+    /// Why, with line and column in the input.
+    pub error: Error,
+    /// The line, where a place in it is refused and it can be shown; it is short.
+    pub excerpt: Option<Excerpt>,
 }
 
 /// Takes the answers in the order of the input.
@@ -76,6 +86,9 @@ pub enum Broken {
 
 /// Answers all tasks of `source` in `threads` threads, each with what `form` makes; with one thread none is started.
 ///
+/// Where fewer threads can be started, these do the work. Where the sink takes no more, this returns when the source has
+/// given the tasks that it is asked for at that moment; a sink whose source may keep it waiting ends the process itself.
+///
 /// # Errors
 /// Where the input cannot be read or the sink takes no more.
 pub fn run<S, F>(source: S, threads: usize, form: impl Fn() -> F + Sync, sink: &mut impl Sink) -> Result<(), Broken>
@@ -83,7 +96,7 @@ where
     S: Source,
     F: Form<S::Task>,
 {
-    if threads > 1 { in_threads(source, threads, form, sink) } else { alone(source, form(), sink) }
+    if threads > 1 { in_threads(source, threads, form, sink, |_| Builder::new()) } else { alone(source, form(), sink) }
 }
 
 fn alone<S: Source>(mut source: S, mut form: impl Form<S::Task>, sink: &mut impl Sink) -> Result<(), Broken> {
@@ -99,11 +112,13 @@ fn alone<S: Source>(mut source: S, mut form: impl Form<S::Task>, sink: &mut impl
 /// A task, and where its answer goes.
 type Job<T> = (T, SyncSender<Block>);
 
+/// Starts thread `k` by `builder(k)`, of which 0 reads.
 fn in_threads<S, F>(
-    mut source: S,
+    source: S,
     threads: usize,
     form: impl Fn() -> F + Sync,
     sink: &mut impl Sink,
+    builder: impl Fn(usize) -> Builder,
 ) -> Result<(), Broken>
 where
     S: Source,
@@ -113,7 +128,10 @@ where
     let (places, ordered) = sync_channel(AHEAD * threads);
     let queue = Mutex::new(queue);
     thread::scope(|scope| {
-        scope.spawn(move || {
+        // The source is handed over when all stand: whatever cannot be started, it is not lost.
+        let (hand_over, given) = sync_channel::<S>(1);
+        let read = move || {
+            let Ok(mut source) = given.recv() else { return };
             while let Some(task) = source.next().transpose() {
                 let (block, place) = sync_channel(1);
                 let task = task.map(|task| jobs.send((task, block)));
@@ -123,18 +141,26 @@ where
                     break;
                 }
             }
-        });
-        for _ in 0..threads {
-            scope.spawn(|| {
-                let mut form = form();
-                while let Some((task, block)) = next_job(&queue) {
-                    if block.send(answer(&mut form, task)).is_err() {
-                        break;
-                    }
+        };
+        let work = || {
+            let mut form = form();
+            while let Some((task, block)) = next_job(&queue) {
+                if block.send(answer(&mut form, task)).is_err() {
+                    break;
                 }
-            });
+            }
+        };
+        let reads = builder(0).spawn_scoped(scope, read).is_ok();
+        let work = (1..=threads).map_while(|k| builder(k).spawn_scoped(scope, work).ok());
+        if reads && work.count() > 0 {
+            return match hand_over.send(source) {
+                Ok(()) => hand_on(ordered, sink),
+                // The thread that reads is there as long as it waits for the source.
+                Err(refused) => alone(refused.0, form(), sink),
+            };
         }
-        hand_on(ordered, sink)
+        drop(hand_over);
+        alone(source, form(), sink)
     })
 }
 
@@ -168,4 +194,59 @@ fn answer<T>(form: &mut impl Form<T>, task: T) -> Block {
     let mut block = Block::default();
     form.answer(task, &mut block);
     block
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The numbers below a limit.
+    struct Numbers(u32, u32);
+
+    impl Source for Numbers {
+        type Task = u32;
+
+        fn next(&mut self) -> io::Result<Option<u32>> {
+            self.0 += 1;
+            Ok((self.0 <= self.1).then_some(self.0 - 1))
+        }
+
+        fn keeps_waiting(&self) -> bool {
+            false
+        }
+    }
+
+    struct Lines;
+
+    impl Form<u32> for Lines {
+        fn answer(&mut self, task: u32, block: &mut Block) {
+            block.out.extend(format!("{task}\n").bytes());
+        }
+    }
+
+    impl Sink for Vec<u8> {
+        fn block(&mut self, block: Block) -> io::Result<()> {
+            self.extend(block.out);
+            Ok(())
+        }
+
+        fn idle(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn threads_that_cannot_be_started_are_done_without() {
+        let expected: String = (0..100).map(|number| format!("{number}\n")).collect();
+        for missing in [vec![], vec![3], vec![2, 3], vec![1, 2, 3], vec![0], vec![0, 1, 2, 3]] {
+            let builder = |thread| match missing.contains(&thread) {
+                // No system has room for such a stack.
+                true => Builder::new().stack_size(usize::MAX / 4),
+                false => Builder::new(),
+            };
+            let mut written = Vec::new();
+            in_threads(Numbers(0, 100), 3, || Lines, &mut written, builder).unwrap();
+            assert_eq!(String::from_utf8(written).unwrap(), expected, "without {missing:?}");
+        }
+    }
 }

@@ -57,7 +57,7 @@ pub struct Nearest {
 /// Which state of the input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Place {
-    /// What the user calls it.
+    /// What the user calls it; of a long name the beginning.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub id: Option<Value>,
     /// Its line, from 1.
@@ -232,6 +232,15 @@ impl fmt::Display for Place {
     }
 }
 
+/// A margin with two digits.
+struct Told(f64);
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if (0.01..10.0).contains(&self.0.abs()) { write!(f, "{:.2}", self.0) } else { write!(f, "{:.1e}", self.0) }
+    }
+}
+
 /// So many of each kind are told to people.
 const TOLD: usize = 5;
 
@@ -253,7 +262,7 @@ impl fmt::Display for Summary {
         writeln!(f, "{} state{plural}: {}", self.states, counts.collect::<Vec<_>>().join(", "))?;
         if !self.smallest_margins.is_empty() {
             let near = self.smallest_margins.iter().take(TOLD);
-            let near = near.map(|Nearest { state, margin }| format!("{margin:.1e} {state}"));
+            let near = near.map(|Nearest { state, margin }| format!("{} {state}", Told(*margin)));
             writeln!(f, "smallest margins: {}", near.collect::<Vec<_>>().join(", "))?;
         }
         if let Some(Needed { state, friction }) = &self.more_friction.greatest {

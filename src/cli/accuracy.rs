@@ -8,6 +8,7 @@ use super::stream::only_document;
 use super::{Answered, Failure, Outcome, input};
 use heelstrike::accuracy::compliant::compare;
 use heelstrike::accuracy::{Budget, Case, Pose, Study, Subject, cases, of_state, study};
+use heelstrike::excerpt::Excerpt;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::report::{Accuracy, Compliant, append_line};
 use heelstrike::state::State;
@@ -80,9 +81,12 @@ fn own(args: &Args, robot: &std::path::Path, state: &std::path::Path, budget: Bu
     let robot = RobotOptions { robot: robot.to_owned(), base: None, contact: Vec::new() }.load()?;
     let name = input::name(state);
     let bytes = input::bytes_up_to(state, LARGEST)?;
-    let text = only_document(&bytes, &name)?;
-    let state = State::from_json(text, &robot, &args.scene.defaults())
-        .map_err(|error| Failure::RefusedWithin(error.in_file(&name), text.to_owned()))?;
+    let document = only_document(&bytes, &name)?;
+    let state = State::from_json(document.text, &robot, &args.scene.defaults()).map_err(|error| {
+        let error = document.locate(error);
+        let excerpt = error.location().and_then(|place| Excerpt::around(&bytes, 1, place));
+        Failure::RefusedAt(error.in_file(&name), excerpt)
+    })?;
     let options = Options {
         contact_tolerance: args.contacts.contact_tolerance,
         resting_speed: args.contacts.resting_speed,

@@ -1,15 +1,18 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
 use super::delivery::Delivery;
-use super::options::{ContactOptions, DetailOptions, SceneOptions, pipeline_options};
+use super::options::{ContactOptions, DetailOptions, SceneOptions, from_zero, pipeline_options};
 use super::output::{named, spare};
 use super::progress::Progress;
 use super::robot::RobotOptions;
 use super::{Answered, Failure, Outcome, input};
 use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
+use heelstrike::error::Location;
+use heelstrike::excerpt::Excerpt;
+use heelstrike::scene::NamedContact;
 use heelstrike::table::{Columns, Header, Rates};
-use heelstrike::touchdown::{self, At, Difference, Touching};
+use heelstrike::touchdown::{self, At, Difference, Thresholds, Touching};
 use heelstrike::{Error, Reason, Robot, report};
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -24,8 +27,8 @@ use std::thread::available_parallelism;
 #[command(after_help = "\
 Examples:
   heelstrike batch urdf/ramone.urdf keyframes.ndjson --friction 0.8 -o results.ndjson
-  heelstrike batch urdf/ramone.urdf keyframes.csv --friction 0.8 -o results.csv --summary summary.json
-  heelstrike batch urdf/ramone.urdf recorded.csv --touchdowns --velocity central --friction 0.8")]
+  heelstrike batch urdf/ramone.urdf keyframes.csv --friction 0.8 -o results.csv --summary sum.json
+  heelstrike batch urdf/ramone.urdf recorded.csv --touchdowns --velocity backward --friction 0.8")]
 pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,
@@ -65,14 +68,29 @@ pub struct Args {
 #[command(next_help_heading = "Recordings")]
 struct RecordingOptions {
     /// Answer only the moments at which a foot that was above the ground reaches it
+    ///
+    /// A foot does so where it comes down far enough (--drop), faster than 0.045 of the robot's size per second, and ends low
+    /// enough (--ground-height); it touches when it is 0.002 of the size above the level on which it ends. The size is the
+    /// greatest distance from the root's origin to a foot or centre of gravity with all joints at zero. The base is then
+    /// shifted so that the foot is at z = 0.
     #[arg(long)]
     touchdowns: bool,
     /// Which state of a touchdown is taken
     #[arg(long, value_enum, default_value = "crossing", requires = "touchdowns")]
     at: AtRow,
     /// Which feet take part beside the one that strikes: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
+    ///
+    /// With slow of every other link the lowest point, if it is slower than SPEED (m/s) and its height differs from the
+    /// striking point's by no more than HEIGHT (m): feet that stand. With near every point at such a height, however it
+    /// moves.
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     touching: Touching,
+    /// How far a foot must have come down, in metres [default: 0.011 of the robot's size]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    drop: Option<f64>,
+    /// How far above z = 0 a foot may come to rest, in metres; recorded feet float [default: 0.019 of the robot's size]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    ground_height: Option<f64>,
     /// Compute velocities from positions and the column time
     #[arg(long, value_enum, value_name = "HOW")]
     velocity: Option<Velocity>,
@@ -98,7 +116,7 @@ enum Refused {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum AtRow {
-    /// Interpolated to the moment of contact
+    /// Positions and velocities at the moment of contact, carried there from the rows before the impact
     Crossing,
     /// The last row before it, shifted in z
     Row,
@@ -127,6 +145,12 @@ impl RecordingOptions {
         self.touchdowns.then_some((at, self.touching))
     }
 
+    fn thresholds(&self, robot: &Robot, feet: &[NamedContact]) -> Thresholds {
+        let usual = Thresholds::of(robot, feet);
+        let (drop, ground) = (self.drop.unwrap_or(usual.drop), self.ground_height.unwrap_or(usual.ground));
+        Thresholds { drop, ground, ..usual }
+    }
+
     fn difference(&self) -> Option<Difference> {
         self.velocity.map(|velocity| match velocity {
             Velocity::Central => Difference::Central,
@@ -136,8 +160,13 @@ impl RecordingOptions {
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
-    for written in [args.output.as_deref(), args.summary.as_deref()] {
-        spare(written, &[&args.robot.robot, &args.states])?;
+    let inputs = [args.robot.robot.as_path(), &args.states];
+    spare(args.output.as_deref(), &inputs)?;
+    args.summary.as_deref().map_or(Ok(()), |summary| spare(Some(summary), &inputs))?;
+    if args.summary.as_deref() == Some(Path::new("-")) {
+        let reason =
+            "standard output holds the results alone, and standard error has the summary for people".to_owned();
+        return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).at("--summary").hint("name a file")));
     }
     if args.output.is_some() && args.output == args.summary {
         let reason = "results and summary would be written to the same file".to_owned();
@@ -152,6 +181,8 @@ pub(super) fn run(args: &Args) -> Outcome {
         Form::Ndjson => Chunks::of_lines(states),
         Form::Csv => Chunks::of_table(states),
     };
+    let foreign = chunks.foreign().map_err(|error| input::cannot_read(&args.states, &error))?;
+    foreign.map_or(Ok(()), |error| Err(error.in_file(&name)))?;
     let header = args.header(&robot, &mut chunks)?;
     let output_form = args.output_format.unwrap_or_else(|| args.output.as_deref().map_or(Form::Ndjson, Form::of));
     let detail = args.detail.detail();
@@ -167,6 +198,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         let refused = touchdown::find(none, &robot, &feet, at, touching).err();
         refused.map_or(Ok(()), |error| Err(error.in_file(input::name(&args.robot.robot))))?;
     }
+    let thresholds = args.recording.thresholds(&robot, &feet);
     let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns.is_some());
     let columns = (output_form == Form::Csv).then(columns);
     let question = Question {
@@ -188,18 +220,18 @@ pub(super) fn run(args: &Args) -> Outcome {
         columns.append_header(&mut line);
         delivery.write(&line)?;
     }
-    args.answer(&question, chunks, &mut delivery)?;
+    args.answer(&question, chunks, thresholds, &mut delivery)?;
     let told = std::mem::take(&mut delivery.summary);
     drop(delivery);
     drop(progress);
-    args.tell(&told, summary)?;
+    args.tell(&told, summary, thresholds)?;
     Ok(if told.refused == 0 || args.refused == Refused::Ok { Answered::All } else { Answered::NotAll })
 }
 
 type Input = Chunks<Box<dyn Read + Send>>;
 
 impl Args {
-    /// The columns of a table; none of lines.
+    /// The columns of a table; none of lines and of an empty table.
     fn header(&self, robot: &Robot, chunks: &mut Input) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.touchdowns || self.recording.velocity.is_some();
         if !chunks.is_table() {
@@ -211,12 +243,19 @@ impl Args {
             return Ok(None);
         }
         let name = input::name(&self.states);
-        let chunk = chunks.record().map_err(|error| input::cannot_read(&self.states, &error))?;
-        let record = chunk.as_ref().and_then(|chunk| chunk.records().next()).map_or(&[][..], |(_, record)| record);
+        let first = chunks.first().map_err(|error| input::cannot_read(&self.states, &error))?;
+        // A table without any line has no states, like lines of JSON.
+        let Some(first) = first else { return Ok(None) };
+        let (line, record) = first.map_err(|error| error.in_file(&name))?;
         let rates = if self.recording.velocity.is_some() { Rates::Time } else { Rates::Columns };
-        let header = Header::read(record, robot, rates).map_err(|error| error.in_file(&name))?;
+        let header = Header::read(&record, robot, rates).map_err(|error| {
+            let place = error.location().unwrap_or(Location { line: 1, column: 1 });
+            let place = Location { line: line + place.line - 1, ..place };
+            let excerpt = Excerpt::around(&record, line, place);
+            Failure::RefusedAt(error.on(place.line, place.column).in_file(&name), excerpt)
+        })?;
         if in_order && !header.has_time() {
-            let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
+            let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(line, 1);
             return Err(missing.in_file(name).hint("touchdowns are sought over the time").into());
         }
         Ok(Some(header))
@@ -230,7 +269,13 @@ impl Args {
         }
     }
 
-    fn answer<W: Write>(&self, question: &Question, chunks: Input, delivery: &mut Delivery<W>) -> Result<(), Failure> {
+    fn answer<W: Write>(
+        &self,
+        question: &Question,
+        chunks: Input,
+        thresholds: Thresholds,
+        delivery: &mut Delivery<W>,
+    ) -> Result<(), Failure> {
         let threads = match self.threads {
             0 => available_parallelism().map_or(1, usize::from),
             threads => usize::from(threads),
@@ -248,7 +293,7 @@ impl Args {
                         let feet = &question.options.feet;
                         let found = touchdown::find(samples, question.robot, feet, at, touching);
                         let found = found.map_err(|error| error.in_file(input::name(&self.robot.robot)))?;
-                        Box::new(found.map(Recorded::from))
+                        Box::new(found.with(thresholds).map(Recorded::from))
                     }
                     None => Box::new(samples.map(Recorded::from)),
                 };
@@ -263,18 +308,16 @@ impl Args {
     }
 
     /// Writes the summary: for people where there is more than one state or it is asked for, and to its file.
-    fn tell(&self, summary: &Summary, file: Option<File>) -> io::Result<()> {
+    fn tell(&self, summary: &Summary, file: Option<File>, thresholds: Thresholds) -> io::Result<()> {
         if self.recording.touchdowns && summary.states == 0 {
+            let Thresholds { drop, slow, ground, .. } = thresholds;
+            // Where nobody reads standard error there is nobody to tell that it cannot be written.
             let _ = writeln!(
                 io::stderr(),
-                "no touchdown found: one counts where a foot comes down {} m or more, faster than {} m/s, to at most {} m above \
-                 the ground",
-                touchdown::DROP,
-                touchdown::SLOW,
-                touchdown::GROUND
+                "no touchdown found: one counts where a foot comes down {drop:.4} m or more, faster than {slow:.4} m/s, to at \
+                 most {ground:.4} m above the ground (see --drop, --ground-height)",
             );
         } else if summary.states > 1 || file.is_some() {
-            // Where nobody reads standard error there is nobody to tell that it cannot be written.
             let _ = write!(io::stderr(), "{summary}");
         }
         if let (Some(mut file), Some(path)) = (file, &self.summary) {

@@ -1,9 +1,9 @@
 //! Where the answers of a batch go: results to the output, refusals to standard error, counts to the summary.
 
-use super::complaint::complain;
+use super::complaint::complain_at;
 use super::progress::Progress;
-use heelstrike::Error;
-use heelstrike::batch::{Block, Sink, Summary};
+use super::{Failure, status};
+use heelstrike::batch::{Block, Refusal, Sink, Summary};
 use std::io::{self, ErrorKind, Write};
 
 /// So many refusals are told on standard error; all stand in the output.
@@ -55,10 +55,10 @@ impl<'a, W: Write> Delivery<'a, W> {
         )
     }
 
-    fn complain(&mut self, error: Error) {
+    fn complain(&mut self, Refusal { error, excerpt }: Refusal) {
         self.refused += 1;
         if self.refused <= TOLD {
-            self.progress.beside(|| complain(&error.in_file(self.input)));
+            self.progress.beside(|| complain_at(&error.in_file(self.input), excerpt.as_ref()));
         } else if self.refused == TOLD + 1 {
             self.progress.beside(|| {
                 // Where nobody reads standard error there is nobody to tell that it cannot be written.
@@ -68,16 +68,25 @@ impl<'a, W: Write> Delivery<'a, W> {
     }
 }
 
+impl<W: Write> Delivery<'_, W> {
+    /// Ends the process: whoever gives the input may stay silent for ever, and waiting for more of it is of no use.
+    fn end(&self, error: io::Error) -> ! {
+        self.progress.clear();
+        std::process::exit(status(Failure::Output(error)).into())
+    }
+}
+
 impl<W: Write> Sink for Delivery<'_, W> {
     fn block(&mut self, block: Block) -> io::Result<()> {
-        self.write(&block.out)?;
+        self.write(&block.out).unwrap_or_else(|error| self.end(error));
         // What is answered stands before the complaint also where both go to one terminal.
-        block.refused.into_iter().for_each(|error| self.complain(error));
+        block.refused.into_iter().for_each(|refusal| self.complain(refusal));
         self.summary.merge(block.summary);
         Ok(())
     }
 
     fn idle(&mut self) -> io::Result<()> {
-        self.output.flush()
+        self.output.flush().unwrap_or_else(|error| self.end(error));
+        Ok(())
     }
 }

@@ -22,8 +22,9 @@ mod solve;
 mod stream;
 
 use clap::{Parser, Subcommand};
-use complaint::{complain, complain_within};
-use std::io;
+use complaint::{complain, complain_at};
+use heelstrike::excerpt::Excerpt;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// The crate's version, and the commit where it is known.
@@ -56,8 +57,8 @@ enum Command {
 enum Failure {
     /// Input that nothing can be done without, such as the robot's file.
     Refused(heelstrike::Error),
-    /// The same, and the text that the place is in.
-    RefusedWithin(heelstrike::Error, String),
+    /// The same, and the line that the place is in.
+    RefusedAt(heelstrike::Error, Option<Excerpt>),
     /// An option's value that does not fit the robot.
     Usage(heelstrike::Error),
     /// The output could not be written.
@@ -101,23 +102,33 @@ pub fn run(cli: Cli) -> ExitCode {
     match outcome {
         Ok(Answered::All) => ExitCode::SUCCESS,
         Ok(Answered::NotAll) => ExitCode::from(1),
+        Err(failure) => ExitCode::from(status(failure)),
+    }
+}
+
+/// Writes what clap has to say, such as the version or what is wrong with an option, and gives the exit status.
+pub fn usage(told: &clap::Error) -> ExitCode {
+    let written = told.print().and_then(|()| io::stdout().flush());
+    match written {
+        Err(error) if !told.use_stderr() => ExitCode::from(status(Failure::Output(error))),
+        _ => ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2)),
+    }
+}
+
+/// Tells why a command ended early; gives the exit status.
+fn status(failure: Failure) -> u8 {
+    match failure {
         // Whoever reads has seen enough, as with `| head`.
-        Err(Failure::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(Failure::Output(error)) => {
+        Failure::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => return 0,
+        Failure::Output(error) => {
             complain(&heelstrike::Reason::Io(format!("the output cannot be written: {error}")).into());
-            ExitCode::from(1)
         }
-        Err(Failure::Refused(error)) => {
+        Failure::Refused(error) => complain(&error),
+        Failure::RefusedAt(error, excerpt) => complain_at(&error, excerpt.as_ref()),
+        Failure::Usage(error) => {
             complain(&error);
-            ExitCode::from(1)
-        }
-        Err(Failure::RefusedWithin(error, text)) => {
-            complain_within(&error, &text);
-            ExitCode::from(1)
-        }
-        Err(Failure::Usage(error)) => {
-            complain(&error);
-            ExitCode::from(2)
+            return 2;
         }
     }
+    1
 }

@@ -83,7 +83,8 @@ fn friction(text: &str) -> Result<Friction, String> {
     }
 }
 
-fn from_zero(text: &str) -> Result<f64, String> {
+/// A finite number from 0 on.
+pub(super) fn from_zero(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if f64::is_finite(number) && number >= 0.0 => Ok(number),
         _ => Err("expected a number from 0 on".to_owned()),

@@ -55,20 +55,36 @@ impl OutputOptions {
     }
 }
 
-/// Refuses an `output` that is one of the `inputs`, under whatever name.
+/// Refuses an `output` that is one of the `inputs`, under whatever name; `-` and none are standard input and output.
 ///
 /// # Errors
 /// [`Reason::Io`], naming the file.
 pub(super) fn spare(output: Option<&Path>, inputs: &[&Path]) -> Result<()> {
-    let place = |path: &Path| path.canonicalize().ok();
-    match output.and_then(|path| place(path).map(|place| (path, place))) {
-        Some((path, output)) if inputs.iter().any(|input| place(input).as_ref() == Some(&output)) => {
-            Err(Error::new(Reason::Io("is an input of this command, and the output would replace it".into()))
-                .in_file(path.display().to_string())
-                .hint("write to another file"))
-        }
-        _ => Ok(()),
+    let output = output.unwrap_or(Path::new("-"));
+    let Some(written) = file_of(output, io::stdout()) else { return Ok(()) };
+    if inputs.iter().all(|input| file_of(input, io::stdin()).as_ref() != Some(&written)) {
+        return Ok(());
     }
+    let reason = Reason::Io("is an input of this command, and the output would replace it".into());
+    let name = if output == Path::new("-") { "<stdout>".to_owned() } else { output.display().to_string() };
+    Err(Error::new(reason).in_file(name).hint("write to another file"))
+}
+
+/// Device and number of the file of that name, of `standard` for `-`; none of devices and pipes, which nothing replaces.
+#[cfg(unix)]
+fn file_of(path: &Path, standard: impl std::os::fd::AsFd) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    let file = match path == Path::new("-") {
+        true => File::from(standard.as_fd().try_clone_to_owned().ok()?).metadata().ok()?,
+        false => std::fs::metadata(path).ok()?,
+    };
+    file.is_file().then(|| (file.dev(), file.ino()))
+}
+
+/// The file of that name.
+#[cfg(not(unix))]
+fn file_of<S>(path: &Path, _standard: S) -> Option<PathBuf> {
+    path.canonicalize().ok().filter(|path| path.is_file())
 }
 
 /// A buffered output; standard output takes colours if it is a terminal that wants them.

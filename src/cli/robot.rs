@@ -4,6 +4,7 @@ use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::description::Description;
 use heelstrike::documents::utf8;
+use heelstrike::excerpt::Excerpt;
 use heelstrike::robot;
 use heelstrike::scene::NamedContact;
 use heelstrike::{Error, Reason, Robot};
@@ -88,7 +89,10 @@ impl RobotOptions {
         let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
         let robot = Description::from_urdf(text)
             .and_then(|description| Robot::reduce(&description, self.base.map(Into::into)))
-            .map_err(|error| Failure::RefusedWithin(error.in_file(name), text.to_owned()))?;
+            .map_err(|error| {
+                let excerpt = error.location().and_then(|place| Excerpt::around(text.as_bytes(), 1, place));
+                Failure::RefusedAt(error.in_file(name), excerpt)
+            })?;
         Ok(robot)
     }
 

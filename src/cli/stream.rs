@@ -3,7 +3,7 @@
 use super::complaint::{complain, complain_within, note};
 use super::output::{Format, OutputOptions};
 use super::{Answered, Outcome, input};
-use heelstrike::documents::{documents, utf8};
+use heelstrike::documents::{Document, documents, utf8};
 use heelstrike::report::{self, Palette, Refused};
 use heelstrike::state::State;
 use heelstrike::{Error, Reason, Result};
@@ -33,11 +33,11 @@ pub(super) trait Answers {
 }
 
 /// The one object of a file.
-pub(super) fn only_document<'t>(bytes: &'t [u8], name: &str) -> Result<&'t str> {
+pub(super) fn only_document<'t>(bytes: &'t [u8], name: &str) -> Result<Document<'t>> {
     let text = utf8(bytes).map_err(|error| error.in_file(name))?;
     let mut found = documents(text);
     match (found.next(), found.next()) {
-        (Some(document), None) if !document.text.trim_ascii().is_empty() => Ok(document.text),
+        (Some(document), None) if !document.text.trim_ascii().is_empty() => Ok(document),
         (Some(_), Some(second)) => {
             let reason = Reason::Inconsistent("one state is expected, and here a second one begins".into());
             Err(second.locate(Error::new(reason)).in_file(name).hint("give the states one by one"))

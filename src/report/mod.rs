@@ -8,6 +8,7 @@
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy.rs
 //! ```
 
+mod id;
 #[cfg(feature = "accuracy")]
 mod accuracy;
 mod inspection;
@@ -23,6 +24,7 @@ mod touchdown;
 
 #[cfg(feature = "accuracy")]
 pub use accuracy::{ADVICE, Accuracy, Compliant};
+pub(crate) use id::short_id;
 pub use inspection::Inspection;
 #[cfg(feature = "plot")]
 pub use picture::Picture;

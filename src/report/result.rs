@@ -300,7 +300,7 @@ pub struct OutcomeInBrief<'a> {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Refused<'a> {
-    /// What the user calls it, where that can be read.
+    /// What the user calls it, where that can be read; of a long one the beginning and `... (cut)`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Value>,
@@ -327,7 +327,7 @@ pub struct ErrorObject<'a> {
 impl<'a> Refused<'a> {
     /// The refusal of the input that begins on `line`.
     pub fn new(id: Option<Value>, line: usize, error: &'a Error) -> Self {
-        Self { id, line, error: ErrorObject::new(error) }
+        Self { id: id.map(super::short_id), line, error: ErrorObject::new(error) }
     }
 }
 

@@ -200,7 +200,12 @@ fn planar_axis(joint: &description::Joint, rotation: &Matrix) -> Result<(Axis, O
     };
     if angle > PARALLEL {
         let reason = format!("its axis is {:.2} degrees off {wanted}: not handled yet", angle.to_degrees());
-        return Err(joint.refuse(Reason::Unsupported(reason)).hint("make it fixed to hold it at zero"));
+        // What a file without the element means is seldom meant.
+        let hint = match joint.axis == [1.0, 0.0, 0.0] {
+            true => "a joint without <axis> has URDF's default, 1 0 0: add <axis>, or make it fixed to hold it at zero",
+            false => "make it fixed to hold it at zero",
+        };
+        return Err(joint.refuse(Reason::Unsupported(reason)).hint(hint));
     }
     let axis = if slides {
         Axis::Slide { direction: in_plane(unit([x, 0.0, z])) }

@@ -14,7 +14,14 @@ use std::collections::{HashMap, HashSet};
 const FIRST: [&str; 5] = ["id", "verdict", "outcome", "margin", "proven"];
 
 /// The columns of a touchdown.
-const TOUCHDOWN: [&str; 4] = ["touchdown_row", "touchdown_time", "touchdown_striking", "touchdown_shift_z"];
+const TOUCHDOWN: [&str; 6] = [
+    "touchdown_row",
+    "touchdown_time",
+    "touchdown_striking",
+    "touchdown_shift_z",
+    "touchdown_at",
+    "touchdown_touching",
+];
 
 /// The last column.
 const ERROR: &str = "error";
@@ -157,6 +164,8 @@ impl Columns {
             cells.number(start + 1, touchdown.time);
             cells.text(start + 2, touchdown.striking);
             cells.number(start + 3, touchdown.shift_z);
+            cells.text(start + 4, touchdown.at);
+            cells.text(start + 5, &touchdown.touching);
         }
     }
 

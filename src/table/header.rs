@@ -159,7 +159,19 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
             Err(in_column(error, record, at).hint("save the table as UTF-8"))
         }
     };
-    fields.iter().enumerate().map(name).collect()
+    let names: Vec<String> = fields.iter().enumerate().map(name).collect::<Result<_>>()?;
+    match names.as_slice() {
+        [only] if only.contains([';', '\t']) => {
+            let by = if only.contains(';') { "semicolons" } else { "tabs" };
+            let reason = Reason::Syntax(format!("the columns are parted by {by}, not by commas"));
+            Err(Error::new(reason).on(1, 1).hint("save the table with commas between columns and points in numbers"))
+        }
+        [first, ..] if first.starts_with('{') => {
+            let reason = Reason::Syntax("expected the names of the columns, found JSON".into());
+            Err(Error::new(reason).on(1, 1).hint("are these lines of JSON? then say --input-format ndjson"))
+        }
+        _ => Ok(names),
+    }
 }
 
 /// Line and column of the byte at `offset` of the first record.

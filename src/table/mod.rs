@@ -18,8 +18,8 @@
 //!
 //! `id, verdict, outcome, margin, proven`, then `mode_<contact>, p_<contact>_t, p_<contact>_n` for every contact that the
 //! robot's feet can give, `v_<coordinate>` after the impact, where touchdowns were asked for
-//! `touchdown_row, touchdown_time, touchdown_striking, touchdown_shift_z`, the carried columns, and `error`. Outcomes are
-//! counted from 1; a state without one has a row in which all about outcomes is empty. A link that can touch at one point
+//! `touchdown_row, touchdown_time, touchdown_striking, touchdown_shift_z, touchdown_at, touchdown_touching`, the carried
+//! columns, and `error`. Outcomes are counted from 1; a state without one has a row in which all about outcomes is empty. A link that can touch at one point
 //! has the columns of its own name; one that can touch at several has those and link/0, link/1 ..., because a contact is
 //! called by its link where it is alone. A refused state has a row with the verdict `refused`, its id and carried columns
 //! where they can be read, and under `error` its line and what is wrong. A carried column whose name the output already has

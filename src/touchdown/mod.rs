@@ -7,16 +7,30 @@
 //! Recorded feet do not reach z = 0: they float or sink by centimetres, sink slowly while they stand, and may be scuffed
 //! over the ground. So a touchdown is told by the foot's motion. Of every point that can touch (a circle's lowest, a
 //! polygon's corners) the height is followed: a *descent* is a run of rows in which it falls faster than
-//! [`SLOW`]; it is a touchdown if the point has come down by [`DROP`] or more since it was last not falling, and ends no
-//! higher than [`GROUND`] above z = 0. The moment of contact is the one at which the point is [`ABOVE`] over the level on
-//! which its descent ends; before it the foot still has the velocity with which it strikes.
+//! [`Thresholds::slow`]; it is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last not
+//! falling, and ends no higher than [`Thresholds::ground`] above z = 0. The moment of contact is the one at which the point
+//! is [`Thresholds::above`] over the level on which its descent ends; before it the foot still has the velocity with which
+//! it strikes. All thresholds are parts of the robot's size, so that a robot built or written down twice as large has the
+//! same touchdowns; how far feet float is up to the recording, and can be told ([`Touchdowns::with`]).
 //!
-//! With [`At::Row`] the state is the last row before that moment, with [`At::Crossing`] its position is interpolated
-//! linearly between that row and the next; its velocity is that of the row, because the next may be after the impact. Where
-//! a row within that distance is followed by one of the same time, it is the state just before the impact and is taken as it
-//! is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within [`ABOVE`] of z = 0;
-//! if it is below, the moment is the one at which it crosses z = 0. In every case the base is then shifted along z so that
-//! the striking point is at z = 0 (a robot that is bolted to the world is not).
+//! With [`At::Row`] the state is the last row before that moment as it is. With [`At::Crossing`] it is the state at the
+//! moment:
+//!
+//! * Where the next row is before the impact too (the point goes on falling after it), positions lie on the line between
+//!   the two rows.
+//! * Else the next row may be after the impact. Time and positions then go on from the last three rows before it by the
+//!   parabola through them (a line, where there are two), until the point is where it touches; where it would not get there
+//!   before the next row, or the next row is far, they lie on the line between the two rows after all.
+//! * Velocities go through those of rows before the impact alone: on the line between the two rows around the moment, else
+//!   on the line through the last two, carried on. A velocity taken from differences belongs to the middle of the rows that
+//!   it comes from, and one that comes from a row after the impact does not count.
+//! * Neither goes back over two rows of one time: between them another foot may have struck.
+//! * Where the descent ends above that height, the row at which it ends is taken as it is.
+//!
+//! Where a row within that distance is followed by one of the same time, it is the state just before the impact and is taken
+//! as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
+//! [`Thresholds::above`] of z = 0; if it is below, the moment is the one at which it crosses z = 0. In every case the base is
+//! then shifted along z so that the striking point is at z = 0 (a robot that is bolted to the world is not).
 //!
 //! A jump back in time starts a new clip, and so does a step that is more than ten times the longest of the clip so far. A
 //! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order in which they are
@@ -25,6 +39,7 @@
 //! The contacts are named and closed: the striking one, those that strike together with it (both ends of a foot that comes
 //! down flat, both feet of a hop), and those that [`Touching`] adds.
 
+mod carry;
 mod clip;
 mod find;
 mod points;
@@ -33,25 +48,45 @@ mod rates;
 pub use find::{Touchdowns, find};
 pub use rates::{Difference, Differentiated, rates};
 
+use crate::contact::Feet;
+use crate::scene::NamedContact;
 use crate::state::State;
-use crate::{Error, Reason};
+use crate::{Error, Reason, Robot};
 use std::fmt;
 use std::str::FromStr;
 
-/// A point that falls more slowly has ended its descent \[m/s\].
-pub const SLOW: f64 = 0.05;
+/// What counts as a touchdown, by the robot's size: the greatest distance from the root's origin to a foot or CoG with all
+/// joints at zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thresholds {
+    /// The least height of a descent: 0.011 of the size \[m\].
+    pub drop: f64,
+    /// A point that falls more slowly has ended its descent: 0.045 of the size per second \[m/s\].
+    pub slow: f64,
+    /// The highest level on which a descent may end: 0.019 of the size \[m\].
+    pub ground: f64,
+    /// How far above the level on which its descent ends a point touches the ground: 0.002 of the size \[m\].
+    pub above: f64,
+    /// Points that strike at the same row and are no more apart in height strike together: 1e-6 of the size \[m\].
+    pub together: f64,
+}
 
-/// The least height of a descent \[m\].
-pub const DROP: f64 = 0.012;
+impl Thresholds {
+    /// Those for `robot` with the `feet` that were added to it.
+    pub fn of(robot: &Robot, feet: &[NamedContact]) -> Self {
+        Self::of_size(Feet::new(robot, feet).size())
+    }
 
-/// The highest level on which a descent may end \[m\].
-pub const GROUND: f64 = 0.02;
-
-/// How far above the level on which its descent ends a point touches the ground \[m\].
-pub const ABOVE: f64 = 0.002;
-
-/// Points that strike at the same row and are no more apart in height strike together \[m\].
-pub const TOGETHER: f64 = 1e-6;
+    fn of_size(size: f64) -> Self {
+        Self {
+            drop: 0.011 * size,
+            slow: 0.045 * size,
+            ground: 0.019 * size,
+            above: 0.002 * size,
+            together: 1e-6 * size,
+        }
+    }
+}
 
 /// A state of a recording.
 #[derive(Debug, Clone)]
@@ -60,6 +95,8 @@ pub struct Sample<S> {
     pub time: f64,
     /// The state; without contacts and without a stance.
     pub state: State,
+    /// From when to when its velocity was taken \[s\]: at its own time alone, or of differences between two rows.
+    pub rate_over: [f64; 2],
     /// What the caller knows it by.
     pub source: S,
 }
@@ -87,7 +124,7 @@ pub struct Touchdown<S> {
 /// Which state of a touchdown is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum At {
-    /// Interpolated to the moment of contact.
+    /// At the moment of contact, between two rows.
     #[default]
     Crossing,
     /// The last row before it.

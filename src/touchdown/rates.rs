@@ -83,6 +83,9 @@ impl<S, I> Differentiated<S, I> {
         let velocity = ends.map(|((from, start), (to, end))| -> Vec<f64> {
             start.iter().zip(end).map(|(start, end)| (end - start) / (to - from)).collect()
         });
+        if let Some(((from, _), (to, _))) = ends {
+            sample.rate_over = [from, to];
+        }
         self.before = after.map(|_| (sample.time, sample.state.position.clone()));
         self.ready.push_back(match velocity {
             Some(velocity) if velocity.iter().all(|rate| rate.is_finite()) => {

@@ -7,6 +7,8 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::path::PathBuf;
 use std::process::Stdio;
 
+mod memory;
+mod refusals;
 mod summary;
 mod table;
 
@@ -116,16 +118,17 @@ fn refused_lines_are_no_failure_where_that_is_said() {
     let passes = batch("refused", &["-", "--refused", "ok"], "oops\n");
     assert_eq!((fails.status, passes.status), (1, 0));
     assert_eq!(fails.stdout, passes.stdout);
-    assert!(passes.stderr.starts_with("error: <stdin>:1:1: "), "{}", passes.stderr);
+    assert!(passes.stderr.starts_with("error: expected value\n --> <stdin>:1:1\n"), "{}", passes.stderr);
 }
 
 #[test]
 fn many_refusals_do_not_flood_standard_error() {
     let run = batch("flood", &["-"], "oops\n".repeat(1000));
     assert_eq!((run.status, run.lines().len()), (1, 1000));
-    let lines: Vec<&str> = run.stderr.lines().collect();
-    assert!(lines[19].starts_with("error: <stdin>:20:1: "), "{}", lines[19]);
-    assert_eq!(lines[20..], ["note: further refusals stand in the output alone", "1000 states: 1000 refused"]);
+    assert_eq!(run.stderr.matches("error: ").count(), 20);
+    assert!(run.stderr.contains(" --> <stdin>:20:1\n"), "{}", run.stderr);
+    let end = "\nnote: further refusals stand in the output alone\n1000 states: 1000 refused\n";
+    assert!(run.stderr.ends_with(end), "{}", run.stderr);
 }
 
 #[test]
@@ -232,6 +235,53 @@ fn a_full_disk_is_told_with_what_was_written() {
 }
 
 #[test]
+fn a_reader_that_is_gone_ends_it_also_while_the_input_is_silent() {
+    for threads in ["1", "4"] {
+        let mut child = spawned("gone", threads);
+        drop(child.stdout.take());
+        // Processes that other tests are just starting hold the pipe for a moment.
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        let mut stdin = child.stdin.take().expect("piped");
+        stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
+        assert_eq!(ended(&mut child), (Some(0), String::new()), "{threads} threads");
+        drop(stdin);
+    }
+}
+
+/// Exit status and standard error of a process that must not wait for its input, which is still open.
+fn ended(child: &mut std::process::Child) -> (Option<i32>, String) {
+    let mut stderr = child.stderr.take().expect("piped");
+    let (sent, received) = std::sync::mpsc::channel();
+    // Standard error ends with the process.
+    std::thread::spawn(move || {
+        let mut told = String::new();
+        stderr.read_to_string(&mut told).map(|_| sent.send(told))
+    });
+    let told = received.recv_timeout(std::time::Duration::from_secs(20));
+    if told.is_err() {
+        child.kill().expect("ours");
+    }
+    let told = told.expect("it does not wait for the next line");
+    (child.wait().expect("it ends").code(), told)
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_failed_output_ends_it_also_while_the_input_is_silent() {
+    for threads in ["1", "4"] {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+        command.args(["batch", &disc("silent"), "-", "--friction", "1", "--threads", threads, "-o", "/dev/full"]);
+        let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+        let mut stdin = child.stdin.take().expect("piped");
+        stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
+        let (status, told) = ended(&mut child);
+        assert_eq!(status, Some(1), "{threads} threads");
+        assert!(told.starts_with("error: the output cannot be written: No space left on device"), "{told}");
+        drop(stdin);
+    }
+}
+
+#[test]
 fn nothing_that_is_read_or_written_beside_is_replaced() {
     let states = file("spared.ndjson", strike(1, 0.0));
     for arguments in [[&states, "-o", &states], [&states, "--summary", &states]] {
@@ -239,5 +289,34 @@ fn nothing_that_is_read_or_written_beside_is_replaced() {
     }
     let both = file("both.ndjson", "");
     assert_eq!(batch("spared", &[&states, "-o", &both, "--summary", &both], "").status, 2);
+    assert_eq!(std::fs::read_to_string(&states).expect("still there"), strike(1, 0.0));
+    let dash = batch("spared", &["-", "--summary", "-"], "");
+    assert!(dash.status == 2 && dash.stderr.contains("--summary: "), "{}", dash.stderr);
+}
+
+#[cfg(unix)]
+#[test]
+fn standard_input_is_not_replaced_under_whatever_name() {
+    let states = file("redirected.ndjson", strike(1, 0.0));
+    let link = format!("{states}.link");
+    let _ = std::fs::remove_file(&link);
+    std::fs::hard_link(&states, &link).expect("linked");
+    let run = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+        command.args(["batch", &disc("redirected"), "-", "--friction", "1"]).args(arguments);
+        command.stdin(std::fs::File::open(&states).expect("it is there"));
+        command
+    };
+    let refused = |command: &mut std::process::Command| {
+        let output = command.output().expect("it runs");
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(1) && stderr.contains("is an input of this command"), "{stderr}");
+    };
+    for arguments in [["-o", &states], ["-o", &link], ["--summary", &link]] {
+        refused(&mut run(&arguments));
+    }
+    // As `cat f >> f`, which would go on for ever.
+    let appended = std::fs::File::options().append(true).open(&states).expect("it is there");
+    refused(run(&[]).stdout(appended));
     assert_eq!(std::fs::read_to_string(&states).expect("still there"), strike(1, 0.0));
 }

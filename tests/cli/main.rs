@@ -377,8 +377,8 @@ fn a_batch_answers_in_order_and_a_broken_line_in_its_place() {
         )
     );
     assert_eq!(answers[2]["line"], 4);
-    assert!(run.stderr.starts_with("error: <stdin>:3:"), "{}", run.stderr);
-    assert!(run.stderr.contains("error: <stdin>:4:"), "{}", run.stderr);
+    let places: Vec<&str> = run.stderr.lines().filter(|line| line.starts_with(" --> ")).collect();
+    assert_eq!(places, [" --> <stdin>:3:55", " --> <stdin>:4:28"], "{}", run.stderr);
 }
 
 #[test]

@@ -142,6 +142,9 @@ fn a_full_disk_is_told_by_every_command() {
         &["schema", "state"],
         &["completions", "zsh"],
         &["man"],
+        &["--version"],
+        &["--help"],
+        &["help", "batch"],
     ] {
         let full = std::fs::File::options().write(true).open("/dev/full").expect("a full disk");
         let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));

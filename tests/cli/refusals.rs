@@ -99,8 +99,13 @@ const REFUSED_STATES: &[(&str, &str, &str, &str)] = &[
         "expected value",
         "JSON has no NaN and no infinity; numbers are finite",
     ),
-    (r#"{"friction": 1"#, "", "EOF while parsing an object", "the text ends too early: is it whole?"),
-    ("[1]", "", "expected an object, found a list", ""),
+    (
+        r#"{"friction": 1"#,
+        "",
+        "EOF while parsing an object",
+        "each line must hold a whole state; `jq -c .` writes JSON so",
+    ),
+    ("[1]", "", "expected an object, found a list", "each line must hold one state; `jq -c '.[]'` takes a list apart"),
 ];
 
 #[test]
@@ -233,6 +238,16 @@ fn a_refusal_shows_file_line_and_place_to_people() {
       |
     hint: the text ends too early: is it whole?
     "#);
+    // Of a long line what is near the place; line and column are those of the file.
+    let long = format!("{{\"id\": {}1, \"stanse\": 2}}", " ".repeat(200));
+    insta::assert_snapshot!(heelstrike_reads(&["impact", RAMONE, "-"], long).stderr, @r#"
+    error: <stdin>:1:211: stanse: unknown field "stanse"
+      |
+    1 | ...                                               1, "stanse": 2}
+      |                                                      ^^^^^^^^ stanse
+      |
+    hint: did you mean stance?
+    "#);
     // In a list the place is that in the whole file.
     let second = "[{\"friction\": 1},\n  {\"friction\": 1, \"held\": [\"left_knie\"]}]";
     insta::assert_snapshot!(heelstrike_reads(&["impact", RAMONE, "-", "--brief"], second).stderr, @r#"
@@ -255,10 +270,10 @@ fn a_refusal_shows_file_line_and_place_to_people() {
 
 #[test]
 fn of_many_refusals_the_first_are_shown_with_their_lines_and_the_last_are_counted() {
-    let run = heelstrike_reads(&["solve", "-"], "{\"friction\": 1} ".repeat(50));
+    let run = heelstrike_reads(&["solve", "-"], "{\"friction\": 1}\n".repeat(50));
     assert_eq!(run.status, 1);
     let count = |what: &str| run.stderr.matches(what).count();
-    assert_eq!((count("\"delassus\" is missing"), count(" --> <stdin>:1:"), count("error: <stdin>:1:")), (50, 10, 40));
+    assert_eq!((count("\"delassus\" is missing"), count(" --> <stdin>:"), count("error: <stdin>:")), (50, 10, 40));
     let more = heelstrike_reads(&["solve", "-"], "{\"friction\": 1} ".repeat(150));
     assert!(more.stderr.ends_with("\nnote: 50 more were refused\n"), "{}", more.stderr);
 }

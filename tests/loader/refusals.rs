@@ -169,7 +169,12 @@ fn joints_that_leave_the_plane_are_refused_with_their_angle() {
     let off = |angle: &str| {
         format!("4:1: joint \"j\": its axis is {angle} degrees off the plane's normal (y): not handled yet")
     };
-    assert_refused(&two_links("revolute", "<axis xyz=\"1 0 0\"/>"), &off("90.00"), fixed);
+    let default =
+        Some("a joint without <axis> has URDF's default, 1 0 0: add <axis>, or make it fixed to hold it at zero");
+    for axis in ["", "<axis/>", "<axis xyz=\"1 0 0\"/>"] {
+        assert_refused(&two_links("revolute", axis), &off("90.00"), default);
+    }
+    assert_refused(&two_links("revolute", "<axis xyz=\"-1 0 0\"/>"), &off("90.00"), fixed);
     assert_refused(&two_links("continuous", "<axis xyz=\"0 -1 0.0787\"/>"), &off("4.50"), fixed);
     assert_refused(&two_links("revolute", "<axis xyz=\"0 1 0.0011\"/>"), &off("0.06"), fixed);
     let tilted = format!("<origin rpy=\"{FRAC_PI_4} 0 0\"/><axis xyz=\"0 1 0\"/>");

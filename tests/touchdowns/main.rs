@@ -70,7 +70,7 @@ fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
             let row = rows.row(record.as_bytes(), line).unwrap().unwrap();
             let state = row.state(robot, &Defaults::default()).map_err(|error| (line, error))?;
             let time = row.time().map_err(|error| (line, error))?;
-            Ok(Sample { time, state, source: line })
+            Ok(Sample { time, state, rate_over: [time; 2], source: line })
         })
         .collect()
 }
@@ -281,6 +281,7 @@ fn the_command_writes_touchdowns_as_a_table_and_carries_the_time() {
         assert_eq!(row["touchdown_striking"], format!("{striking}_shin"));
         assert_eq!(row[&format!("mode_{striking}_shin")], "stick");
         assert_eq!(row["time"], row["touchdown_time"]);
+        assert_eq!([&row["touchdown_at"], &row["touchdown_touching"]], ["crossing", "strike"]);
         let other = if striking == "left" { "mode_right_shin" } else { "mode_left_shin" };
         assert_eq!(row[other], "", "the other foot takes no part");
     }

@@ -3,7 +3,7 @@
 use super::samples;
 use heelstrike::Robot;
 use heelstrike::table::Rates;
-use heelstrike::touchdown::{At, Difference, Touchdown, Touching, find, rates};
+use heelstrike::touchdown::{At, Difference, Thresholds, Touchdown, Touching, find, rates};
 
 /// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own.
 const LIFT: &str = r#"<robot name="lift">
@@ -18,12 +18,34 @@ const LIFT: &str = r#"<robot name="lift">
         <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
 </robot>"#;
 
+/// A ball of the radius 0.1 m.
+const DROPPED: &str = r#"<robot name="dropped"><link name="ball">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision>
+</link></robot>"#;
+
+/// The same machine, written down in a unit of length of which `scale` make a metre.
+fn lift(scale: f64) -> Robot {
+    let scaled = LIFT
+        .replace("radius=\"0.1\"", &format!("radius=\"{}\"", 0.1 * scale))
+        .replace("xyz=\"1 0 0\"", &format!("xyz=\"{scale} 0 0\""));
+    Robot::from_urdf(&scaled).unwrap()
+}
+
+fn lift_thresholds(scale: f64) -> Thresholds {
+    Thresholds::of(&lift(scale), &[])
+}
+
 /// The touchdowns of both feet: rows of time, height of a, height of b.
 fn lifted(rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Touchdown<usize>> {
-    let robot = Robot::from_urdf(LIFT).unwrap();
+    lifted_at(1.0, rows, at, touching)
+}
+
+fn lifted_at(scale: f64, rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Touchdown<usize>> {
+    let robot = lift(scale);
     let mut table = "time,q_base_z,q_ja,q_jb\n".to_owned();
-    // The sphere's lowest point is 0.1 below its link.
-    table.extend(rows.iter().map(|[time, a, b]| format!("{time},0.1,{a},{b}\n")));
+    // The sphere's lowest point is its radius below its link.
+    table.extend(rows.iter().map(|[time, a, b]| format!("{time},{},{a},{b}\n", 0.1 * scale)));
     let samples = samples(&table, &robot, Rates::Time);
     let samples: Vec<_> = rates(samples.into_iter(), Difference::Backward).collect();
     let touchdowns = find(samples.into_iter(), &robot, &[], at, touching).unwrap();
@@ -48,15 +70,119 @@ fn the_state_is_the_last_row_above_the_level_on_which_the_foot_comes_to_rest() {
 }
 
 #[test]
-fn crossing_interpolates_to_two_millimetres_above_that_level() {
+fn crossing_goes_on_as_the_foot_fell_and_not_as_it_was_stopped() {
     let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.004, 0.004, 0.004]);
     let touchdowns = lifted(&rows, At::Crossing, Touching::Strike);
     assert_eq!(touchdowns.len(), 1);
-    // From 10 mm to 4 mm in 10 ms: 6 mm are passed after two thirds.
-    assert!((touchdowns[0].time - (0.04 + 0.01 * 2.0 / 3.0)).abs() < 1e-12, "{}", touchdowns[0].time);
-    assert!((touchdowns[0].state.position[3] - 0.006).abs() < 1e-12);
-    assert!((touchdowns[0].shift_z + 0.006).abs() < 1e-12);
+    let above = lift_thresholds(1.0).above;
+    // At 1 m/s from 10 mm down to what counts as touching, which is above the row at 4 mm.
+    let time = 0.04 + (0.01 - (0.004 + above));
+    assert!((touchdowns[0].time - time).abs() < 1e-12, "{}", touchdowns[0].time);
+    assert!((touchdowns[0].state.position[3] - (0.004 + above)).abs() < 1e-12);
+    assert!((touchdowns[0].shift_z + 0.004 + above).abs() < 1e-12);
+    assert!((touchdowns[0].state.velocity[3] + 1.0).abs() < 1e-12, "not that of the row which is stopped");
     assert_eq!(touchdowns[0].row, 4);
+}
+
+#[test]
+fn crossing_lies_between_rows_that_are_both_before_the_impact() {
+    // At 0.5 m/s, then at 0.2 m/s in rows of 1 ms, down to 0: it touches long before the last falling row.
+    let rows: Vec<[f64; 3]> = (0..40)
+        .map(|row| f64::from(row) * 1e-3)
+        .map(|time| [time, (0.0056 - 0.2 * time + 0.3 * (0.012_f64 - time).max(0.0)).max(0.0), 0.0])
+        .collect();
+    let high = [[-2e-3, 0.03, 0.0], [-1e-3, 0.02, 0.0]];
+    let touchdowns = lifted(&[&high[..], &rows].concat(), At::Crossing, Touching::Strike);
+    assert_eq!(touchdowns.len(), 1);
+    let above = lift_thresholds(1.0).above;
+    let Touchdown { state, time, .. } = &touchdowns[0];
+    assert!((state.position[3] - above).abs() < 1e-15, "{}", state.position[3]);
+    assert!((time - (0.0056 - above) / 0.2).abs() < 1e-12, "{time}");
+    assert!((state.velocity[3] + 0.2).abs() < 1e-9, "{}", state.velocity[3]);
+}
+
+#[test]
+fn what_was_before_another_foots_impact_is_not_carried_on() {
+    // Foot b has struck at 20 ms, which slows foot a to 1 m/s; it is stopped at 4 mm.
+    let robot = lift(1.0);
+    let rows = [[0.0, 0.06, -2.0], [0.01, 0.04, -2.0], [0.02, 0.02, -2.0], [0.02, 0.02, -1.0], [0.03, 0.01, -1.0]];
+    let stopped = [[0.04, 0.004, 0.0], [0.05, 0.004, 0.0]];
+    let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
+    table.extend(rows.iter().chain(&stopped).map(|[time, a, rate]| format!("{time},0.1,{a},{rate}\n")));
+    let samples = samples(&table, &robot, Rates::Columns);
+    let found: Vec<_> = find(samples.into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap().collect();
+    let [Ok(Touchdown { state, time, .. })] = &found[..] else { panic!("one touchdown: {found:?}") };
+    let expected = 0.03 + (0.01 - 0.004 - lift_thresholds(1.0).above);
+    assert!((time - expected).abs() < 1e-12, "{time} {expected}");
+    assert!((state.velocity[3] + 1.0).abs() < 1e-12, "{}", state.velocity[3]);
+}
+
+/// Gravity of the test's drop \[m/s^2\].
+const G: f64 = 9.81;
+
+/// A ball that is let go 1 m above the ground and stays there: rows of 10 Hz, the first `phase` \[s\]
+/// after it was let go.
+fn drop(phase: f64, velocities: bool) -> String {
+    let mut table = if velocities { "time,q_base_z,v_base_z\n" } else { "time,q_base_z\n" }.to_owned();
+    for row in 0..8 {
+        let time = phase + 0.1 * f64::from(row);
+        let (height, velocity) = match 1.0 - 0.5 * G * time * time {
+            height if height > 0.0 => (height, -G * time),
+            _ => (0.0, 0.0),
+        };
+        table += &if velocities {
+            format!("{time},{},{velocity}\n", 0.1 + height)
+        } else {
+            format!("{time},{}\n", 0.1 + height)
+        };
+    }
+    table
+}
+
+#[test]
+fn the_velocity_at_the_crossing_is_that_of_the_fall_also_at_ten_rows_a_second() {
+    let robot = Robot::from_urdf(DROPPED).unwrap();
+    let strikes = (2.0 * G).sqrt();
+    for phase in (0..10).map(|part| f64::from(part) * 0.01) {
+        let recorded = samples(&drop(phase, true), &robot, Rates::Columns);
+        let bare = || samples(&drop(phase, false), &robot, Rates::Time).into_iter();
+        let backward: Vec<_> = rates(bare(), Difference::Backward).collect();
+        let central: Vec<_> = rates(bare(), Difference::Central).collect();
+        for (from, samples) in [("columns", recorded), ("backward", backward), ("central", central)] {
+            let found = find(samples.into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap();
+            let found: Vec<_> = found.map(Result::unwrap).collect();
+            assert_eq!(found.len(), 1, "{from}, phase {phase}");
+            let (velocity, time) = (found[0].state.velocity[1], found[0].time);
+            assert!((velocity + strikes).abs() < 0.01 * strikes, "{from}, phase {phase}: {velocity} m/s");
+            // It touches a little before it is down.
+            assert!((time - strikes / G).abs() < 1e-3, "{from}, phase {phase}: {time} s");
+        }
+    }
+}
+
+#[test]
+fn a_robot_written_down_in_other_units_has_the_same_touchdowns() {
+    // One foot touches down, one is scuffed over the ground, one comes down too little: all near a threshold.
+    let swings = [
+        &[0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.005, 0.05][..],
+        &[0.05, 0.04, 0.03, 0.0215, 0.0215, 0.03],
+        &[0.0, 0.0115, 0.006, 0.0, 0.0],
+        &[0.05, 0.04, 0.0205, 0.02, 0.0196, 0.0196],
+    ];
+    let found = |scale: f64| {
+        let rows = |heights: &[f64]| -> Vec<[f64; 3]> {
+            one_foot(heights).into_iter().map(|[time, a, b]| [time, a * scale, b * scale]).collect()
+        };
+        swings.map(|heights| {
+            let touchdowns = lifted_at(scale, &rows(heights), At::Crossing, Touching::Strike);
+            touchdowns.iter().map(|touchdown| touchdown.row).collect::<Vec<_>>()
+        })
+    };
+    let expected = found(1.0);
+    assert!(expected.iter().any(Vec::is_empty) && expected.iter().any(|rows| !rows.is_empty()), "{expected:?}");
+    for scale in [1e-6, 1e-3, 1e3, 1e6] {
+        assert_eq!(found(scale), expected, "{scale}");
+    }
 }
 
 #[test]
@@ -160,7 +286,9 @@ fn numbers_beyond_all_measure_are_refused_and_end() {
         for at in [At::Row, At::Crossing] {
             let samples = samples(&table, &robot, Rates::Columns);
             for found in find(samples.into_iter(), &robot, &[], at, Touching::default()).unwrap() {
-                let finite = |touchdown: &Touchdown<usize>| touchdown.state.position.iter().all(|q| q.is_finite());
+                let finite = |Touchdown { state, .. }: &Touchdown<usize>| {
+                    state.position.iter().chain(&state.velocity).all(|entry| entry.is_finite())
+                };
                 assert!(found.as_ref().map_or(true, finite));
             }
         }

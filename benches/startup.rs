@@ -1,0 +1,43 @@
+//! The command from its start to its end, as an engine that starts one process per partition pays for it.
+//!
+//! `cargo bench --bench startup` prints times; they include what the operating system takes to start any process.
+
+use divan::Bencher;
+use std::process::{Command, Stdio};
+
+fn main() {
+    divan::main();
+}
+
+/// Runs the command to its end, its input empty.
+fn run(arguments: &[&str]) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(arguments);
+    let status = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    assert!(status.expect("it runs").success(), "{arguments:?}");
+}
+
+/// Nothing but to be there.
+#[divan::bench]
+fn version(bencher: Bencher) {
+    bencher.bench_local(|| run(&["--version"]));
+}
+
+/// One state.
+#[divan::bench]
+fn impact(bencher: Bencher) {
+    bencher.bench_local(|| run(&["impact", "urdf/ramone.urdf", "examples/ramone.json"]));
+}
+
+/// The robot, all threads and no line.
+#[divan::bench]
+fn empty_batch(bencher: Bencher) {
+    bencher.bench_local(|| run(&["batch", "urdf/ramone.urdf", "-", "--friction", "0.8"]));
+}
+
+/// All threads and a few lines.
+#[divan::bench]
+fn short_batch(bencher: Bencher) {
+    let arguments = ["batch", "urdf/minimalistic.urdf", "examples/keyframes.ndjson", "--friction", "0.8"];
+    bencher.bench_local(|| run(&arguments));
+}

@@ -1,0 +1,157 @@
+//! The line that a refusal is about, to be shown with the place marked; of a long one what is near the place.
+
+use crate::error::Location;
+use std::ops::Range;
+
+/// A line of so many bytes is shown whole.
+const WHOLE: usize = 160;
+
+/// So many characters of a longer one are kept before the place.
+const BEFORE: usize = 50;
+
+/// So many are kept from the place on.
+const AFTER: usize = 70;
+
+/// The most bytes of one character.
+const WIDEST: usize = 4;
+
+/// What stands where a line is cut.
+const CUT: &str = "...";
+
+/// A line, or what is near a place in a long one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Excerpt {
+    text: String,
+    mark: Range<usize>,
+    starts_later: bool,
+}
+
+impl Excerpt {
+    /// The line of `text` that holds `place`, where `text` begins on line `first`; bytes that are no UTF-8 are replaced.
+    ///
+    /// None where `text` does not have that line, or it is empty.
+    pub fn around(text: &[u8], first: usize, place: Location) -> Option<Self> {
+        let line = text.split(|&byte| byte == b'\n').nth(place.line.checked_sub(first)?)?;
+        let line = line.strip_suffix(b"\r").unwrap_or(line);
+        let line = line.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(line);
+        if line.is_empty() {
+            return None;
+        }
+        let ahead = place.column.saturating_sub(1);
+        let kept = if line.len() <= WHOLE { 0..line.len() } else { near(line, ahead) };
+        let left = line[..kept.start].iter().filter(|&&byte| begins(byte)).count();
+        let middle = String::from_utf8_lossy(&line[kept.clone()]);
+        let (before, after) = (if kept.start > 0 { CUT } else { "" }, if kept.end < line.len() { CUT } else { "" });
+        let marked = token(&middle, ahead.saturating_sub(left));
+        let mark = before.len() + marked.start..before.len() + marked.end;
+        Some(Self { text: format!("{before}{middle}{after}"), mark, starts_later: kept.start > 0 })
+    }
+
+    /// The line, with `...` where it is cut.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether the line's beginning is cut away.
+    pub fn starts_later(&self) -> bool {
+        self.starts_later
+    }
+
+    /// The bytes of [`Self::text`] that hold the word, string or tag at the place; none at the line's end.
+    pub fn mark(&self) -> Range<usize> {
+        self.mark.clone()
+    }
+}
+
+/// Whether a character begins with the byte.
+fn begins(byte: u8) -> bool {
+    byte & 0xC0 != 0x80
+}
+
+/// The bytes of `line` around the character that has `ahead` others before it.
+fn near(line: &[u8], ahead: usize) -> Range<usize> {
+    let mut beginnings = (0..line.len()).filter(|&at| begins(line[at]));
+    let start = match ahead.checked_sub(BEFORE) {
+        Some(passed) => beginnings.nth(passed).unwrap_or(line.len().saturating_sub(WIDEST * BEFORE)),
+        None => 0,
+    };
+    let end = (start..line.len()).filter(|&at| begins(line[at])).nth(BEFORE + AFTER).unwrap_or(line.len());
+    start..end.min(start + WIDEST * (BEFORE + AFTER))
+}
+
+/// The bytes of the word, string or tag that begins behind `ahead` characters.
+fn token(line: &str, ahead: usize) -> Range<usize> {
+    let start = line.char_indices().nth(ahead).map_or(line.len(), |(offset, _)| offset);
+    let rest = &line[start..];
+    let length = match rest.chars().next() {
+        Some('"') => closing_quote(rest),
+        Some('<') => rest.find('>').map_or(rest.len(), |end| end + 1),
+        Some(first) => {
+            let ends = |c: char| c.is_whitespace() || ",:;[]{}\"<>".contains(c);
+            rest.find(ends).unwrap_or(rest.len()).max(first.len_utf8())
+        }
+        None => 0,
+    };
+    start..start + length
+}
+
+/// The length of the JSON string at the beginning of `text`.
+fn closing_quote(text: &str) -> usize {
+    let mut escaped = false;
+    let end = text.char_indices().skip(1).find(|&(_, c)| {
+        let closes = c == '"' && !escaped;
+        escaped = c == '\\' && !escaped;
+        closes
+    });
+    end.map_or(text.len(), |(offset, _)| offset + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn around(text: &[u8], first: usize, line: usize, column: usize) -> Option<(String, String)> {
+        let excerpt = Excerpt::around(text, first, Location { line, column })?;
+        Some((excerpt.text().to_owned(), excerpt.text()[excerpt.mark()].to_owned()))
+    }
+
+    #[test]
+    fn the_whole_word_is_marked() {
+        let marked = |line: &str, column| around(line.as_bytes(), 1, 1, column).map(|(_, marked)| marked).unwrap();
+        assert_eq!(marked(r#"{"é\"x": -1.5e3, "b": {}}"#, 2), r#""é\"x""#);
+        assert_eq!(marked(r#"{"a": -1.5e3, "b": {}}"#, 7), "-1.5e3");
+        assert_eq!(marked(r#"{"a": 1"#, 1), "{");
+        assert_eq!(marked(r#"  <mass value="-1"/></inertial>"#, 3), r#"<mass value="-1"/>"#);
+        assert_eq!(marked("k1,0.4,oops,1", 8), "oops");
+        assert_eq!(marked(r#"{"a": "open"#, 7), r#""open"#);
+        assert_eq!(marked("short", 99), "");
+    }
+
+    #[test]
+    fn the_line_is_found_from_where_the_text_begins() {
+        assert_eq!(around(b"a\r\n\"b\nc\",d\r\n", 7, 9, 4), Some(("c\",d".into(), "d".into())));
+        assert_eq!(around(b"\xEF\xBB\xBFa,b", 1, 1, 3), Some(("a,b".into(), "b".into())));
+        for (text, line) in [(&b""[..], 1), (b"a\n\n", 2), (b"a", 3), (b"a", 0)] {
+            assert_eq!(around(text, 1, line, 1), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place() {
+        let pad = "é".repeat(500_000);
+        let line = format!("{pad},oops,{pad}");
+        let (text, marked) = around(line.as_bytes(), 1, 1, 500_002).unwrap();
+        assert_eq!(marked, "oops");
+        assert_eq!(text.chars().count(), 3 + BEFORE + AFTER + 3);
+        assert!(text.starts_with("...é") && text.ends_with("é..."), "{text}");
+        let (text, marked) = around(line.as_bytes(), 1, 1, 1).unwrap();
+        assert!(text.starts_with('é') && text.ends_with("é..."), "{text}");
+        assert!(text.contains(&marked));
+        for hostile in [vec![0x80; 1_000_000], vec![0xFF; 1_000_000], b"x".repeat(1_000_000)] {
+            for column in [1, 60, 1_000_000, 2_000_000] {
+                let (text, _) = around(&hostile, 1, 1, column).unwrap();
+                assert!(text.chars().count() <= WIDEST * (BEFORE + AFTER) + 6, "{}", text.len());
+            }
+        }
+    }
+}
