@@ -6,6 +6,7 @@
 //! ```
 
 use super::number::Number;
+use crate::contact::Contact;
 use crate::dynamics::{
     ContactPoint, Workspace, articulated_delassus, articulated_inertias, contact_jacobian, delassus, factorize,
     kinematics, mass_matrix, point_velocity,
@@ -37,16 +38,16 @@ pub struct Pose<'a> {
     pub(super) robot: &'a Robot,
     pub(super) state: &'a State,
     /// The closed contacts.
+    contacts: &'a [Contact],
+    /// The same in f64.
     pub(super) points: Vec<ContactPoint>,
-    /// The link of each contact.
-    links: Vec<usize>,
     /// The contact (an index) that is at rest whatever the base velocity says.
     pub(super) stance: Option<usize>,
 }
 
 impl<'a> Pose<'a> {
     /// `state` with the contacts that `impact`, its answer, found.
-    pub fn new(robot: &'a Robot, state: &'a State, impact: &Impact) -> Self {
+    pub fn new(robot: &'a Robot, state: &'a State, impact: &'a Impact) -> Self {
         let ground = state.scene.ground();
         let stands = |link: usize| {
             let mut speeds = impact.contacts.iter().zip(&impact.velocity_before);
@@ -56,7 +57,7 @@ impl<'a> Pose<'a> {
             robot,
             state,
             points: impact.contacts.iter().map(|contact| contact.point_of(ground)).collect(),
-            links: impact.contacts.iter().map(|contact| contact.link).collect(),
+            contacts: &impact.contacts,
             stance: state.scene.stance.and_then(stands),
         }
     }
@@ -81,9 +82,10 @@ impl<'a> Pose<'a> {
     /// friction.
     pub(super) fn shape(&self) -> Option<ContactProblem> {
         let scene = &self.state.scene;
-        let friction = self.links.iter().map(|&link| scene.friction.of(link)).collect::<Option<Vec<_>>>()?;
-        let restitution = self.links.iter().map(|&link| scene.restitution.of(link).unwrap_or(0.0)).collect();
-        let contacts = self.links.len();
+        let links = self.contacts.iter().map(|contact| contact.link);
+        let friction = links.clone().map(|link| scene.friction.of(link)).collect::<Option<Vec<_>>>()?;
+        let restitution = links.map(|link| scene.restitution.of(link).unwrap_or(0.0)).collect();
+        let contacts = self.contacts.len();
         let unit = (0..4 * contacts * contacts).map(|at| f64::from(u8::from(at % (2 * contacts + 1) == 0))).collect();
         ContactProblem::new(unit, vec![[0.0; 2]; contacts], friction, restitution).ok()
     }
@@ -130,12 +132,7 @@ impl<T: Number> Computation<T> {
         let slope = pose.state.scene.slope;
         let ground = if slope == 0.0 { Rotation::identity() } else { T::rotation(-slope) };
         points.clear();
-        points.extend(pose.points.iter().map(|point| ContactPoint {
-            body: point.body,
-            centre: point.centre.map(T::from_f64),
-            radius: T::from_f64(point.radius),
-            ground,
-        }));
+        points.extend(pose.contacts.iter().map(|contact| contact.exact_point(pose.robot, ground)));
         velocity.clear();
         velocity.extend(pose.state.velocity.iter().map(number));
         if let (Some(stance), true) = (pose.stance, plan.floating) {

@@ -10,6 +10,7 @@ use crate::error::{Error, Reason, Result};
 use crate::plan::Plan;
 use crate::planar::{Rotation, Vector, difference, dot, scaled, sum};
 use crate::robot::{FootShape, Robot};
+use crate::scalar::Real;
 use crate::scene::NamedContact;
 use parry2d::math::{Pose, Vector as ParryVector};
 use parry2d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
@@ -74,6 +75,7 @@ impl Placement {
             name: String::new(),
             body: point.body,
             centre: point.centre,
+            offset: point.offset,
             radius: point.radius,
             point: self.lowest(point),
             normal: self.normal(),
@@ -87,7 +89,17 @@ impl Placement {
 pub(crate) struct Point {
     pub body: usize,
     pub centre: Vector<f64>,
+    /// In the link's own frame, where it was named so.
+    pub offset: Option<[f64; 3]>,
     pub radius: f64,
+}
+
+impl Point {
+    fn named(robot: &Robot, contact: &NamedContact) -> Self {
+        let link = &robot.links[contact.link];
+        let (centre, offset) = (link.point(contact.offset), Some(contact.offset));
+        Self { body: link.body, centre, offset, radius: contact.radius }
+    }
 }
 
 impl Contact {
@@ -95,11 +107,33 @@ impl Contact {
     pub fn point_of(&self, ground: Rotation<f64>) -> ContactPoint {
         ContactPoint { body: self.body, centre: self.centre, radius: self.radius, ground }
     }
+
+    /// The same in numbers of any kind, a named point from the digits that it was named with.
+    pub fn exact_point<T: Real>(&self, robot: &Robot, ground: Rotation<T>) -> ContactPoint<T> {
+        let centre = match self.offset {
+            Some(offset) => robot.links[self.link].point(offset),
+            None => self.centre.map(T::from_f64),
+        };
+        ContactPoint { body: self.body, centre, radius: T::from_f64(self.radius), ground }
+    }
+
+    /// What the centre's coordinates were added up from, by magnitude \[m\].
+    pub fn stretch(&self, robot: &Robot) -> f64 {
+        match self.offset {
+            Some(offset) => {
+                let pose = robot.links[self.link].pose.iter();
+                pose.flat_map(|row| row.iter().zip([offset[0], offset[1], offset[2], 1.0]))
+                    .map(|(a, b)| (a * b).abs())
+                    .sum()
+            }
+            None => self.centre[0].abs() + self.centre[1].abs(),
+        }
+    }
 }
 
 /// The points of a foot that can touch.
 pub(crate) fn points(foot: &Foot) -> Vec<Point> {
-    let point = |centre, radius| Point { body: foot.body, centre, radius };
+    let point = |centre, radius| Point { body: foot.body, centre, offset: foot.offset, radius };
     match &foot.outline {
         FootShape::Disc { centre, radius } => vec![point(*centre, *radius)],
         FootShape::Polygon { corners, .. } => corners.iter().map(|&corner| point(corner, 0.0)).collect(),
@@ -119,13 +153,10 @@ pub fn stance_foot(
     placement: &Placement,
     tolerance: f64,
 ) -> Result<Contact> {
-    let body = robot.links[link].body;
     let candidates: Vec<Point> = match named {
-        Some(named) => named
-            .iter()
-            .filter(|contact| contact.link == link)
-            .map(|contact| Point { body, centre: robot.links[link].point(contact.offset), radius: contact.radius })
-            .collect(),
+        Some(named) => {
+            named.iter().filter(|contact| contact.link == link).map(|contact| Point::named(robot, contact)).collect()
+        }
         None => feet.iter().filter(|foot| foot.link == link).flat_map(points).collect(),
     };
     let lowest = candidates.iter().map(|&point| placement.height(point)).fold(f64::INFINITY, f64::min);
@@ -161,14 +192,9 @@ pub fn detect(
     tolerance: f64,
 ) -> Result<Vec<Contact>> {
     let mut contacts = match named {
-        Some(named) => named
-            .iter()
-            .map(|contact| {
-                let link = &robot.links[contact.link];
-                let point = Point { body: link.body, centre: link.point(contact.offset), radius: contact.radius };
-                placement.contact(contact.link, point)
-            })
-            .collect(),
+        Some(named) => {
+            named.iter().map(|contact| placement.contact(contact.link, Point::named(robot, contact))).collect()
+        }
         None => detected(robot, feet, placement, tolerance)?,
     };
     name_contacts(robot, &mut contacts);
@@ -225,7 +251,7 @@ fn touching(foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Po
         FootShape::Disc { centre, radius } => {
             let found = collide(placement.pose(foot.body, *centre), &Ball::new(*radius))?;
             let near = found.iter().any(|&(_, distance)| distance <= tolerance);
-            let point = Point { body: foot.body, centre: *centre, radius: *radius };
+            let point = Point { body: foot.body, centre: *centre, offset: foot.offset, radius: *radius };
             Ok(near.then_some(point).into_iter().collect())
         }
         FootShape::Polygon { corners, shape } => {
@@ -234,7 +260,7 @@ fn touching(foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Po
             for (at, _) in found.into_iter().filter(|&(_, distance)| distance <= tolerance) {
                 let far = |corner: &Vector<f64>| libm::hypot(corner[0] - at.x, corner[1] - at.y);
                 let nearest = corners.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-                let point = nearest.map(|&centre| Point { body: foot.body, centre, radius: 0.0 });
+                let point = nearest.map(|&centre| Point { body: foot.body, centre, offset: None, radius: 0.0 });
                 points.extend(point.filter(|point| !points.contains(point)));
             }
             Ok(points)

@@ -13,6 +13,8 @@ pub struct Foot {
     pub body: usize,
     /// Its outline in the body's frame.
     pub outline: FootShape,
+    /// The centre of a foot that was named, in the link's own 3-D frame \[m\].
+    pub offset: Option<[f64; 3]>,
 }
 
 /// All shapes that may touch, in the order of the robot's links, and the robot's size.
@@ -27,12 +29,12 @@ impl Feet {
     pub fn new(robot: &Robot, named: &[NamedContact]) -> Self {
         let mut feet = Vec::new();
         for (index, link) in robot.links.iter().enumerate() {
-            let own = named
-                .iter()
-                .filter(|contact| contact.link == index)
-                .map(|contact| FootShape::Disc { centre: link.point(contact.offset), radius: contact.radius });
-            let outlines = link.shapes.iter().cloned().chain(own);
-            feet.extend(outlines.map(|outline| Foot { link: index, body: link.body, outline }));
+            let own =
+                named.iter().filter(|contact| contact.link == index).map(|&NamedContact { offset, radius, .. }| {
+                    (FootShape::Disc { centre: link.point(offset), radius }, Some(offset))
+                });
+            let outlines = link.shapes.iter().map(|shape| (shape.clone(), None)).chain(own);
+            feet.extend(outlines.map(|(outline, offset)| Foot { link: index, body: link.body, outline, offset }));
         }
         let size = size(robot, &feet);
         Self { feet, size }

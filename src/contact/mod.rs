@@ -24,6 +24,8 @@ pub struct Contact {
     pub body: usize,
     /// The point, or the centre of the circle, in the body's frame \[m\].
     pub centre: Vector<f64>,
+    /// Where the centre was named in the link's own 3-D frame \[m\]; none of a shape of the robot, which has it in `centre`.
+    pub offset: Option<[f64; 3]>,
     /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
     pub radius: f64,
     /// The contact point in the world \[m\].

@@ -18,7 +18,6 @@
 //! Everything is doubled for the terms of second order, which are small because the bound counts as unknown beyond a
 //! tenth. The constants are generous: a sign that falls within them is settled by balls.
 
-use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
 use crate::plan::{Motion, Plan, Posture};
 use crate::planar::Vector;
@@ -30,6 +29,15 @@ const ENTRY: f64 = 96.0;
 /// Beyond this the terms of second order are no longer covered.
 const SMALL: f64 = 0.1;
 
+/// A contact with its arm stretched.
+#[derive(Debug, Clone, Copy)]
+pub struct Arm {
+    /// The body that carries it.
+    pub body: usize,
+    /// At least its distance from the body's origin, and the sum of all terms that it was added up from \[m\].
+    pub length: f64,
+}
+
 /// Error bounds of one state, in memory that is reused.
 #[derive(Debug, Clone, Default)]
 pub struct Bounds {
@@ -38,6 +46,7 @@ pub struct Bounds {
     /// Of c, per contact \[m/s\].
     pub velocity: Vec<Vector<f64>>,
     bodies: Vec<Stretched>,
+    contacts: Vec<Arm>,
     /// sqrt((M^-1)_ii) per column.
     ease: Vec<f64>,
     scratch: Vec<f64>,
@@ -55,8 +64,10 @@ struct Stretched {
 }
 
 impl Bounds {
-    /// Takes the lengths of a posture; the others read them.
-    pub fn stretch(&mut self, plan: &Plan, posture: &Posture) {
+    /// Takes the lengths of a posture and of its contacts; the others read them.
+    pub fn stretch(&mut self, plan: &Plan, posture: &Posture, contacts: impl Iterator<Item = Arm>) {
+        self.contacts.clear();
+        self.contacts.extend(contacts);
         let length = |[x, z]: Vector<f64>| x.abs() + z.abs();
         self.bodies.clear();
         for body in &plan.bodies {
@@ -91,24 +102,17 @@ impl Bounds {
 
     /// Bounds c = J v. With the foot of a `stance` the base's velocity is computed from the others'; `rests` tells which
     /// contacts are exactly at rest.
-    pub fn velocities(
-        &mut self,
-        plan: &Plan,
-        contacts: &[ContactPoint],
-        velocity: &[f64],
-        stance: Option<&ContactPoint>,
-        rests: impl Fn(usize) -> bool,
-    ) {
+    pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let mut bounds = std::mem::take(&mut self.velocity);
         let eta = self.entry_error();
-        let stretched = |contact: &ContactPoint| {
+        let stretched = |contact: Arm| {
             let mut sum = 0.0;
             self.walk(plan, contact, |_, coordinate, arm| sum += arm * velocity[coordinate].abs());
             sum
         };
         let base = stance.map_or(0.0, |foot| 2.0 * stretched(foot));
         bounds.clear();
-        bounds.extend(contacts.iter().enumerate().map(|(index, contact)| {
+        bounds.extend(self.contacts.iter().enumerate().map(|(index, &contact)| {
             let bound = if rests(index) { 0.0 } else { eta * (stretched(contact) + base) };
             [bound; 2]
         }));
@@ -116,7 +120,7 @@ impl Bounds {
     }
 
     /// Bounds G, from the factorized mass matrix and the Delassus matrix.
-    pub fn delassus(&mut self, plan: &Plan, contacts: &[ContactPoint], workspace: &Workspace) {
+    pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
         let nv = plan.columns();
         let (eta, gamma) = (self.entry_error(), 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
         let mut tau = 0.0;
@@ -140,9 +144,9 @@ impl Bounds {
         let solve = gamma * (nv as f64 * tau).sqrt();
         let short = 1.0 - solve;
         let eps = nv as f64 * (eta + gamma) * tau / (short * short);
-        let rows = 2 * contacts.len();
+        let rows = 2 * self.contacts.len();
         let mut jacobian = 0.0_f64;
-        for (index, contact) in contacts.iter().enumerate() {
+        for (index, &contact) in self.contacts.iter().enumerate() {
             let mut length = 0.0;
             self.walk(plan, contact, |column, _, arm| {
                 if let Some(column) = column {
@@ -163,8 +167,8 @@ impl Bounds {
     }
 
     /// Walks from a contact to the root and tells each joint's column, coordinate and stretched arm (1 of a slide).
-    fn walk(&self, plan: &Plan, contact: &ContactPoint, mut tell: impl FnMut(Option<usize>, usize, f64)) {
-        let mut arm = contact.centre[0].abs() + contact.centre[1].abs() + contact.radius;
+    fn walk(&self, plan: &Plan, contact: Arm, mut tell: impl FnMut(Option<usize>, usize, f64)) {
+        let mut arm = contact.length;
         let mut at = contact.body;
         loop {
             let body = &plan.bodies[at];

@@ -19,7 +19,7 @@ mod ltl;
 mod workspace;
 
 pub use articulated::{Articulated, add_articulated_impulse, articulated_delassus, articulated_inertias};
-pub use bounds::Bounds;
+pub use bounds::{Arm, Bounds};
 pub use crba::mass_matrix;
 pub use delassus::{add_impulse, delassus};
 pub use energy::kinetic_energy;

@@ -67,11 +67,14 @@ impl Generators {
     }
 
     /// The impulse of every row \[N s\].
-    pub fn impulse(&self, lambda: &[f64]) -> Vec<f64> {
-        let mut impulse = vec![0.0; self.rows];
-        for ((contact, ray), factor) in self.rays.iter().zip(lambda) {
-            impulse[2 * contact] += factor * ray[0];
-            impulse[2 * contact + 1] += factor * ray[1];
+    pub fn impulse<T: Real>(&self, lambda: &[T]) -> Vec<T> {
+        let mut impulse = vec![T::zero(); self.rows];
+        for (&(contact, ray), &factor) in self.rays.iter().zip(lambda) {
+            for (row, part) in [2 * contact, 2 * contact + 1].into_iter().zip(ray) {
+                if part != 0.0 {
+                    impulse[row] = impulse[row] + T::from_f64(part) * factor;
+                }
+            }
         }
         impulse
     }

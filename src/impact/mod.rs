@@ -3,7 +3,6 @@
 //! Read [`problem`], then [`enumerate`] (numbers), [`sign`] (signs), and [`analysis`], where they meet.
 
 pub mod analysis;
-mod basis;
 mod border;
 mod bound;
 pub mod certify;

@@ -1,128 +1,139 @@
 //! The least impulse among those that free impulses leave.
 //!
 //! ```text
-//!     min_y |L0 + D y|^2   with   slack_i(y) = constant + coefficients . y >= 0
+//!     min_y |L0 + D y|^2   with   f_i(y) = constant + coefficients . y >= 0
 //! ```
 
-use super::basis::{dot, solve};
-use super::linear::Affine;
+use super::linear::{Affine, Unsettled, settled, solve};
+use crate::scalar::Ordered;
+use std::cmp::Ordering;
 
-/// The y that makes |L0 + D y| least among those with no negative slack; `directions` are the columns of D, and `inside`
-/// is a y with no negative slack to begin at.
-///
-/// A primal active-set method (Nocedal and Wright 2006, section 16.5): few slacks, an answer exact to rounding.
-pub fn least_impulse(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine<f64>], inside: &[f64]) -> Vec<f64> {
-    let mut y = inside.to_vec();
+/// The y that makes |L0 + D y| least among those where no function is negative, by a primal active-set method (Nocedal and
+/// Wright 2006, section 16.5) from y = 0, where no function may be negative. The `directions`, columns of D, are independent.
+pub fn least_impulse<T: Ordered>(
+    origin: &[T],
+    directions: &[Vec<T>],
+    functions: &[Affine<T>],
+) -> Result<Vec<T>, Unsettled> {
+    let mut y = vec![T::zero(); directions.len()];
     let mut binding: Vec<usize> = Vec::new();
-    // Each round adds or drops one slack; rounding could make it turn in circles on a degenerate corner.
-    for _ in 0..8 * (slacks.len() + 1) {
-        let target = shortest_on_face(origin, directions, slacks, &binding);
-        let step: Vec<f64> = target.iter().zip(&y).map(|(to, from)| to - from).collect();
-        let reach = |&index: &usize| {
-            let slope = dot(&slacks[index].coefficients, &step);
-            let room = slacks[index].at(&y).max(0.0);
-            (slope < 0.0 && room + slope < -ADMISSIBLE).then(|| (index, room / -slope))
-        };
-        let open = (0..slacks.len()).filter(|index| !binding.contains(index));
-        match open.filter_map(|index| reach(&index)).min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((blocking, part)) => {
-                for (entry, change) in y.iter_mut().zip(&step) {
-                    *entry += part.min(1.0) * change;
-                }
-                binding.push(blocking);
+    // Each round binds a function or lets one go; the rule of the lowest index keeps a degenerate corner from cycling.
+    for _ in 0..ROUNDS * (functions.len() + 1) {
+        let (target, multipliers) = least_on_face(origin, directions, functions, &binding)?;
+        let step: Vec<T> = target.iter().zip(&y).map(|(&to, &from)| to - from).collect();
+        if let Some((blocking, part)) = first_reached(functions, &binding, &y, &step)? {
+            for (entry, &change) in y.iter_mut().zip(&step) {
+                *entry = *entry + part * change;
             }
-            None => {
-                y = target;
-                match pulling(origin, directions, slacks, &binding, &y) {
-                    Some(place) => drop(binding.swap_remove(place)),
-                    None => break,
-                }
+            binding.push(blocking);
+            continue;
+        }
+        y = target;
+        let mut pulling: Option<usize> = None;
+        for (place, &multiplier) in multipliers.iter().enumerate() {
+            if settled(multiplier)?.is_lt() && pulling.is_none_or(|other| binding[place] < binding[other]) {
+                pulling = Some(place);
             }
         }
+        match pulling {
+            Some(place) => drop(binding.swap_remove(place)),
+            None => break,
+        }
     }
-    y
+    Ok(y)
 }
 
-/// The binding slack that keeps L from growing shorter the most: the one with the most negative multiplier.
-fn pulling(
-    origin: &[f64],
-    directions: &[Vec<f64>],
-    slacks: &[Affine<f64>],
+const ROUNDS: usize = 8;
+
+/// The y of the shortest L0 + D y on which the `binding` functions are zero, and how much each of them holds it back.
+fn least_on_face<T: Ordered>(
+    origin: &[T],
+    directions: &[Vec<T>],
+    functions: &[Affine<T>],
     binding: &[usize],
-    y: &[f64],
-) -> Option<usize> {
-    let at: Vec<f64> = origin.iter().zip(combination(directions, y, origin.len())).map(|(a, b)| a + b).collect();
-    let gradient: Vec<f64> = directions.iter().map(|direction| dot(direction, &at)).collect();
-    // gradient = sum of multiplier * coefficients, one equation per entry of y.
-    let equations: Vec<Vec<f64>> =
-        (0..y.len()).map(|entry| binding.iter().map(|&index| slacks[index].coefficients[entry]).collect()).collect();
-    let rows: Vec<&[f64]> = equations.iter().map(Vec::as_slice).collect();
-    let (multipliers, _, _) = solve(binding.len(), &rows, &gradient);
-    let size = dot(&gradient, &gradient).sqrt() + dot(&at, &at).sqrt();
-    let least = (0..binding.len()).min_by(|&i, &j| multipliers[i].total_cmp(&multipliers[j]))?;
-    (multipliers[least] < -ADMISSIBLE * size).then_some(least)
+) -> Result<(Vec<T>, Vec<T>), Unsettled> {
+    let dot = |a: &[T], b: &[T]| a.iter().zip(b).fold(T::zero(), |sum, (&x, &y)| sum + x * y);
+    let free = directions.len();
+    // D'D y - A' m = -D' L0,  A y = -constants: what is orthogonal to the face is pushed by the multipliers alone.
+    let mut equations: Vec<Vec<T>> = Vec::with_capacity(free + binding.len());
+    for (index, direction) in directions.iter().enumerate() {
+        let mut equation: Vec<T> = directions.iter().map(|other| dot(direction, other)).collect();
+        equation.extend(binding.iter().map(|&function| -functions[function].coefficients[index]));
+        equation.push(-dot(direction, origin));
+        equations.push(equation);
+    }
+    for &function in binding {
+        let mut equation = functions[function].coefficients.clone();
+        equation.resize(free + binding.len(), T::zero());
+        equation.push(-functions[function].constant);
+        equations.push(equation);
+    }
+    let found = solve(free + binding.len(), equations)?.ok_or(Unsettled)?;
+    let multipliers = found.origin[free..].to_vec();
+    Ok((found.origin[..free].to_vec(), multipliers))
 }
 
-/// A slack may be negative by this much of its scale and still count as zero.
-const ADMISSIBLE: f64 = 1e-11;
-
-/// The y of the shortest L0 + D y with the chosen slacks at zero.
-fn shortest_on_face(origin: &[f64], directions: &[Vec<f64>], slacks: &[Affine<f64>], chosen: &[usize]) -> Vec<f64> {
-    let rows: Vec<&[f64]> = chosen.iter().map(|&index| slacks[index].coefficients.as_slice()).collect();
-    let right: Vec<f64> = chosen.iter().map(|&index| -slacks[index].constant).collect();
-    let (mut y, basis, _) = solve(directions.len(), &rows, &right);
-    // Along the face: L = start + E z with E = D (complement); shortest where L is orthogonal to every column of E.
-    let along: Vec<(Vec<f64>, Vec<f64>)> =
-        basis.complement().rows().map(|z| (z.to_vec(), combination(directions, z, origin.len()))).collect();
-    let start: Vec<f64> = origin.iter().zip(combination(directions, &y, origin.len())).map(|(a, b)| a + b).collect();
-    // Normal equations are fine here: the columns are orthonormal combinations of few directions.
-    let gram: Vec<Vec<f64>> = along.iter().map(|a| along.iter().map(|b| dot(&a.1, &b.1)).collect()).collect();
-    let load: Vec<f64> = along.iter().map(|a| -dot(&a.1, &start)).collect();
-    let largest = gram.iter().flatten().fold(f64::MIN_POSITIVE, |most: f64, entry| most.max(entry.abs()));
-    let unit: Vec<Vec<f64>> = gram.iter().map(|row| row.iter().map(|entry| entry / largest).collect()).collect();
-    let load: Vec<f64> = load.iter().map(|entry| entry / largest).collect();
-    let (z, _, _) = solve(along.len(), &unit.iter().map(Vec::as_slice).collect::<Vec<_>>(), &load);
-    for ((direction, _), factor) in along.iter().zip(&z) {
-        for (entry, part) in y.iter_mut().zip(direction) {
-            *entry += factor * part;
+/// The function that reaches zero first on the way along `step`, before its end, and the part of the way until then.
+fn first_reached<T: Ordered>(
+    functions: &[Affine<T>],
+    binding: &[usize],
+    y: &[T],
+    step: &[T],
+) -> Result<Option<(usize, T)>, Unsettled> {
+    let mut first: Option<(usize, T)> = None;
+    for (index, function) in functions.iter().enumerate().filter(|(index, _)| !binding.contains(index)) {
+        let slope = Affine { constant: T::zero(), coefficients: function.coefficients.clone() }.at(step);
+        if settled(slope)?.is_ge() {
+            continue;
+        }
+        let part = function.at(y) / -slope;
+        let limit = first.map_or(T::one(), |(_, part)| part);
+        if settled(part - limit)? == Ordering::Less {
+            first = Some((index, part));
         }
     }
-    y
-}
-
-fn combination(columns: &[Vec<f64>], factors: &[f64], length: usize) -> Vec<f64> {
-    let mut sum = vec![0.0; length];
-    for (column, factor) in columns.iter().zip(factors) {
-        for (entry, part) in sum.iter_mut().zip(column) {
-            *entry += factor * part;
-        }
-    }
-    sum
+    Ok(first)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scalar::{Ball, Certified, Real};
 
-    fn affine(constant: f64, coefficients: &[f64]) -> Affine<f64> {
-        Affine { constant, coefficients: coefficients.to_vec() }
+    type Number = Certified<Ball>;
+
+    fn numbers(entries: &[f64]) -> Vec<Number> {
+        entries.iter().map(|&entry| Number::from_f64(entry)).collect()
+    }
+
+    fn affine(constant: f64, coefficients: &[f64]) -> Affine<Number> {
+        Affine { constant: Number::from_f64(constant), coefficients: numbers(coefficients) }
+    }
+
+    fn least(origin: &[f64], directions: &[&[f64]], functions: &[Affine<Number>]) -> Vec<f64> {
+        let directions: Vec<Vec<Number>> = directions.iter().map(|direction| numbers(direction)).collect();
+        least_impulse(&numbers(origin), &directions, functions).unwrap().iter().map(|entry| entry.to_f64()).collect()
     }
 
     #[test]
     fn the_least_impulse_lies_on_the_face_that_binds() {
-        // L = (1 - y, y); free optimum y = 1/2, but y <= 1/4.
-        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.25, &[-1.0])], &[0.0]);
-        assert!((found[0] - 0.25).abs() < 1e-14, "exact on the face: {found:?}");
-        let found = least_impulse(&[1.0, 0.0], &[vec![-1.0, 1.0]], &[affine(0.75, &[-1.0])], &[0.0]);
-        assert!((found[0] - 0.5).abs() < 1e-14);
+        // L = (1 - y, y); the free optimum is y = 1/2.
+        assert_eq!(least(&[1.0, 0.0], &[&[-1.0, 1.0]], &[affine(0.25, &[-1.0])]), [0.25]);
+        assert_eq!(least(&[1.0, 0.0], &[&[-1.0, 1.0]], &[affine(0.75, &[-1.0])]), [0.5]);
+        assert_eq!(least(&[1.0, 0.0], &[&[-1.0, 1.0]], &[]), [0.5]);
     }
 
     #[test]
-    fn a_slack_that_binds_on_the_way_is_dropped_again() {
-        // L = (y1, y2) + (-2, -1) is shortest at (2, 1); y1 + y2 <= 3 touches there, y2 >= 1.5 - y1 does not bind at all,
-        // and y1 <= 1 does.
-        let slacks = [affine(3.0, &[-1.0, -1.0]), affine(-1.5, &[1.0, 1.0]), affine(1.0, &[-1.0, 0.0])];
-        let found = least_impulse(&[-2.0, -1.0], &[vec![1.0, 0.0], vec![0.0, 1.0]], &slacks, &[0.0, 2.9]);
-        assert!((found[0] - 1.0).abs() < 1e-13 && (found[1] - 1.0).abs() < 1e-13, "{found:?}");
+    fn a_function_that_binds_on_the_way_is_let_go_again() {
+        // L = (y1, y2) + (-2, -1) is shortest at (2, 1). y2 >= y1 - 1/2 binds on the way, and y1 <= 5/4 at the end alone.
+        let functions = [affine(0.5, &[-1.0, 1.0]), affine(1.25, &[-1.0, 0.0])];
+        assert_eq!(least(&[-2.0, -1.0], &[&[1.0, 0.0], &[0.0, 1.0]], &functions), [1.25, 1.0]);
+    }
+
+    #[test]
+    fn a_degenerate_corner_is_left() {
+        // Three functions vanish at the start; the optimum (1, 0) lies along one of them.
+        let functions = [affine(0.0, &[0.0, 1.0]), affine(0.0, &[1.0, 1.0]), affine(0.0, &[1.0, 0.0])];
+        assert_eq!(least(&[-1.0, 1.0], &[&[1.0, 0.0], &[0.0, 1.0]], &functions), [1.0, 0.0]);
     }
 }

@@ -18,7 +18,7 @@ use super::outcome::{Because, Motion, Range};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
 use super::sign::{Scale, SlackKind};
-use crate::scalar::{Ordered, Real};
+use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
 /// Slacks are not followed beyond this: the impulses are then unbounded.
@@ -107,7 +107,7 @@ struct Combination<'a, T> {
 
 impl<T: Ordered> Combination<'_, T> {
     fn weigh(&self, solutions: &Solutions<T>) -> Result<Judged, Unsettled> {
-        let inequalities = self.inequalities(self.problem, solutions);
+        let inequalities = self.inequalities(solutions);
         let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
         for inequality in inequalities.iter().filter(|inequality| inequality.kind.is_strict()) {
             if inequality.function.is_constant()? && settled(inequality.function.constant)?.is_eq() {
@@ -140,18 +140,19 @@ impl<T: Ordered> Combination<'_, T> {
         solutions.affine(self.problem.free_row(row), &self.generators.velocity_row(self.problem, row))
     }
 
-    /// Every inequality of the modes, in numbers of any kind.
-    fn inequalities<R: Real>(&self, problem: &ContactProblem<R>, solutions: &Solutions<R>) -> Vec<Inequality<R>> {
+    /// Every inequality of the modes.
+    fn inequalities(&self, solutions: &Solutions<T>) -> Vec<Inequality<T>> {
+        let problem = self.problem;
         let mut all = Vec::new();
         for (contact, (&mode, &friction)) in self.modes.iter().zip(problem.friction()).enumerate() {
             let (t, n) = (2 * contact, 2 * contact + 1);
-            let mut tell = |kind, constant: R, coefficients: Vec<R>| {
-                let factor = R::from_f64(self.scale.factor(kind, contact, friction));
-                let coefficients: Vec<R> = coefficients.into_iter().map(|entry| factor * entry).collect();
+            let mut tell = |kind, constant: T, coefficients: Vec<T>| {
+                let factor = T::from_f64(self.scale.factor(kind, contact, friction));
+                let coefficients: Vec<T> = coefficients.into_iter().map(|entry| factor * entry).collect();
                 let function = solutions.affine(factor * constant, &coefficients);
                 all.push(Inequality { contact, kind, function });
             };
-            let (along, pressed) = (self.generators.impulse_row::<R>(t), self.generators.impulse_row::<R>(n));
+            let (along, pressed) = (self.generators.impulse_row::<T>(t), self.generators.impulse_row::<T>(n));
             match mode {
                 Mode::Separate => {
                     tell(SlackKind::Separation, problem.free_row(n), self.generators.velocity_row(problem, n));
@@ -161,20 +162,20 @@ impl<T: Ordered> Combination<'_, T> {
                         && mu > 0.0
                     {
                         for side in [-1.0, 1.0] {
-                            let (reach, side) = (R::from_f64(mu), R::from_f64(side));
+                            let (reach, side) = (T::from_f64(mu), T::from_f64(side));
                             let cone = pressed.iter().zip(&along).map(|(&l_n, &l_t)| reach * l_n + side * l_t);
-                            tell(SlackKind::Cone, R::zero(), cone.collect());
+                            tell(SlackKind::Cone, T::zero(), cone.collect());
                         }
                     }
-                    tell(SlackKind::Pressure, R::zero(), pressed);
+                    tell(SlackKind::Pressure, T::zero(), pressed);
                 }
                 Mode::SlidePlus | Mode::SlideMinus => {
-                    let direction = R::from_f64(mode.direction());
+                    let direction = T::from_f64(mode.direction());
                     match friction {
                         Friction::Infinite => {
-                            tell(SlackKind::Drag, R::zero(), along.iter().map(|&entry| -direction * entry).collect());
+                            tell(SlackKind::Drag, T::zero(), along.iter().map(|&entry| -direction * entry).collect());
                         }
-                        Friction::Finite(_) => tell(SlackKind::Pressure, R::zero(), pressed),
+                        Friction::Finite(_) => tell(SlackKind::Pressure, T::zero(), pressed),
                     }
                     let slip = self.generators.velocity_row(problem, t);
                     let slip = slip.iter().map(|&entry| direction * entry).collect();
@@ -222,8 +223,7 @@ impl<T: Ordered> Combination<'_, T> {
             if velocity.is_constant()? {
                 continue;
             }
-            let functions: Vec<Affine<T>> =
-                self.inequalities(self.problem, &space).into_iter().map(|each| each.function).collect();
+            let functions: Vec<Affine<T>> = self.inequalities(&space).into_iter().map(|each| each.function).collect();
             let toward: Vec<T> = velocity.coefficients.iter().map(|&entry| sign * entry).collect();
             // Energy bounds every velocity.
             let best = maximize(&functions, &toward)?.ok_or(Unsettled)?;
@@ -257,7 +257,7 @@ impl<T: Ordered> Combination<'_, T> {
 
     /// The only velocity of `space`, with its impulses; at `inside` no inequality is negative, and the smallest is `least`.
     fn member(&self, space: &Solutions<T>, modes: Vec<Mode>, inside: &[T], least: T) -> Result<Member, Unsettled> {
-        let inequalities = self.inequalities(self.problem, space);
+        let inequalities = self.inequalities(space);
         let dimension = space.directions.len();
         // Velocities are settled; only impulses still depend on y.
         let pressing: Vec<&Inequality<T>> =
@@ -302,11 +302,14 @@ impl<T: Ordered> Combination<'_, T> {
             }
         }
         let lambda = if unique {
-            at.iter().map(|entry| entry.to_f64()).collect()
+            at
         } else if self.needs_no_impulse()? {
-            vec![0.0; at.len()]
+            vec![T::zero(); at.len()]
         } else {
-            self.least(space, &at)
+            let directions: Vec<Vec<T>> =
+                space.directions.iter().map(|direction| self.generators.impulse(direction)).collect();
+            let start = Solutions { origin: at, directions: space.directions.clone() };
+            start.at(&least_impulse(&self.generators.impulse(&start.origin), &directions, &shifted)?)
         };
         let margin = (!inequalities.is_empty()).then(|| least.to_f64());
         Ok(Member {
@@ -330,34 +333,22 @@ impl<T: Ordered> Combination<'_, T> {
         Ok(true)
     }
 
-    /// The lambda of the shortest impulse; `inside` is one that no inequality forbids.
-    fn least(&self, space: &Solutions<T>, inside: &[T]) -> Vec<f64> {
-        let number = |list: &[T]| -> Vec<f64> { list.iter().map(|entry| entry.to_f64()).collect() };
-        let free: Vec<Vec<f64>> = space.directions.iter().map(|direction| number(direction)).collect();
-        let space = Solutions { origin: number(inside), directions: super::basis::orthonormal(&free) };
-        let pressing = self.inequalities(self.rounded, &space).into_iter().filter(|each| !each.kind.is_strict());
-        let functions: Vec<Affine<f64>> = pressing.map(|each| each.function).collect();
-        let directions: Vec<Vec<f64>> = space.directions.iter().map(|each| self.generators.impulse(each)).collect();
-        let start = vec![0.0; directions.len()];
-        space.at(&least_impulse(&self.generators.impulse(&space.origin), &directions, &functions, &start))
-    }
-
     fn motion(&self, solutions: &Solutions<T>, y: &[T], modes: &[Mode]) -> Motion {
         let at = Solutions { origin: solutions.at(y), directions: Vec::new() };
-        let lambda: Vec<f64> = at.origin.iter().map(|entry| entry.to_f64()).collect();
-        self.motion_of(&at, &lambda, modes)
+        self.motion_of(&at, &at.origin, modes)
     }
 
     /// The velocity of `space` at its origin, with the impulse that `lambda` gives.
-    fn motion_of(&self, space: &Solutions<T>, lambda: &[f64], modes: &[Mode]) -> Motion {
+    fn motion_of(&self, space: &Solutions<T>, lambda: &[T], modes: &[Mode]) -> Motion {
         let mut velocity: Vec<f64> =
             (0..2 * modes.len()).map(|row| self.velocity(space, row).constant.to_f64()).collect();
         for row in zero_rows(modes) {
             velocity[row] = 0.0;
         }
         let bounced = velocity.chunks_exact(2).enumerate();
+        let impulse: Vec<f64> = self.generators.impulse(lambda).iter().map(|entry| entry.to_f64()).collect();
         Motion {
-            impulse: self.generators.impulse(lambda).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(),
+            impulse: impulse.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(),
             velocity_after: bounced.map(|(i, pair)| [pair[0], pair[1] - self.rounded.bounce(i)]).collect(),
         }
     }

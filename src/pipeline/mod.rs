@@ -9,8 +9,8 @@ mod strike;
 use self::strike::Strike;
 use crate::contact::{self, Contact, Feet, Placement};
 use crate::dynamics::{
-    Bounds, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, kinetic_energy,
-    mass_matrix, point_velocity,
+    Arm, Bounds, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics,
+    kinetic_energy, mass_matrix, point_velocity,
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
@@ -136,8 +136,7 @@ impl<'r> Pipeline<'r> {
         let resting = self.snap(&contacts, &mut notes);
         delassus(&self.plan, &mut self.workspace);
         let kinetic_energy = self.energy_in_range(&velocity)?;
-        let standing = foot.as_ref().map(|foot| foot.point_of(scene.ground()));
-        self.bound(&velocity, standing.as_ref(), |contact| resting[contact] || stance == Some(contact));
+        self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
 
         let free = self.applied(scene, &velocity);
@@ -147,9 +146,9 @@ impl<'r> Pipeline<'r> {
             scene,
             position: &state.position,
             velocity: &velocity,
-            foot: standing,
+            foot: foot.as_ref(),
             stance,
-            contacts: &self.points,
+            contacts: &contacts,
             resting: &resting,
             friction: problem.friction(),
             restitution: problem.restitution(),
@@ -329,14 +328,15 @@ impl<'r> Pipeline<'r> {
     }
 
     /// Bounds the rounding of G and c; without proofs that of G is taken for what was measured.
-    fn bound(&mut self, velocity: &[f64], foot: Option<&ContactPoint>, rests: impl Fn(usize) -> bool) {
-        let Self { plan, posture, bounds, points, workspace, .. } = self;
-        bounds.stretch(plan, posture);
-        bounds.velocities(plan, points, velocity, foot, rests);
+    fn bound(&mut self, contacts: &[Contact], velocity: &[f64], foot: Option<&Contact>, rests: impl Fn(usize) -> bool) {
+        let Self { robot, plan, posture, bounds, workspace, .. } = self;
+        let arm = |contact: &Contact| Arm { body: contact.body, length: contact.stretch(robot) + contact.radius };
+        bounds.stretch(plan, posture, contacts.iter().map(arm));
+        bounds.velocities(plan, velocity, foot.map(arm), rests);
         if self.options.no_proof {
             bounds.delassus = DYNAMICS_ROUNDING;
         } else {
-            bounds.delassus(plan, points, workspace);
+            bounds.delassus(plan, workspace);
         }
     }
 

@@ -1,5 +1,6 @@
 //! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
 
+use crate::contact::Contact;
 use crate::dynamics::{
     ContactPoint, Workspace, add_articulated_impulse, articulated_delassus, articulated_inertias, contact_jacobian,
     kinematics, point_velocity,
@@ -20,10 +21,10 @@ pub struct Strike<'a> {
     /// dq/dt; with a foot x and z are such that it rests.
     pub velocity: &'a [f64],
     /// The foot of the stance.
-    pub foot: Option<ContactPoint>,
+    pub foot: Option<&'a Contact>,
     /// Its place among the contacts.
     pub stance: Option<usize>,
-    pub contacts: &'a [ContactPoint],
+    pub contacts: &'a [Contact],
     /// Contacts that are taken as exactly at rest.
     pub resting: &'a [bool],
     pub friction: &'a [Friction],
@@ -41,15 +42,10 @@ impl Source for Strike<'_> {
         articulated_inertias(&plan, &mut workspace);
 
         let [cos, sin] = T::cos_sin(-scene.slope);
-        let point = |contact: &ContactPoint| ContactPoint {
-            body: contact.body,
-            centre: contact.centre.map(T::from_f64),
-            radius: T::from_f64(contact.radius),
-            ground: Rotation { cos, sin },
-        };
+        let point = |contact: &Contact| contact.exact_point(robot, Rotation { cos, sin });
         let contacts: Vec<ContactPoint<T>> = self.contacts.iter().map(point).collect();
         let mut velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
-        if let Some(foot) = self.foot.as_ref().map(point) {
+        if let Some(foot) = self.foot.map(point) {
             velocity[..2].fill(T::zero());
             let moving = point_velocity(&plan, foot.body, foot.arm(&workspace), &velocity, &workspace);
             velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
@@ -65,7 +61,7 @@ impl Source for Strike<'_> {
             let mut change = vec![T::zero(); velocity.len()];
             for applied in &scene.impulses {
                 let link = &robot.links[applied.link];
-                let arm = workspace.rotation[link.body].apply(link.point(applied.offset).map(T::from_f64));
+                let arm = workspace.rotation[link.body].apply(link.point(applied.offset));
                 let vector = applied.vector.map(T::from_f64);
                 let scratch = (&mut Vec::new(), &mut Vec::new());
                 add_articulated_impulse(&plan, &workspace, (link.body, arm), vector, scratch, &mut change);

@@ -63,7 +63,8 @@ impl Accuracy {
         let mut series: Vec<Series> = Vec::new();
         let methods = self.studies.iter().flat_map(|study| &study.methods);
         for method in methods.filter(|method| method.number != "reference") {
-            let (Some(time), Some(error)) = (method.time, method.error.and_then(|error| error.delassus)) else {
+            let error = method.error.and_then(|error| error.delassus).filter(|&error| error > NO_ERROR);
+            let (Some(time), Some(error)) = (method.time, error) else {
                 continue;
             };
             let name = name_of(method);
@@ -236,11 +237,14 @@ fn power(condition: Option<f64>) -> String {
     condition.map_or("-".into(), |value| if value < 1e3 { format!("{value:.0}") } else { format!("{value:.0e}") })
 }
 
+/// Less than any number but the reference can err by: what is left is the reference's own doubt.
+const NO_ERROR: f64 = 1e-40;
+
 /// Digits that an error leaves.
 fn digits(error: f64) -> String {
     if error.is_nan() {
         "none".to_owned()
-    } else if error == 0.0 {
+    } else if error < NO_ERROR {
         "all".to_owned()
     } else {
         format!("{:.1}", (-libm::log10(error)).max(0.0))

@@ -14,6 +14,7 @@ mod outline;
 mod reduce;
 
 use crate::planar::Vector;
+use crate::scalar::Real;
 use parry2d::shape::SharedShape;
 
 /// How the root body is held.
@@ -133,10 +134,12 @@ pub struct LeftOut {
 
 impl Link {
     /// A point of the link's own 3-D frame in its body's planar frame \[m\]; the component along the normal is dropped.
-    pub fn point(&self, offset: [f64; 3]) -> Vector<f64> {
-        self.pose.map(|[a, b, c, d]| {
+    pub fn point<T: Real>(&self, offset: [f64; 3]) -> Vector<T> {
+        let [x, y, z] = offset.map(T::from_f64);
+        self.pose.map(|row| {
+            let [a, b, c, d] = row.map(T::from_f64);
             // Unturned links keep the given digits: adding a product with zero changes nothing.
-            a * offset[0] + b * offset[1] + c * offset[2] + d
+            a * x + b * y + c * z + d
         })
     }
 }

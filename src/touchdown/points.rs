@@ -104,7 +104,7 @@ impl<'r> Points<'r> {
 
     /// Speed of a point after `at` \[m/s\].
     fn speed(&self, point: usize, velocity: &[f64]) -> f64 {
-        let Point { body, centre, radius } = self.points[point].1;
+        let Point { body, centre, radius, .. } = self.points[point].1;
         let arm = ContactPoint { body, centre, radius, ground: Scene::default().ground() }.arm(&self.workspace);
         let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
         libm::hypot(x, z)

@@ -75,7 +75,7 @@ fn ramone_keeps_the_digits_of_table_1() {
             assert!(!foot.has_inertial);
             let [FootShape::Disc { centre, radius }] = foot.shapes[..] else { panic!("one disc") };
             assert_eq!((centre, radius), ([0.0, -0.2385], 0.02815));
-            assert_eq!(foot.point([0.001, 0.5, 0.0]), [0.001, -0.2385]);
+            assert_eq!(foot.point::<f64>([0.001, 0.5, 0.0]), [0.001, -0.2385]);
         }
         assert_eq!(ramone.links.iter().filter(|link| !link.shapes.is_empty()).count(), 2);
         let welds = [
@@ -319,7 +319,7 @@ fn fixed_links_are_welded_with_their_turned_inertia() {
         assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");
     }
     // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
-    let [x, z] = robot.links[1].point([1.0, 2.0, 3.0]);
+    let [x, z] = robot.links[1].point::<f64>([1.0, 2.0, 3.0]);
     assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15);
     let [FootShape::Disc { centre, radius }] = robot.links[1].shapes[..] else { panic!("one disc") };
     assert_eq!((centre, radius, robot.links[1].body), ([2.0, 0.0], 0.1, 0));

@@ -1,0 +1,274 @@
+//! The numbers of the oracle: balls of any precision, and f64 to look for borders with.
+
+use astro_float::{BigFloat, Consts, RoundingMode, Sign};
+use std::cell::RefCell;
+use std::cmp::Ordering;
+
+/// What the oracle calculates with.
+pub trait Number: Clone {
+    /// Exactly `value`, to be calculated with in `bits` bits.
+    fn new(value: f64, bits: usize) -> Self;
+    /// The sum.
+    fn plus(&self, other: &Self) -> Self;
+    /// The difference.
+    fn minus(&self, other: &Self) -> Self;
+    /// The product.
+    fn times(&self, other: &Self) -> Self;
+    /// The quotient; `other` must have a sign.
+    fn over(&self, other: &Self) -> Self;
+    /// The negative.
+    fn negative(&self) -> Self;
+    /// Cosine and sine of an angle \[rad\].
+    fn cos_sin(&self) -> [Self; 2];
+    /// How it compares with zero; none where that is not known.
+    fn sign(&self) -> Option<Ordering>;
+    /// No less than its magnitude, and where it has a sign at most twice that.
+    fn size(&self) -> f64;
+
+    /// Whether it is zero for certain.
+    fn is_zero(&self) -> bool {
+        self.sign() == Some(Ordering::Equal)
+    }
+}
+
+/// f64 without any bound: what it says of a sign is a guess.
+impl Number for f64 {
+    fn new(value: f64, _: usize) -> Self {
+        value
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        self + other
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        self - other
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        self * other
+    }
+
+    fn over(&self, other: &Self) -> Self {
+        self / other
+    }
+
+    fn negative(&self) -> Self {
+        -self
+    }
+
+    fn cos_sin(&self) -> [Self; 2] {
+        [self.cos(), self.sin()]
+    }
+
+    fn sign(&self) -> Option<Ordering> {
+        self.partial_cmp(&0.0)
+    }
+
+    fn size(&self) -> f64 {
+        self.abs()
+    }
+}
+
+/// A real number within `radius` of `mid`, which has `bits` bits.
+#[derive(Debug, Clone)]
+pub struct Ball {
+    mid: BigFloat,
+    radius: f64,
+    bits: usize,
+}
+
+/// More than the rounding of the few f64 operations that one radius takes: 2^-46, 64 times that of one.
+const INFLATION: f64 = 1.0 + 64.0 * f64::EPSILON;
+
+impl Ball {
+    /// `mid` known to `radius` and its own rounding.
+    fn rounded(mid: BigFloat, radius: f64, bits: usize) -> Self {
+        // One unit in the last place, twice what rounding to nearest may do, is magnitude * 2^(1 - bits); once more
+        // twice that costs two bits of hundreds, and need not rely on how well the crate rounds.
+        let rounding = magnitude(&mid) * power_of_two(2 - bits as i32);
+        Self::with_radius(mid, radius + rounding, bits)
+    }
+
+    /// `mid` known to `radius`, which was added up in f64.
+    fn with_radius(mid: BigFloat, radius: f64, bits: usize) -> Self {
+        // The least normal number covers what underflow took away.
+        let radius = if radius == 0.0 && mid.is_zero() { 0.0 } else { radius * INFLATION + f64::MIN_POSITIVE };
+        Self { mid, radius, bits }
+    }
+
+    /// Exactly zero.
+    fn zero(bits: usize) -> Self {
+        Self { mid: BigFloat::new(bits), radius: 0.0, bits }
+    }
+
+    fn is_exact_zero(&self) -> bool {
+        self.radius == 0.0 && self.mid.is_zero()
+    }
+}
+
+/// No less than |value|, and above it by a few units of f64 at most; infinite where it is none.
+fn magnitude(value: &BigFloat) -> f64 {
+    if value.is_zero() {
+        return 0.0;
+    }
+    let Some((words, _, _, exponent, _)) = value.as_raw_parts() else { return f64::INFINITY };
+    // The value is 0.m * 2^exponent, m led by the last word.
+    let lead = words.last().copied().unwrap_or(u64::MAX) as f64 * power_of_two(-64);
+    lead * INFLATION * power_of_two(exponent)
+}
+
+/// 2^exponent, no less where that lies below the normal numbers, infinite where above.
+fn power_of_two(exponent: i32) -> f64 {
+    match exponent {
+        ..-1022 => f64::MIN_POSITIVE,
+        -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
+        1024.. => f64::INFINITY,
+    }
+}
+
+impl Number for Ball {
+    fn new(value: f64, bits: usize) -> Self {
+        Self { mid: BigFloat::from_f64(value, bits), radius: 0.0, bits }
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        if self.is_exact_zero() {
+            return other.clone();
+        }
+        if other.is_exact_zero() {
+            return self.clone();
+        }
+        let mid = self.mid.add(&other.mid, self.bits, RoundingMode::ToEven);
+        Self::rounded(mid, self.radius + other.radius, self.bits)
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negative())
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        if self.is_exact_zero() || other.is_exact_zero() {
+            return Self::zero(self.bits);
+        }
+        let mid = self.mid.mul(&other.mid, self.bits, RoundingMode::ToEven);
+        let radius = if self.radius == 0.0 && other.radius == 0.0 {
+            0.0
+        } else {
+            let smallest = f64::MIN_POSITIVE;
+            magnitude(&self.mid) * other.radius
+                + magnitude(&other.mid) * self.radius
+                + self.radius * other.radius
+                + smallest
+        };
+        Self::rounded(mid, radius, self.bits)
+    }
+
+    fn over(&self, other: &Self) -> Self {
+        if self.is_exact_zero() {
+            return self.clone();
+        }
+        let mid = self.mid.div(&other.mid, self.bits, RoundingMode::ToEven);
+        // |a/b - a'/b'| <= (ra + |a/b| rb) / (|b| - rb), with |b| from below.
+        let below = magnitude(&other.mid) / (INFLATION * INFLATION) - other.radius * INFLATION;
+        let rounding = magnitude(&mid) * power_of_two(2 - self.bits as i32);
+        let quotient = magnitude(&mid) + rounding;
+        let radius =
+            if below > 0.0 { (self.radius + quotient * other.radius) * INFLATION / below } else { f64::INFINITY };
+        Self::rounded(mid, radius, self.bits)
+    }
+
+    fn negative(&self) -> Self {
+        Self { mid: self.mid.neg(), ..*self }
+    }
+
+    fn cos_sin(&self) -> [Self; 2] {
+        thread_local! {
+            /// Digits of pi that the crate keeps.
+            static CONSTANTS: RefCell<Consts> = RefCell::new(Consts::new().expect("memory for a few constants"));
+        }
+        if self.is_exact_zero() {
+            return [Self::new(1.0, self.bits), self.clone()];
+        }
+        CONSTANTS.with_borrow_mut(|constants| {
+            let cos = self.mid.cos(self.bits, RoundingMode::ToEven, constants);
+            let sin = self.mid.sin(self.bits, RoundingMode::ToEven, constants);
+            // Neither changes faster than its angle.
+            [cos, sin].map(|mid| Self::rounded(mid, self.radius, self.bits))
+        })
+    }
+
+    fn sign(&self) -> Option<Ordering> {
+        if self.is_exact_zero() {
+            return Some(Ordering::Equal);
+        }
+        let clear = magnitude(&self.mid) > self.radius * (INFLATION * INFLATION * INFLATION);
+        let side = match self.mid.sign()? {
+            Sign::Pos => Ordering::Greater,
+            Sign::Neg => Ordering::Less,
+        };
+        clear.then_some(side)
+    }
+
+    fn size(&self) -> f64 {
+        (magnitude(&self.mid) + self.radius) * INFLATION
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether the ball is near zero, holds it, and is known to nearly all its bits.
+    fn vanishes(ball: &Ball) -> bool {
+        ball.sign() != Some(Ordering::Less)
+            && ball.sign() != Some(Ordering::Greater)
+            && ball.size() < power_of_two(10 - ball.bits as i32)
+    }
+
+    #[test]
+    fn identities_hold_to_nearly_all_bits() {
+        for bits in [256, 448, 832] {
+            for k in 1..200 {
+                let [a, b] = [0.37, -1.29].map(|rate| Ball::new(rate * f64::from(k), bits));
+                let one = Ball::new(1.0, bits);
+                let [cos, sin] = a.cos_sin();
+                assert!(vanishes(&cos.times(&cos).plus(&sin.times(&sin)).minus(&one)));
+                let ([cos_b, sin_b], [_, sin_of_sum]) = (b.cos_sin(), a.plus(&b).cos_sin());
+                assert!(vanishes(&sin.times(&cos_b).plus(&cos.times(&sin_b)).minus(&sin_of_sum)));
+                assert!(vanishes(&a.over(&b).times(&b).over(&a).minus(&one)));
+            }
+        }
+    }
+
+    #[test]
+    fn fewer_bits_enclose_what_more_bits_know() {
+        let value = |bits| {
+            let mut sum = Ball::new(0.1, bits);
+            for k in 1..20 {
+                let [cos, sin] = sum.plus(&Ball::new(0.3 * f64::from(k), bits)).cos_sin();
+                sum = sum.minus(&cos.times(&sin)).over(&sin.plus(&Ball::new(1.7, bits)));
+            }
+            sum
+        };
+        let fine = value(1024);
+        for bits in [128, 256, 448] {
+            let coarse = value(bits);
+            let distance = coarse.mid.sub(&fine.mid, 1024, RoundingMode::ToEven);
+            assert!(coarse.radius > 0.0 && coarse.radius < 1e-15, "{bits}: {}", coarse.radius);
+            assert!(magnitude(&distance) <= coarse.radius + fine.radius, "{bits}: {} apart", magnitude(&distance));
+        }
+    }
+
+    #[test]
+    fn f64_of_known_sine_lies_within_an_ulp() {
+        // libm's sine is known to less than one unit in the last place.
+        for k in 1..1000 {
+            let angle = 0.0173 * f64::from(k);
+            let [cos, sin] = Ball::new(angle, 256).cos_sin();
+            for (ball, guess) in [(cos, angle.cos()), (sin, angle.sin())] {
+                assert!(ball.minus(&Ball::new(guess, 256)).size() <= guess.abs() * f64::EPSILON, "{angle}");
+            }
+        }
+    }
+}
