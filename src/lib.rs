@@ -85,6 +85,8 @@ pub mod dynamics;
 pub mod contact;
 pub mod impact;
 pub mod pipeline;
+#[cfg(feature = "accuracy")]
+pub mod accuracy;
 pub mod report;
 pub mod documents;
 pub mod table;

@@ -3,6 +3,7 @@
 //! Standard output carries results alone, standard error what is wrong and how to mend it. Exit status: 0 all answered,
 //! 1 some input was refused, 2 wrong usage.
 
+mod accuracy;
 mod batch;
 mod complaint;
 mod completions;
@@ -13,6 +14,7 @@ mod inspect;
 mod man;
 mod options;
 mod output;
+mod picture;
 mod progress;
 mod robot;
 mod schema;
@@ -44,6 +46,7 @@ enum Command {
     Impact(impact::Args),
     Batch(batch::Args),
     Solve(solve::Args),
+    Accuracy(accuracy::Args),
     Schema(schema::Args),
     Completions(completions::Args),
     #[command(hide = true)]
@@ -91,6 +94,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Command::Impact(args) => impact::run(&args),
         Command::Batch(args) => batch::run(&args),
         Command::Solve(args) => solve::run(&args),
+        Command::Accuracy(args) => accuracy::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),

@@ -3,7 +3,7 @@
 use super::complaint::{complain, complain_within, note};
 use super::output::{Format, OutputOptions};
 use super::{Answered, Outcome, input};
-use heelstrike::documents::{documents, utf8};
+use heelstrike::documents::{Document, documents, utf8};
 use heelstrike::report::{self, Palette, Refused};
 use heelstrike::state::State;
 use heelstrike::{Error, Reason, Result};
@@ -30,6 +30,20 @@ pub(super) trait Answers {
 
     /// The answer as text, and the error that stands in it, if any.
     fn text(&mut self, object: &str, palette: &Palette) -> Result<(String, Option<Error>)>;
+}
+
+/// The one object of a file.
+pub(super) fn only_document<'t>(bytes: &'t [u8], name: &str) -> Result<Document<'t>> {
+    let text = utf8(bytes).map_err(|error| error.in_file(name))?;
+    let mut found = documents(text);
+    match (found.next(), found.next()) {
+        (Some(document), None) if !document.text.trim_ascii().is_empty() => Ok(document),
+        (Some(_), Some(second)) => {
+            let reason = Reason::Inconsistent("one state is expected, and here a second one begins".into());
+            Err(second.locate(Error::new(reason)).in_file(name).hint("give the states one by one"))
+        }
+        _ => Err(Error::new(Reason::Missing("a state".into())).in_file(name).hint("the input is empty")),
+    }
 }
 
 /// Answers every object of a file.

@@ -1,5 +1,6 @@
 //! Memory of the dynamics, reused from state to state.
 
+use super::articulated::Articulated;
 use crate::planar::{Inertia, Rotation, Vector};
 
 /// Everything that the dynamics of one state computes; nb bodies, nv columns of the plan, n contacts.
@@ -23,13 +24,19 @@ pub struct Workspace<T = f64> {
     /// L below the diagonal (its own diagonal is one) and D on it, of M = L^T D L. nv x nv
     pub factor: Vec<T>,
 
+    // Computed by `articulated_inertias`.
+    /// Inertia that each body shows at its origin while the joints beyond it give way. nb
+    pub articulated: Vec<Articulated<T>>,
+    /// D of M = L^T D L, without M. nv
+    pub pivots: Vec<T>,
+
     // Computed by `contact_jacobian`.
     /// J by rows, tangential and normal of each contact. 2n x nv
     pub contact_jacobian: Vec<T>,
     /// Contact velocities c = J v, held joints' rates included \[m/s\]. n
     pub contact_velocity: Vec<Vector<T>>,
 
-    // Computed by `delassus`.
+    // Computed by `delassus` or `articulated_delassus`.
     /// Y = L^-T J^T by columns, so that G = Y^T D^-1 Y. 2n x nv
     pub half: Vec<T>,
     /// D^-1 Y by columns. 2n x nv
@@ -47,6 +54,8 @@ impl<T> Default for Workspace<T> {
             composite: Vec::new(),
             mass_matrix: Vec::new(),
             factor: Vec::new(),
+            articulated: Vec::new(),
+            pivots: Vec::new(),
             contact_jacobian: Vec::new(),
             contact_velocity: Vec::new(),
             half: Vec::new(),

@@ -2,8 +2,8 @@
 
 use crate::contact::Contact;
 use crate::dynamics::{
-    ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
-    point_velocity,
+    ContactPoint, Workspace, add_articulated_impulse, articulated_delassus, articulated_inertias, contact_jacobian,
+    kinematics, point_velocity,
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
 use crate::plan::{Plan, Posture};
@@ -38,8 +38,8 @@ impl Source for Strike<'_> {
         let plan = Plan::<T>::new(robot, &scene.held, &scene.rotor_inertia);
         let mut workspace = Workspace::default();
         kinematics(&plan, &posture(robot, self.position), &mut workspace);
-        mass_matrix(&plan, &mut workspace);
-        factorize(&plan, &mut workspace);
+        // Not by the mass matrix: its factor costs the cube of a chain's length, and its enclosures widen faster.
+        articulated_inertias(&plan, &mut workspace);
 
         let [cos, sin] = T::cos_sin(-scene.slope);
         let point = |contact: &Contact| contact.exact_point(robot, Rotation { cos, sin });
@@ -51,7 +51,7 @@ impl Source for Strike<'_> {
             velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
         }
         contact_jacobian(&plan, &contacts, &velocity, self.stance, &mut workspace);
-        delassus(&plan, &mut workspace);
+        articulated_delassus(&plan, &contacts, &mut workspace);
         for (speed, _) in workspace.contact_velocity.iter_mut().zip(self.resting).filter(|(_, rests)| **rests) {
             *speed = [T::zero(); 2];
         }
@@ -63,7 +63,8 @@ impl Source for Strike<'_> {
                 let link = &robot.links[applied.link];
                 let arm = workspace.rotation[link.body].apply(link.point(applied.offset));
                 let vector = applied.vector.map(T::from_f64);
-                add_impulse(&plan, &workspace, (link.body, arm), vector, &mut Vec::new(), &mut change);
+                let scratch = (&mut Vec::new(), &mut Vec::new());
+                add_articulated_impulse(&plan, &workspace, (link.body, arm), vector, scratch, &mut change);
             }
             for (point, speed) in contacts.iter().zip(&mut free) {
                 let more = point_velocity(&plan, point.body, point.arm(&workspace), &change, &workspace);

@@ -5,10 +5,15 @@
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
+//!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy.rs
 //! ```
 
 mod id;
+#[cfg(feature = "accuracy")]
+mod accuracy;
 mod inspection;
+#[cfg(feature = "plot")]
+pub mod picture;
 mod problem;
 mod result;
 #[cfg(feature = "schema")]
@@ -17,8 +22,12 @@ mod table;
 mod text;
 mod touchdown;
 
+#[cfg(feature = "accuracy")]
+pub use accuracy::{ADVICE, Accuracy, Compliant};
 pub(crate) use id::short_id;
 pub use inspection::Inspection;
+#[cfg(feature = "plot")]
+pub use picture::Picture;
 pub use problem::Problem;
 pub use result::{
     Brief, Contact, ErrorObject, Explained, LeftOut, NamedVelocities, Outcome, OutcomeInBrief, Refused, Rejected,

@@ -9,6 +9,7 @@ use serde_json::Value;
 use std::io::Read;
 use std::process::Stdio;
 
+mod accuracy;
 mod manners;
 mod refusals;
 

@@ -1,0 +1,236 @@
+//! Compliant contact against the rigid outcomes: how near, to which, and what it hangs on.
+
+use super::frozen::{Ground, Run, TOLERANCE, run};
+use super::moving::Moving;
+use crate::Result;
+use crate::accuracy::pose::Pose;
+use crate::dynamics::{add_impulse, kinetic_energy};
+use crate::impact::{Analysis, ContactProblem, Mode, Outcome};
+use crate::planar::{Vector, scaled, sum};
+use serde::Serialize;
+
+/// A run that ends within this distance of an outcome is near it, in parts of the speed before.
+pub const NEAR: f64 = 0.01;
+
+const DAMPING_RATIOS: [f64; 6] = [0.05, 0.3, 1.0, 3.0, 10.0, f64::INFINITY];
+const STIFFNESS_RATIOS: [f64; 3] = [0.1, 1.0, 10.0];
+const TANGENTIAL_DAMPING: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
+const TOLERANCES: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
+const STIFFNESSES: [f64; 5] = [1e4, 1e6, 1e8, 1e10, 1e12];
+
+/// Compliant contact beside the outcomes of one state.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    /// The rigid outcomes, in the order of the analysis.
+    pub outcomes: Vec<Target>,
+    /// Runs that the integrator gave up, or that did not come to an end; they count nowhere else.
+    pub unsettled: usize,
+    /// All runs, then those of each value of each parameter.
+    pub groups: Vec<Group>,
+    /// What the integrator's tolerance changes, on a ground of damping ratio 1 with equal springs and dampers.
+    pub tolerances: Vec<ByTolerance>,
+    /// What stiffness changes while the robot moves, on the same ground.
+    pub stiffnesses: Vec<ByStiffness>,
+}
+
+/// A rigid outcome.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Target {
+    /// One mode per contact.
+    pub modes: Vec<Mode>,
+    /// Its index.
+    pub index: Option<i8>,
+    /// Runs that end nearest to it.
+    pub nearest: usize,
+    /// Runs that end near it.
+    pub near: usize,
+}
+
+/// Runs that share a value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Group {
+    /// The parameter; none for all runs.
+    pub parameter: Option<&'static str>,
+    /// Its value; none where it is infinite, or of all runs.
+    pub value: Option<f64>,
+    /// Number of runs.
+    pub runs: usize,
+    /// Distance to the nearest outcome, least, median and greatest: sqrt(T(v - v_outcome) / T(v before)), T the kinetic
+    /// energy.
+    pub distance: [f64; 3],
+    /// Runs per outcome that end nearest to it.
+    pub nearest: Vec<usize>,
+    /// The share of runs that end near no outcome.
+    pub near_none: f64,
+}
+
+/// A run by the integrator's tolerance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ByTolerance {
+    /// The relative tolerance.
+    pub tolerance: f64,
+    /// Steps that it took.
+    pub steps: usize,
+    /// Distance from the run of the finest tolerance.
+    pub change: f64,
+    /// Distance to the nearest outcome.
+    pub distance: f64,
+}
+
+/// A run of the moving robot by the ground's stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ByStiffness {
+    /// k_n \[N/m\].
+    pub stiffness: f64,
+    /// Distance from the run with the configuration frozen; none where the integrator gave up.
+    pub change: Option<f64>,
+    /// Distance to the nearest outcome.
+    pub distance: Option<f64>,
+}
+
+/// Where a run ends among the outcomes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Landing {
+    /// The nearest outcome.
+    pub outcome: usize,
+    /// The distance to it.
+    pub distance: f64,
+}
+
+/// Distance of two impulses' effects, in parts of the speed of kinetic energy `energy`.
+pub fn distance(problem: &ContactProblem, energy: f64, a: &[Vector<f64>], b: &[Vector<f64>]) -> f64 {
+    let gap: Vec<f64> = a.iter().zip(b).flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
+    let rows = gap.len();
+    let entry = |at: usize| gap[at / rows] * problem.delassus(at / rows, at % rows) * gap[at % rows];
+    let twice: f64 = (0..rows * rows).map(entry).sum();
+    // Rounding may leave a little less than nothing.
+    (0.5 * twice.max(0.0) / energy).sqrt()
+}
+
+/// The outcome that a run ends nearest to; none where there is none.
+pub fn landing(problem: &ContactProblem, outcomes: &[Outcome], energy: f64, run: &Run) -> Option<Landing> {
+    let distances = outcomes.iter().map(|outcome| distance(problem, energy, &run.impulse, &outcome.impulse));
+    let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+    nearest.map(|(outcome, distance)| Landing { outcome, distance })
+}
+
+/// Runs through every combination of the parameters.
+///
+/// # Errors
+/// More contacts than a run takes, and whatever the runs of the finest tolerance refuse.
+pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energy: f64) -> Result<Comparison> {
+    let outcomes = &analysis.outcomes;
+    let (mut landings, mut unsettled) = (Vec::new(), 0);
+    for &damping_ratio in &DAMPING_RATIOS {
+        for &stiffness_ratio in &STIFFNESS_RATIOS {
+            for &tangential_damping in &TANGENTIAL_DAMPING {
+                let ground = Ground { damping_ratio, stiffness_ratio, tangential_damping };
+                match run(problem, ground, TOLERANCE) {
+                    Ok(run) if run.ended => {
+                        landings.extend(landing(problem, outcomes, energy, &run).map(|landing| (ground, landing)));
+                    }
+                    _ => unsettled += 1,
+                }
+            }
+        }
+    }
+    let group = |parameter, value: Option<f64>, chosen: &dyn Fn(&Ground) -> bool| {
+        let chosen: Vec<Landing> =
+            landings.iter().filter(|(ground, _)| chosen(ground)).map(|&(_, landing)| landing).collect();
+        gather(parameter, value.filter(|value| value.is_finite()), &chosen, outcomes.len())
+    };
+    let mut groups = vec![group(None, None, &|_| true)];
+    let by_damping = |&value: &f64| group(Some("damping ratio"), Some(value), &|ground| ground.damping_ratio == value);
+    groups.extend(DAMPING_RATIOS.iter().map(by_damping));
+    let by_stiffness = |&value: &f64| group(Some("k_t/k_n"), Some(value), &|ground| ground.stiffness_ratio == value);
+    groups.extend(STIFFNESS_RATIOS.iter().map(by_stiffness));
+    let by_tangent = |&value: &f64| group(Some("d_t/d_n"), Some(value), &|ground| ground.tangential_damping == value);
+    groups.extend(TANGENTIAL_DAMPING.iter().map(by_tangent));
+
+    let all = groups.first();
+    let targets = outcomes.iter().enumerate().map(|(at, outcome)| Target {
+        modes: outcome.modes.clone(),
+        index: outcome.index,
+        nearest: all.map_or(0, |all| all.nearest[at]),
+        near: landings.iter().filter(|(_, landing)| landing.outcome == at && landing.distance <= NEAR).count(),
+    });
+    Ok(Comparison {
+        outcomes: targets.collect(),
+        unsettled,
+        tolerances: by_tolerance(problem, outcomes, energy)?,
+        stiffnesses: by_stiffness_of_moving(pose, problem, outcomes, energy)?,
+        groups,
+    })
+}
+
+fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[Landing], outcomes: usize) -> Group {
+    let mut distances: Vec<f64> = landings.iter().map(|landing| landing.distance).collect();
+    distances.sort_by(f64::total_cmp);
+    let runs = distances.len();
+    let at = |half: usize| if runs == 0 { f64::NAN } else { distances[(runs - 1) * half / 2] };
+    let nearest = |outcome| landings.iter().filter(|landing| landing.outcome == outcome).count();
+    let near_none = landings.iter().filter(|landing| landing.distance > NEAR).count();
+    Group {
+        parameter,
+        value,
+        runs,
+        distance: [at(0), at(1), at(2)],
+        nearest: (0..outcomes).map(nearest).collect(),
+        near_none: near_none as f64 / runs.max(1) as f64,
+    }
+}
+
+/// The ground of the studies of tolerance and stiffness.
+const PLAIN: Ground = Ground { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
+
+fn by_tolerance(problem: &ContactProblem, outcomes: &[Outcome], energy: f64) -> Result<Vec<ByTolerance>> {
+    let finest = run(problem, PLAIN, 1e-12)?;
+    let mut rows = Vec::new();
+    for tolerance in TOLERANCES {
+        let run = run(problem, PLAIN, tolerance)?;
+        let Some(landing) = landing(problem, outcomes, energy, &run) else { continue };
+        let change = distance(problem, energy, &run.impulse, &finest.impulse);
+        rows.push(ByTolerance { tolerance, steps: run.steps, change, distance: landing.distance });
+    }
+    Ok(rows)
+}
+
+fn by_stiffness_of_moving(
+    pose: &Pose,
+    problem: &ContactProblem,
+    outcomes: &[Outcome],
+    energy: f64,
+) -> Result<Vec<ByStiffness>> {
+    let (computation, friction) = (pose.computed(), problem.friction().to_vec());
+    let (plan, workspace) = (computation.plan(), computation.workspace());
+    let before = computation.velocity();
+    let after = |impulse: &[Vector<f64>]| {
+        let mut velocity = before.to_vec();
+        for (point, &[tangential, normal]) in pose.points.iter().zip(impulse) {
+            let [t, n] = point.axes();
+            let vector = sum(scaled(tangential, t), scaled(normal, n));
+            add_impulse(plan, workspace, (point.body, point.arm(workspace)), vector, &mut Vec::new(), &mut velocity);
+        }
+        velocity
+    };
+    let apart = |a: &[f64], b: &[f64]| {
+        let gap: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        (kinetic_energy(plan, &gap, workspace).max(0.0) / energy).sqrt()
+    };
+    let frozen = after(&run(problem, PLAIN, TOLERANCE)?.impulse);
+    let outcomes: Vec<Vec<f64>> = outcomes.iter().map(|outcome| after(&outcome.impulse)).collect();
+    let moving =
+        Moving { plan, position: &pose.state.position, velocity: before, contacts: &pose.points, friction: &friction };
+    let mut rows = Vec::new();
+    for stiffness in STIFFNESSES {
+        // Where the integrator gives up, the row ends and not the study.
+        let end = moving.run(PLAIN, stiffness, MOVING_TOLERANCE).ok();
+        let nearest = |end: &Vec<f64>| outcomes.iter().map(|outcome| apart(end, outcome)).fold(f64::INFINITY, f64::min);
+        let change = end.as_ref().map(|end| apart(end, &frozen));
+        rows.push(ByStiffness { stiffness, change, distance: end.as_ref().map(nearest) });
+    }
+    Ok(rows)
+}
+
+/// Finer than what a stiffness of 1e12 N/m leaves of the difference.
+const MOVING_TOLERANCE: f64 = 1e-9;

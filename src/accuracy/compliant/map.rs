@@ -1,0 +1,197 @@
+//! Where overdamped contact takes the paper's minimalistic biped at alpha = 1.4, which has three rigid outcomes.
+//!
+//! The leading foot strikes as in the paper; the trailing one, which rests there, strikes too: its approach speed and the
+//! ratio d_t / d_n span the map. Either the trailing foot lifts off or both stop, and a curve parts the two: the separatrix.
+//! It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near none.
+
+use super::comparison::{Landing, NEAR, landing};
+use super::frozen::{Ground, run};
+use crate::Result;
+use crate::accuracy::robots;
+use crate::impact::{Analysis, ContactProblem, Friction, Mode, analyse};
+use crate::pipeline::{Options, Pipeline};
+use crate::planar::Vector;
+use crate::state::{Defaults, State};
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+/// The outcomes over approach speed and damping.
+#[derive(Debug, Clone, Serialize)]
+pub struct Map {
+    /// Approach speeds of the trailing foot \[m/s\].
+    pub speeds: Vec<f64>,
+    /// Ratios d_t / d_n.
+    pub ratios: Vec<f64>,
+    /// One per ratio and speed, the speeds running fastest.
+    pub cells: Vec<Cell>,
+    /// For each ratio the speed beyond which both feet stop; none where they do not within the speeds.
+    pub separatrix: Vec<Option<f64>>,
+}
+
+/// One run of the map.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Cell {
+    /// Modes of the nearest rigid outcome, trailing foot first.
+    pub modes: Vec<Mode>,
+    /// Its index.
+    pub index: Option<i8>,
+    /// Distance to it (see [`Group`](super::Group)).
+    pub distance: f64,
+}
+
+/// The biped just before it strikes.
+#[derive(Debug, Clone)]
+pub struct Biped {
+    delassus: Vec<f64>,
+    before: Vec<Vector<f64>>,
+    friction: Friction,
+}
+
+/// Tolerance of a run: far below what a picture shows.
+const TOLERANCE: f64 = 1e-8;
+
+impl Biped {
+    /// The paper's state, and this friction.
+    ///
+    /// # Errors
+    /// None that a user could bring about: the robot is this crate's own.
+    pub fn new(friction: Friction) -> Result<Self> {
+        let robot = robots::minimalistic()?;
+        let state = include_str!("../../../examples/minimalistic.json");
+        let state = State::from_json(state, &robot, &Defaults::default())?;
+        let options = Options { matrices: true, ..Options::default() };
+        let impact = Pipeline::new(&robot, options).impact(&state)?;
+        let delassus = impact.matrices.map(|matrices| matrices.delassus.concat()).unwrap_or_default();
+        Ok(Self { delassus, before: impact.velocity_before, friction })
+    }
+
+    /// The contact problem where the trailing foot comes down with `speed` \[m/s\].
+    ///
+    /// # Errors
+    /// A speed that is not finite.
+    pub fn struck(&self, speed: f64) -> Result<ContactProblem> {
+        let mut before = self.before.clone();
+        if let Some(trailing) = before.first_mut() {
+            *trailing = [0.0, -speed];
+        }
+        let contacts = before.len();
+        ContactProblem::new(self.delassus.clone(), before, vec![self.friction; contacts], vec![0.0; contacts])
+    }
+
+    /// 1/2 c-^T G^-1 c-, which is the kinetic energy, for the biped has as many coordinates as contact rows \[J\].
+    fn energy(&self, problem: &ContactProblem) -> f64 {
+        let rows = 2 * problem.contacts();
+        let before = DVector::from_iterator(rows, problem.velocity_before().iter().flatten().copied());
+        let solved = DMatrix::from_row_slice(rows, rows, &self.delassus).lu().solve(&before);
+        solved.map_or(f64::NAN, |momentum| 0.5 * momentum.dot(&before))
+    }
+
+    fn land(&self, speed: f64, ratio: f64) -> Result<(Analysis, Option<Landing>)> {
+        let problem = self.struck(speed)?;
+        let analysis = analyse(&problem, false)?;
+        let ground = Ground { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: ratio };
+        let run = run(&problem, ground, TOLERANCE)?;
+        let landing = landing(&problem, &analysis.outcomes, self.energy(&problem), &run);
+        Ok((analysis, landing))
+    }
+
+    /// The cell at a speed and a ratio; without modes where there is no rigid outcome to compare with.
+    ///
+    /// # Errors
+    /// Whatever the run refuses.
+    pub fn cell(&self, speed: f64, ratio: f64) -> Result<Cell> {
+        let (analysis, landing) = self.land(speed, ratio)?;
+        Ok(landing.map_or(
+            Cell { modes: Vec::new(), index: None, distance: f64::NAN },
+            |Landing { outcome, distance }| {
+                let outcome = &analysis.outcomes[outcome];
+                Cell { modes: outcome.modes.clone(), index: outcome.index, distance }
+            },
+        ))
+    }
+
+    /// The speed up to `greatest` beyond which both feet stop, to 1e-4 of it; none where they do not.
+    ///
+    /// # Errors
+    /// Whatever the runs refuse.
+    pub fn separatrix(&self, ratio: f64, greatest: f64) -> Result<Option<f64>> {
+        let stops = |speed: f64| {
+            self.cell(speed, ratio).map(|cell| cell.modes.first() == Some(&Mode::Stick) && cell.distance <= NEAR)
+        };
+        if !stops(greatest)? {
+            return Ok(None);
+        }
+        let (mut lifts, mut stopped) = (0.0, greatest);
+        while stopped - lifts > 1e-4 * greatest {
+            let middle = 0.5 * (lifts + stopped);
+            *if stops(middle)? { &mut stopped } else { &mut lifts } = middle;
+        }
+        Ok(Some(0.5 * (lifts + stopped)))
+    }
+
+    /// The map over `columns` speeds from 0 to 1 m/s and `rows` ratios from 0.1 to 1000, evenly on a logarithmic scale.
+    ///
+    /// # Errors
+    /// Whatever the runs refuse.
+    pub fn map(&self, columns: usize, rows: usize) -> Result<Map> {
+        let even = |at: usize, count: usize| at as f64 / (count.max(2) - 1) as f64;
+        let speeds: Vec<f64> = (0..columns).map(|at| even(at, columns)).collect();
+        let ratios: Vec<f64> = (0..rows).map(|at| 0.1 * libm::pow(1e4, even(at, rows))).collect();
+        let places = ratios.iter().flat_map(|&ratio| speeds.iter().map(move |&speed| (speed, ratio)));
+        let cells = places.map(|(speed, ratio)| self.cell(speed, ratio)).collect::<Result<_>>()?;
+        let separatrix = ratios.iter().map(|&ratio| self.separatrix(ratio, 1.0)).collect::<Result<_>>()?;
+        Ok(Map { speeds, ratios, cells, separatrix })
+    }
+}
+
+impl Map {
+    /// Speed, ratio and cell of every run.
+    pub fn runs(&self) -> impl Iterator<Item = (f64, f64, &Cell)> {
+        let columns = self.speeds.len().max(1);
+        let place = move |at: usize| (self.speeds[at % columns], self.ratios[at / columns]);
+        self.cells.iter().enumerate().map(move |(at, cell)| {
+            let (speed, ratio) = place(at);
+            (speed, ratio, cell)
+        })
+    }
+
+    /// Runs that end within `share` of an outcome of index -1.
+    pub fn near_negative_index(&self, share: f64) -> impl Iterator<Item = (f64, f64, &Cell)> {
+        self.runs().filter(move |(_, _, cell)| cell.index == Some(-1) && cell.distance <= share)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_separatrix_lies_where_other_integrators_found_it() {
+        // Measured beforehand by other code, to two digits.
+        let infinite = [(1.0, 0.80), (10.0, 0.43), (100.0, 0.056), (1000.0, 0.006)];
+        let finite = [(1.0, 0.80), (10.0, 0.64), (100.0, 0.23), (1000.0, 0.17)];
+        for (friction, expected) in [(Friction::Infinite, infinite), (Friction::Finite(10.0), finite)] {
+            let biped = Biped::new(friction).unwrap();
+            for (ratio, speed) in expected {
+                let found = biped.separatrix(ratio, 1.0).unwrap().unwrap();
+                // Half a unit of the last digit.
+                let unit = if speed < 0.1 { 0.001 } else { 0.01 };
+                assert!((found - speed).abs() <= 0.5 * unit + 1e-4, "{friction} {ratio}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn runs_end_at_lift_off_or_stop_and_never_at_the_slide() {
+        let map = Biped::new(Friction::Infinite).unwrap().map(11, 9).unwrap();
+        assert_eq!(map.runs().count(), 99);
+        assert_eq!(map.near_negative_index(0.01).count(), 0);
+        for (speed, ratio, cell) in map.runs() {
+            assert_eq!(cell.index, Some(1), "{speed} {ratio} {cell:?}");
+        }
+        // Beyond 0.75 m/s only the stop is a rigid outcome, and a ground of little tangential damping misses it.
+        assert!(map.runs().any(|(speed, _, cell)| speed > 0.75 && cell.distance > 0.5));
+        let ends = |mode| map.runs().filter(|(_, _, cell)| cell.modes.first() == Some(&mode)).count();
+        assert!(ends(Mode::Separate) > 10 && ends(Mode::Stick) > 10);
+    }
+}

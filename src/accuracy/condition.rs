@@ -1,0 +1,63 @@
+//! The condition number of the mass matrix, scaled to a unit diagonal so that no unit enters it.
+//!
+//! ```text
+//!     K = S M S,  S = diag(M_ii^-1/2),  condition = |K| |K^-1|
+//! ```
+//!
+//! Both norms are found by power iteration, by the sparse factor where it is inverted: an estimate from below, at O(nv depth)
+//! a step also for chains of a thousand links. Source: Golub and Van Loan, *Matrix Computations*, section 8.2.
+
+use crate::dynamics::Workspace;
+use crate::plan::Plan;
+
+/// Enough for two digits, unless the two largest eigenvalues are closer than that.
+const STEPS: usize = 60;
+
+/// Condition number of the scaled mass matrix, after `mass_matrix` and `factorize`.
+pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
+    let nv = plan.columns();
+    let (mass, factor) = (&workspace.mass_matrix, &workspace.factor);
+    let size: Vec<f64> = (0..nv).map(|i| mass[i * nv + i].sqrt()).collect();
+    let ancestors = |i: usize| std::iter::successors(plan.parents[i], |&column| plan.parents[column]);
+    let multiplied = |x: &[f64]| -> Vec<f64> {
+        let mut y = x.to_vec();
+        for i in 0..nv {
+            for j in ancestors(i) {
+                let entry = mass[i * nv + j] / (size[i] * size[j]);
+                y[i] += entry * x[j];
+                y[j] += entry * x[i];
+            }
+        }
+        y
+    };
+    let solved = |x: &[f64]| -> Vec<f64> {
+        let mut y: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x * size).collect();
+        for i in (0..nv).rev() {
+            for j in ancestors(i) {
+                y[j] -= factor[i * nv + j] * y[i];
+            }
+        }
+        for i in 0..nv {
+            y[i] /= factor[i * nv + i];
+            for j in ancestors(i) {
+                y[i] -= factor[i * nv + j] * y[j];
+            }
+        }
+        y.iter().zip(&size).map(|(y, size)| y * size).collect()
+    };
+    growth(nv, multiplied) * growth(nv, solved)
+}
+
+/// The norm of a symmetric map.
+fn growth(length: usize, map: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+    // No direction is left out, and none is preferred.
+    let mut vector: Vec<f64> = (0..length).map(|index| libm::sin(1.0 + index as f64)).collect();
+    let mut norm = 0.0;
+    for _ in 0..STEPS {
+        let length = vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+        vector.iter_mut().for_each(|entry| *entry /= length);
+        vector = map(&vector);
+        norm = vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+    }
+    norm
+}

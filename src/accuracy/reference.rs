@@ -1,0 +1,175 @@
+//! What M, G and c are, to 256 bits; and how far others are from it.
+//!
+//! Errors are free of units: of M and G relative to the geometric mean of both diagonal entries, of contact velocities and
+//! impulses by the scale of margins, S = max |c_i| / sqrt(G_ii).
+
+use super::number::Number;
+use super::pose::{Computation, Pose};
+use crate::plan::Motion;
+use crate::planar::{Inertia, Vector, difference, dot, scaled, sum, turned};
+use crate::robot::Robot;
+use crate::scalar::{Interval, Ordered, Real};
+
+/// Bits of the reference beside those that a long chain of bodies needs. Its numbers are enclosures, so that what they do
+/// not know shows as an error of their own.
+pub const PRECISION: usize = 320;
+/// Bits for each body: its articulated inertia is that much less sharp than its children's.
+const PRECISION_PER_BODY: usize = 4;
+
+/// Runs `work` on numbers with bits enough for `robot`.
+pub fn with_precision<R>(robot: &Robot, work: impl FnOnce() -> R) -> R {
+    Interval::scope(PRECISION + PRECISION_PER_BODY * robot.bodies.len(), work)
+}
+
+/// M, G and c of a pose in the reference's numbers; it must stay within one [`with_precision`].
+#[derive(Debug)]
+pub struct Reference {
+    computation: Computation<Interval>,
+    /// Each column's motion.
+    columns: Vec<Column>,
+}
+
+/// A coordinate's unit motion and all that it moves.
+#[derive(Debug, Clone, Copy)]
+struct Column {
+    axis: Axis,
+    /// The joint's origin from the root's \[m\].
+    origin: Vector<Interval>,
+    /// All bodies beyond the joint, about its origin.
+    moved: Inertia<Interval>,
+    rotor: Interval,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Axis {
+    Turn(Interval),
+    Slide(Vector<Interval>),
+}
+
+impl Reference {
+    /// Computes G and c, and what M follows from.
+    pub fn new(pose: &Pose) -> Self {
+        let mut computation = Computation::new(pose);
+        computation.place(pose);
+        computation.velocities(pose);
+        computation.by_articulated_bodies();
+        let columns = columns(&computation);
+        Self { computation, columns }
+    }
+
+    /// G, 2n x 2n by rows.
+    pub fn delassus(&self) -> &[Interval] {
+        &self.computation.workspace().delassus
+    }
+
+    /// c, one entry per contact.
+    pub fn velocity(&self) -> &[Vector<Interval>] {
+        &self.computation.workspace().contact_velocity
+    }
+
+    /// How well G itself is known.
+    pub fn own_error(&self) -> f64 {
+        let exact = self.delassus();
+        let rows = exact.len().isqrt();
+        let size = |row: usize| exact[row * rows + row].to_f64().sqrt();
+        worst((0..exact.len()).map(|at| relative(exact[at].radius(), size(at / rows) * size(at % rows))))
+    }
+
+    /// The largest error of a G; NaN where it holds no number.
+    pub fn delassus_error<T: Number>(&self, delassus: &[T]) -> f64 {
+        let exact = self.delassus();
+        let rows = exact.len().isqrt();
+        let size = |row: usize| exact[row * rows + row].to_f64().sqrt();
+        worst((0..exact.len()).map(|at| {
+            let error = distance(delassus[at], exact[at]);
+            relative(error, size(at / rows) * size(at % rows))
+        }))
+    }
+
+    /// The largest error of an M (nv x nv, columns of the plan, of which the lower triangle is read); NaN where it holds no
+    /// number.
+    pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
+        let nv = self.columns.len();
+        let parents = &self.computation.plan().parents;
+        let size: Vec<f64> =
+            (0..nv).map(|i| Interval::scope(PRECISION, || self.inertia(i, i).to_f64().sqrt())).collect();
+        worst((0..nv).flat_map(|i| {
+            let below = std::iter::successors(Some(i), |&column| parents[column]);
+            let size = &size;
+            below.map(move |j| {
+                let error = Interval::scope(PRECISION, || distance(mass[i * nv + j], self.inertia(i, j)));
+                relative(error, size[i] * size[j])
+            })
+        }))
+    }
+
+    /// Entry of M for two columns, the second one below the first or the same.
+    ///
+    /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.
+    fn inertia(&self, upper: usize, lower: usize) -> Interval {
+        let (beyond, below) = (&self.columns[upper], &self.columns[lower]);
+        let Inertia { mass, first, second } = beyond.moved;
+        let (linear, angular) = match beyond.axis {
+            Axis::Turn(sign) => (scaled(sign, turned(first)), sign * second),
+            Axis::Slide(along) => (scaled(mass, along), dot(turned(first), along)),
+        };
+        let entry = match below.axis {
+            Axis::Turn(sign) => sign * (angular + dot(turned(difference(beyond.origin, below.origin)), linear)),
+            Axis::Slide(along) => dot(along, linear),
+        };
+        if upper == lower { entry + beyond.rotor } else { entry }
+    }
+}
+
+fn columns(computation: &Computation<Interval>) -> Vec<Column> {
+    let (plan, workspace) = (computation.plan(), computation.workspace());
+    let mut composite: Vec<Inertia<Interval>> = Vec::new();
+    let mut origins: Vec<Vector<Interval>> = Vec::new();
+    for (index, body) in plan.bodies.iter().enumerate() {
+        composite.push(Inertia { first: workspace.rotation[index].apply(body.inertia.first), ..body.inertia });
+        origins.push(body.parent.map_or([Interval::zero(); 2], |parent| sum(origins[parent], workspace.arm[index])));
+    }
+    for (index, body) in plan.bodies.iter().enumerate().rev() {
+        if let Some(parent) = body.parent {
+            composite[parent] = composite[parent].with(composite[index].seen_from(workspace.arm[index]));
+        }
+    }
+    let column = |axis, index: usize| Column {
+        axis,
+        origin: origins[index],
+        moved: composite[index],
+        rotor: plan.bodies[index].rotor,
+    };
+    let mut columns = Vec::new();
+    for (index, body) in plan.bodies.iter().enumerate().filter(|(_, body)| body.column.is_some()) {
+        match body.motion {
+            Motion::Root => {
+                let axes = [[Interval::one(), Interval::zero()], [Interval::zero(), Interval::one()]];
+                columns.extend(axes.map(|axis| column(Axis::Slide(axis), index)));
+                columns.push(column(Axis::Turn(Interval::one()), index));
+            }
+            Motion::Turn { sign } => columns.push(column(Axis::Turn(sign), index)),
+            Motion::Slide { .. } => columns.push(column(Axis::Slide(workspace.direction[index]), index)),
+        }
+    }
+    columns
+}
+
+/// At most how far `found` is from `exact`.
+pub fn distance<T: Number>(found: T, exact: Interval) -> f64 {
+    let [head, tail] = found.parts().map(Interval::from_f64);
+    let difference = head + tail - exact;
+    difference.to_f64().abs() + difference.radius()
+}
+
+/// `error` as a part of `size`; no error of nothing is none.
+pub fn relative(error: f64, size: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / size }
+}
+
+/// The largest of the errors, or NaN if one is none.
+pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
+    errors
+        .into_iter()
+        .fold(0.0, |worst: f64, error| if worst.is_nan() || error.is_nan() { f64::NAN } else { worst.max(error) })
+}

@@ -1,0 +1,120 @@
+//! The robots of the suite, from this repository's URDFs or link by link.
+
+use crate::Result;
+use crate::planar::scaled;
+use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, Robot};
+
+/// The paper's minimalistic biped: two point masses on hinged legs.
+pub fn minimalistic() -> Result<Robot> {
+    Robot::from_urdf(include_str!("../../urdf/minimalistic.urdf"))
+}
+
+/// The paper's RAMone, as in its Table 1.
+pub fn ramone() -> Result<Robot> {
+    Robot::from_urdf(include_str!("../../urdf/ramone.urdf"))
+}
+
+/// The paper's single body.
+pub fn block() -> Result<Robot> {
+    Robot::from_urdf(include_str!("../../urdf/block.urdf"))
+}
+
+/// The passive dynamic walker with legs of the given moment of inertia \[kg m^2\].
+pub fn walker(moment: f64) -> Result<Robot> {
+    let mut robot = Robot::from_urdf(include_str!("../../urdf/pdw.urdf"))?;
+    for body in &mut robot.bodies {
+        body.moment = moment;
+    }
+    Ok(robot)
+}
+
+/// The minimalistic biped with feet that weigh nothing, each hinged to its leg's end.
+pub fn with_massless_feet() -> Result<Robot> {
+    let mut robot = minimalistic()?;
+    for leg in 0..2 {
+        robot.links[leg].shapes.clear();
+        let name = format!("{} foot", robot.links[leg].name);
+        let (joint, body) = (robot.joints.len(), robot.bodies.len());
+        robot.joints.push(hinge(format!("{name} ankle"), robot.links[leg].body, body, [0.0, -1.0]));
+        robot.bodies.push(Body { name: name.clone(), joint: Some(joint), mass: 0.0, com: [0.0; 2], moment: 0.0 });
+        robot.links.push(point_foot(name, body, [0.05, -0.05]));
+    }
+    Ok(robot)
+}
+
+/// Equal rods of 1 m and 1 kg, one hanging on the other, that touch the ground with both free ends.
+pub fn chain(links: usize) -> Robot {
+    let rod = |index: usize| Body {
+        name: format!("rod {index}"),
+        joint: index.checked_sub(1),
+        mass: 1.0,
+        com: [0.0, -0.5],
+        moment: 1.0 / 12.0,
+    };
+    let tip = links - 1;
+    Robot {
+        name: format!("chain of {links}"),
+        base: Base::Floating,
+        bodies: (0..links).map(rod).collect(),
+        joints: (0..tip).map(|index| hinge(format!("joint {index}"), index, index + 1, [0.0, -1.0])).collect(),
+        links: vec![point_foot("near end".into(), 0, [0.0; 2]), point_foot("far end".into(), tip, [0.0, -1.0])],
+        left_out: Vec::new(),
+    }
+}
+
+/// `robot` with all masses times `mass` and all lengths times `length`.
+pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
+    let mut robot = robot.clone();
+    for body in &mut robot.bodies {
+        body.mass *= mass;
+        body.com = scaled(length, body.com);
+        body.moment *= mass * length * length;
+    }
+    for joint in &mut robot.joints {
+        joint.origin = scaled(length, joint.origin);
+    }
+    for link in &mut robot.links {
+        for row in &mut link.pose {
+            row[3] *= length;
+        }
+        for shape in &mut link.shapes {
+            if let FootShape::Disc { centre, radius } = shape {
+                *centre = scaled(length, *centre);
+                *radius *= length;
+            }
+        }
+    }
+    robot
+}
+
+/// `robot` with the mass and moment of some bodies, told by a part of their name, times `factor`.
+pub fn with_heavier(mut robot: Robot, part: &str, factor: f64) -> Robot {
+    for body in robot.bodies.iter_mut().filter(|body| body.name.contains(part)) {
+        body.mass *= factor;
+        body.moment *= factor;
+    }
+    robot
+}
+
+/// `robot` with all moments of inertia about the CoGs times `factor`.
+pub fn with_moments(mut robot: Robot, factor: f64) -> Robot {
+    for body in &mut robot.bodies {
+        body.moment *= factor;
+    }
+    robot
+}
+
+fn hinge(name: String, parent: usize, child: usize, origin: [f64; 2]) -> Joint {
+    Joint { name, parent, child, origin, axis: Axis::Turn { sign: -1.0 } }
+}
+
+/// A link that is its body and touches the ground with a point.
+fn point_foot(name: String, body: usize, centre: [f64; 2]) -> Link {
+    Link {
+        name,
+        body,
+        pose: [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
+        shapes: vec![FootShape::Disc { centre, radius: 0.0 }],
+        has_inertial: true,
+    }
+}

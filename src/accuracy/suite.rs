@@ -1,0 +1,288 @@
+//! Stiff and extreme cases by name: masses, lengths, poses, friction and speeds at the ends of what f64 can hold.
+//!
+//! Every case must be answered with its condition, or refused with a reason; none may give NaN, panic, or drop a case.
+
+use super::robots;
+use crate::Result;
+use crate::impact::{ContactProblem, Friction};
+use crate::robot::Robot;
+use crate::scene::{ByLink, NamedContact, Scene};
+use crate::state::State;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI};
+
+/// A case of the suite.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Its name, as in `chain of 100 links, folded`.
+    pub name: String,
+    /// What it is.
+    pub subject: Subject,
+    /// What it must come to.
+    pub end: End,
+}
+
+/// What is analysed.
+#[derive(Debug, Clone)]
+pub enum Subject {
+    /// A robot's state.
+    State(Box<(Robot, State)>),
+    /// Matrices without a robot.
+    Problem(ContactProblem),
+}
+
+/// What a case must come to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Every outcome and the condition.
+    Answered,
+    /// A refusal, because the mass matrix is singular.
+    Singular,
+}
+
+/// RAMone's hip angle at which its foot is straight below the hip, its knee being bent by a right angle \[rad\].
+const RAMONE_HIP: f64 = 0.8729729102424726;
+
+/// The whole suite.
+///
+/// # Errors
+/// None that a user could bring about: the robots are this crate's own.
+pub fn cases() -> Result<Vec<Case>> {
+    let mut suite = Suite::default();
+    suite.masses()?;
+    suite.chains();
+    suite.sizes()?;
+    suite.poses()?;
+    suite.frictions()?;
+    suite.speeds()?;
+    suite.borders()?;
+    suite.ill_conditioned()?;
+    Ok(suite.0)
+}
+
+#[derive(Default)]
+struct Suite(Vec<Case>);
+
+impl Suite {
+    fn state(&mut self, name: impl Into<String>, robot: Robot, state: State) {
+        self.ending(name, robot, state, End::Answered);
+    }
+
+    fn ending(&mut self, name: impl Into<String>, robot: Robot, state: State, end: End) {
+        self.0.push(Case { name: name.into(), subject: Subject::State(Box::new((robot, state))), end });
+    }
+
+    fn problem(&mut self, name: impl Into<String>, problem: ContactProblem) {
+        self.0.push(Case { name: name.into(), subject: Subject::Problem(problem), end: End::Answered });
+    }
+
+    fn masses(&mut self) -> Result<()> {
+        for part in ["shank", "thigh", "torso"] {
+            for factor in [1e-12, 1e-6, 1e6, 1e12] {
+                let robot = robots::with_heavier(robots::ramone()?, part, factor);
+                let state = ramone(&robot, 0.5);
+                self.state(format!("{part} mass times {factor:e}"), robot, state);
+            }
+        }
+        for (name, factor) in [("needle", 1e-12), ("point", 0.0)] {
+            let robot = robots::with_moments(robots::ramone()?, factor);
+            let state = ramone(&robot, 0.5);
+            self.state(format!("{name} inertias"), robot, state);
+        }
+        // A needle whose CoG lies 1 nm beside its hinge turns at a touch.
+        for (name, com, end) in [("1 nm off", -1e-9, End::Answered), ("at", 0.0, End::Singular)] {
+            let mut robot = robots::minimalistic()?;
+            robot.bodies[1].com = [0.0, com];
+            let state = walker(&robot, 1.4);
+            self.ending(format!("a leg's point mass {name} its hinge"), robot, state, end);
+        }
+        let robot = robots::with_massless_feet()?;
+        let feet = State { scene: Scene { held: vec![1, 2], ..standing(&robot, 2) }, ..with_feet(&robot) };
+        self.state("massless feet, held", robot.clone(), feet);
+        let scene = Scene { rotor_inertia: vec![0.0, 1e-6, 1e-6], ..standing(&robot, 2) };
+        self.state("massless feet with rotors", robot.clone(), State { scene, ..with_feet(&robot) });
+        let loose = with_feet(&robot);
+        self.ending("massless feet, loose", robot, loose, End::Singular);
+        Ok(())
+    }
+
+    fn chains(&mut self) {
+        for links in [10, 100, 1000] {
+            for (pose, bend) in [("folded", 2.5), ("curved", 0.1), ("straight", 0.0)] {
+                let robot = robots::chain(links);
+                let mut state = blank(&robot);
+                for (index, angle) in state.position[3..].iter_mut().enumerate() {
+                    *angle = if index % 2 == 0 || pose == "curved" { bend } else { -bend };
+                }
+                state.position[2] = 0.3;
+                state.velocity[..3].copy_from_slice(&[0.5, -1.0, 0.1]);
+                let ends = [(0, [0.0; 3]), (1, [0.0, 0.0, -1.0])];
+                let contact = |(link, offset)| NamedContact { link, offset, radius: 0.0 };
+                state.scene.contacts = Some(ends.map(contact).to_vec());
+                self.state(format!("chain of {links} links, {pose}"), robot, state);
+            }
+        }
+    }
+
+    fn sizes(&mut self) -> Result<()> {
+        let ramone_mass = robots::ramone()?.mass();
+        for (weight, kilograms) in [("a milligram", 1e-6), ("RAMone's weight", ramone_mass), ("a kiloton", 1e6)] {
+            for (length, metres) in [("millimetres", 1e-3), ("metres", 1.0), ("kilometres", 1e3)] {
+                let robot = robots::resized(&robots::ramone()?, kilograms / ramone_mass, metres);
+                let state = ramone(&robot, 0.5);
+                self.state(format!("{weight}, {length}"), robot, state);
+            }
+        }
+        Ok(())
+    }
+
+    fn poses(&mut self) -> Result<()> {
+        let robot = robots::ramone()?;
+        let legs = |left: [f64; 2], right: [f64; 2]| {
+            let mut state = ramone(&robot, 0.0);
+            state.position[3..].copy_from_slice(&[left[0], left[1], right[0], right[1]]);
+            state.velocity[3..].copy_from_slice(&[0.1, 0.2, -0.3, 0.4]);
+            state
+        };
+        self.state("straight legs", robot.clone(), legs([0.4, 0.0], [-0.4, 0.0]));
+        self.state("legs bent by 1e-8", robot.clone(), legs([0.4, -1e-8], [-0.4, -1e-8]));
+        self.state("straight legs, coincident feet", robot.clone(), legs([0.0, 0.0], [0.0, 0.0]));
+        self.state("coincident feet", robot.clone(), legs([0.4, -0.8], [0.4, -0.8]));
+        self.state("feet 1e-8 apart", robot.clone(), legs([0.4, -0.8], [0.4 + 1e-8, -0.8 - 2e-8]));
+        for (name, alpha) in [("a split", FRAC_PI_2), ("1e-9 before a split", FRAC_PI_2 - 1e-9)] {
+            let robot = robots::walker(0.04)?;
+            let state = walker(&robot, alpha);
+            self.state(name, robot, state);
+            // Point masses on flat legs let the hip rise freely.
+            let robot = robots::minimalistic()?;
+            let state = walker(&robot, alpha);
+            self.ending(format!("{name}, point masses"), robot, state, End::Singular);
+        }
+        // At this moment of inertia and angle every outcome touches every other.
+        for (name, angle) in [("degenerate walker", FRAC_PI_4), ("one ulp beside it", FRAC_PI_4.next_up())] {
+            let robot = robots::walker(0.24)?;
+            let state = walker(&robot, angle);
+            self.state(name, robot, state);
+        }
+        Ok(())
+    }
+
+    fn frictions(&mut self) -> Result<()> {
+        let finite = [0.0, 1e-12, 1e5, 1e12].map(Friction::Finite);
+        for friction in finite.into_iter().chain([Friction::Infinite]) {
+            let name = match friction {
+                Friction::Finite(mu) => format!("{mu:e}"),
+                Friction::Infinite => "infinite".to_owned(),
+            };
+            for (legs, robot, alpha) in [("biped", robots::minimalistic()?, 1.4), ("RAMone", robots::ramone()?, 0.5)] {
+                let mut state = if legs == "biped" { walker(&robot, alpha) } else { ramone(&robot, alpha) };
+                state.scene.friction = ByLink::everywhere(friction);
+                self.state(format!("friction {name}, {legs}"), robot, state);
+            }
+        }
+        Ok(())
+    }
+
+    fn speeds(&mut self) -> Result<()> {
+        for (name, speed) in
+            [("grazing contact", 0.0), ("approach at 1e-300 m/s", -1e-300), ("leaving at 1e-300 m/s", 1e-300)]
+        {
+            let robot = robots::block()?;
+            let mut state = blank(&robot);
+            state.velocity[..2].copy_from_slice(&[1.0, speed]);
+            state.scene.friction = ByLink::everywhere(Friction::Finite(0.5));
+            self.state(name, robot, state);
+        }
+        for speed in [1e-100, 1e100] {
+            let robot = robots::ramone()?;
+            let mut state = ramone(&robot, 0.5);
+            state.velocity[2] *= speed;
+            self.state(format!("speeds times {speed:e}"), robot, state);
+        }
+        Ok(())
+    }
+
+    fn borders(&mut self) -> Result<()> {
+        // Between lift-off and sliding, sliding and stopping, one and three outcomes (paper, section 5).
+        for (name, border) in [("lift-off", PI / 12.0), ("stop", FRAC_PI_6), ("three outcomes", 5.0 * PI / 12.0)] {
+            for (side, angle) in [("before", border.next_down()), ("at", border), ("beyond", border.next_up())] {
+                let robot = robots::minimalistic()?;
+                let state = walker(&robot, angle);
+                self.state(format!("the f64 {side} the border to {name}"), robot, state);
+            }
+        }
+        // G = 1 and c = (-1/2, -1): sticking needs a friction of exactly 1/2.
+        for (side, mu) in [("below", 0.5f64.next_down()), ("at", 0.5), ("above", 0.5f64.next_up())] {
+            let unit = vec![1.0, 0.0, 0.0, 1.0];
+            let problem = ContactProblem::new(unit, vec![[-0.5, -1.0]], vec![Friction::Finite(mu)], vec![0.0])?;
+            self.problem(format!("friction one ulp {side} the cone's edge").replace("one ulp at", "at"), problem);
+        }
+        Ok(())
+    }
+
+    fn ill_conditioned(&mut self) -> Result<()> {
+        let near_one = 1.0 - f64::EPSILON / 2.0;
+        self.problem("G of one contact, condition 2e16", given(vec![1.0, near_one, near_one, 1.0])?);
+        self.problem("G of two contacts, condition 1e16", given(reflected([1.0, 1e-5, 1e-11, 1e-16]))?);
+        self.problem("Hilbert G of two contacts", given(hilbert(4))?);
+        self.problem("Hilbert G of six contacts, condition 1e16", given(hilbert(12))?);
+        Ok(())
+    }
+}
+
+/// At rest, coordinates zero, without friction's bound.
+fn blank(robot: &Robot) -> State {
+    State {
+        id: None,
+        position: vec![0.0; robot.dofs()],
+        velocity: vec![0.0; robot.dofs()],
+        scene: Scene { friction: ByLink::everywhere(Friction::Infinite), ..Scene::default() },
+    }
+}
+
+/// The scene of a robot that stands on `link`.
+fn standing(robot: &Robot, link: usize) -> Scene {
+    Scene { stance: Some(link), ..blank(robot).scene }
+}
+
+/// A two-legged walker at the paper's leg angle `alpha`, turning about its left foot at 1 rad/s.
+fn walker(robot: &Robot, alpha: f64) -> State {
+    let mut state = State { scene: standing(robot, 0), ..blank(robot) };
+    state.position[2..4].copy_from_slice(&[-alpha, -2.0 * alpha]);
+    state.velocity[2] = -1.0;
+    state
+}
+
+/// The walker at alpha = 1.4 with a foot at each leg's end.
+fn with_feet(robot: &Robot) -> State {
+    let mut state = walker(robot, 1.4);
+    state.scene = standing(robot, 2);
+    state.position[4..6].copy_from_slice(&[-1.4, 1.4]);
+    state
+}
+
+/// RAMone at the paper's leg angle `alpha`, its knees bent by a right angle, turning about its left foot at 1 rad/s.
+fn ramone(robot: &Robot, alpha: f64) -> State {
+    let foot = robot.link("left_foot").unwrap_or_default();
+    let mut state = State { scene: standing(robot, foot), ..blank(robot) };
+    state.position[3..].copy_from_slice(&[RAMONE_HIP + alpha, -FRAC_PI_2, RAMONE_HIP - alpha, -FRAC_PI_2]);
+    state.velocity[2] = -1.0;
+    state
+}
+
+/// A problem of a given G, all contacts striking.
+fn given(delassus: Vec<f64>) -> Result<ContactProblem> {
+    let contacts = delassus.len().isqrt() / 2;
+    let before = (0..contacts).map(|contact| [0.25 * contact as f64, -1.0]).collect();
+    ContactProblem::new(delassus, before, vec![Friction::Finite(0.5); contacts], vec![0.0; contacts])
+}
+
+/// The matrix of the eigenvalues `values`, its eigenvectors those of the reflection I - 1/2 (1, 1, 1, 1)(1, 1, 1, 1)^T.
+fn reflected(values: [f64; 4]) -> Vec<f64> {
+    let vector = |k: usize, i: usize| if k == i { 0.5 } else { -0.5 };
+    let entry = |i: usize, j: usize| (0..4).map(|k| vector(k, i) * vector(k, j) * values[k]).sum();
+    (0..16).map(|at| entry(at / 4, at % 4)).collect()
+}
+
+fn hilbert(rows: usize) -> Vec<f64> {
+    (0..rows * rows).map(|at| 1.0 / (1 + at / rows + at % rows) as f64).collect()
+}

@@ -1,0 +1,84 @@
+//! Run times as medians with their spread.
+
+use serde::Serialize;
+use std::time::{Duration, Instant};
+
+/// How long one method may be run for its time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Budget {
+    /// The time for all runs together, the first one aside: it counts only where it takes that long alone.
+    pub time: Duration,
+    /// The most samples.
+    pub samples: usize,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { time: Duration::from_millis(20), samples: 101 }
+    }
+}
+
+/// Seconds per run: the median of the samples, and the quartiles.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// A quarter of the samples is faster \[s\].
+    pub lower_quartile: f64,
+    /// Half of the samples is faster \[s\].
+    pub median: f64,
+    /// Three quarters of the samples are faster \[s\].
+    pub upper_quartile: f64,
+    /// The number of samples.
+    pub samples: usize,
+}
+
+/// A sample takes at least so long, in as many runs as that needs: the clock's own steps are some 30 ns.
+const SAMPLE: Duration = Duration::from_micros(20);
+
+/// Runs `work` again and again.
+pub fn time(budget: Budget, mut work: impl FnMut()) -> Spread {
+    let once = |work: &mut dyn FnMut(), runs: u32| {
+        let start = Instant::now();
+        (0..runs).for_each(|_| work());
+        start.elapsed()
+    };
+    let first = once(&mut work, 1);
+    if first >= budget.time {
+        return spread(&mut [first.as_secs_f64()]);
+    }
+    // Caches are warm now.
+    let warm = if first < SAMPLE { once(&mut work, 8) / 8 } else { first };
+    let runs = (SAMPLE.as_nanos() / warm.as_nanos().max(1)).clamp(1, 100_000) as u32 + 1;
+    let runs = if warm >= SAMPLE { 1 } else { runs };
+    let start = Instant::now();
+    let mut samples = Vec::new();
+    while samples.len() < budget.samples.max(1) && (samples.len() < 3 || start.elapsed() < budget.time) {
+        samples.push(once(&mut work, runs).as_secs_f64() / f64::from(runs));
+    }
+    spread(&mut samples)
+}
+
+/// The quartiles of at least one sample.
+fn spread(samples: &mut [f64]) -> Spread {
+    samples.sort_by(f64::total_cmp);
+    let at = |quarter: usize| samples[(samples.len() - 1) * quarter / 4];
+    Spread { lower_quartile: at(1), median: at(2), upper_quartile: at(3), samples: samples.len() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_are_samples() {
+        let spread = spread(&mut [5.0, 1.0, 4.0, 2.0, 3.0]);
+        assert_eq!((spread.lower_quartile, spread.median, spread.upper_quartile), (2.0, 3.0, 4.0));
+    }
+
+    #[test]
+    fn long_work_is_run_only_a_few_times() {
+        let mut runs = 0;
+        let budget = Budget { time: Duration::ZERO, samples: 7 };
+        let spread = time(budget, || runs += 1);
+        assert_eq!((spread.samples, runs), (1, 1));
+    }
+}

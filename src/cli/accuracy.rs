@@ -1,0 +1,137 @@
+//! `heelstrike accuracy`: error against run time, and the stiff and extreme cases.
+
+use super::options::{ContactOptions, SceneOptions};
+use super::output::{Format, OutputOptions};
+use super::picture::PlotOptions;
+use super::robot::RobotOptions;
+use super::stream::only_document;
+use super::{Answered, Failure, Outcome, input};
+use heelstrike::accuracy::compliant::compare;
+use heelstrike::accuracy::{Budget, Case, Pose, Study, Subject, cases, of_state, study};
+use heelstrike::excerpt::Excerpt;
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::report::{Accuracy, Compliant, append_line};
+use heelstrike::state::State;
+use heelstrike::{Error, Reason, Robot};
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Show error against run time, for a robot's state or for a suite of stiff and extreme cases
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  heelstrike accuracy
+  heelstrike accuracy --case chain --plot chains.svg
+  heelstrike accuracy urdf/ramone.urdf examples/ramone.json --plot ramone.png")]
+pub struct Args {
+    /// The robot's URDF file [default: the suite]
+    #[arg(value_name = "ROBOT.urdf", requires = "state", conflicts_with = "case")]
+    robot: Option<PathBuf>,
+    /// The state just before the impact; "-" reads standard input
+    #[arg(value_name = "STATE.json")]
+    state: Option<PathBuf>,
+    /// Of the suite only the cases whose name holds this text
+    #[arg(long, value_name = "TEXT")]
+    case: Option<String>,
+    /// How long each method is run for its time, in milliseconds
+    #[arg(long, value_name = "MILLISECONDS", default_value_t = 20)]
+    time: u64,
+    #[command(flatten)]
+    scene: SceneOptions,
+    #[command(flatten)]
+    contacts: ContactOptions,
+    #[command(flatten)]
+    plot: PlotOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+pub(super) fn run(args: &Args) -> Outcome {
+    let budget = Budget { time: Duration::from_millis(args.time), ..Budget::default() };
+    args.plot.check()?;
+    let accuracy = match (&args.robot, &args.state) {
+        (Some(robot), Some(state)) => own(args, robot, state, budget)?,
+        _ => suite(args.case.as_deref().unwrap_or_default(), budget)?,
+    };
+    args.plot.draw(&accuracy.picture())?;
+    let mut output = args.output.open()?;
+    match args.output.chosen().unwrap_or(Format::Text) {
+        Format::Text => {
+            let text = accuracy.text(output.palette());
+            output.write_all(text.as_bytes())?;
+        }
+        Format::Json => {
+            let mut line = Vec::new();
+            append_line(&mut line, &accuracy);
+            output.write_all(&line)?;
+        }
+    }
+    output.flush()?;
+    // The suite's refusals are what they must be; a user's state has one case, and its refusal is one.
+    match accuracy.studies.as_slice() {
+        [Study { refused: Some(error), .. }] if args.robot.is_some() => Err(Failure::Refused(error.clone())),
+        _ => Ok(Answered::All),
+    }
+}
+
+fn own(args: &Args, robot: &std::path::Path, state: &std::path::Path, budget: Budget) -> Result<Accuracy, Failure> {
+    args.output.spare(&[robot, state])?;
+    args.plot.spare(&[robot, state])?;
+    let robot = RobotOptions { robot: robot.to_owned(), base: None, contact: Vec::new() }.load()?;
+    let name = input::name(state);
+    let bytes = input::bytes_up_to(state, LARGEST)?;
+    let document = only_document(&bytes, &name)?;
+    let state = State::from_json(document.text, &robot, &args.scene.defaults()).map_err(|error| {
+        let error = document.locate(error);
+        let excerpt = error.location().and_then(|place| Excerpt::around(&bytes, 1, place));
+        Failure::RefusedAt(error.in_file(&name), excerpt)
+    })?;
+    let options = Options {
+        contact_tolerance: args.contacts.contact_tolerance,
+        resting_speed: args.contacts.resting_speed,
+        ..Options::default()
+    };
+    let called = match &state.id {
+        Some(id) => format!("{} ({})", robot.name, id.as_str().map_or_else(|| id.to_string(), str::to_owned)),
+        None => robot.name.clone(),
+    };
+    let study = of_state(&called, &robot, &state, &options, budget);
+    let compliant = compliant(&called, &robot, &state, &options)?;
+    Ok(Accuracy::new(vec![study], compliant))
+}
+
+/// The largest file of a state that is read \[bytes\].
+const LARGEST: u64 = 64 << 20;
+
+/// The case whose compliant contact is shown with the suite.
+const WALKER: &str = "friction infinite, biped";
+
+fn suite(part: &str, budget: Budget) -> Result<Accuracy, Failure> {
+    let chosen: Vec<Case> = cases()?.into_iter().filter(|case| case.name.contains(part)).collect();
+    if chosen.is_empty() {
+        let reason = Reason::UnknownName { what: "case", name: part.to_owned() };
+        let hint = "`heelstrike accuracy --time 0` shows the names of all cases";
+        return Err(Failure::Usage(Error::new(reason).at("--case").hint(hint)));
+    }
+    let studies = chosen.iter().map(|case| study(&case.name, &case.subject, budget)).collect();
+    let walker = chosen.iter().find(|case| case.name == WALKER);
+    let compliant = match walker.map(|case| &case.subject) {
+        Some(Subject::State(case)) => compliant(WALKER, &case.0, &case.1, &Options::default())?,
+        _ => None,
+    };
+    Ok(Accuracy::new(studies, compliant))
+}
+
+/// Compliant contact beside the outcomes of a state; none where there is nothing to compare with.
+fn compliant(name: &str, robot: &Robot, state: &State, options: &Options) -> Result<Option<Compliant>, Failure> {
+    let Ok(impact) = Pipeline::new(robot, options.clone()).impact(state) else { return Ok(None) };
+    let pose = Pose::new(robot, state, &impact);
+    let (Ok(analysis), Some(problem)) = (&impact.analysis, pose.problem()) else { return Ok(None) };
+    let compared = !analysis.outcomes.is_empty() && problem.contacts() > 0 && impact.kinetic_energy > 0.0;
+    if !compared {
+        return Ok(None);
+    }
+    let comparison = compare(&pose, &problem, analysis, impact.kinetic_energy)?;
+    Ok(Some(Compliant { name: name.to_owned(), comparison }))
+}

@@ -1,0 +1,73 @@
+//! `--plot`: pictures as SVG or PNG.
+
+use super::Failure;
+use super::output::{named, spare};
+use heelstrike::report::Picture;
+use heelstrike::{Error, Reason};
+use std::path::{Path, PathBuf};
+
+/// Where a picture goes.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct PlotOptions {
+    /// Draw a picture to this file, which is replaced; .svg or .png
+    #[arg(long, value_name = "FILE.svg|.png")]
+    plot: Option<PathBuf>,
+}
+
+impl PlotOptions {
+    /// Refuses an ending that is neither svg nor png, before any work is done.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`], naming the file.
+    pub fn check(&self) -> Result<(), Failure> {
+        match self.plot.as_deref().map(ending) {
+            None | Some(Some(_)) => Ok(()),
+            Some(None) => {
+                let reason = Reason::Unsupported("a picture is written as .svg or .png".into());
+                Err(Failure::Usage(Error::new(reason).at("--plot").hint("name a file that ends in .svg or .png")))
+            }
+        }
+    }
+
+    /// Refuses to draw over what is being read.
+    ///
+    /// # Errors
+    /// [`Reason::Io`], naming the file.
+    pub fn spare(&self, inputs: &[&Path]) -> heelstrike::Result<()> {
+        spare(self.plot.as_deref(), inputs)
+    }
+
+    /// Draws the picture, if one is asked for.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being written, and a picture that nothing can be drawn in.
+    pub fn draw(&self, picture: &Picture) -> Result<(), Failure> {
+        let Some((path, ending)) = self.plot.as_deref().and_then(|path| Some((path, ending(path)?))) else {
+            return Ok(());
+        };
+        let bytes = match ending {
+            Ending::Svg => picture.svg().map(String::into_bytes),
+            Ending::Png => picture.png()?,
+        };
+        let Some(bytes) = bytes else {
+            let reason = Reason::Unsupported("there is nothing to draw".into());
+            return Err(Error::new(reason).at("--plot").hint("no method has both a time and an error here").into());
+        };
+        std::fs::write(path, bytes).map_err(|error| Failure::Output(named(path, error)))
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Ending {
+    Svg,
+    Png,
+}
+
+fn ending(path: &Path) -> Option<Ending> {
+    match path.extension()?.to_str()? {
+        "svg" => Some(Ending::Svg),
+        "png" => Some(Ending::Png),
+        _ => None,
+    }
+}

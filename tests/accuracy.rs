@@ -1,0 +1,82 @@
+//! The stiff and extreme suite: every case answers with its condition or refuses with its reason, and M and G keep their
+//! digits against a reference of at least 256 bits.
+
+use heelstrike::Reason;
+use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, cases, study};
+use std::time::Duration;
+
+/// A single run of each method: errors are looked at here, never times.
+const ONCE: Budget = Budget { time: Duration::ZERO, samples: 1 };
+
+/// What f64 must keep of every entry where the condition allows.
+const DIGITS: f64 = 1e-12;
+/// What it must keep at the worst, by the condition.
+const DIGITS_BY_CONDITION: f64 = 1e-15;
+
+fn walk(choose: impl Fn(&Case) -> bool) {
+    let chosen: Vec<Case> = cases().expect("the suite's robots are read").into_iter().filter(choose).collect();
+    assert!(!chosen.is_empty());
+    for case in chosen {
+        let study = study(&case.name, &case.subject, ONCE);
+        match case.end {
+            End::Singular => {
+                let refused = study.refused.unwrap_or_else(|| panic!("{} must be refused", case.name));
+                assert!(matches!(refused.reason(), Reason::Singular(_)), "{}: {refused}", case.name);
+                assert!(refused.remedy().is_some(), "{}", case.name);
+            }
+            End::Answered => assert_answered(&study),
+        }
+    }
+}
+
+fn assert_answered(study: &Study) {
+    let name = &study.name;
+    assert!(study.refused.is_none(), "{name}: {:?}", study.refused);
+    let answer = study.answer.as_ref().unwrap_or_else(|| panic!("{name} must be answered"));
+    assert!(answer.outcomes > 0, "{name}: {answer:?}");
+    assert!(answer.margin.is_none_or(f64::is_finite), "{name}: {answer:?}");
+    // A condition, or a rank that tells why there is none.
+    match study.condition.delassus {
+        Some(condition) => assert!(condition.is_finite() && condition >= 1.0 - 1e-9, "{name}: {condition}"),
+        None => assert!(answer.rank < 2 * study.contacts, "{name}: {answer:?}"),
+    }
+    let Some(condition) = study.condition.mass_matrix else { return };
+    assert!(condition.is_finite() && condition >= 1.0 - 1e-9, "{name}: {condition}");
+    let allowed = DIGITS.max(DIGITS_BY_CONDITION * condition);
+    let mut seen = 0;
+    for method in study.methods.iter().filter(|method| method.number == "f64" || method.number == "reference") {
+        let Some(error) = method.error else { continue };
+        let found = [error.mass_matrix, error.delassus].into_iter().flatten();
+        // A NaN is within no tolerance.
+        let allowed = if method.number == "reference" { 1e-60 } else { allowed };
+        found.for_each(|error| assert!(error <= allowed, "{name}: {error:e} of {allowed:e} by {method:?}"));
+        seen += 1;
+    }
+    assert_eq!(seen, 4, "{name}: three factorizations and the reference");
+    let recursion = study
+        .methods
+        .iter()
+        .find(|method| method.number == "f64" && method.factorization == Some(Factorization::ArticulatedBodies));
+    // Links of one size are no difficulty to the recursion, however many hang on each other.
+    let error = recursion.and_then(|method| method.error?.delassus).expect("computed");
+    assert!(error <= DIGITS, "{name}: {error:e} by articulated bodies");
+}
+
+#[test]
+fn chains_of_a_thousand_links_keep_their_digits() {
+    walk(|case| case.name.starts_with("chain of 1000"));
+}
+
+#[test]
+fn every_other_case_keeps_its_digits() {
+    walk(|case| !case.name.starts_with("chain of 1000"));
+}
+
+#[test]
+fn no_case_stands_twice() {
+    let mut names: Vec<String> = cases().expect("read").into_iter().map(|case| case.name).collect();
+    let count = names.len();
+    names.sort();
+    names.dedup();
+    assert_eq!(names.len(), count);
+}
