@@ -28,7 +28,7 @@ const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
 
 impl<const N: usize> Affine<N> {
     /// Covers the rounding in sums of N terms and in the formulas of the errors.
-    const BLOW_UP: f64 = 1.0 + (2 * N + 16) as f64 * f64::EPSILON;
+    const BLOW_UP: f64 = 1.0 + (4 * N + 16) as f64 * f64::EPSILON;
     /// Covers what N products lose by underflow.
     const TINY: f64 = (N + 4) as f64 * f64::MIN_POSITIVE;
 
@@ -182,13 +182,22 @@ impl<const N: usize> Mul for Affine<N> {
             return Self::zero();
         }
         let (a, b) = (self.centre, other.centre);
-        let centre = a * b;
         let slopes = std::array::from_fn(|i| a * other.slopes[i] + b * self.slopes[i]);
         let (reach, other_reach) = (self.reach(), other.reach());
+        // Squares of causes are 1/2 +- 1/2; all other products of two are +- 1.
+        let (mut shift, mut squares) = (0.0, 0.0);
+        for (one, other) in self.slopes.iter().zip(&other.slopes) {
+            let square = one * other / 2.0;
+            shift += square;
+            squares += square.abs();
+        }
+        let (product, centre) = (a * b, a * b + shift);
         // Two products and their sum are rounded in each slope.
-        let rounding = ROUNDING * (centre.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach)) + 2.0 * Self::TINY;
+        let rounding = ROUNDING
+            * (product.abs() + centre.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach))
+            + 4.0 * Self::TINY;
         let spread = (a.abs() + reach + self.error) * other.error + (b.abs() + other_reach) * self.error;
-        Self::around(centre, slopes, reach * other_reach + spread + rounding)
+        Self::around(centre, slopes, (reach * other_reach - squares) + spread + rounding)
     }
 }
 

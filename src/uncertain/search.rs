@@ -46,7 +46,18 @@ pub(crate) fn search<const N: usize>(model: &mut impl Model, whole: Cell, expect
     while let Some((cell, open)) = cells.pop() {
         let Some(rest) = effort.checked_sub(open.len()) else { return Found::Nothing };
         effort = rest;
+        let wid = (0..cell.ends.len()).map(|i| cell.ends[i][1]-cell.ends[i][0]).collect::<Vec<_>>();
         let Examined { open, split } = search.examine(&cell, &open);
+        if std::env::var("DBG").is_ok() && effort % 100 == 0 {
+            eprintln!("effort {effort} open {open:?} split {split:?} ratio {:?}", wid.iter().map(|w| (0.02/w).log2().round() as i32).collect::<Vec<_>>());
+            for &l in &open {
+                let numbers = search.model.numbers::<N>(&cell);
+                let modes = modes_of(l, search.model.contacts());
+                numbers.combine(&modes, &mut search.combination);
+                let f = |n: &Affine<N>| format!("{:.2e}+-{:.1e}({:.1e})", n.centre(), n.radius(), n.error());
+                eprintln!("   {modes:?} det {} {:?}", f(&search.combination.determinant.unwrap()), search.combination.numerators.iter().map(|(_, n)| f(n)).collect::<Vec<_>>());
+            }
+        }
         if open.is_empty() {
             continue;
         }
@@ -132,10 +143,12 @@ fn point_out<const N: usize>(
     let slacks = combination.numerators.iter().filter(|(kind, _)| *kind != Kind::Equal);
     let slacks = slacks.map(|(_, number)| (number, sign * number.centre() / number.radius()));
     let undecided = |number: &Affine<N>| number.sign() == Sign::Undecided;
+    // What is not linear hangs above all on what moves det A.
+    let moved = determinant.slopes().iter().map(|slope| slope.abs()).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut weigh = |number: &Affine<N>| {
         let radius = number.radius();
-        for (own, slope) in influence.iter_mut().zip(number.slopes()) {
-            *own += slope.abs() / radius;
+        for ((own, slope), bent) in influence.iter_mut().zip(number.slopes()).zip(determinant.slopes()) {
+            *own += (slope.abs() + number.error() * (bent.abs() / moved)) / radius;
         }
     };
     let way = |number: &Affine<N>, sign: f64| number.slopes().iter().map(|slope| sign * slope).collect::<Vec<f64>>();
