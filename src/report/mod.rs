@@ -7,6 +7,7 @@
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //! ```
 
+mod holds;
 mod inspection;
 mod problem;
 mod result;
@@ -16,6 +17,7 @@ mod table;
 mod text;
 mod touchdown;
 
+pub use holds::{Counterexample, Holds, StateFields};
 pub use inspection::Inspection;
 pub use problem::Problem;
 pub use result::{

@@ -193,8 +193,7 @@ impl<const N: usize> Mul for Affine<N> {
         }
         let (product, centre) = (a * b, a * b + shift);
         // Two products and their sum are rounded in each slope.
-        let rounding = ROUNDING
-            * (product.abs() + centre.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach))
+        let rounding = ROUNDING * (product.abs() + centre.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach))
             + 4.0 * Self::TINY;
         let spread = (a.abs() + reach + self.error) * other.error + (b.abs() + other_reach) * self.error;
         Self::around(centre, slopes, (reach * other_reach - squares) + spread + rounding)

@@ -102,6 +102,15 @@ impl Cell {
         (low < middle && middle < high).then(|| [half([low, middle]), half([middle, high])])
     }
 
+    /// How wide the positions are; all else enters linearly and counts nothing.
+    pub fn spreads(&self) -> Vec<f64> {
+        let spread = |(quantity, [low, high]): (&Quantity, &[f64; 2])| match quantity {
+            Quantity::Position(_) => high - low,
+            _ => 0.0,
+        };
+        self.quantities.iter().zip(&self.ends).map(spread).collect()
+    }
+
     /// The quantity's whole interval; none where it is certain.
     fn find(&self, quantity: Quantity) -> Option<(usize, f64, f64)> {
         let index = self.quantities.iter().position(|own| *own == quantity)?;

@@ -123,7 +123,7 @@ impl<T: Ordered> Numbers<T> {
         let all = (1usize << (unknowns + 1)) - 1;
         let numerator = |column: usize| {
             let minor = minors[all & !(1 << column)];
-            if (column + unknowns) % 2 == 0 { minor } else { -minor }
+            if (column + unknowns).is_multiple_of(2) { minor } else { -minor }
         };
         let whole = numerator(unknowns);
         // A row's velocity times det A.

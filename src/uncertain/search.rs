@@ -29,8 +29,11 @@ pub(crate) enum Found {
     Nothing,
 }
 
-/// Boxes times combinations that are tried at most.
-const EFFORT: usize = 8192;
+/// Boxes times combinations that are tried at most, with up to [`USUAL`] uncertain quantities.
+const EFFORT: usize = 2048;
+
+/// With more uncertain quantities a box costs more, and fewer are tried.
+const USUAL: usize = 16;
 
 /// Corners of the whole box that are tried beside those in which the numbers point.
 const RANDOM_CORNERS: usize = 8;
@@ -40,24 +43,13 @@ pub(crate) fn search<const N: usize>(model: &mut impl Model, whole: Cell, expect
     let lists = 1usize << (2 * model.contacts());
     let mut search: Search<'_, _, N> =
         Search { model, expected, tried: Vec::new(), combination: Combination::default(), ways: Vec::new() };
-    let mut effort = EFFORT;
+    let mut effort = EFFORT * USUAL / N.max(USUAL);
     let mut cells = vec![(whole, (0..lists).collect::<Vec<usize>>())];
     let mut first = true;
     while let Some((cell, open)) = cells.pop() {
         let Some(rest) = effort.checked_sub(open.len()) else { return Found::Nothing };
         effort = rest;
-        let wid = (0..cell.ends.len()).map(|i| cell.ends[i][1]-cell.ends[i][0]).collect::<Vec<_>>();
         let Examined { open, split } = search.examine(&cell, &open);
-        if std::env::var("DBG").is_ok() && effort % 100 == 0 {
-            eprintln!("effort {effort} open {open:?} split {split:?} ratio {:?}", wid.iter().map(|w| (0.02/w).log2().round() as i32).collect::<Vec<_>>());
-            for &l in &open {
-                let numbers = search.model.numbers::<N>(&cell);
-                let modes = modes_of(l, search.model.contacts());
-                numbers.combine(&modes, &mut search.combination);
-                let f = |n: &Affine<N>| format!("{:.2e}+-{:.1e}({:.1e})", n.centre(), n.radius(), n.error());
-                eprintln!("   {modes:?} det {} {:?}", f(&search.combination.determinant.unwrap()), search.combination.numerators.iter().map(|(_, n)| f(n)).collect::<Vec<_>>());
-            }
-        }
         if open.is_empty() {
             continue;
         }
@@ -104,6 +96,10 @@ impl<M: Model, const N: usize> Search<'_, M, N> {
                 open.push(list);
                 point_out(&self.combination, valid, &mut influence, &mut self.ways);
             }
+        }
+        if influence.iter().all(|&own| own == 0.0) {
+            // The box is too wide to tell anything.
+            influence = cell.spreads();
         }
         let most = influence.iter().copied().fold(0.0, f64::max);
         Examined { open, split: influence.iter().position(|&own| own == most && most > 0.0) }
