@@ -47,8 +47,11 @@ pub(crate) fn search<const N: usize>(model: &mut impl Model, whole: Cell, expect
     let mut cells = vec![(whole, (0..lists).collect::<Vec<usize>>())];
     let mut first = true;
     while let Some((cell, open)) = cells.pop() {
-        let Some(rest) = effort.checked_sub(open.len()) else { return Found::Nothing };
-        effort = rest;
+        if !first {
+            // The whole box is looked at in any case.
+            let Some(rest) = effort.checked_sub(open.len()) else { return Found::Nothing };
+            effort = rest;
+        }
         let Examined { open, split } = search.examine(&cell, &open);
         if open.is_empty() {
             continue;
