@@ -17,6 +17,7 @@
 //!     Plan + q --[dynamics]--> poses, mass matrix M, contact Jacobian J, Delassus matrix G = J M^-1 J^T
 //!     poses + ground --[contact]--> closed contacts
 //!     G, c, friction, restitution --[impact]--> every outcome, verdict
+//!     Plan + a box of states --[uncertain]--> whether its outcomes are all the same
 //!     all of it --[pipeline]--> Impact --[report]--> JSON, text
 //!     CSV --[table]--> many states; of a recording --[touchdown]--> those in which a foot strikes; results --[table]--> CSV
 //! ```
@@ -84,6 +85,7 @@ pub mod plan;
 pub mod dynamics;
 pub mod contact;
 pub mod impact;
+pub mod uncertain;
 pub mod pipeline;
 #[cfg(feature = "accuracy")]
 pub mod accuracy;

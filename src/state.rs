@@ -1,6 +1,9 @@
 //! One pre-impact state: coordinates, velocities and scene, resolved against a robot.
 
 pub(crate) mod read;
+mod uncertainty;
+
+pub use uncertainty::Uncertainty;
 
 use crate::impact::Friction;
 use crate::scene::Scene;
@@ -17,6 +20,8 @@ pub struct State {
     pub velocity: Vec<f64>,
     /// Everything else.
     pub scene: Scene,
+    /// How far the numbers may be off; none where they are meant as they are.
+    pub uncertainty: Option<Uncertainty>,
 }
 
 /// What a state takes from elsewhere where it is silent.

@@ -236,6 +236,7 @@ fn blank(robot: &Robot) -> State {
         position: vec![0.0; robot.dofs()],
         velocity: vec![0.0; robot.dofs()],
         scene: Scene { friction: ByLink::everywhere(Friction::Infinite), ..Scene::default() },
+        uncertainty: None,
     }
 }
 

@@ -5,6 +5,7 @@
 //! ```
 
 mod strike;
+mod uncertain;
 
 use self::strike::Strike;
 use crate::contact::{self, Contact, Feet, Placement};
@@ -20,6 +21,7 @@ use crate::planar::{Vector, dot, scaled, sum};
 use crate::robot::Robot;
 use crate::scene::{NamedContact, Scene};
 use crate::state::State;
+use crate::uncertain::Holds;
 
 /// What the pipeline is asked for beside the outcomes.
 #[derive(Debug, Clone, Default)]
@@ -54,10 +56,23 @@ pub struct Impact {
     pub analysis: Result<Analysis>,
     /// v after each outcome of the analysis, in the order of q \[m/s, rad/s\].
     pub velocity_after: Vec<Vec<f64>>,
+    /// Whether the outcomes are the same on the box of the state's uncertainty; none where it has none.
+    pub holds: Option<Holds>,
     /// The matrices, if asked for.
     pub matrices: Option<Matrices>,
     /// What a reader should know, in whole sentences.
     pub notes: Vec<String>,
+}
+
+/// The answer for one state, and what of its contacts was taken as given.
+struct Answer {
+    impact: Impact,
+    /// The foot of the stance.
+    foot: Option<Contact>,
+    /// Its place among the contacts.
+    stance: Option<usize>,
+    /// Contacts that were taken as exactly at rest.
+    resting: Vec<bool>,
 }
 
 /// The matrices behind an answer.
@@ -117,6 +132,15 @@ impl<'r> Pipeline<'r> {
     /// [`Reason::Missing`] for a contact without friction or a stance without a foot, [`Reason::MatricesTooLarge`] for
     /// hundreds of contacts, [`Reason::NotFinite`] for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
+        let mut answer = self.answer(state)?;
+        if let Some(uncertainty) = &state.uncertainty {
+            answer.impact.holds = Some(self.holds(state, uncertainty, &answer));
+        }
+        Ok(answer.impact)
+    }
+
+    /// As [`Pipeline::impact`], whatever the state's uncertainty is.
+    fn answer(&mut self, state: &State) -> Result<Answer> {
         let scene = &state.scene;
         self.compile(scene);
         self.posture.set(&state.position);
@@ -164,15 +188,17 @@ impl<'r> Pipeline<'r> {
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
         let velocity_after = outcomes.iter().map(|outcome| self.struck(&free, &outcome.impulse)).collect();
         notes.extend(analysis.as_ref().ok().and_then(Analysis::energy_note));
-        Ok(Impact {
+        let impact = Impact {
             velocity_before: problem.velocity_before().to_vec(),
             kinetic_energy,
             velocity_after,
             matrices: self.options.matrices.then(|| self.matrices()),
+            holds: None,
             analysis,
             contacts,
             notes,
-        })
+        };
+        Ok(Answer { impact, foot, stance, resting })
     }
 
     /// The contact problem of contacts given by hand, at a posture whose cosines and sines the caller knows better than

@@ -7,7 +7,7 @@ use crate::dynamics::{
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
 use crate::plan::{Plan, Posture};
-use crate::planar::{Rotation, dot, sum};
+use crate::planar::{Rotation, Vector, dot, sum};
 use crate::robot::{Axis, Robot};
 use crate::scalar::{Ordered, Real, Trigonometry};
 use crate::scene::Scene;
@@ -32,19 +32,45 @@ pub struct Strike<'a> {
     pub errors: Errors<'a>,
 }
 
-impl Source for Strike<'_> {
-    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+/// What of a state is a number that may be known inexactly.
+pub struct Inputs<T> {
+    /// Of q.
+    pub posture: Posture<T>,
+    /// dq/dt; with a foot x and z are not read.
+    pub velocity: Vec<T>,
+    /// The robot, its rotors' inertia included.
+    pub plan: Plan<T>,
+}
+
+/// G, c- and c_free.
+pub struct Contacts<T> {
+    pub delassus: Vec<T>,
+    pub before: Vec<Vector<T>>,
+    pub free: Vec<Vector<T>>,
+}
+
+impl Strike<'_> {
+    /// The state's own numbers, exactly.
+    fn inputs<T: Trigonometry>(&self) -> Inputs<T> {
+        Inputs {
+            posture: posture(self.robot, self.position),
+            velocity: self.velocity.iter().map(|&entry| T::from_f64(entry)).collect(),
+            plan: Plan::new(self.robot, &self.scene.held, &self.scene.rotor_inertia),
+        }
+    }
+
+    /// G and c for these `inputs`, with the contacts as they are.
+    pub fn contacts<T: Trigonometry>(&self, inputs: Inputs<T>) -> Contacts<T> {
         let Self { robot, scene, .. } = *self;
-        let plan = Plan::<T>::new(robot, &scene.held, &scene.rotor_inertia);
+        let Inputs { posture, mut velocity, plan } = inputs;
         let mut workspace = Workspace::default();
-        kinematics(&plan, &posture(robot, self.position), &mut workspace);
+        kinematics(&plan, &posture, &mut workspace);
         // Not by the mass matrix: its factor costs the cube of a chain's length, and its enclosures widen faster.
         articulated_inertias(&plan, &mut workspace);
 
         let [cos, sin] = T::cos_sin(-scene.slope);
         let point = |contact: &Contact| contact.exact_point(robot, Rotation { cos, sin });
         let contacts: Vec<ContactPoint<T>> = self.contacts.iter().map(point).collect();
-        let mut velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
         if let Some(foot) = self.foot.map(point) {
             velocity[..2].fill(T::zero());
             let moving = point_velocity(&plan, foot.body, foot.arm(&workspace), &velocity, &workspace);
@@ -71,8 +97,14 @@ impl Source for Strike<'_> {
                 *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));
             }
         }
-        let (friction, restitution) = (self.friction.to_vec(), self.restitution.to_vec());
-        ContactProblem::of_parts(workspace.delassus, before, free, friction, restitution)
+        Contacts { delassus: workspace.delassus, before, free }
+    }
+}
+
+impl Source for Strike<'_> {
+    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+        let Contacts { delassus, before, free } = self.contacts(self.inputs());
+        ContactProblem::of_parts(delassus, before, free, self.friction.to_vec(), self.restitution.to_vec())
     }
 
     fn errors(&self) -> Errors<'_> {

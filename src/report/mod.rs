@@ -8,6 +8,7 @@
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy.rs
 //! ```
 
+mod holds;
 mod id;
 #[cfg(feature = "accuracy")]
 mod accuracy;
@@ -24,6 +25,7 @@ mod touchdown;
 
 #[cfg(feature = "accuracy")]
 pub use accuracy::{ADVICE, Accuracy, Compliant};
+pub use holds::{Counterexample, Holds, StateFields};
 pub(crate) use id::short_id;
 pub use inspection::Inspection;
 #[cfg(feature = "plot")]

@@ -3,6 +3,7 @@
 //! Fields that do not apply are absent; fields that apply but have no value (the index on a border, the condition of a
 //! singular matrix) are null. Numbers are written with every digit.
 
+use super::holds::{Counterexample, Holds};
 #[cfg(feature = "schema")]
 use super::schema::Id;
 use super::touchdown::{CarriedFields, Touchdown};
@@ -35,6 +36,13 @@ pub struct Report<'a> {
     /// Every combination is decided by an error bound: the list is complete and right; absent beside an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
+    /// Whether every state of the box has the same outcomes, as lists of modes: true, false or "unknown"; of an uncertain
+    /// state.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds: Option<Holds>,
+    /// A state of the box with other outcomes; where `holds` is false.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub counterexample: Option<Counterexample<'a>>,
     /// The closed contacts, in the order of all lists per contact.
     pub contacts: Vec<Contact<'a>>,
     /// Every outcome; absent beside an `error`.
@@ -262,6 +270,9 @@ pub struct Brief<'a> {
     /// Every combination is decided by an error bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
+    /// Whether every state of the box has the same outcomes; of an uncertain state.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds: Option<Holds>,
     /// Every outcome.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
@@ -354,6 +365,8 @@ impl<'a> Report<'a> {
             id: state.id.as_ref(),
             kinetic_energy: Some(impact.kinetic_energy),
             left_out: Some(LeftOut::of_state(robot, state)),
+            holds: impact.holds.as_ref().map(Holds::from),
+            counterexample: impact.holds.as_ref().and_then(|holds| Counterexample::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),
             ..Self::of_analysis(contacts, analysis, detail)
         };
@@ -402,6 +415,8 @@ impl<'a> Report<'a> {
             touchdown: None,
             verdict: known.map(|analysis| analysis.verdict),
             proven: known.map(|analysis| analysis.proven),
+            holds: None,
+            counterexample: None,
             outcomes,
             rejected,
             kinetic_energy: None,
@@ -436,6 +451,7 @@ impl<'a> Report<'a> {
             touchdown: self.touchdown.clone(),
             verdict: self.verdict,
             proven: self.proven,
+            holds: self.holds,
             outcomes: self.outcomes.as_ref().map(|outcomes| outcomes.iter().map(brief).collect()),
             error: self.error.clone(),
         }

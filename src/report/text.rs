@@ -1,5 +1,6 @@
 //! A result as text: what touched, what happens, why nothing else does.
 
+use super::holds::Holds;
 use super::result::{Contact, Outcome, Report};
 use super::table::{Table, is_residue, number, scale};
 use super::{Detail, Problem};
@@ -162,6 +163,22 @@ impl<'w> Writer<'w> {
         writeln!(self.out, "{strong}{sentence}{plain}")?;
         if let Some(error) = &self.report.error {
             writeln!(self.out, "{}", error.message)?;
+        }
+        self.holds()
+    }
+
+    /// Whether the verdict holds while the state's numbers vary.
+    fn holds(&mut self) -> std::fmt::Result {
+        let Some(holds) = self.report.holds else { return Ok(()) };
+        self.out.push_str("Holds on the whole box of the uncertainty: ");
+        match (holds, &self.report.counterexample) {
+            (Holds::Yes, _) => self.out.push_str("yes.\n"),
+            (Holds::No, Some(other)) => {
+                let outcomes: Vec<String> = other.outcomes.iter().map(|modes| self.in_words(modes)).collect();
+                writeln!(self.out, "no; a state in it (--format json) has: {}.", outcomes.join("; or "))?;
+            }
+            (Holds::No, None) => self.out.push_str("no.\n"),
+            (Holds::Unknown, _) => self.out.push_str("unknown.\n"),
         }
         Ok(())
     }

@@ -144,6 +144,17 @@ impl Link {
     }
 }
 
+impl Link {
+    /// The point of the link's own 3-D frame, in the plane through its origin, that lies at `point` in its body's planar
+    /// frame \[m\], up to rounding.
+    pub fn offset(&self, point: Vector<f64>) -> [f64; 3] {
+        // The rows are orthonormal, so that their transpose turns back.
+        let [[.., x], [.., z]] = self.pose;
+        let [along, up] = [point[0] - x, point[1] - z];
+        std::array::from_fn(|axis| self.pose[0][axis] * along + self.pose[1][axis] * up)
+    }
+}
+
 impl Robot {
     /// Number of coordinates of the base: 3 if it floats, else 0.
     pub fn base_dofs(&self) -> usize {

@@ -3,9 +3,11 @@
 //! From kinematics to the slacks of the modes every algorithm is written once over [`Real`]: it neither branches on a
 //! number nor takes a root, so that eight lanes, a ball, a double-double or an exact rational run the same code as `f64`.
 //! [`Ball`] is the instance that knows its own rounding, over f64 or over [`DoubleDouble`], [`Interval`] the one with as many
-//! digits as asked for, and [`Residue`] the one that tells only whether a number is zero; [`Certified`] carries an enclosure and a residue in step, so that enough digits decide every sign. Only the stage
-//! that turns numbers into signs looks inside.
+//! digits as asked for, and [`Residue`] the one that tells only whether a number is zero; [`Certified`] carries an enclosure
+//! and a residue in step, so that enough digits decide every sign. [`Affine`] is the instance for data that are themselves
+//! known to an interval alone. Only the stage that turns numbers into signs looks inside.
 
+mod affine;
 mod ball;
 mod certified;
 mod double;
@@ -13,6 +15,7 @@ mod interval;
 mod residue;
 mod series;
 
+pub use affine::Affine;
 pub use ball::{Ball, Midpoint};
 pub use certified::Certified;
 pub use double::DoubleDouble;

@@ -1,5 +1,6 @@
 //! The fields of a state, one function for each shape of value.
 
+use super::uncertainty::{self, uncertainty};
 use super::{Defaults, State};
 use crate::impact::Friction;
 use crate::json::Node;
@@ -37,8 +38,8 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
     for field in root.fields("field")? {
         match field.key() {
             "id" => state.id = Some(field.id()?),
-            "position" => coordinates(field, robot, &mut state.position)?,
-            "velocity" => coordinates(field, robot, &mut state.velocity)?,
+            "position" => coordinates(field, robot, &mut state.position, number)?,
+            "velocity" => coordinates(field, robot, &mut state.velocity, number)?,
             "friction" => scene.friction = by_link(field, robot, friction)?,
             "restitution" => scene.restitution = by_link(field, robot, restitution)?,
             "ground" => scene.slope = slope(field)?,
@@ -48,7 +49,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
             "contacts" => scene.contacts = Some(contacts(field, robot)?),
             "impulse" => scene.impulses = impulses(field, robot)?,
             "loops" => return Err(not_yet(field, "loops are")),
-            "uncertainty" => return Err(not_yet(field, "uncertainty is")),
+            "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
             _ => return Err(field.unknown_field(&FIELDS)),
         }
     }
@@ -59,8 +60,18 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
     Ok(state)
 }
 
+/// Any number.
+fn number(node: Node) -> Result<f64> {
+    node.number()
+}
+
 /// `{"base": {"x", "z", "pitch"}, "joints": {name: number}}` into the order of q.
-fn coordinates(field: Node, robot: &Robot, into: &mut [f64]) -> Result<()> {
+pub(super) fn coordinates(
+    field: Node,
+    robot: &Robot,
+    into: &mut [f64],
+    number: impl Fn(Node) -> Result<f64>,
+) -> Result<()> {
     let (base, joints) = into.split_at_mut(robot.base_dofs());
     for part in field.fields("field")? {
         match part.key() {
@@ -72,14 +83,14 @@ fn coordinates(field: Node, robot: &Robot, into: &mut [f64]) -> Result<()> {
             "base" => {
                 for entry in part.fields("base entry")? {
                     match BASE.iter().position(|name| *name == entry.key()) {
-                        Some(at) => base[at] = entry.number()?,
+                        Some(at) => base[at] = number(entry)?,
                         None => return Err(entry.unknown_field(&BASE)),
                     }
                 }
             }
             "joints" => {
                 for entry in part.fields("joint")? {
-                    joints[joint(entry, entry.key(), robot)?] = entry.number()?;
+                    joints[joint(entry, entry.key(), robot)?] = number(entry)?;
                 }
             }
             _ => return Err(part.unknown_field(&["base", "joints"])),
@@ -98,6 +109,9 @@ fn refuse_a_placed_base(root: Node) -> Result<()> {
             }
         }
     }
+    for field in root.fields("field")?.filter(|field| field.key() == "uncertainty") {
+        uncertainty::refuse_a_placed_base(field)?;
+    }
     Ok(())
 }
 
@@ -113,7 +127,7 @@ fn stance(field: Node, robot: &Robot) -> Result<usize> {
 }
 
 /// A value for all links, or an object of values by link with an optional `default`.
-fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>) -> Result<ByLink<T>> {
+pub(super) fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>) -> Result<ByLink<T>> {
     if !field.is_object() {
         return Ok(ByLink::everywhere(read(field)?));
     }
@@ -225,7 +239,7 @@ fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
 }
 
 /// A number from 0 on.
-fn from_zero(node: Node, what: &str) -> Result<f64> {
+pub(super) fn from_zero(node: Node, what: &str) -> Result<f64> {
     let value = node.number()?;
     if value >= 0.0 {
         return Ok(value);
@@ -238,7 +252,7 @@ fn link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     robot.link(name).ok_or_else(|| unknown_name(node, "link", name, known()))
 }
 
-fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
+pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.joints.iter().map(|joint| joint.name.as_str());
     robot.joint(name).ok_or_else(|| {
         let what = format!("joint \"{name}\"");

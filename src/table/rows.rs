@@ -151,6 +151,7 @@ impl Row<'_> {
             position: vec![0.0; robot.dofs()],
             velocity: vec![0.0; robot.dofs()],
             scene: Scene { stance, ..Scene::default() },
+            uncertainty: None,
         };
         let mut friction = None;
         for (at, &column) in self.header.columns.iter().enumerate() {

@@ -125,6 +125,44 @@ fn solve_tells_three_outcomes_of_a_rod_that_may_jam() {
 }
 
 #[test]
+fn an_uncertain_state_is_told_to_hold_or_not() {
+    let run = heelstrike(&["impact", RAMONE, "examples/ramone_measured.json", "--brief"]);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    insta::assert_snapshot!(run.stdout, @r"
+    ramone (alpha = 0.5, measured to three digits): left_foot and right_foot touch the ground.
+    Kinetic energy before the impact: 0.996114 J.
+
+    Exactly one outcome.
+    Holds on the whole box of the uncertainty: yes.
+      1  left_foot slides forward, right_foot sticks   (margin 0.000108945, index +1)
+    ");
+    let run = heelstrike_reads(&["impact", RAMONE, "-", "--brief"], badly_measured());
+    let line = run.stdout.lines().find(|line| line.starts_with("Holds")).expect("a line about the box");
+    insta::assert_snapshot!(line, @"Holds on the whole box of the uncertainty: no; a state in it (--format json) has: left_foot lifts off, right_foot sticks.");
+}
+
+/// The example with half-widths ten times as wide.
+fn badly_measured() -> String {
+    std::fs::read_to_string("examples/ramone_measured.json").expect("the example").replace("1e-3", "1e-2")
+}
+
+#[test]
+fn a_counterexample_can_be_fed_back() {
+    let run = heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], badly_measured());
+    let first: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    assert_eq!(first["holds"], false);
+    let found = &first["counterexample"];
+    let run = heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], found["state"].to_string());
+    let second: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let modes = |answer: &Value| -> Vec<Value> {
+        answer["outcomes"].as_array().expect("a list").iter().map(|outcome| outcome["modes"].clone()).collect()
+    };
+    assert_eq!((&second["verdict"], &second["proven"]), (&found["verdict"], &Value::Bool(true)));
+    assert_eq!(&modes(&second), found["outcomes"].as_array().expect("a list"));
+    assert_ne!(modes(&second), modes(&first));
+}
+
+#[test]
 fn brief_text_has_a_line_per_outcome() {
     let run = heelstrike(&["impact", BLOCK, "examples/block_jams.json", "--brief"]);
     insta::assert_snapshot!(run.stdout, @r"

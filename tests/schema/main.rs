@@ -114,10 +114,14 @@ fn schema_and_reader_of_states_agree() {
         "held": ["left_hip", "left_knee"],
         "rotor_inertia": {"left_knee": 0.01},
         "contacts": [{"link": "left_foot", "offset": [0, 0, -0.1], "radius": 0.1}],
+        "uncertainty": {
+            "position": {"base": {"x": 0, "z": 0, "pitch": 0.1}, "joints": {"left_hip": 0.1}}, "velocity": 0.1,
+            "friction": {"default": 0.1, "left_foot": 0}, "rotor_inertia": {"left_hip": 0.1},
+        },
         "impulse": [{"link": "torso", "offset": [0, 0, 0], "vector": [0, 0]}],
     });
     let standing = json!({"id": 1, "stance": "left_foot", "friction": 0.8, "restitution": 0.5,
-        "position": {"base": {"pitch": 0.1}}});
+        "position": {"base": {"pitch": 0.1}}, "uncertainty": {"friction": 0.1, "rotor_inertia": 0.1}});
     let read = |text: &str| State::from_json(text, &robot, &Defaults::default());
     // Which names the robot has, and that a stance places the base.
     let beyond = |reason: &Reason| matches!(reason, Reason::UnknownName { .. } | Reason::Inconsistent(_));
@@ -162,12 +166,14 @@ fn the_schema_of_states_has_the_fields_that_the_reader_names() {
         (json!({"ground": {"?": 0}}), "/$defs/Ground/properties"),
         (json!({"contacts": [{"?": 0}]}), "/$defs/Contact/properties"),
         (json!({"impulse": [{"?": 0}]}), "/$defs/AppliedImpulse/properties"),
+        (json!({"uncertainty": {"?": 0}}), "/$defs/Uncertainty/properties"),
+        (json!({"uncertainty": {"position": {"?": 0}}}), "/$defs/NamedHalfWidths/properties"),
+        (json!({"uncertainty": {"velocity": {"base": {"?": 0}}}}), "/$defs/BaseHalfWidths/properties"),
     ] {
         let error = State::from_json(&text.to_string(), &robot, &Defaults::default()).expect_err("an unknown field");
         let hint = error.remedy().and_then(|hint| hint.strip_prefix("the fields here are ")).expect("the known fields");
         // Those that the reader knows only in order to refuse them.
-        let mut known: Vec<&str> =
-            hint.split(", ").filter(|field| !["loops", "uncertainty", "profile"].contains(field)).collect();
+        let mut known: Vec<&str> = hint.split(", ").filter(|field| !["loops", "profile"].contains(field)).collect();
         known.sort_unstable();
         assert_eq!(of(pointer), known, "{text}");
     }
@@ -203,6 +209,8 @@ fn every_example_is_valid() {
 fn every_form_of_result_is_valid() {
     let schema = schema::result();
     let ramone = ["impact", "urdf/ramone.urdf", "examples/ramone.json", "--format", "json"];
+    let measured = ["impact", "urdf/ramone.urdf", "examples/ramone_measured.json", "--format", "json"];
+    let badly = std::fs::read_to_string("examples/ramone_measured.json").expect("a state").replace("1e-3", "1e-2");
     let pdw = ["batch", "urdf/pdw.urdf", "-"];
     let rod = ["solve", "examples/problems/rod.json", "--format", "json"];
     let lines = "{\"id\": 1, \"stance\": \"left_leg\", \"friction\": 0.5}\n{\"id\": \"k2\", \"frict\": 0.5}\n";
@@ -213,6 +221,9 @@ fn every_form_of_result_is_valid() {
         (&ramone[..], ""),
         (&[&ramone[..], &["--explain", "--matrices"]].concat(), ""),
         (&[&ramone[..], &["--brief"]].concat(), ""),
+        (&measured, ""),
+        (&[&measured[..], &["--brief"]].concat(), ""),
+        (&["impact", "urdf/ramone.urdf", "-", "--format", "json"], &badly),
         (&pdw, lines),
         (&[&pdw[..], &["--brief"]].concat(), lines),
         (&[&pdw[..], &["--matrices"]].concat(), &many),
@@ -230,7 +241,7 @@ fn every_form_of_result_is_valid() {
             seen += 1;
         }
     }
-    assert_eq!(seen, 12);
+    assert_eq!(seen, 15);
 }
 
 #[test]

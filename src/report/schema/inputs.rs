@@ -32,8 +32,59 @@ pub(super) struct State {
     rotor_inertia: Option<BTreeMap<String, NotNegative>>,
     /// Contacts named by hand instead of detected.
     contacts: Option<Vec<Contact>>,
+    /// How far the numbers may be off: the result then tells whether the verdict holds.
+    uncertainty: Option<Uncertainty>,
     /// Impulses that act on the robot at the impact.
     impulse: Option<Vec<AppliedImpulse>>,
+}
+
+/// Half-widths; what is left out is certain.
+#[derive(JsonSchema)]
+struct Uncertainty {
+    /// Of all positions, or by name [m, rad].
+    position: Option<HalfWidths>,
+    /// Of all velocities, or by name [m/s, rad/s].
+    velocity: Option<HalfWidths>,
+    /// Of the friction of all links, or by link; infinite friction is certain.
+    friction: Option<ByLink<NotNegative>>,
+    /// Of the inertia of all rotors, or by joint [kg m^2].
+    rotor_inertia: Option<Rotors>,
+}
+
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+enum HalfWidths {
+    Everywhere(NotNegative),
+    ByName(NamedHalfWidths),
+}
+
+/// Half-widths by name.
+#[derive(JsonSchema)]
+struct NamedHalfWidths {
+    /// Of the root link; with a stance x and z follow from the rest and have none.
+    base: Option<BaseHalfWidths>,
+    /// By joint [rad or m, and per second].
+    joints: Option<BTreeMap<String, NotNegative>>,
+}
+
+/// Half-widths of the base.
+#[derive(JsonSchema)]
+struct BaseHalfWidths {
+    /// Forward [m or m/s]; of a position without effect.
+    x: Option<NotNegative>,
+    /// Up [m or m/s]; of a position without effect.
+    z: Option<NotNegative>,
+    /// Nose down [rad or rad/s].
+    pitch: Option<NotNegative>,
+}
+
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+enum Rotors {
+    Everywhere(NotNegative),
+    ByJoint(BTreeMap<String, NotNegative>),
 }
 
 /// Coordinates or their derivatives by name.

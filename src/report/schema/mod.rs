@@ -7,6 +7,7 @@
 
 mod inputs;
 
+use super::holds::{Holds, StateFields};
 use super::result::{Brief, NamedVelocities, Refused, Report};
 use super::touchdown::CarriedFields;
 use schemars::generate::SchemaSettings;
@@ -78,6 +79,31 @@ impl JsonSchema for CarriedFields<'_> {
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         BTreeMap::<String, String>::json_schema(generator)
+    }
+}
+
+impl JsonSchema for Holds {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "Holds".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        schemars::json_schema!({"enum": [true, false, "unknown"]})
+    }
+}
+
+impl JsonSchema for StateFields<'_> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "StateFields".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        // What a state may have has a schema of its own.
+        schemars::json_schema!({"type": "object"})
     }
 }
 

@@ -1,0 +1,320 @@
+//! Numbers that hang on others which are known to an interval.
+
+use super::double::two_sum;
+use super::{Ordered, Real, Sign, Trigonometry};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number as `centre + sum_i slopes[i] e_i +- error`, where each e_i is somewhere in -1..1.
+///
+/// Numbers share their e_i, so that what they owe to a common cause cancels, as it does not between [`Ball`](super::Ball)s:
+/// an enclosure over intervals of half-width r is wrong by O(r^2) alone (affine arithmetic: de Figueiredo and Stolfi,
+/// Numerical Algorithms 2004). Every operation encloses its exact result; whatever is not linear, and all rounding, goes
+/// into `error`. As with the ball, exact zeros stay exact, and a quotient by what may be zero tells nothing.
+///
+/// Cost: O(N) per operation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine<const N: usize> {
+    centre: f64,
+    slopes: [f64; N],
+    /// Never negative, infinite where nothing is known.
+    error: f64,
+}
+
+/// Half the distance from 1 to the next f64.
+const ROUNDING: f64 = f64::EPSILON / 2.0;
+
+/// The error of `libm::sincos` relative to its result, as [`Ball`](super::Ball) assumes it.
+const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
+
+impl<const N: usize> Affine<N> {
+    /// Covers the rounding in sums of N terms and in the formulas of the errors.
+    const BLOW_UP: f64 = 1.0 + (4 * N + 16) as f64 * f64::EPSILON;
+    /// Covers what N products lose by underflow.
+    const TINY: f64 = (N + 4) as f64 * f64::MIN_POSITIVE;
+
+    fn unknown() -> Self {
+        Self { centre: 0.0, slopes: [0.0; N], error: f64::INFINITY }
+    }
+
+    #[inline]
+    fn around(centre: f64, slopes: [f64; N], error: f64) -> Self {
+        let error = error * Self::BLOW_UP;
+        if centre.is_finite() && error.is_finite() { Self { centre, slopes, error } } else { Self::unknown() }
+    }
+
+    /// Any number at most `radius` from `centre`. Its place there is the cause number `symbol`; of more causes than N it is
+    /// its own, and cancels with nothing.
+    pub fn varying(centre: f64, radius: f64, symbol: usize) -> Self {
+        let mut slopes = [0.0; N];
+        let own = match slopes.get_mut(symbol) {
+            Some(slope) => {
+                *slope = radius;
+                0.0
+            }
+            None => radius,
+        };
+        if centre.is_finite() && radius.is_finite() { Self { centre, slopes, error: own } } else { Self::unknown() }
+    }
+
+    /// Cosine and sine of any angle at most `radius` from `centre` \[rad\], with the cause `symbol` as in
+    /// [`Affine::varying`].
+    pub fn cos_sin_varying(centre: f64, radius: f64, symbol: usize) -> [Self; 2] {
+        let [cos, sin] = Self::cos_sin(centre);
+        if radius == 0.0 {
+            return [cos, sin];
+        }
+        // cos d is within r^2 / 4 of 1 - r^2 / 4, sin d within r^3 / 6 of d, for every |d| <= r.
+        let square = radius * radius;
+        let mut cos_d = Self::from_f64(1.0 - square / 4.0);
+        cos_d.error = (square / 4.0 + f64::EPSILON) * Self::BLOW_UP;
+        let mut sin_d = Self::varying(0.0, radius, symbol);
+        sin_d.error += (square * radius / 6.0 + f64::MIN_POSITIVE) * Self::BLOW_UP;
+        [cos * cos_d - sin * sin_d, sin * cos_d + cos * sin_d]
+    }
+
+    /// How it moves with each cause, to first order.
+    pub fn slopes(&self) -> &[f64; N] {
+        &self.slopes
+    }
+
+    /// The middle of where it may be; NaN where nothing is known.
+    pub fn centre(&self) -> f64 {
+        if self.error.is_finite() { self.centre } else { f64::NAN }
+    }
+
+    /// The greatest distance from its centre.
+    pub fn radius(&self) -> f64 {
+        (self.reach() + self.error) * Self::BLOW_UP
+    }
+
+    /// What its slopes do not tell.
+    pub fn rest(&self) -> f64 {
+        self.error
+    }
+
+    /// The lesser of the number and zero.
+    pub fn min_zero(self) -> Self {
+        match self.sign() {
+            Sign::Negative => self,
+            Sign::Zero | Sign::Positive => Self::zero(),
+            Sign::Undecided => {
+                let half = (self.centre - self.radius()) / 2.0;
+                Self::around(half, [0.0; N], -half)
+            }
+        }
+    }
+
+    #[inline]
+    fn reach(&self) -> f64 {
+        self.slopes.iter().map(|slope| slope.abs()).sum()
+    }
+
+    #[inline]
+    fn is_exact_zero(&self) -> bool {
+        self.centre == 0.0 && self.error == 0.0 && self.slopes.iter().all(|&slope| slope == 0.0)
+    }
+}
+
+impl<const N: usize> Real for Affine<N> {
+    fn from_f64(value: f64) -> Self {
+        if value.is_finite() { Self { centre: value, slopes: [0.0; N], error: 0.0 } } else { Self::unknown() }
+    }
+}
+
+impl<const N: usize> Ordered for Affine<N> {
+    fn sign(self) -> Sign {
+        Sign::within(self.centre, self.radius())
+    }
+
+    fn to_f64(self) -> f64 {
+        self.centre()
+    }
+
+    fn error(self) -> f64 {
+        self.radius()
+    }
+}
+
+impl<const N: usize> Trigonometry for Affine<N> {
+    fn cos_sin(angle: f64) -> [Self; 2] {
+        if angle == 0.0 {
+            return [Self::one(), Self::zero()];
+        }
+        let (sin, cos) = libm::sincos(angle);
+        [cos, sin].map(|value| Self::around(value, [0.0; N], value.abs() * LIBM_ERROR + f64::MIN_POSITIVE))
+    }
+}
+
+impl<const N: usize> Add for Affine<N> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        if self.is_exact_zero() {
+            return other;
+        }
+        if other.is_exact_zero() {
+            return self;
+        }
+        let (centre, lost) = two_sum(self.centre, other.centre);
+        let slopes: [f64; N] = std::array::from_fn(|i| self.slopes[i] + other.slopes[i]);
+        let rounding = ROUNDING * slopes.iter().map(|slope| slope.abs()).sum::<f64>();
+        Self::around(centre, slopes, self.error + other.error + lost.abs() + rounding)
+    }
+}
+
+impl<const N: usize> Neg for Affine<N> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self { centre: -self.centre, slopes: self.slopes.map(|slope| -slope), error: self.error }
+    }
+}
+
+impl<const N: usize> Sub for Affine<N> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<const N: usize> Mul for Affine<N> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        if self.is_exact_zero() || other.is_exact_zero() {
+            return Self::zero();
+        }
+        let (a, b) = (self.centre, other.centre);
+        let slopes = std::array::from_fn(|i| a * other.slopes[i] + b * self.slopes[i]);
+        let (reach, other_reach) = (self.reach(), other.reach());
+        // Squares of causes are 1/2 +- 1/2; all other products of two are +- 1.
+        let (mut shift, mut squares) = (0.0, 0.0);
+        for (one, other) in self.slopes.iter().zip(&other.slopes) {
+            let square = one * other / 2.0;
+            shift += square;
+            squares += square.abs();
+        }
+        let (product, centre) = (a * b, a * b + shift);
+        // Two products and their sum are rounded in each slope.
+        let rounding = ROUNDING * (product.abs() + centre.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach))
+            + 4.0 * Self::TINY;
+        let spread = (a.abs() + reach + self.error) * other.error + (b.abs() + other_reach) * self.error;
+        Self::around(centre, slopes, (reach * other_reach - squares) + spread + rounding)
+    }
+}
+
+impl<const N: usize> Div for Affine<N> {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let divisor = other.centre;
+        let spread = (other.reach() + other.error) * Self::BLOW_UP;
+        // The least magnitude in the divisor.
+        let least = (divisor.abs() - spread) * (1.0 - 2.0 * f64::EPSILON);
+        if least <= 0.0 || least.is_nan() {
+            return Self::unknown();
+        }
+        if self.is_exact_zero() {
+            return self;
+        }
+        // x / y = q + w / y with w = x - q y, of which little is left at the centre; w / y = w / c - (w / c) (y - c) / y.
+        let quotient = self.centre / divisor;
+        let rest: [f64; N] = std::array::from_fn(|i| self.slopes[i] - quotient * other.slopes[i]);
+        let reach: f64 = rest.iter().map(|slope| slope.abs()).sum();
+        let of_centre = ROUNDING * (quotient * divisor).abs() + Self::TINY * (1.0 + divisor.abs());
+        let of_rest = ROUNDING * (quotient.abs() * other.reach() + reach) + Self::TINY;
+        let error = (self.error + quotient.abs() * other.error + of_rest + of_centre) / divisor.abs();
+        let whole = reach / divisor.abs() + error;
+        let slopes = rest.map(|slope| slope / divisor);
+        let rounding = ROUNDING * (reach / divisor.abs()) + Self::TINY;
+        Self::around(quotient, slopes, error + whole * (spread / least) + rounding)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dashu::rational::RBig;
+    use proptest::prelude::*;
+
+    type Number = Affine<3>;
+
+    fn exact(value: f64) -> RBig {
+        RBig::try_from(value).expect("finite")
+    }
+
+    /// Whether the number, its causes at `at`, may be `value`.
+    fn encloses(number: Number, at: [f64; 3], value: &RBig) -> bool {
+        if number.error.is_infinite() {
+            return true;
+        }
+        let linear =
+            at.iter().zip(number.slopes).fold(exact(number.centre), |sum, (&e, slope)| sum + exact(e) * exact(slope));
+        let distance = linear - value;
+        let distance = if distance < RBig::ZERO { -distance } else { distance };
+        distance <= exact(number.error)
+    }
+
+    fn cause() -> impl Strategy<Value = f64> {
+        prop_oneof![Just(-1.0), Just(1.0), -1.0..1.0f64]
+    }
+
+    proptest! {
+        #[test]
+        fn every_operation_encloses_what_any_causes_give(
+            centres in prop::array::uniform3(-10.0..10.0f64),
+            radii in prop::array::uniform3(prop_oneof![Just(0.0), 1e-6..1e-2f64, 0.1..3.0f64]),
+            at in prop::array::uniform3(cause()),
+            k in -40..40i32,
+        ) {
+            let scale = f64::from(k).exp2();
+            let centres = [centres[0], centres[1] * scale, centres[2]];
+            let radii = [radii[0], radii[1] * scale, radii[2]];
+            let numbers: [Number; 3] = std::array::from_fn(|i| Affine::varying(centres[i], radii[i], i));
+            let [x, y, z] = numbers;
+            let [p, q, r]: [RBig; 3] = std::array::from_fn(|i| exact(centres[i]) + exact(radii[i]) * exact(at[i]));
+            prop_assert!(encloses(x + y * z, at, &(&p + &q * &r)));
+            prop_assert!(encloses((x - y) * (x + y) * z, at, &((&p - &q) * (&p + &q) * &r)));
+            prop_assert!(encloses(x * y - y * x, at, &RBig::ZERO));
+            if q != RBig::ZERO && r != RBig::ZERO {
+                prop_assert!(encloses((x + z) / y, at, &((&p + &r) / &q)));
+                prop_assert!(encloses((x * y - z) / (y * z), at, &((&p * &q - &r) / (&q * &r))));
+            }
+            let least = if p < RBig::ZERO { p } else { RBig::ZERO };
+            prop_assert!(encloses(x.min_zero(), at, &least));
+        }
+
+        #[test]
+        fn cosine_and_sine_enclose_those_of_every_angle(angle in -7.0..7.0f64, radius in 0.0..2.0f64, at in cause()) {
+            let [cos, sin] = Affine::<1>::cos_sin_varying(angle, radius, 0);
+            let turned = angle + radius * at;
+            for (number, value) in [(cos, turned.cos()), (sin, turned.sin())] {
+                let distance = (number.centre + number.slopes[0] * at - value).abs();
+                // The comparison itself rounds the angle.
+                prop_assert!(distance <= number.error + 4.0 * f64::EPSILON * (1.0 + angle.abs()));
+            }
+        }
+    }
+
+    #[test]
+    fn common_causes_cancel() {
+        let x = Number::varying(1.0, 1e-3, 0);
+        assert_eq!((x - x).radius(), 0.0);
+        assert!((x / x - Number::one()).radius() < 1e-14);
+        // x^2 - 1 moves by 2e-3 and bends by 1e-6.
+        let bent = x * x - Number::one();
+        assert_eq!((bent.slopes[0], bent.sign()), (2e-3, Sign::Undecided));
+        assert!(bent.error < 1.1e-6);
+    }
+
+    #[test]
+    fn exact_zeros_stay_exact_and_what_is_not_known_tells_nothing() {
+        let (zero, x) = (Number::zero(), Number::varying(0.5, 1.0, 1));
+        assert_eq!((zero * x).sign(), Sign::Zero);
+        assert_eq!((Number::one() / x).sign(), Sign::Undecided);
+        assert_eq!((zero * (Number::one() / x)).sign(), Sign::Zero);
+        assert_eq!((Number::one() / x + Number::one()).sign(), Sign::Undecided);
+        assert!(Number::varying(f64::NAN, 1.0, 0).centre().is_nan());
+    }
+}

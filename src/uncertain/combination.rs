@@ -1,0 +1,285 @@
+//! A combination of modes on a whole box: det A and the numerators of its inequalities, as polynomials.
+//!
+//! ```text
+//!     A x + f = 0,   x_j = N_j / det A,   N_j = (-1)^(j+k) (minor of [A | f] without column j)         (Cramer)
+//! ```
+//!
+//! Unknowns: two impulses of a sticking contact, one along the ray of a sliding (or frictionless closed) one.
+
+use crate::impact::Mode;
+use crate::scalar::{Ordered, Sign};
+
+/// The friction of a contact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Cone<T> {
+    /// Exactly none.
+    Zero,
+    /// mu; it may reach down to zero.
+    Finite(T),
+    /// No bound on the tangential impulse.
+    Infinite,
+}
+
+/// A contact problem on a box.
+#[derive(Debug)]
+pub(crate) struct Numbers<T> {
+    /// G, 2n x 2n by rows \[1/kg\].
+    pub delassus: Vec<T>,
+    /// Per row the velocity without impulses, on a normal row with its bounce \[m/s\].
+    pub free: Vec<T>,
+    /// Per contact.
+    pub cones: Vec<Cone<T>>,
+}
+
+/// How an inequality reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Greater than zero.
+    Strict,
+    /// At least zero.
+    Closed,
+    /// Equal to zero: c_t of a frictionless contact that sticks.
+    Equal,
+}
+
+/// A combination's equations and inequalities, all times det A.
+#[derive(Debug)]
+pub(crate) struct Combination<T> {
+    /// det A, up to a sign that it shares with the numerators.
+    pub determinant: Option<T>,
+    /// What must be zero or more after a division by det A.
+    pub numerators: Vec<(Kind, T)>,
+    /// Unknowns: row in which the equation stands, contact, and the ray's entries [tangential, normal].
+    columns: Vec<(usize, usize, [T; 2])>,
+    minors: Vec<T>,
+}
+
+impl<T> Default for Combination<T> {
+    fn default() -> Self {
+        Self { determinant: None, numerators: Vec::new(), columns: Vec::new(), minors: Vec::new() }
+    }
+}
+
+impl<T: Ordered> Numbers<T> {
+    pub fn contacts(&self) -> usize {
+        self.cones.len()
+    }
+
+    fn entry(&self, row: usize, (_, contact, ray): (usize, usize, [T; 2])) -> T {
+        let at = row * 2 * self.contacts() + 2 * contact;
+        self.delassus[at] * ray[0] + self.delassus[at + 1] * ray[1]
+    }
+
+    /// Fills in the combination `modes`.
+    pub fn combine(&self, modes: &[Mode], into: &mut Combination<T>) {
+        let [zero, one] = [T::zero(), T::one()];
+        into.columns.clear();
+        for (contact, &mode) in modes.iter().enumerate() {
+            let (tangential, normal) = (2 * contact, 2 * contact + 1);
+            let direction = T::from_f64(-mode.direction());
+            match (mode, self.cones[contact]) {
+                (Mode::Separate, _) => {}
+                (_, Cone::Zero) => into.columns.push((normal, contact, [zero, one])),
+                (Mode::Stick, _) => {
+                    into.columns.push((tangential, contact, [one, zero]));
+                    into.columns.push((normal, contact, [zero, one]));
+                }
+                (_, Cone::Finite(mu)) => into.columns.push((normal, contact, [direction * mu, one])),
+                (_, Cone::Infinite) => into.columns.push((normal, contact, [direction, zero])),
+            }
+        }
+        self.expand(into);
+        self.read(modes, into);
+    }
+
+    /// All minors of [A | f] of full height, each without one column, by expansion along one row after the other.
+    fn expand(&self, into: &mut Combination<T>) {
+        let Combination { columns, minors, .. } = into;
+        let unknowns = columns.len();
+        let width = unknowns + 1;
+        minors.clear();
+        minors.resize(1 << width, T::zero());
+        minors[0] = T::one();
+        // A set of columns comes after its subsets, and is as high as it has columns.
+        for set in 1usize..1 << width {
+            let height = set.count_ones() as usize;
+            if height > unknowns {
+                continue;
+            }
+            let row = columns[height - 1].0;
+            let mut sum = T::zero();
+            for (place, column) in (0..width).filter(|column| set >> column & 1 == 1).enumerate() {
+                let entry = if column < unknowns { self.entry(row, columns[column]) } else { self.free[row] };
+                let term = entry * minors[set & !(1 << column)];
+                sum = if (height + place) % 2 == 1 { sum + term } else { sum - term };
+            }
+            minors[set] = sum;
+        }
+    }
+
+    fn read(&self, modes: &[Mode], into: &mut Combination<T>) {
+        let Combination { determinant, numerators, columns, minors } = into;
+        let unknowns = columns.len();
+        let all = (1usize << (unknowns + 1)) - 1;
+        let numerator = |column: usize| {
+            let minor = minors[all & !(1 << column)];
+            if (column + unknowns).is_multiple_of(2) { minor } else { -minor }
+        };
+        let whole = numerator(unknowns);
+        // A row's velocity times det A.
+        let velocity = |row: usize| {
+            let start = self.free[row] * whole;
+            columns.iter().enumerate().fold(start, |sum, (j, &column)| sum + self.entry(row, column) * numerator(j))
+        };
+        numerators.clear();
+        let mut column = 0;
+        for (contact, &mode) in modes.iter().enumerate() {
+            let (tangential, normal) = (2 * contact, 2 * contact + 1);
+            match (mode, self.cones[contact]) {
+                (Mode::Separate, _) => {
+                    numerators.push((Kind::Strict, velocity(normal)));
+                    continue;
+                }
+                (Mode::Stick, Cone::Zero) => {
+                    numerators.push((Kind::Closed, numerator(column)));
+                    numerators.push((Kind::Equal, velocity(tangential)));
+                }
+                (Mode::Stick, cone) => {
+                    let [along, across] = [numerator(column), numerator(column + 1)];
+                    numerators.push((Kind::Closed, across));
+                    if let Cone::Finite(mu) = cone {
+                        let reach = mu * across;
+                        numerators.extend([(Kind::Closed, reach - along), (Kind::Closed, reach + along)]);
+                    }
+                    column += 1;
+                }
+                (Mode::SlidePlus | Mode::SlideMinus, _) => {
+                    let slip = velocity(tangential);
+                    let forward = mode == Mode::SlidePlus;
+                    numerators.push((Kind::Closed, numerator(column)));
+                    numerators.push((Kind::Strict, if forward { slip } else { -slip }));
+                }
+            }
+            column += 1;
+        }
+        *determinant = Some(whole);
+    }
+}
+
+impl<T: Ordered> Combination<T> {
+    /// Whether it is an outcome of every state of the box, or of none; none where that was not shown.
+    pub fn is_valid(&self) -> Option<bool> {
+        let signs = || self.numerators.iter().map(|&(kind, number)| (kind, number.sign()));
+        let has = |wanted: Sign| signs().any(|(kind, sign)| kind != Kind::Equal && sign == wanted);
+        let unequal = |(kind, sign)| kind == Kind::Equal && matches!(sign, Sign::Negative | Sign::Positive);
+        if signs().any(unequal) {
+            // Where det A = 0, a numerator that is not zero says that the equations contradict each other.
+            return Some(false);
+        }
+        let (good, bad) = match self.determinant.map(T::sign) {
+            Some(Sign::Positive) => (Sign::Positive, Sign::Negative),
+            Some(Sign::Negative) => (Sign::Negative, Sign::Positive),
+            // Whatever the sign of det A: one of two opposite numerators has the other sign.
+            _ => return (has(Sign::Positive) && has(Sign::Negative)).then_some(false),
+        };
+        let violated = |(kind, sign): (Kind, Sign)| sign == bad || (kind == Kind::Strict && sign == Sign::Zero);
+        if signs().any(violated) {
+            return Some(false);
+        }
+        let satisfied = |(kind, sign): (Kind, Sign)| match kind {
+            Kind::Equal => sign == Sign::Zero,
+            _ => sign == good || sign == Sign::Zero,
+        };
+        signs().all(satisfied).then_some(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::enumerate::Tableau;
+    use crate::impact::{ContactProblem, Friction};
+    use crate::scalar::Real;
+    use proptest::prelude::*;
+
+    const COUNT: usize = 3;
+
+    fn lists() -> impl Iterator<Item = Vec<Mode>> {
+        (0..64usize).map(|number| (0..COUNT).map(|contact| Mode::ALL[number >> (2 * contact) & 3]).collect())
+    }
+
+    proptest! {
+        /// Against the elimination of the ordinary analysis.
+        #[test]
+        fn numerators_over_the_determinant_are_what_elimination_gives(
+            root in prop::array::uniform32(-1.0..1.0f64), more in prop::array::uniform4(-1.0..1.0f64),
+            before in prop::array::uniform6(-1.0..1.0f64), mu in 0.1..2.0f64,
+        ) {
+            let rows = 2 * COUNT;
+            let root: Vec<f64> = root.into_iter().chain(more).collect();
+            let entry = |i: usize, j: usize| -> f64 {
+                let product: f64 = (0..rows).map(|k| root[i * rows + k] * root[j * rows + k]).sum();
+                product + if i == j { 0.5 } else { 0.0 }
+            };
+            let delassus: Vec<f64> = (0..rows * rows).map(|at| entry(at / rows, at % rows)).collect();
+            let friction = vec![Friction::Finite(mu), Friction::Infinite, Friction::Finite(2.0 * mu)];
+            let cones = vec![Cone::Finite(mu), Cone::Infinite, Cone::Finite(2.0 * mu)];
+            let velocity: Vec<[f64; 2]> = before.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+            let problem = ContactProblem::new(delassus.clone(), velocity, friction.clone(), vec![0.0; COUNT]).unwrap();
+            let ball = crate::scalar::Ball::<f64>::from_f64;
+            let numbers = Numbers {
+                delassus: delassus.into_iter().map(ball).collect(),
+                free: before.into_iter().map(ball).collect(),
+                cones: cones.into_iter().map(|cone| match cone {
+                    Cone::Finite(mu) => Cone::Finite(ball(mu)),
+                    Cone::Infinite => Cone::Infinite,
+                    Cone::Zero => Cone::Zero,
+                }).collect(),
+            };
+            let (mut tableau, mut found) = (Tableau::<f64>::new(), Combination::default());
+            tableau.load(&problem);
+            for modes in lists() {
+                numbers.combine(&modes, &mut found);
+                let leaf = tableau.leaf(&modes);
+                let determinant = found.determinant.unwrap();
+                let product: f64 = leaf.pivots.iter().product();
+                prop_assert!((determinant.mid - product).abs() <= 1e-9 * (1.0 + product.abs()), "{modes:?}");
+                let mut expected = Vec::new();
+                crate::impact::sign::slacks(&leaf, &modes, &friction, |slack| expected.push(slack.number));
+                prop_assert_eq!(expected.len(), found.numerators.len());
+                for (slack, (_, numerator)) in expected.into_iter().zip(&found.numerators) {
+                    // A pivot near zero costs the elimination its digits.
+                    let size = 1.0 + slack.abs() * product.abs();
+                    let least = leaf.pivots.iter().fold(1.0, |least: f64, pivot| least.min(pivot.abs()));
+                    prop_assert!((numerator.mid - slack * product).abs() <= 1e-9 * size / (least * least), "{modes:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn opposite_numerators_reject_across_a_pole() {
+        let wide = |mid: f64| crate::scalar::Ball { mid, radius: 0.1 };
+        let mut found = Combination { determinant: Some(wide(0.0)), ..Combination::default() };
+        found.numerators = vec![(Kind::Closed, wide(1.0)), (Kind::Strict, wide(-1.0))];
+        assert_eq!(found.is_valid(), Some(false));
+        found.numerators[1].1 = wide(1.0);
+        assert_eq!(found.is_valid(), None);
+        found.determinant = Some(wide(1.0));
+        assert_eq!(found.is_valid(), Some(true));
+        found.determinant = Some(wide(-1.0));
+        assert_eq!(found.is_valid(), Some(false));
+    }
+
+    #[test]
+    fn exact_zeros_count_as_the_strict_modes_have_it() {
+        let ball = crate::scalar::Ball::<f64>::from_f64;
+        let mut found = Combination { determinant: Some(ball(1.0)), ..Combination::default() };
+        for (kind, valid) in [(Kind::Closed, true), (Kind::Equal, true), (Kind::Strict, false)] {
+            found.numerators = vec![(kind, ball(0.0))];
+            assert_eq!(found.is_valid(), Some(valid));
+        }
+        found.numerators = vec![(Kind::Equal, ball(-0.5))];
+        assert_eq!(found.is_valid(), Some(false));
+    }
+}
