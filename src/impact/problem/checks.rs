@@ -22,8 +22,8 @@ pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
 /// Diagonal entries of G outside these would let products of two of them underflow or overflow \[1/kg\].
 const SMALLEST_MOBILITY: f64 = 1e-120;
 const LARGEST_MOBILITY: f64 = 1e120;
-/// Beyond this an energy c^2 / G could overflow \[m/s\].
-const LARGEST_SPEED: f64 = 1e90;
+/// Beyond this |c| / sqrt(G) its square, an energy, comes near overflow \[sqrt J\].
+const LARGEST_SPEED: f64 = 1e145;
 
 impl ContactProblem {
     /// Products of two entries of G must stay far from overflow and underflow.
@@ -37,6 +37,14 @@ impl ContactProblem {
                 return Err(Error::new(Reason::OutOfRange { what, allowed, value: diagonal })
                     .hint("choose units of mass and length nearer to the robot's own"));
             }
+            let (before, free) = (self.velocity_before[row / 2][row % 2], self.velocity_free[row / 2][row % 2]);
+            let speed = before.abs().max(free.abs()) / if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
+            if speed > LARGEST_SPEED {
+                let what = format!("velocity_before of contact {}", row / 2);
+                let allowed = "small enough for its energy to be a number";
+                return Err(Error::new(Reason::OutOfRange { what, allowed, value: before })
+                    .hint("choose units of length and time nearer to the robot's own"));
+            }
         }
         Ok(())
     }
@@ -45,11 +53,6 @@ impl ContactProblem {
         for (contact, velocity) in self.velocity_before.iter().enumerate() {
             for &entry in velocity {
                 finite(entry, || format!("velocity_before of contact {contact}"))?;
-                if entry.abs() > LARGEST_SPEED {
-                    let (what, allowed) = (format!("velocity_before of contact {contact}"), "below 1e90 m/s");
-                    return Err(Error::new(Reason::OutOfRange { what, allowed, value: entry })
-                        .hint("choose units of length and time nearer to the robot's own"));
-                }
             }
             for entry in self.velocity_free[contact] {
                 finite(entry, || format!("the velocity of contact {contact} after the applied impulses"))?;
