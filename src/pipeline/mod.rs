@@ -147,6 +147,9 @@ impl<'r> Pipeline<'r> {
         let change = self.applied(scene);
         let problem = self.problem(scene, &contacts, &change)?;
         let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
+        for &entry in &free {
+            finite(entry, || "a velocity after the applied impulses".into())?;
+        }
         let source = Strike {
             robot: self.robot,
             scene,
