@@ -63,10 +63,12 @@ impl Placement {
         Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
     }
 
-    /// How far heights are off by rounding alone: positions are sums of a few terms of this size.
+    /// How far heights are off by rounding alone: they are sums of a few terms of this size. On level ground it does not
+    /// matter how far away the base is.
     fn rounding(&self, size: f64) -> f64 {
         let [x, z] = self.origins.first().copied().unwrap_or_default();
-        16.0 * f64::EPSILON * (size + libm::hypot(x, z))
+        let [along, up] = self.normal();
+        16.0 * f64::EPSILON * (size + (along * x).abs() + (up * z).abs())
     }
 
     fn contact(&self, link: usize, point: Point) -> Contact {
@@ -202,7 +204,12 @@ pub fn detect(
 }
 
 fn detected(robot: &Robot, feet: &Feet, placement: &Placement, tolerance: f64) -> Result<Vec<Contact>> {
-    let tolerance = tolerance + placement.rounding(feet.size());
+    let rounding = placement.rounding(feet.size());
+    if rounding > feet.size() {
+        let reason = format!("the base is so far from the world's origin that heights are rounded by {rounding:.1e} m");
+        return Err(Error::new(Reason::Inconsistent(reason)).hint("move the scene to the world's origin"));
+    }
+    let tolerance = tolerance + rounding;
     let mut contacts: Vec<Contact> = Vec::new();
     for foot in feet.iter() {
         for point in touching(foot, placement, tolerance)? {

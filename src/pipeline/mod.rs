@@ -162,9 +162,18 @@ impl<'r> Pipeline<'r> {
         let kinetic_energy = self.energy_in_range(&velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
+        if !scene.impulses.is_empty() {
+            // They go through M^-1, whose rounding these bounds do not follow.
+            self.bounds.delassus = f64::INFINITY;
+            self.bounds.velocity.fill([f64::INFINITY; 2]);
+        }
 
-        let free = self.applied(scene, &velocity);
-        let problem = self.problem(scene, &contacts, &velocity, &free)?;
+        let change = self.applied(scene);
+        let problem = self.problem(scene, &contacts, &change)?;
+        let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
+        for &entry in &free {
+            finite(entry, || "a velocity after the applied impulses".into())?;
+        }
         let source = Strike {
             robot: self.robot,
             scene,
@@ -176,11 +185,7 @@ impl<'r> Pipeline<'r> {
             resting: &resting,
             friction: problem.friction(),
             restitution: problem.restitution(),
-            errors: Errors {
-                // An applied impulse goes through M^-1, whose rounding these bounds do not follow.
-                delassus: if scene.impulses.is_empty() { self.bounds.delassus } else { f64::INFINITY },
-                velocity: Some(&self.bounds.velocity),
-            },
+            errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
         };
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
         let asked = Asked { explain, prove: !self.options.no_proof };
@@ -381,16 +386,16 @@ impl<'r> Pipeline<'r> {
         }
     }
 
-    /// The velocity by coordinate after the applied impulses.
-    fn applied(&mut self, scene: &Scene, velocity: &[f64]) -> Vec<f64> {
-        let mut free = velocity.to_vec();
+    /// What the applied impulses change in the velocity by coordinate.
+    fn applied(&mut self, scene: &Scene) -> Vec<f64> {
+        let mut change = vec![0.0; self.robot.dofs()];
         for applied in &scene.impulses {
             let link = &self.robot.links[applied.link];
             let arm = self.workspace.rotation[link.body].apply(link.point(applied.offset));
             let Self { plan, workspace, column, .. } = self;
-            add_impulse(plan, workspace, (link.body, arm), applied.vector, column, &mut free);
+            add_impulse(plan, workspace, (link.body, arm), applied.vector, column, &mut change);
         }
-        free
+        change
     }
 
     /// The velocity by coordinate after contact impulses, from the one without them.
@@ -405,13 +410,7 @@ impl<'r> Pipeline<'r> {
         after
     }
 
-    fn problem(
-        &mut self,
-        scene: &Scene,
-        contacts: &[Contact],
-        velocity: &[f64],
-        free: &[f64],
-    ) -> Result<ContactProblem> {
+    fn problem(&mut self, scene: &Scene, contacts: &[Contact], change: &[f64]) -> Result<ContactProblem> {
         let mut friction = Vec::with_capacity(contacts.len());
         for contact in contacts {
             friction.push(scene.friction.of(contact.link).ok_or_else(|| {
@@ -426,9 +425,8 @@ impl<'r> Pipeline<'r> {
         let mut unbraked = before.clone();
         if !scene.impulses.is_empty() {
             // Only the change goes through J, so that a contact at rest before stays exactly so without an impulse.
-            let change: Vec<f64> = free.iter().zip(velocity).map(|(after, before)| after - before).collect();
             for (point, speed) in self.points.iter().zip(&mut unbraked) {
-                let more = point_velocity(&self.plan, point.body, point.arm(&self.workspace), &change, &self.workspace);
+                let more = point_velocity(&self.plan, point.body, point.arm(&self.workspace), change, &self.workspace);
                 *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));
             }
         }

@@ -120,6 +120,9 @@ fn within(value: f64, largest: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
+    if !(value.is_finite() && largest.is_finite()) {
+        return format!("{value:.3e}");
+    }
     let magnitude = libm::log10(largest).floor() as i32;
     let decimals = DIGITS - 1 - magnitude;
     // Too small beside the largest to be seen with its decimals.
@@ -133,6 +136,13 @@ fn within(value: f64, largest: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_no_number_is_written_as_such() {
+        assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(number), ["NaN", "inf", "-inf"]);
+        assert_eq!(within(f64::NAN, 0.0), "NaN");
+        assert_eq!(within(1.0, f64::INFINITY), "1.000e0");
+    }
 
     #[test]
     fn numbers_keep_their_points_below_each_other() {

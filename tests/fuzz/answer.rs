@@ -1,0 +1,151 @@
+//! What every answer must be: finite numbers, a verdict that fits its outcomes, JSON without holes.
+
+use crate::open;
+use heelstrike::impact::{Analysis, Outcome, Verdict};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::report::{Detail, Palette, Report, Subject, text};
+use heelstrike::state::State;
+use heelstrike::{Error, Robot};
+use serde_json::Value;
+
+/// All that can be written of a result.
+pub const ALL: Detail = Detail { explain: true, matrices: true, brief: false };
+
+/// A refusal says something.
+pub fn check_refusal(error: &Error, case: &str) {
+    assert!(!error.reason().to_string().is_empty() && error.to_string().len() < 2_000, "{error}\n{case}");
+}
+
+/// Checks what is told of `contacts` contacts.
+pub fn check_analysis(analysis: &Analysis, contacts: usize, case: &str) {
+    let context = || format!("{analysis:?}\n{case}");
+    let far = open::is_far(case);
+    let outcomes = &analysis.outcomes;
+    for outcome in outcomes {
+        assert_eq!([outcome.modes.len(), outcome.impulse.len(), outcome.velocity_after.len()], [contacts; 3]);
+        let ranges = outcome.impulse_range.iter().flatten().flatten().flatten().flatten();
+        let motion = outcome.impulse.iter().chain(&outcome.velocity_after).flatten();
+        let needed = outcome.friction_needed.iter().flatten();
+        let mut numbers = motion.chain(ranges).chain(needed).chain(&outcome.margin).chain([&outcome.energy_loss]);
+        assert!(far || numbers.all(|number| number.is_finite()), "a number that is none: {}", context());
+        assert!(outcome.decided || !outcome.proven, "proven but not decided: {}", context());
+        assert_eq!(outcome.impulse_unique, outcome.impulse_range.is_none(), "{}", context());
+        if outcome.decided {
+            assert!(far || outcome.margin.is_none_or(|margin| margin >= 0.0), "a negative margin: {}", context());
+            let bare = outcome.border.is_none() && !outcome.family;
+            assert!(bare || outcome.index.is_none(), "an index on a border: {}", context());
+        }
+        if let Some(border) = &outcome.border {
+            assert!(border.at_zero.iter().all(|(contact, _)| *contact < contacts), "{}", context());
+        }
+    }
+    for rejection in &analysis.rejected {
+        let motion = rejection.motion.iter().flat_map(|motion| motion.impulse.iter().chain(&motion.velocity_after));
+        let mut numbers = motion.flatten().chain(&rejection.margin);
+        let finite = numbers.all(|number| number.is_finite());
+        assert!(finite || !open::CHECK_REJECTED, "of {rejection:?}\n{case}");
+    }
+    assert!(far || analysis.condition.is_none_or(f64::is_finite), "{}", context());
+
+    let decided = outcomes.iter().all(|outcome| outcome.decided);
+    let families = outcomes.iter().filter(|outcome| outcome.family).count();
+    assert_eq!(families % 2, 0, "a family has two ends: {}", context());
+    assert_eq!(analysis.proven, decided && outcomes.iter().all(|outcome| outcome.proven), "{}", context());
+    let rests = |outcome: &Outcome| outcome.impulse.iter().flatten().all(|&entry| entry == 0.0);
+    let expected = match &outcomes[..] {
+        _ if contacts == 0 => Verdict::NoContact,
+        _ if !decided => Verdict::Undecided,
+        [] => Verdict::None,
+        [only] if rests(only) => Verdict::NoImpact,
+        [_] => Verdict::Unique,
+        _ => Verdict::Ambiguous,
+    };
+    assert_eq!(analysis.verdict, expected, "{}", context());
+    let holds = outcomes.iter().any(|outcome| outcome.decided && !outcome.modes.iter().any(|mode| mode.slides()));
+    assert_eq!(analysis.no_slip_consistent == Some(true), holds, "{}", context());
+    let indices = outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum::<Option<i32>>();
+    assert_eq!(analysis.index_sum, indices, "{}", context());
+    for (at, outcome) in outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.family) {
+        let twin = outcomes[..at].iter().any(|other| other.modes == outcome.modes && !other.family);
+        assert!(!twin, "listed twice: {}", context());
+    }
+}
+
+/// The index theorem (paper, section 2) for a positive definite Delassus matrix; a border or a family hides indices.
+pub fn keeps_index_theorem(analysis: &Analysis, contacts: usize) -> bool {
+    let hides = |outcome: &Outcome| outcome.border.is_some() || outcome.family || !outcome.decided;
+    let applies = analysis.rank == 2 * contacts && !analysis.outcomes.iter().any(hides);
+    !applies || contacts == 0 || analysis.index_sum == Some(1)
+}
+
+/// Fields that may be null.
+const MAY_BE_NULL: [&str; 10] = [
+    "condition",
+    "explain",
+    "friction_needed",
+    "impulse",
+    "impulse_range",
+    "index",
+    "index_sum",
+    "margin",
+    "no_slip_consistent",
+    "velocity_after",
+];
+
+/// One line of JSON, in which nothing is null that is a number.
+pub fn check_json(line: &[u8], case: &str) {
+    let value: Value = serde_json::from_slice(line).unwrap_or_else(|error| panic!("{error}: {line:?}\n{case}"));
+    assert!(line.ends_with(b"\n") && value.is_object(), "{value}\n{case}");
+    let mut places = vec![("", "", &value)];
+    while let Some((above, field, value)) = places.pop() {
+        match value {
+            Value::Null => {
+                // What a rejected combination would have been may be nothing.
+                let wrong = ["impulse", "velocity_after"].contains(&field) && above != "rejected";
+                let may_be = MAY_BE_NULL.contains(&field) && !wrong;
+                let excused = open::is_far(case) || (above == "rejected" && !open::CHECK_REJECTED);
+                assert!(may_be || excused, "{field} is null: {value}\n{case}");
+            }
+            Value::Array(entries) => places.extend(entries.iter().map(|entry| (above, field, entry))),
+            Value::Object(fields) => places.extend(fields.iter().map(|(key, entry)| (field, key.as_str(), entry))),
+            Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
+        }
+    }
+}
+
+/// Answers a state in kept memory and in fresh, and checks both; false where it is refused.
+pub fn check_state(state: &State, robot: &Robot, kept: &mut Pipeline, options: &Options, case: &str) -> bool {
+    let fresh = Pipeline::new(robot, options.clone()).impact(state);
+    let impact = kept.impact(state);
+    let lines = [&fresh, &impact].map(|impact| {
+        let report = impact.as_ref().map_err(Clone::clone).and_then(|impact| {
+            let report = Report::of_state(robot, state, impact, ALL)?;
+            let mut line = Vec::new();
+            report.append_json(ALL, &mut line);
+            Ok((line, text(&report, &Subject::of_state(robot, state, impact), ALL, &Palette::default())))
+        });
+        report.map_err(|error| error.to_string())
+    });
+    assert_eq!(lines[0], lines[1], "memory that was used before tells another answer\n{case}");
+    match &impact {
+        Err(error) => check_refusal(error, case),
+        Ok(impact) => {
+            let after = impact.velocity_after.iter().flatten();
+            let mut numbers = after.chain(impact.velocity_before.iter().flatten()).chain([&impact.kinetic_energy]);
+            assert!(numbers.all(|number| number.is_finite()) || open::is_far(case), "{impact:?}\n{case}");
+            match &impact.analysis {
+                Ok(analysis) => {
+                    check_analysis(analysis, impact.contacts.len(), case);
+                    let kept = keeps_index_theorem(analysis, impact.contacts.len());
+                    assert!(kept || open::is_far(case), "the indices do not sum to 1: {analysis:?}\n{case}");
+                }
+                Err(error) => check_refusal(error, case),
+            }
+            if let Ok((line, text)) = &lines[0] {
+                check_json(line, case);
+                assert!(!text.is_empty(), "{case}");
+            }
+        }
+    }
+    impact.is_ok_and(|impact| impact.analysis.is_ok())
+}

@@ -1,0 +1,241 @@
+//! States of one robot as text.
+
+use crate::answer::{ALL, check_refusal, check_state};
+use crate::choices::Choices;
+use crate::watch::watched;
+use heelstrike::Robot;
+use heelstrike::documents::{documents, utf8};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::state::{Defaults, State};
+use std::cell::RefCell;
+use std::sync::LazyLock;
+
+crate::target!(any_state_is_answered_or_refused, 5_000, 0.2, check);
+
+static RAMONE: LazyLock<Robot> =
+    LazyLock::new(|| Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a robot"));
+
+/// Words that mean something in a state.
+const WORDS: [&str; 40] = [
+    "id",
+    "position",
+    "velocity",
+    "friction",
+    "restitution",
+    "ground",
+    "stance",
+    "held",
+    "rotor_inertia",
+    "contacts",
+    "loops",
+    "uncertainty",
+    "impulse",
+    "base",
+    "joints",
+    "x",
+    "z",
+    "pitch",
+    "slope",
+    "profile",
+    "default",
+    "link",
+    "offset",
+    "radius",
+    "vector",
+    "infinite",
+    "left_hip",
+    "left_knee",
+    "right_hip",
+    "right_knee",
+    "left_foot",
+    "right_foot",
+    "left_shank",
+    "torso",
+    "null",
+    "1e999",
+    "-0.0",
+    "1e-320",
+    "\\u0000",
+    "é",
+];
+
+pub fn options() -> Options {
+    Options { explain_up_to: 3, matrices: ALL.matrices, ..Options::default() }
+}
+
+thread_local! {
+    static KEPT: RefCell<Pipeline<'static>> = RefCell::new(Pipeline::new(&RAMONE, options()));
+}
+
+fn check(bytes: &[u8]) -> bool {
+    let mut choices = Choices::new(bytes);
+    let text = match choices.below(16) {
+        0 => choices.rest().to_vec(),
+        1..4 => {
+            let text = choices.pick(&[
+                include_str!("../../examples/ramone.json"),
+                include_str!("../../examples/ramone_paper.json"),
+                FULL,
+            ]);
+            choices.mutated(text, &WORDS)
+        }
+        4..6 => {
+            let text = state_of(&RAMONE, &mut choices);
+            choices.mutated(&text, &WORDS)
+        }
+        _ => state_of(&RAMONE, &mut choices).into_bytes(),
+    };
+    let case = String::from_utf8_lossy(&text);
+    watched(&case, || KEPT.with_borrow_mut(|kept| answer(&text, kept, &case)))
+}
+
+/// A state with every field.
+const FULL: &str = r#"{"id": 17, "position": {"base": {"x": 0.1, "z": 0.44, "pitch": 0.2}, "joints": {"left_hip": 0.7, "left_knee": -1.5}},
+ "velocity": {"base": {"x": 0.1, "z": -0.2, "pitch": 1.0}, "joints": {"right_hip": -0.25, "right_knee": 3e-1}},
+ "friction": {"default": 0.8, "left_foot": "infinite"}, "restitution": {"default": 0.25, "right_foot": 1},
+ "ground": {"slope": 0.1}, "held": ["left_hip"], "rotor_inertia": {"left_knee": 0.01},
+ "contacts": [{"link": "left_foot", "offset": [0, 0, -0.1], "radius": 0.02}, {"link": "right_foot"}],
+ "impulse": [{"link": "torso", "offset": [0, 0, 0.1], "vector": [1, -2]}]}"#;
+
+fn answer(bytes: &[u8], kept: &mut Pipeline, case: &str) -> bool {
+    let text = match utf8(bytes) {
+        Ok(text) => text,
+        Err(error) => {
+            check_refusal(&error, case);
+            return false;
+        }
+    };
+    let mut answered = false;
+    for document in documents(text) {
+        match State::from_json(document.text, &RAMONE, &Defaults::default()) {
+            Ok(state) => answered |= check_state(&state, &RAMONE, kept, &options(), case),
+            Err(error) => check_refusal(&document.locate(error), case),
+        }
+    }
+    answered
+}
+
+/// The text of a state of `robot`, mostly a good one.
+pub fn state_of(robot: &Robot, choices: &mut Choices) -> String {
+    let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
+    let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let shaped = robot.links.iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str()).collect();
+    let mut writer = Writer { choices, links, shaped, joints };
+    writer.state()
+}
+
+struct Writer<'c, 'a, 'b> {
+    choices: &'c mut Choices<'b>,
+    links: Vec<&'a str>,
+    /// Those that have shapes.
+    shaped: Vec<&'a str>,
+    joints: Vec<&'a str>,
+}
+
+impl Writer<'_, '_, '_> {
+    fn state(&mut self) -> String {
+        let stance = self.choices.once_in(2);
+        let mut fields = vec![format!("\"friction\": {}", self.by_link(Self::friction))];
+        for name in ["position", "velocity"] {
+            let base = if stance { &["pitch"][..] } else { &["x", "z", "pitch"] };
+            let base = self.some(base);
+            let joints = self.joints.clone();
+            let joints = self.some(&joints);
+            fields.push(format!("\"{name}\": {{\"base\": {base}, \"joints\": {joints}}}"));
+        }
+        if stance {
+            let shaped: Vec<&str> = self.shaped.clone();
+            let mostly = !shaped.is_empty() && !self.choices.once_in(8);
+            let link = if mostly { quoted(self.choices.pick(&shaped)) } else { self.link() };
+            fields.push(format!("\"stance\": {link}"));
+        }
+        if self.choices.once_in(3) {
+            fields.push(format!("\"restitution\": {}", self.by_link(Self::restitution)));
+        }
+        if self.choices.once_in(4) {
+            fields.push(format!("\"ground\": {{\"slope\": {}}}", self.number()));
+        }
+        if self.choices.once_in(4) && !self.joints.is_empty() {
+            let held = self.choices.pick(&self.joints);
+            fields.push(format!("\"held\": [{}]", quoted(held)));
+        }
+        if self.choices.once_in(4) {
+            let joints = self.joints.clone();
+            fields.push(format!("\"rotor_inertia\": {}", self.some(&joints).replace('-', "")));
+        }
+        if !self.choices.once_in(3) {
+            let most = self.choices.pick(&[2, 2, 3, 3, 4]);
+            let contacts: Vec<String> = (0..=self.choices.below(most)).map(|_| self.contact("radius")).collect();
+            fields.push(format!("\"contacts\": [{}]", contacts.join(", ")));
+        }
+        if self.choices.once_in(6) {
+            fields.push(format!("\"impulse\": [{}]", self.contact("vector")));
+        }
+        if self.choices.once_in(16) {
+            let field = self.choices.pick(&WORDS);
+            let value = self.choices.pick(&["null", "[]", "{}", "true", "\"\"", "[[[]]]", "{\"a\": {}}", "1e999"]);
+            fields.push(format!("{}: {value}", quoted(field)));
+        }
+        format!("{{{}}}", fields.join(", "))
+    }
+
+    fn number(&mut self) -> String {
+        match self.choices.below(32) {
+            0..16 => format!("{:?}", self.choices.real()),
+            31 => self.choices.pick(&["1e999", "-0", "1e-400", "0.1e1", "123456789012345678901234567890"]).to_owned(),
+            _ => {
+                let number = self.choices.number();
+                format!("{:?}", if number.is_finite() { number } else { 0.0 })
+            }
+        }
+    }
+
+    fn some(&mut self, names: &[&str]) -> String {
+        let mut entries = Vec::new();
+        for name in names {
+            if !self.choices.once_in(4) {
+                entries.push(format!("{}: {}", quoted(name), self.number()));
+            }
+        }
+        format!("{{{}}}", entries.join(", "))
+    }
+
+    fn link(&mut self) -> String {
+        quoted(self.choices.pick(&self.links))
+    }
+
+    fn friction(&mut self) -> String {
+        match self.choices.below(4) {
+            0 => "\"infinite\"".into(),
+            1 => "0".into(),
+            2 => format!("{:?}", self.choices.real().abs()),
+            _ if self.choices.once_in(8) => self.number(),
+            _ => self.number().trim_start_matches('-').to_owned(),
+        }
+    }
+
+    fn restitution(&mut self) -> String {
+        let own = format!("{:?}", self.choices.real().abs());
+        self.choices.pick(&["0", "1", "0.5", &own, "1e-300"]).to_owned()
+    }
+
+    fn by_link(&mut self, value: fn(&mut Self) -> String) -> String {
+        let all = value(self);
+        if !self.choices.once_in(3) {
+            return all;
+        }
+        format!("{{\"default\": {all}, {}: {}}}", self.link(), value(self))
+    }
+
+    fn contact(&mut self, last: &str) -> String {
+        let (link, offset) = (self.link(), [self.number(), self.number(), self.number()]);
+        let zero = self.choices.once_in(2);
+        let offset = if zero { "[0, 0, 0]".into() } else { format!("[{}]", offset.join(", ")) };
+        let value = if last == "vector" { format!("[{}, {}]", self.number(), self.number()) } else { "0.25".into() };
+        format!("{{\"link\": {link}, \"offset\": {offset}, \"{last}\": {value}}}")
+    }
+}
+
+fn quoted(name: &str) -> String {
+    serde_json::Value::from(name).to_string()
+}
