@@ -26,6 +26,8 @@ use crate::planar::Vector;
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// Roundings in an entry of M or J, per level and body: twice those of step 2.
 const ENTRY: f64 = 96.0;
+/// Divided by the roundoff, it covers the underflow of a few products.
+const UNDERFLOW: f64 = 1e20 * f64::MIN_POSITIVE;
 /// Beyond this the terms of second order are no longer covered.
 const SMALL: f64 = 0.1;
 
@@ -107,7 +109,12 @@ impl Bounds {
         let eta = self.entry_error();
         let stretched = |contact: Arm| {
             let mut sum = 0.0;
-            self.walk(plan, contact, |_, coordinate, arm| sum += arm * velocity[coordinate].abs());
+            self.walk(plan, contact, |_, coordinate, arm| {
+                if velocity[coordinate] != 0.0 {
+                    // A product may underflow, and is off by that at most.
+                    sum += arm * velocity[coordinate].abs() + UNDERFLOW;
+                }
+            });
             sum
         };
         let base = stance.map_or(0.0, |foot| 2.0 * stretched(foot));

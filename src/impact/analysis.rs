@@ -11,6 +11,7 @@ use super::border::border;
 use super::bound::Bounds;
 use super::certify::{Inverse, Layer, Question, Settled, combination, settle};
 use super::enumerate::{Leaf, Tableau, Visitor};
+use super::kernel::Kernel;
 use super::labels::Labels;
 use super::mode::Mode;
 use super::outcome::{Analysis, Because, Effort, Motion, Outcome, Rejection, Verdict};
@@ -191,16 +192,29 @@ impl Question for Open<'_> {
         tableau.load(exact);
         let before = self.open.len();
         let Self { problem, scale, open, coarse, found } = self;
-        open.retain(|(number, modes)| match combination(&mut tableau, exact, problem, scale, modes) {
-            Ok(settled) if found.asked.explain && layer != Layer::Precise && settled.is_vague() => true,
-            Ok(settled) => {
-                if settled.error().is_some_and(|error| error > DIGITS && layer == Layer::Ball) {
-                    coarse.push((*number, modes.clone()));
-                }
-                found.take(*number, modes, problem, settled);
-                false
+        // What the contacts' dependence excludes is not solved for; where it cannot be told, all is.
+        let kernel = T::freeing(|| Kernel::of(exact)).unwrap_or_default();
+        let mut left = layer.combinations();
+        open.retain(|(number, modes)| {
+            if let Some(because) = kernel.excludes(modes) {
+                found.reject(*number, modes, because, None, None);
+                return false;
             }
-            Err(_) => true,
+            if left == 0 {
+                return true;
+            }
+            left -= 1;
+            match T::freeing(|| combination(&mut tableau, exact, problem, scale, modes)) {
+                Ok(settled) if found.asked.explain && layer != Layer::Precise && settled.is_vague() => true,
+                Ok(settled) => {
+                    if settled.error().is_some_and(|error| error > DIGITS && layer == Layer::Ball) {
+                        coarse.push((*number, modes.clone()));
+                    }
+                    found.take(*number, modes, problem, settled);
+                    false
+                }
+                Err(_) => true,
+            }
         });
         layer.count(&mut self.found.effort, before - self.open.len());
         self.open.is_empty()
@@ -220,7 +234,7 @@ impl Question for Coarse<'_> {
         let mut tableau = Tableau::<T>::new();
         tableau.load(exact);
         let Self { problem, scale, coarse, found } = self;
-        coarse.retain(|(number, modes)| match combination(&mut tableau, exact, problem, scale, modes) {
+        coarse.retain(|(number, modes)| match T::freeing(|| combination(&mut tableau, exact, problem, scale, modes)) {
             Ok(settled) if settled.error().is_some_and(|error| error <= DIGITS) => {
                 found.outcomes.retain(|own| own.number != *number);
                 found.take(*number, modes, problem, settled);

@@ -23,6 +23,9 @@ use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Sign};
 /// Digits of the last layers \[bit\].
 const PRECISIONS: [usize; 3] = [256, 1024, 4096];
 
+/// Combinations that are tried in each of them.
+const PRECISE_COMBINATIONS: usize = 2_000;
+
 /// Something to settle about a problem, tried in every layer until it is.
 pub trait Question {
     /// Tries to settle it, and tells whether nothing is left open.
@@ -41,6 +44,15 @@ pub enum Layer {
 }
 
 impl Layer {
+    /// How many combinations it is worth to try in it: many digits of many contacts take longer than anyone waits, and
+    /// what is left is told as undecided.
+    pub fn combinations(self) -> usize {
+        match self {
+            Self::Ball | Self::DoubleDouble => usize::MAX,
+            Self::Precise => PRECISE_COMBINATIONS,
+        }
+    }
+
     /// Counts what this layer settled.
     pub fn count(self, effort: &mut Effort, combinations: usize) {
         match self {

@@ -9,6 +9,7 @@ pub mod certify;
 pub mod enumerate;
 mod generators;
 mod index;
+mod kernel;
 mod labels;
 mod linear;
 pub mod mode;

@@ -119,7 +119,9 @@ impl Scale {
             self.speed = bounces.fold(0.0, f64::max);
         }
         if self.speed == 0.0 {
-            self.speed = 1.0;
+            // Speeds that vanish in the division are no rest: so small a scale leaves them to other numbers than f64.
+            let at_rest = problem.velocity_free().iter().flatten().all(|&c| c == 0.0);
+            self.speed = if at_rest { 1.0 } else { f64::MIN_POSITIVE };
         }
         let noise = errors.velocity.unwrap_or_default().iter().flatten().zip(&self.mobility);
         self.noise = noise.map(|(noise, mobility)| noise / (mobility * self.speed)).fold(0.0, f64::max);

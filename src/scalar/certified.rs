@@ -57,6 +57,10 @@ impl<B: Ordered> Ordered for Certified<B> {
         self.enclosure.to_f64()
     }
 
+    fn freeing<R>(work: impl FnOnce() -> R) -> R {
+        B::freeing(work)
+    }
+
     fn error(self) -> f64 {
         self.enclosure.error()
     }

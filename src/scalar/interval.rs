@@ -213,6 +213,10 @@ impl Ordered for Interval {
         self.value().map_or(f64::NAN, |value| value.mid.to_f64().value())
     }
 
+    fn freeing<R>(work: impl FnOnce() -> R) -> R {
+        Self::scope(STORE.with_borrow(|store| store.bits), work)
+    }
+
     fn error(self) -> f64 {
         self.radius()
     }

@@ -86,6 +86,11 @@ pub trait Ordered: Real {
     /// The nearest f64, or one as near as the number is known; NaN where nothing is known.
     fn to_f64(self) -> f64;
 
+    /// Runs `work` and frees the storage of the numbers that it made, where they have any; none may leave it.
+    fn freeing<R>(work: impl FnOnce() -> R) -> R {
+        work()
+    }
+
     /// How far the number may be from [`Ordered::to_f64`], beside that rounding; infinite where nothing is known.
     fn error(self) -> f64;
 }

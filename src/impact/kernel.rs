@@ -1,0 +1,110 @@
+//! What contacts that depend on each other can never do, whatever the impulses.
+//!
+//! ```text
+//!     z with G z = 0:    z . xi = z . xi_free   for every outcome
+//! ```
+//!
+//! A flat foot's toe and heel move along the ground together; lists of modes that part them are excluded by the signs of z
+//! alone, before anything is solved.
+
+use super::linear::{Unsettled, settled, solve};
+use super::mode::Mode;
+use super::outcome::Because;
+use super::problem::ContactProblem;
+use crate::scalar::Ordered;
+use std::cmp::Ordering;
+
+/// The signs of a basis of the kernel of G.
+#[derive(Debug, Clone, Default)]
+pub struct Kernel {
+    relations: Vec<Relation>,
+}
+
+/// The sum of z_i xi_i is a constant.
+#[derive(Debug, Clone)]
+struct Relation {
+    /// Rows with z_i other than zero, and its sign.
+    terms: Vec<(usize, Ordering)>,
+    constant: Ordering,
+}
+
+impl Kernel {
+    /// Of a problem.
+    pub fn of<T: Ordered>(problem: &ContactProblem<T>) -> Result<Self, Unsettled> {
+        let count = 2 * problem.contacts();
+        let rows =
+            (0..count).map(|i| (0..count).map(|j| problem.delassus(i, j)).chain([T::zero()]).collect()).collect();
+        let Some(solutions) = solve(count, rows)? else { return Ok(Self::default()) };
+        let relation = |z: &Vec<T>| {
+            let mut terms = Vec::new();
+            let mut constant = T::zero();
+            for (row, &entry) in z.iter().enumerate() {
+                let sign = settled(entry)?;
+                if sign.is_ne() {
+                    terms.push((row, sign));
+                    constant = constant + entry * problem.free_row(row);
+                }
+            }
+            Ok(Relation { terms, constant: settled(constant)? })
+        };
+        Ok(Self { relations: solutions.directions.iter().map(relation).collect::<Result<_, _>>()? })
+    }
+
+    /// Why no outcome can have these modes; none where the kernel does not tell.
+    pub fn excludes(&self, modes: &[Mode]) -> Option<Because> {
+        let broken = self.relations.iter().find(|relation| relation.excludes(modes))?;
+        // At rest on both sides the velocity belongs to other modes; else the equations contradict each other.
+        Some(if broken.constant.is_eq() { Because::RedundantTwin } else { Because::NoSolution })
+    }
+}
+
+impl Relation {
+    fn excludes(&self, modes: &[Mode]) -> bool {
+        let mut sum = Ordering::Equal;
+        for &(row, sign) in &self.terms {
+            let moves = match (modes[row / 2], row % 2 == 1) {
+                (Mode::Separate, true) | (Mode::SlidePlus, false) => Ordering::Greater,
+                (Mode::SlideMinus, false) => Ordering::Less,
+                (Mode::Separate, false) => return false,
+                _ => continue,
+            };
+            let term = if moves == sign { Ordering::Greater } else { Ordering::Less };
+            if sum.is_ne() && sum != term {
+                return false;
+            }
+            sum = term;
+        }
+        sum != self.constant
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::Friction;
+    use crate::scalar::{Ball, Certified, Real};
+
+    #[test]
+    fn toe_and_heel_of_a_flat_foot_slide_together_or_not_at_all() {
+        // Mass 1, moment 1, contacts at (-1, -1) and (1, -1) from the CoG: c_t is the same for both.
+        let rows = [[1.0, 0.0, -1.0], [0.0, 1.0, 1.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0]];
+        let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let delassus = rows.iter().flat_map(|a| rows.iter().map(|b| dot(a, b)).collect::<Vec<_>>()).collect();
+        let problem =
+            ContactProblem::new(delassus, vec![[0.5, -1.0], [0.5, -2.0]], vec![Friction::Infinite; 2], vec![0.0; 2])
+                .unwrap();
+        let kernel = Kernel::of(&problem.map(Certified::<Ball>::from_f64)).unwrap();
+        use Mode::{Separate, SlideMinus, SlidePlus, Stick};
+        for (modes, excluded) in [
+            ([SlidePlus, SlidePlus], false),
+            ([Stick, Stick], false),
+            ([SlidePlus, SlideMinus], true),
+            ([SlidePlus, Stick], true),
+            ([Stick, SlideMinus], true),
+            ([Separate, SlideMinus], false),
+        ] {
+            assert_eq!(kernel.excludes(&modes).is_some(), excluded, "{modes:?}");
+        }
+        assert_eq!(kernel.excludes(&[SlidePlus, Stick]), Some(Because::RedundantTwin));
+    }
+}
