@@ -134,8 +134,14 @@ impl<T: Ordered> Combination<'_, T> {
         if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
             return Ok(Judged::Rejected { because: Because::RedundantTwin, margin: None, motion: None });
         }
-        let end = |sign: T| self.end(solutions, &inside, sign);
-        Ok(Judged::Family([end(T::one())?, end(-T::one())?]))
+        let ends = [T::one(), -T::one()].map(|sign| self.end(solutions, &inside, sign));
+        let [greatest, least] = ends;
+        let (greatest, least) = (greatest?, least?);
+        if self.same_velocity(&greatest, &least)? {
+            // What the equations leave free, the inequalities do not.
+            return Ok(Judged::Valid(Member { margin: Some(0.0), ..self.end_member(&greatest)? }));
+        }
+        Ok(Judged::Family([self.end_member(&greatest)?, self.end_member(&least)?]))
     }
 
     fn velocity(&self, solutions: &Solutions<T>, row: usize) -> Affine<T> {
@@ -217,8 +223,19 @@ impl<T: Ordered> Combination<'_, T> {
         best.last().map_or(Ok(false), |&rise| Ok(settled(rise)?.is_gt()))
     }
 
-    /// The end of a family at which its velocities, in the order of the rows, are greatest (`sign` 1) or least (-1).
-    fn end(&self, solutions: &Solutions<T>, inside: &[T], sign: T) -> Result<Member, Unsettled> {
+    /// Whether the only velocities of two spaces are the same.
+    fn same_velocity(&self, one: &Solutions<T>, other: &Solutions<T>) -> Result<bool, Unsettled> {
+        for row in 0..2 * self.modes.len() {
+            if settled(self.velocity(one, row).constant - self.velocity(other, row).constant)?.is_ne() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The end of a family at which its velocities, in the order of the rows, are greatest (`sign` 1) or least (-1): its
+    /// impulses, one of which no inequality forbids as the origin.
+    fn end(&self, solutions: &Solutions<T>, inside: &[T], sign: T) -> Result<Solutions<T>, Unsettled> {
         let mut space = solutions.clone();
         space.origin = solutions.at(inside);
         for row in 0..2 * self.modes.len() {
@@ -235,9 +252,13 @@ impl<T: Ordered> Combination<'_, T> {
             space = space.where_zero(&rest)?.ok_or(Unsettled)?;
             space.origin = point;
         }
-        let modes = self.modes_of(&space)?;
+        Ok(space)
+    }
+
+    fn end_member(&self, space: &Solutions<T>) -> Result<Member, Unsettled> {
+        let modes = self.modes_of(space)?;
         let y = vec![T::zero(); space.directions.len()];
-        let mut member = self.member(&space, modes, &y, T::zero())?;
+        let mut member = self.member(space, modes, &y, T::zero())?;
         (member.index, member.margin) = (None, None);
         Ok(member)
     }

@@ -42,20 +42,19 @@ pub fn check_analysis(analysis: &Analysis, contacts: usize, case: &str) {
     for rejection in &analysis.rejected {
         let motion = rejection.motion.iter().flat_map(|motion| motion.impulse.iter().chain(&motion.velocity_after));
         let mut numbers = motion.flatten().chain(&rejection.margin);
-        let finite = numbers.all(|number| number.is_finite());
-        assert!(finite || !open::CHECK_REJECTED, "of {rejection:?}\n{case}");
+        assert!(numbers.all(|number| number.is_finite()), "of {rejection:?}\n{case}");
     }
     assert!(far || analysis.condition.is_none_or(f64::is_finite), "{}", context());
 
     let decided = outcomes.iter().all(|outcome| outcome.decided);
-    let families = outcomes.iter().filter(|outcome| outcome.family).count();
-    assert_eq!(families % 2, 0, "a family has two ends: {}", context());
-    assert_eq!(analysis.proven, decided && outcomes.iter().all(|outcome| outcome.proven), "{}", context());
+    assert!(!analysis.proven || outcomes.iter().all(|outcome| outcome.proven), "{}", context());
     let rests = |outcome: &Outcome| outcome.impulse.iter().flatten().all(|&entry| entry == 0.0);
     let expected = match &outcomes[..] {
         _ if contacts == 0 => Verdict::NoContact,
         _ if !decided => Verdict::Undecided,
         [] => Verdict::None,
+        // The ends of a family may be too near to each other to be told apart in f64.
+        [only] if only.family => Verdict::Ambiguous,
         [only] if rests(only) => Verdict::NoImpact,
         [_] => Verdict::Unique,
         _ => Verdict::Ambiguous,
@@ -103,7 +102,7 @@ pub fn check_json(line: &[u8], case: &str) {
                 // What a rejected combination would have been may be nothing.
                 let wrong = ["impulse", "velocity_after"].contains(&field) && above != "rejected";
                 let may_be = MAY_BE_NULL.contains(&field) && !wrong;
-                let excused = open::is_far(case) || (above == "rejected" && !open::CHECK_REJECTED);
+                let excused = open::is_far(case);
                 assert!(may_be || excused, "{field} is null: {value}\n{case}");
             }
             Value::Array(entries) => places.extend(entries.iter().map(|entry| (above, field, entry))),

@@ -8,14 +8,8 @@ pub fn is_far(case: &str) -> bool {
     numbers.any(|number| number != 0.0 && !(1e-30..1e30).contains(&number.abs()))
 }
 
-/// A combination that one contact rejects may be told with numbers of the others that are none.
-pub const CHECK_REJECTED: bool = false;
-
-/// An end of a family may be told with the impulse of another velocity.
-pub const CHECK_FAMILIES: bool = false;
-
 /// Numbers settled by a ball have no more digits than it, which an ill-conditioned mass matrix leaves few.
-pub const ROUNDING_OF_DYNAMICS: f64 = 1e-5;
+pub const ROUNDING_OF_DYNAMICS: f64 = 1e-9;
 
 /// The least of several impulses loses digits where one friction is much greater than another.
-pub const ROUNDING_OF_LEAST_IMPULSES: f64 = 1e-6;
+pub const ROUNDING_OF_LEAST_IMPULSES: f64 = 1e-9;

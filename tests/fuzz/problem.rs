@@ -273,7 +273,7 @@ fn answer(case: &Case, json: &str) -> bool {
     if let Some((delassus, before)) = case.rounded()
         && !open::is_far(json)
     {
-        for outcome in analysis.outcomes.iter().filter(|outcome| open::CHECK_FAMILIES || !outcome.family) {
+        for outcome in &analysis.outcomes {
             check_laws(case, &delassus, &before, outcome, json);
         }
     }
