@@ -106,6 +106,15 @@ fn whole_state(bencher: Bencher) {
     bencher.bench_local(|| pipeline.impact(black_box(&state)));
 }
 
+/// The same without bounds of the dynamics' rounding, and so without a proof.
+#[divan::bench]
+fn whole_state_without_proof(bencher: Bencher) {
+    let robot = ramone();
+    let state = state(&robot);
+    let mut pipeline = Pipeline::new(&robot, Options { no_proof: true, ..Options::default() });
+    bencher.bench_local(|| pipeline.impact(black_box(&state)));
+}
+
 /// A state as JSON text to its whole answer.
 #[divan::bench]
 fn whole_state_from_json(bencher: Bencher) {

@@ -72,6 +72,9 @@
 //! # }
 //! ```
 
+#[doc = include_str!("../docs/guarantees.md")]
+pub mod guarantees {}
+
 pub mod error;
 pub mod excerpt;
 pub mod scalar;

@@ -1,6 +1,6 @@
 //! Whether a verdict holds on the box of its state's uncertainty, and a state where it does not.
 
-use super::result::NamedVelocities;
+use super::NamedVelocities;
 use crate::Robot;
 use crate::impact::{Friction, Mode, Verdict};
 use crate::scene::ByLink;

@@ -13,6 +13,7 @@ mod id;
 #[cfg(feature = "accuracy")]
 mod accuracy;
 mod inspection;
+mod outcome;
 #[cfg(feature = "plot")]
 pub mod picture;
 mod problem;
@@ -28,13 +29,11 @@ pub use accuracy::{ADVICE, Accuracy, Compliant};
 pub use holds::{Counterexample, Holds, StateFields};
 pub(crate) use id::short_id;
 pub use inspection::Inspection;
+pub use outcome::{AtZero, Border, NamedVelocities, Outcome, OutcomeInBrief};
 #[cfg(feature = "plot")]
 pub use picture::Picture;
 pub use problem::Problem;
-pub use result::{
-    Brief, Contact, ErrorObject, Explained, LeftOut, NamedVelocities, Outcome, OutcomeInBrief, Refused, Rejected,
-    Report,
-};
+pub use result::{Brief, Contact, ErrorObject, Explained, LeftOut, Refused, Rejected, Report};
 pub use text::{Palette, Subject, text};
 pub use touchdown::{CarriedFields, Touchdown};
 

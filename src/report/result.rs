@@ -4,18 +4,17 @@
 //! singular matrix) are null. Numbers are written with every digit.
 
 use super::holds::{Counterexample, Holds};
+use super::outcome::{Outcome, OutcomeInBrief};
 #[cfg(feature = "schema")]
 use super::schema::Id;
 use super::touchdown::{CarriedFields, Touchdown};
 use super::{Detail, Problem};
-use crate::impact::outcome::{self, Range};
-use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, Zero};
+use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, outcome};
 use crate::pipeline::{Impact, Matrices};
 use crate::planar::Vector;
 use crate::state::State;
 use crate::{Error, Result, Robot, contact};
 use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
 use serde_json::Value;
 use std::borrow::Cow;
 
@@ -121,69 +120,6 @@ pub struct Contact<'a> {
     pub velocity_before: Vector<f64>,
 }
 
-/// A consistent combination of modes.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Outcome<'a> {
-    /// One mode per contact.
-    pub modes: &'a [Mode],
-    /// Contact impulses, [tangential, normal] per contact \[N s\].
-    pub impulse: &'a [Vector<f64>],
-    /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
-    pub velocity_after: &'a [Vector<f64>],
-    /// Velocity of the base after the impact; of a robot that is not bolted to the world.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub base_velocity_after: Option<NamedVelocities<'a>>,
-    /// Rates of the joints after the impact, held ones too; of a robot.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub joint_velocity_after: Option<NamedVelocities<'a>>,
-    /// Kinetic energy that the contacts took \[J\].
-    pub energy_loss: f64,
-    /// False where other impulses give the same velocities.
-    pub impulse_unique: bool,
-    /// Least and greatest of every entry of `impulse`, null where it has no bound; where other impulses give the same
-    /// velocities.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub impulse_range: Option<&'a [Vector<Range>]>,
-    /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others.
-    pub friction_needed: &'a [Option<f64>],
-    /// Sign of det A; null on a border.
-    pub index: Option<i8>,
-    /// The smallest slack of the outcome's inequalities, free of units.
-    pub margin: Option<f64>,
-    /// What is exactly zero, and the lists of modes beyond; on a border only.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub border: Option<Border<'a>>,
-    /// True, and only then present, of an end of a family: every velocity between both ends is an outcome.
-    #[serde(skip_serializing_if = "is_false")]
-    pub family: bool,
-    /// Every sign is shown by an error bound.
-    pub proven: bool,
-    /// False, and only then present, where the combination is neither shown nor excluded.
-    #[serde(skip_serializing_if = "is_true")]
-    pub decided: bool,
-}
-
-/// Where an outcome turns into others.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Border<'a> {
-    /// The impulse inequalities that are exactly zero.
-    pub at_zero: Vec<AtZero<'a>>,
-    /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are combinations.
-    pub neighbours: &'a [Vec<Mode>],
-}
-
-/// An impulse inequality that is zero.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct AtZero<'a> {
-    /// The contact's name.
-    pub contact: &'a str,
-    /// What is zero there.
-    pub inequality: Zero,
-}
-
 /// Something of the robot's file that does not enter the analysis.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -208,20 +144,6 @@ impl<'a> LeftOut<'a> {
             held.map(|name| Self { what: Cow::Owned(format!("joint \"{name}\"")), why: "held: keeps its rate" }),
         );
         all
-    }
-}
-
-/// Velocities by name, written as an object in the order of q.
-#[derive(Debug, Clone)]
-pub struct NamedVelocities<'a>(pub Vec<(&'a str, f64)>);
-
-impl Serialize for NamedVelocities<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, velocity) in &self.0 {
-            map.serialize_entry(name, velocity)?;
-        }
-        map.end()
     }
 }
 
@@ -279,32 +201,6 @@ pub struct Brief<'a> {
     /// Why there are no outcomes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject<'a>>,
-}
-
-fn is_true(flag: &bool) -> bool {
-    *flag
-}
-
-fn is_false(flag: &bool) -> bool {
-    !*flag
-}
-
-/// An outcome in brief.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OutcomeInBrief<'a> {
-    /// One mode per contact.
-    pub modes: &'a [Mode],
-    /// Sign of det A.
-    pub index: Option<i8>,
-    /// The smallest slack of the outcome's inequalities, free of units.
-    pub margin: Option<f64>,
-    /// True, and only then present, where an inequality is exactly zero.
-    #[serde(skip_serializing_if = "is_false")]
-    pub border: bool,
-    /// False, and only then present, where the combination is neither shown nor excluded.
-    #[serde(skip_serializing_if = "is_true")]
-    pub decided: bool,
 }
 
 /// What stands in place of the result of a refused input.
@@ -439,20 +335,13 @@ impl<'a> Report<'a> {
 
     /// The same in brief.
     pub fn brief(&self) -> Brief<'a> {
-        let brief = |outcome: &Outcome<'a>| OutcomeInBrief {
-            modes: outcome.modes,
-            index: outcome.index,
-            margin: outcome.margin,
-            border: outcome.border.is_some(),
-            decided: outcome.decided,
-        };
         Brief {
             id: self.id,
             touchdown: self.touchdown.clone(),
             verdict: self.verdict,
             proven: self.proven,
             holds: self.holds,
-            outcomes: self.outcomes.as_ref().map(|outcomes| outcomes.iter().map(brief).collect()),
+            outcomes: self.outcomes.as_ref().map(|outcomes| outcomes.iter().map(Outcome::brief).collect()),
             error: self.error.clone(),
         }
     }
@@ -477,40 +366,6 @@ impl<'a> Contact<'a> {
 
     fn of_problem(name: &'a str, velocity_before: Vector<f64>) -> Self {
         Self { link: None, name, point: None, normal: None, gap: None, velocity_before }
-    }
-}
-
-impl<'a> Outcome<'a> {
-    fn new(outcome: &'a outcome::Outcome, name: impl Fn(usize) -> &'a str) -> Self {
-        let at_zero = |&(contact, inequality): &(usize, Zero)| AtZero { contact: name(contact), inequality };
-        Self {
-            modes: &outcome.modes,
-            impulse: &outcome.impulse,
-            velocity_after: &outcome.velocity_after,
-            base_velocity_after: None,
-            joint_velocity_after: None,
-            energy_loss: outcome.energy_loss,
-            impulse_unique: outcome.impulse_unique,
-            impulse_range: outcome.impulse_range.as_deref(),
-            friction_needed: &outcome.friction_needed,
-            index: outcome.index,
-            margin: outcome.margin,
-            border: outcome.border.as_ref().map(|border| Border {
-                at_zero: border.at_zero.iter().map(at_zero).collect(),
-                neighbours: &border.neighbours,
-            }),
-            family: outcome.family,
-            proven: outcome.proven,
-            decided: outcome.decided,
-        }
-    }
-
-    /// Names the entries of v after the impact.
-    fn set_velocity_after(&mut self, robot: &'a Robot, velocity: &[f64]) {
-        let mut named = robot.coordinates().zip(velocity.iter().copied());
-        let base: Vec<_> = named.by_ref().take(robot.base_dofs()).collect();
-        self.base_velocity_after = (!base.is_empty()).then_some(NamedVelocities(base));
-        self.joint_velocity_after = Some(NamedVelocities(named.collect()));
     }
 }
 

@@ -118,6 +118,16 @@ fn inspect_tells_what_was_read() {
 }
 
 #[test]
+fn solve_tells_borders_and_families_in_words() {
+    let problems = r#"
+        {"id": "cone edge", "delassus": [[1, 0], [0, 1]], "velocity_before": [[-0.5, -1]], "friction": 0.5, "names": ["tip"]}
+        {"id": "family", "delassus": [[2, 1], [1, 2]], "velocity_before": [[1, 0]], "friction": 2, "names": ["tip"]}"#;
+    let run = heelstrike_reads(&["solve", "-", "--format", "text"], problems);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    insta::assert_snapshot!("solve_borders", run.stdout);
+}
+
+#[test]
 fn solve_tells_three_outcomes_of_a_rod_that_may_jam() {
     let run = heelstrike(&["solve", "examples/problems/painleve_rod.json"]);
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));

@@ -7,8 +7,9 @@
 
 mod inputs;
 
+use super::NamedVelocities;
 use super::holds::{Holds, StateFields};
-use super::result::{Brief, NamedVelocities, Refused, Report};
+use super::result::{Brief, Refused, Report};
 use super::touchdown::CarriedFields;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;

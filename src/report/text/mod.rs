@@ -1,11 +1,15 @@
 //! A result as text: what touched, what happens, why nothing else does.
 
+mod outcome;
+mod reasons;
+
+use self::outcome::graded;
 use super::holds::Holds;
-use super::result::{Contact, Outcome, Report};
+use super::result::{Contact, Report};
 use super::table::{Table, is_residue, number, scale};
 use super::{Detail, Problem};
 use crate::Robot;
-use crate::impact::{Analysis, Because, Friction, Mode, Region, Verdict};
+use crate::impact::{Analysis, Friction, Mode, Region, Verdict};
 use crate::pipeline::Impact;
 use crate::robot::{Axis, Base};
 use crate::state::State;
@@ -183,143 +187,6 @@ impl<'w> Writer<'w> {
         Ok(())
     }
 
-    fn outcome(&mut self, count: usize, outcome: &Outcome) -> std::fmt::Result {
-        if outcome.modes.is_empty() {
-            return Ok(());
-        }
-        let Palette { strong, plain, .. } = *self.palette;
-        let words = self.in_words(outcome.modes);
-        let decided = self.subject.analysis.and_then(|analysis| analysis.outcomes.get(count - 1));
-        let open = if decided.is_some_and(|outcome| !outcome.decided) { ", not excluded" } else { "" };
-        writeln!(self.out, "\n{strong}{count}  {words}{open}{plain}{}", graded(outcome))?;
-
-        let (impulses, speeds) = (scale(outcome.impulse.iter().copied().flatten()), self.speeds());
-        let mut table = Table::default()
-            .text("contact", self.names())
-            .text("mode", outcome.modes.iter().map(Mode::to_string))
-            .numbers("impulse: t [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[0]))
-            .numbers("n [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[1]))
-            .numbers("after: t [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[0]))
-            .numbers("n [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[1]));
-        if outcome.friction_needed.iter().any(Option::is_some) {
-            table = table.numbers("friction needed", 1.0, outcome.friction_needed.iter().copied());
-        }
-        table.write(&mut self.out);
-        self.energy(outcome)?;
-        if !outcome.impulse_unique {
-            self.out.push_str("  other impulses give the same velocities; these are the least\n");
-        }
-        Ok(())
-    }
-
-    fn energy(&mut self, outcome: &Outcome) -> std::fmt::Result {
-        let loss = outcome.energy_loss;
-        if loss == 0.0 {
-            return writeln!(self.out, "  no energy is lost");
-        }
-        let verb = if loss < 0.0 { "gives" } else { "takes" };
-        write!(self.out, "  the ground {verb} {} J", number(loss.abs()))?;
-        if let Some(energy) = self.report.kinetic_energy.filter(|&energy| energy > 0.0 && loss > 0.0) {
-            write!(self.out, ", {:.1} % of the kinetic energy", 100.0 * loss / energy)?;
-        }
-        self.out.push('\n');
-        Ok(())
-    }
-
-    /// v after the impact, one column per outcome.
-    fn velocities(&mut self, outcomes: &[Outcome]) {
-        let Some(first) = outcomes.first().map(named_velocities).filter(|named| !named.is_empty()) else {
-            return;
-        };
-        let mut table = Table::default()
-            .text("velocity after", first.iter().map(|(name, _)| *name))
-            .text("", self.subject.units.iter().copied());
-        let velocities = scale(outcomes.iter().flat_map(named_velocities).map(|(_, velocity)| velocity));
-        for (at, outcome) in outcomes.iter().enumerate() {
-            let head = if outcomes.len() == 1 { String::new() } else { format!("{}", at + 1) };
-            table =
-                table.numbers(&head, velocities, named_velocities(outcome).into_iter().map(|(_, velocity)| velocity));
-        }
-        self.out.push('\n');
-        table.write(&mut self.out);
-    }
-
-    /// One line: how many other combinations there are, and what is wrong with them.
-    fn why_nothing_else(&mut self, outcomes: usize) -> std::fmt::Result {
-        let contacts = self.report.contacts.len();
-        if contacts == 0 || self.report.verdict.is_none() {
-            return Ok(());
-        }
-        // 4^n; the number of contacts is bounded long before this overflows.
-        let others = 4usize.saturating_pow(contacts as u32).saturating_sub(outcomes);
-        let nothing = if outcomes == 0 { "" } else { "Nothing else: " };
-        let fail = if others == 1 { "the other combination of modes fails" } else { "combinations of modes fail" };
-        match (others, outcomes) {
-            (0, _) => return Ok(()),
-            (1, _) => write!(self.out, "\n{nothing}{fail}")?,
-            (_, 0) => write!(self.out, "\nAll {others} {fail}")?,
-            _ => write!(self.out, "\n{nothing}the other {others} {fail}")?,
-        }
-        let reasons = self.counted_reasons();
-        let listed: Vec<String> = match &reasons[..] {
-            [(_, reason)] => vec![format!("because {reason}")],
-            reasons => reasons.iter().map(|(count, reason)| format!("{count} because {reason}")).collect(),
-        };
-        let joint = match reasons.len() {
-            0 => "",
-            1 => " ",
-            _ => ": ",
-        };
-        writeln!(self.out, "{joint}{}.", listed.join(", "))
-    }
-
-    /// What is wrong with the rejected combinations, the most frequent first.
-    fn counted_reasons(&self) -> Vec<(usize, &'static str)> {
-        let mut reasons: Vec<(usize, &str)> = Vec::new();
-        for rejection in self.subject.analysis.map_or(&[][..], |analysis| &analysis.rejected) {
-            let reason = in_general(rejection.because);
-            match reasons.iter_mut().find(|(_, known)| *known == reason) {
-                Some((count, _)) => *count += 1,
-                None => reasons.push((1, reason)),
-            }
-        }
-        reasons.sort_by_key(|&(count, _)| std::cmp::Reverse(count));
-        reasons
-    }
-
-    /// Every rejected combination with what it would have been.
-    fn rejected(&mut self) {
-        let Some(rejected) = self.report.rejected.as_ref().filter(|rejected| !rejected.is_empty()) else {
-            return;
-        };
-        let mut table = Table::default();
-        for (contact, name) in self.names().enumerate() {
-            table = table.text(name, rejected.iter().map(|rejection| rejection.modes[contact].to_string()));
-        }
-        table = table
-            .numbers("margin", 1.0, rejected.iter().map(|rejection| rejection.margin))
-            .text("fails, because", rejected.iter().map(|rejection| rejection.because.as_str()));
-        self.out.push('\n');
-        table.write(&mut self.out);
-
-        self.out.push_str("\n  what each would have been\n");
-        let impulses = scale(rejected.iter().filter_map(|rejection| rejection.impulse).flatten().copied().flatten());
-        let after = rejected.iter().filter_map(|rejection| rejection.velocity_after).flatten().copied().flatten();
-        let speeds = scale(after).max(self.speeds());
-        for (contact, name) in self.names().enumerate() {
-            let impulse = |axis: usize| rejected.iter().map(move |r| r.impulse.map(|list| list[contact][axis]));
-            let after = |axis: usize| rejected.iter().map(move |r| r.velocity_after.map(|list| list[contact][axis]));
-            self.out.push('\n');
-            Table::default()
-                .text(name, rejected.iter().map(|rejection| modes_listed(rejection.modes)))
-                .numbers("impulse: t [N s]", impulses, impulse(0))
-                .numbers("n [N s]", impulses, impulse(1))
-                .numbers("after: t [m/s]", speeds, after(0))
-                .numbers("n [m/s]", speeds, after(1))
-                .write(&mut self.out);
-        }
-    }
-
     /// The paper's section 4 for each contact.
     fn regions(&mut self) {
         match &self.report.explain {
@@ -376,7 +243,8 @@ impl<'w> Writer<'w> {
                 None => write!(self.out, "Contacts: rank {rank} of {}, redundant", 2 * self.report.contacts.len())?,
             }
             let sum = self.report.index_sum.flatten();
-            let sum = sum.map_or("unknown".to_owned(), |sum| sum.to_string());
+            let hidden = if self.report.verdict == Some(Verdict::Undecided) { "unknown" } else { "hidden by a border" };
+            let sum = sum.map_or(hidden.to_owned(), |sum| sum.to_string());
             let proven = if self.report.proven == Some(true) { "proven" } else { "not proven" };
             writeln!(self.out, "; sum of indices {sum}; {proven}.")?;
         }
@@ -418,7 +286,7 @@ fn verdict_sentence(verdict: Verdict, outcomes: usize) -> String {
         Verdict::Ambiguous => format!("{} outcomes are equally valid.", counted(outcomes)),
         Verdict::None => "No outcome is consistent.".to_owned(),
         Verdict::Undecided => {
-            "Undecided: some sign lies within its rounding; what it leaves open is listed.".to_owned()
+            "Undecided: some sign was settled by no precision; what it leaves open is listed.".to_owned()
         }
         Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.".to_owned(),
         Verdict::NoContact => "No contact: the ground gives no impulse.".to_owned(),
@@ -436,38 +304,6 @@ fn verb(mode: Mode) -> &'static str {
         Mode::Stick => "sticks",
         Mode::SlidePlus => "slides forward",
         Mode::SlideMinus => "slides backward",
-    }
-}
-
-/// `: margin 0.0130, index +1`, as far as there are any.
-fn graded(outcome: &Outcome) -> String {
-    let margin = outcome.margin.map(|margin| format!("margin {}", number(margin)));
-    let index = outcome.index.map(|index| format!("index {index:+}"));
-    let grades: Vec<String> = margin.into_iter().chain(index).collect();
-    if grades.is_empty() { String::new() } else { format!("   ({})", grades.join(", ")) }
-}
-
-/// v after an outcome, base and joints.
-fn named_velocities<'a>(outcome: &Outcome<'a>) -> Vec<(&'a str, f64)> {
-    let parts = [&outcome.base_velocity_after, &outcome.joint_velocity_after];
-    parts.into_iter().flatten().flat_map(|part| part.0.iter().copied()).collect()
-}
-
-fn modes_listed(modes: &[Mode]) -> String {
-    modes.iter().map(Mode::to_string).collect::<Vec<_>>().join(", ")
-}
-
-/// A reason without its contact, to stand after `because`.
-fn in_general(because: Because) -> &'static str {
-    match because {
-        Because::Pulled { .. } => "the ground would have to pull",
-        Because::Penetrates { .. } => "a contact would move into the ground",
-        Because::NeedsFriction { .. } => "sticking would need more friction",
-        Because::SlidesBackward { .. } => "a contact would slide against its own direction",
-        Because::FrictionPushes { .. } => "friction would drive the slide",
-        Because::NothingHolds { .. } => "a contact would stick without friction",
-        Because::NoSolution => "the conditions contradict each other",
-        Because::RedundantTwin => "a redundant twin already has that velocity",
     }
 }
 
