@@ -186,6 +186,8 @@ pub enum Because {
     NoSolution,
     /// The velocity belongs to another list of modes, because contacts depend on each other (det A = 0).
     RedundantTwin,
+    /// The velocity belongs to another list of modes: it is on the border between both.
+    OnBorder,
 }
 
 impl Because {
@@ -202,6 +204,7 @@ impl Because {
             Because::NothingHolds { contact } => format!("{} slides and has no friction to stop it", names[contact]),
             Because::NoSolution => "no solution".to_owned(),
             Because::RedundantTwin => "covered by a redundant twin".to_owned(),
+            Because::OnBorder => "has the velocity of other modes, on their border".to_owned(),
         }
     }
 }

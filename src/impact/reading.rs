@@ -82,7 +82,7 @@ fn read<T: Real>(
         let (sign, scaled) = slack(&entry);
         let violated = match sign {
             Sign::Negative => Some(entry.kind.violation(entry.contact)),
-            Sign::Zero if entry.kind.is_strict() => Some(Because::RedundantTwin),
+            Sign::Zero if entry.kind.is_strict() => Some(Because::OnBorder),
             _ => None,
         };
         let least = reading.margin.is_none_or(|margin| scaled < margin);

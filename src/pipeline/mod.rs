@@ -344,8 +344,9 @@ impl<'r> Pipeline<'r> {
         speeds
             .map(|(speed, contact)| {
                 let slow = libm::hypot(speed[0], speed[1]);
-                let snapped = slow > 0.0 && slow < limit;
-                if snapped {
+                // A speed that is zero but for its rounding is one of them.
+                let snapped = limit > 0.0 && slow < limit;
+                if snapped && slow > 0.0 {
                     *speed = [0.0; 2];
                     notes.push(format!(
                         "{} moves at {slow:.1e} m/s and is taken as exactly at rest (resting speed {limit} m/s); the \
@@ -376,7 +377,8 @@ impl<'r> Pipeline<'r> {
         let speeds = self.workspace.contact_velocity.iter().zip(&self.bounds.velocity);
         for (contact, (speed, noise)) in contacts.iter().zip(speeds) {
             let slow = libm::hypot(speed[0], speed[1]);
-            if slow > 0.0 && slow <= libm::hypot(noise[0], noise[1]) {
+            let bound = libm::hypot(noise[0], noise[1]);
+            if bound > 0.0 && slow <= bound {
                 notes.push(format!(
                     "{} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, say so by \
                      `stance` or --resting-speed",

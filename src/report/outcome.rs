@@ -94,9 +94,6 @@ pub struct OutcomeInBrief<'a> {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
-    /// True, and only then present, where an inequality is exactly zero.
-    #[serde(skip_serializing_if = "is_false")]
-    pub border: bool,
     /// False, and only then present, where the combination is neither shown nor excluded.
     #[serde(skip_serializing_if = "is_true")]
     pub decided: bool,
@@ -145,12 +142,6 @@ impl<'a> Outcome<'a> {
 
     /// The same in brief.
     pub(super) fn brief(&self) -> OutcomeInBrief<'a> {
-        OutcomeInBrief {
-            modes: self.modes,
-            index: self.index,
-            margin: self.margin,
-            border: self.border.is_some(),
-            decided: self.decided,
-        }
+        OutcomeInBrief { modes: self.modes, index: self.index, margin: self.margin, decided: self.decided }
     }
 }

@@ -25,12 +25,14 @@ pub(crate) struct Cell {
     pub quantities: Vec<Quantity>,
     /// Least and greatest value of each.
     pub ends: Vec<[f64; 2]>,
+    /// The f64 nearest to both ends of the whole box that lie in it: half-widths are meant exactly, and `ends` cover them.
+    inner: Vec<[f64; 2]>,
 }
 
 impl Cell {
     /// The whole box of a state whose contacts are on `links`.
     pub fn new(robot: &Robot, state: &State, uncertainty: &Uncertainty, links: &[usize]) -> Self {
-        let mut cell = Self { quantities: Vec::new(), ends: Vec::new() };
+        let mut cell = Self { quantities: Vec::new(), ends: Vec::new(), inner: Vec::new() };
         let base = robot.base_dofs();
         // Nothing depends on where the base is, and with a stance its velocity follows from the rest.
         let placed = robot.base == Base::Floating;
@@ -62,17 +64,20 @@ impl Cell {
     }
 
     fn add(&mut self, quantity: Quantity, value: f64, width: f64, least: f64) {
-        let ends = [(value - width).max(least), value + width];
+        let [(low, above), (high, below)] = [around(value, -width), around(value, width)];
+        let ends = [low.max(least), high];
         if ends[0] < ends[1] {
             self.quantities.push(quantity);
             self.ends.push(ends);
+            self.inner.push([above.max(least), below]);
         }
     }
 
     /// The middle of the quantity's interval, within it.
     pub fn middle(&self, index: usize) -> f64 {
         let [low, high] = self.ends[index];
-        (low + (high - low) / 2.0).clamp(low, high)
+        let [least, greatest] = self.inner[index];
+        (low + (high - low) / 2.0).clamp(low, high).max(least).min(greatest)
     }
 
     /// The middle of every interval.
@@ -84,8 +89,8 @@ impl Cell {
     /// middle where it is zero or not told.
     pub fn corner(&self, direction: &[f64]) -> Vec<f64> {
         let towards = |(index, &[low, high]): (usize, &[f64; 2])| match direction.get(index) {
-            Some(&along) if along > 0.0 => high,
-            Some(&along) if along < 0.0 => low,
+            Some(&along) if along > 0.0 => high.min(self.inner[index][1]),
+            Some(&along) if along < 0.0 => low.max(self.inner[index][0]),
             _ => self.middle(index),
         };
         self.ends.iter().enumerate().map(towards).collect()
@@ -168,12 +173,28 @@ impl Cell {
     }
 }
 
+/// The f64 nearest to `value` + `shift`, first beyond it and then short of it, seen from `value`; the same where it is one.
+fn around(value: f64, shift: f64) -> (f64, f64) {
+    let sum = value + shift;
+    // Knuth's two-sum: what the rounded sum misses.
+    let part = sum - value;
+    let missing = (value - (sum - part)) + (shift - part);
+    let onward = |number: f64| if shift > 0.0 { number.next_up() } else { number.next_down() };
+    let back = |number: f64| if shift > 0.0 { number.next_down() } else { number.next_up() };
+    match missing * shift.signum() {
+        missing if missing > 0.0 => (onward(sum), sum),
+        missing if missing < 0.0 => (sum, back(sum)),
+        _ => (sum, sum),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn cell() -> Cell {
-        Cell { quantities: vec![Quantity::Position(2), Quantity::Friction(0)], ends: vec![[1.0, 3.0], [0.0, 0.5]] }
+        let ends = vec![[1.0, 3.0], [0.0, 0.5]];
+        Cell { quantities: vec![Quantity::Position(2), Quantity::Friction(0)], inner: ends.clone(), ends }
     }
 
     #[test]
@@ -183,10 +204,21 @@ mod tests {
     }
 
     #[test]
+    fn the_box_is_covered_and_its_corners_lie_in_it() {
+        // 1.3229729102424725 + 0.05 is no f64: the nearest lies above it.
+        let (value, width) = (1.322_972_910_242_472_5, 0.05);
+        let (beyond, short) = around(value, width);
+        assert_eq!(beyond, short.next_up());
+        assert!(beyond - value > width || short - value <= width);
+        assert_eq!(around(1.0, -0.5), (0.5, 0.5));
+    }
+
+    #[test]
     fn halves_cover_the_whole_and_end_where_f64_ends() {
         let [left, right] = cell().halves(0).expect("a wide interval");
         assert_eq!((left.ends[0], right.ends[0]), ([1.0, 2.0], [2.0, 3.0]));
-        let thin = Cell { quantities: vec![Quantity::Position(2)], ends: vec![[1.0, 1.0f64.next_up()]] };
+        let ends = vec![[1.0, 1.0f64.next_up()]];
+        let thin = Cell { quantities: vec![Quantity::Position(2)], inner: ends.clone(), ends };
         assert_eq!(thin.halves(0), None);
     }
 

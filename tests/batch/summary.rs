@@ -73,3 +73,14 @@ fn a_summary_that_cannot_be_written_is_told_before_the_work() {
     assert_eq!((run.status, run.stdout.len()), (1, 0));
     assert!(run.stderr.starts_with("error: the output cannot be written: nowhere/at/all.json: "), "{}", run.stderr);
 }
+
+/// The walk of the README: a foot that stands rests, also where its speed is zero by rounding alone.
+#[test]
+fn the_example_s_walk_has_its_two_touchdowns() {
+    let arguments = ["examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9", "--brief"];
+    let binary = std::path::Path::new(env!("CARGO_BIN_EXE_heelstrike"));
+    let run = std::process::Command::new(binary).args(["batch", "urdf/ramone.urdf"]).args(arguments).output();
+    let told = String::from_utf8(run.expect("it runs").stderr).expect("UTF-8");
+    assert!(told.contains("102 states: 2 unique, 100 without impact\n"), "{told}");
+    assert!(told.contains("smallest margins: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)\n"), "{told}");
+}

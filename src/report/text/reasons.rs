@@ -94,6 +94,7 @@ fn in_general(because: Because) -> &'static str {
         Because::NothingHolds { .. } => "a contact would stick without friction",
         Because::NoSolution => "the conditions contradict each other",
         Because::RedundantTwin => "a redundant twin already has that velocity",
+        Because::OnBorder => "its velocity is that of other modes, on their border",
     }
 }
 
