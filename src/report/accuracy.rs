@@ -167,6 +167,9 @@ fn many(out: &mut String, studies: &[Study], Palette { strong, plain, .. }: &Pal
         table = table.text(head, studies.iter().map(cell));
     }
     table.write(out);
+    for (study, error) in studies.iter().filter_map(|study| Some((study, study.refused.as_ref()?))) {
+        let _ = writeln!(out, "  {}: {error}", study.name);
+    }
     let _ = writeln!(out, "\n{strong}By method{plain}, over all cases:\n");
     let mut methods: Vec<&Method> = Vec::new();
     for method in studies.iter().flat_map(|study| &study.methods).filter(|method| method.time.is_some()) {

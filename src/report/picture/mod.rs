@@ -63,6 +63,8 @@ pub enum Mark {
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
 pub const COLOURS: [&str; 8] = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7"];
 
+/// What a mark takes of an axis that spans all points, on either side.
+const MARK: f64 = 0.02;
 const FONT: &[u8] = include_bytes!("DejaVuSans.ttf");
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 560.0;
@@ -126,8 +128,12 @@ impl Picture {
     /// First and last exponent of a logarithmic axis and the step between its ticks.
     fn powers(&self, pick: fn(&(f64, f64)) -> f64) -> (f64, f64, f64) {
         let exponents: Vec<f64> = self.series.iter().flat_map(|series| self.drawn(series)).map(|p| pick(&p)).collect();
-        let low = exponents.iter().copied().fold(f64::INFINITY, f64::min).floor();
-        let high = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil().max(low + 1.0);
+        let least = exponents.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // No mark lies on an axis.
+        let room = MARK * (most - least);
+        let low = (least - room).floor();
+        let high = (most + room).ceil().max(low + 1.0);
         let step = match high - low {
             span if span <= 8.0 => 1.0,
             span if span <= 16.0 => 2.0,
