@@ -59,6 +59,7 @@ pub fn chain(links: usize) -> Robot {
         joints: (0..tip).map(|index| hinge(format!("joint {index}"), index, index + 1, [0.0, -1.0])).collect(),
         links: vec![point_foot("near end".into(), 0, [0.0; 2]), point_foot("far end".into(), tip, [0.0, -1.0])],
         left_out: Vec::new(),
+        reading: Default::default(),
     }
 }
 

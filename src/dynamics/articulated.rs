@@ -346,6 +346,7 @@ mod tests {
             joints: (0..links - 1).map(joint).collect(),
             links: Vec::new(),
             left_out: Vec::new(),
+            reading: Default::default(),
         }
     }
 

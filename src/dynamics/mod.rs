@@ -71,6 +71,7 @@ mod tests {
                 joints: Vec::new(),
                 links: Vec::new(),
                 left_out: Vec::new(),
+                reading: Default::default(),
             };
             for (parent, origin, axis, mass, com, moment) in parts {
                 let parent = parent.index(robot.bodies.len());

@@ -254,14 +254,12 @@ fn link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
 
 pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.joints.iter().map(|joint| joint.name.as_str());
-    robot.joint(name).ok_or_else(|| {
-        let what = format!("joint \"{name}\"");
-        match robot.left_out.iter().find(|left| left.what == what) {
-            Some(left) => {
-                node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", left.why)))
-            }
-            None => unknown_name(node, "joint", name, known()),
+    robot.joint(name).ok_or_else(|| match robot.held(name) {
+        Some(held) => {
+            let reason = format!("joint \"{name}\" has no coordinate: {}", held.why());
+            node.refuse_name(name, Reason::Inconsistent(reason))
         }
+        None => unknown_name(node, "joint", name, known()),
     })
 }
 
