@@ -11,9 +11,9 @@
 
 use super::composite::{Part, composite};
 use super::outline::outline;
-use super::{Axis, Base, Body, FootShape, Joint, LeftOut, Link, Robot};
+use super::{Axis, Base, Body, Follower, FootShape, Joint, LeftOut, Link, Mover, Robot};
 use crate::description::{
-    self, Collision, Description, Geometry, Ignored, Inertial, JointKind, Matrix, Pose, apply, product,
+    self, Collision, Description, Geometry, Ignored, Inertial, JointKind, Matrix, Mimic, Pose, apply, product,
 };
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
@@ -38,15 +38,15 @@ impl Robot {
     /// are welded. All that does not enter is told in [`Robot::left_out`].
     ///
     /// # Errors
-    /// [`Reason::Unsupported`] for a joint off the plane, one that follows another (mimic), and planar, floating and
-    /// spherical ones; [`Reason::OutOfRange`] for a negative moment of inertia about the normal; [`Reason::Inconsistent`]
+    /// [`Reason::Unsupported`] for a joint off the plane, one that follows a follower or a fixed joint, and planar, floating
+    /// and spherical ones; [`Reason::OutOfRange`] for a negative moment of inertia about the normal; [`Reason::Inconsistent`]
     /// where nothing that moves has mass; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, base: Option<Base>) -> Result<Self> {
         let base = base.unwrap_or(Base::Floating);
-        description.joints.iter().try_for_each(refuse_unhandled)?;
-        let Tree { bodies, joints, places, mut left_out } = Tree::place(description)?;
-        let mut robot =
-            Self { name: description.name.clone(), base, bodies, joints, links: Vec::new(), left_out: Vec::new() };
+        description.joints.iter().try_for_each(|joint| refuse_unhandled(joint, description))?;
+        let Tree { bodies, joints, followers, places, mut left_out } = Tree::place(description)?;
+        let name = description.name.clone();
+        let mut robot = Self { name, base, bodies, joints, followers, links: Vec::new(), left_out: Vec::new() };
 
         let mut parts = vec![Vec::new(); robot.bodies.len()];
         for (link, place) in description.links.iter().zip(&places) {
@@ -75,20 +75,24 @@ impl Robot {
 }
 
 /// Refuses joints of a kind that is not handled yet.
-fn refuse_unhandled(joint: &description::Joint) -> Result<()> {
+fn refuse_unhandled(joint: &description::Joint, description: &Description) -> Result<()> {
     let kind = match joint.kind {
         JointKind::Fixed => return Ok(()),
         JointKind::Planar => "planar",
         JointKind::Floating => "floating",
         JointKind::Spherical => "spherical",
-        _ if joint.mimic.is_some() => "mimic",
-        _ => return Ok(()),
+        _ => {
+            let leader = joint.mimic.as_ref().map(|mimic| &description.joints[mimic.joint]);
+            let Some(leader) = leader.filter(|leader| leader.mimic.is_some() || leader.kind == JointKind::Fixed) else {
+                return Ok(());
+            };
+            let reason = format!("it follows joint \"{}\", which has no coordinate of its own", leader.name);
+            let error = joint.refuse(Reason::Unsupported(reason));
+            return Err(error.hint("remove <mimic> to let the joint move freely, or make it fixed"));
+        }
     };
     let error = joint.refuse(Reason::Unsupported(format!("{kind} joints are not handled yet")));
-    Err(match joint.mimic {
-        Some(_) => error.hint("remove <mimic> to let the joint move freely, or make it fixed"),
-        None => error.hint("make it fixed, or replace it by revolute and prismatic joints"),
-    })
+    Err(error.hint("make it fixed, or replace it by revolute and prismatic joints"))
 }
 
 /// A link's frame in its body's frame, in three dimensions and with the root's axes.
@@ -111,6 +115,7 @@ impl Place {
 struct Tree {
     bodies: Vec<Body>,
     joints: Vec<Joint>,
+    followers: Vec<Follower>,
     places: Vec<Place>,
     left_out: Vec<LeftOut>,
 }
@@ -127,7 +132,7 @@ impl Tree {
         // The coordinate of each moving joint.
         let mut moving = 0;
         let coordinates = joints.iter().map(|joint| {
-            (joint.kind != JointKind::Fixed).then(|| {
+            (joint.kind != JointKind::Fixed && joint.mimic.is_none()).then(|| {
                 moving += 1;
                 moving - 1
             })
@@ -138,6 +143,7 @@ impl Tree {
         let mut places = vec![at_root; links.len()];
         let mut bodies = vec![Body::of(&links[*root].name, None)];
         let mut reduced: Vec<(usize, Joint)> = Vec::with_capacity(moving);
+        let mut followers: Vec<(usize, Follower)> = Vec::new();
         let mut welds: Vec<(usize, LeftOut)> = Vec::new();
         let mut waiting = hanging[*root].clone();
         while let Some(index) = waiting.pop() {
@@ -145,17 +151,26 @@ impl Tree {
             let parent = &places[joint.parent];
             let (body, origin) = (parent.body, parent.point(&joint.origin));
             let rotation = product(&parent.rotation, &joint.origin.rotation());
-            places[joint.child] = match coordinates[index] {
-                None => {
+            places[joint.child] = match (coordinates[index], &joint.mimic) {
+                (None, None) => {
                     welds.push((index, weld(joint, &bodies[body].name)));
                     Place { body, rotation, offset: origin }
                 }
-                Some(coordinate) => {
+                (coordinate, mimic) => {
                     let (axis, note) = planar_axis(joint, &rotation)?;
                     welds.extend(note.map(|note| (index, note)));
                     let (name, child) = (joint.name.clone(), bodies.len());
-                    bodies.push(Body::of(&links[joint.child].name, Some(coordinate)));
-                    reduced.push((coordinate, Joint { name, parent: body, child, origin: in_plane(origin), axis }));
+                    let (parent, origin) = (body, in_plane(origin));
+                    let leader = mimic.as_ref().and_then(|mimic| Some((coordinates[mimic.joint]?, mimic)));
+                    // The follower's place among the others is known once all are.
+                    let mover = coordinate.map_or(Mover::Follower(index), Mover::Joint);
+                    bodies.push(Body::of(&links[joint.child].name, Some(mover)));
+                    if let Some(coordinate) = coordinate {
+                        reduced.push((coordinate, Joint { name, parent, child, origin, axis }));
+                    } else if let Some((leader, &Mimic { multiplier, offset, .. })) = leader {
+                        let follower = Follower { name, leader, multiplier, offset, parent, child, origin, axis };
+                        followers.push((index, follower));
+                    }
                     Place { body: child, rotation, offset: [0.0; 3] }
                 }
             };
@@ -163,10 +178,15 @@ impl Tree {
         }
 
         reduced.sort_by_key(|(coordinate, _)| *coordinate);
+        followers.sort_by_key(|(index, _)| *index);
+        for (place, (_, follower)) in followers.iter().enumerate() {
+            bodies[follower.child].joint = Some(Mover::Follower(place));
+        }
         welds.sort_by_key(|(index, _)| *index);
         Ok(Self {
             bodies,
             joints: reduced.into_iter().map(|(_, joint)| joint).collect(),
+            followers: followers.into_iter().map(|(_, follower)| follower).collect(),
             places,
             left_out: welds.into_iter().map(|(_, weld)| weld).collect(),
         })
@@ -175,7 +195,7 @@ impl Tree {
 
 impl Body {
     /// A body that still weighs nothing.
-    fn of(link: &str, joint: Option<usize>) -> Self {
+    fn of(link: &str, joint: Option<Mover>) -> Self {
         Self { name: link.into(), joint, mass: 0.0, com: [0.0; 2], moment: 0.0 }
     }
 }
@@ -300,6 +320,9 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
     }
     for joint in &robot.joints {
         refuse("the place at zero", &joint.origin, description::joint_place(&joint.name))?;
+    }
+    for follower in &robot.followers {
+        refuse("the place at zero", &follower.origin, description::joint_place(&follower.name))?;
     }
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;
