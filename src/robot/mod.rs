@@ -53,8 +53,10 @@ pub struct Robot {
     pub base: Base,
     /// Rigid bodies; a parent comes before its children, the root is 0.
     pub bodies: Vec<Body>,
-    /// Moving joints in the file's order: joint `k` is coordinate `base_dofs + k`.
+    /// Joints that move independently, in the file's order: joint `k` is coordinate `base_dofs + k`.
     pub joints: Vec<Joint>,
+    /// Joints that follow one of these (mimic), in the file's order; they have no coordinate of their own.
+    pub followers: Vec<Follower>,
     /// The links of the file, in its order; without those that are the base itself.
     pub links: Vec<Link>,
     /// What of the file does not enter the analysis, and why.
@@ -68,8 +70,8 @@ pub struct Robot {
 pub struct Body {
     /// The link that carries the body's frame.
     pub name: String,
-    /// The joint that moves the body (an index into [`Robot::joints`]); none for the root.
-    pub joint: Option<usize>,
+    /// What moves the body; none for the root.
+    pub joint: Option<Mover>,
     /// Mass \[kg\].
     pub mass: f64,
     /// CoG in the body's frame \[m\].
@@ -78,11 +80,41 @@ pub struct Body {
     pub moment: f64,
 }
 
+/// What moves a body against its parent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mover {
+    /// A joint with a coordinate of its own: an index into [`Robot::joints`].
+    Joint(usize),
+    /// One that follows another: an index into [`Robot::followers`].
+    Follower(usize),
+}
+
 /// A joint that moves in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Name in the file.
     pub name: String,
+    /// The body it hangs on (an index into [`Robot::bodies`]).
+    pub parent: usize,
+    /// The body it moves.
+    pub child: usize,
+    /// Its origin in the parent body's frame, at coordinate zero \[m\].
+    pub origin: Vector<f64>,
+    /// Its motion.
+    pub axis: Axis,
+}
+
+/// A joint that follows another: q = multiplier q_leader + offset (URDF's mimic).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Follower {
+    /// Name in the file.
+    pub name: String,
+    /// The joint that it follows (an index into [`Robot::joints`]).
+    pub leader: usize,
+    /// How much it moves for a unit of its leader \[1, m/rad, rad/m\].
+    pub multiplier: f64,
+    /// Its coordinate where the leader's is zero \[rad, m\].
+    pub offset: f64,
     /// The body it hangs on (an index into [`Robot::bodies`]).
     pub parent: usize,
     /// The body it moves.
@@ -195,6 +227,20 @@ impl Robot {
             .into_iter()
             .take(self.base_dofs())
             .chain(self.joints.iter().map(|joint| joint.name.as_str()))
+    }
+
+    /// The body on which what moves a body hangs, its origin in that body's frame at coordinate zero \[m\], and its motion.
+    pub fn hinge(&self, mover: Mover) -> (usize, Vector<f64>, Axis) {
+        match mover {
+            Mover::Joint(joint) => {
+                let Joint { parent, origin, axis, .. } = self.joints[joint];
+                (parent, origin, axis)
+            }
+            Mover::Follower(follower) => {
+                let Follower { parent, origin, axis, .. } = self.followers[follower];
+                (parent, origin, axis)
+            }
+        }
     }
 
     /// Mass of all that can move: of a bolted robot without the root body \[kg\].

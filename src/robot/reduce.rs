@@ -40,9 +40,8 @@ impl Robot {
     /// What was found and why is told in [`Robot::reading`], all that does not enter in [`Robot::left_out`].
     ///
     /// # Errors
-    /// [`Reason::Unsupported`] for a joint in the plane that follows another one (mimic); [`Reason::Inconsistent`] for joints
-    /// that follow each other in a circle, for a held one that has no value, and where nothing that moves has mass;
-    /// [`Reason::OutOfRange`] for a negative moment of inertia about the normal; [`Reason::NotFinite`] where sizes or masses
+    /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be held at a value, and
+    /// where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the normal; [`Reason::NotFinite`] where sizes or masses
     /// add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         let posture = Posture::new(description, &reduction.hold)?;
@@ -51,12 +50,12 @@ impl Robot {
         let found = base::judge(description, &mut roles, reduction.base);
         let tree = {
             let rotation = product(&plane.axes(), &posture.rotations[found.root]);
-            Tree::grow(description, &posture, &roles, found.root, rotation)?
+            Tree::grow(description, &posture, &roles, found.root, rotation)
         };
 
         let held = held(description, &roles, &tree, &found);
         let mut cautions: Vec<String> = found.caution.into_iter().collect();
-        cautions.extend(caution::about_held(&held, tree.joints.len()));
+        cautions.extend(caution::about_held(&held, tree.joints.len() + tree.followers.len()));
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
         let reading = Reading {
             plane,
@@ -74,6 +73,7 @@ impl Robot {
             reading,
             bodies: tree.bodies,
             joints: tree.joints,
+            followers: tree.followers,
             links: Vec::new(),
         };
 
@@ -158,10 +158,11 @@ fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, readi
     for (index, joint) in description.joints.iter().enumerate() {
         if let Some(held) = held.next_if(|held| held.name == joint.name) {
             all.push(left_out::held(held));
-        } else if let (Role::Moves { tilt, .. }, Ok(_)) = (&roles[index], tree.sources.binary_search(&index))
-            && *tilt > 0.0
+        } else if let Role::Moves { tilt, .. } = roles[index]
+            && tilt > 0.0
+            && tree.places[joint.parent].is_some()
         {
-            all.push(left_out::tilted(joint, *tilt));
+            all.push(left_out::tilted(joint, tilt));
         }
     }
     all.extend(left_out::outside(reading));
@@ -204,6 +205,9 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
     }
     for joint in &robot.joints {
         refuse("the place at zero", &joint.origin, description::joint_place(&joint.name))?;
+    }
+    for follower in &robot.followers {
+        refuse("the place at zero", &follower.origin, description::joint_place(&follower.name))?;
     }
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;

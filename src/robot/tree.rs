@@ -12,9 +12,8 @@
 
 use super::posture::{Posture, held_shift, held_turn};
 use super::role::Role;
-use super::{Body, Joint};
-use crate::description::{Description, Matrix, Pose, apply, product};
-use crate::error::{Reason, Result};
+use super::{Body, Follower, Joint, Mover};
+use crate::description::{Description, Matrix, Mimic, Pose, apply, product};
 use crate::planar::Vector;
 
 /// A link's frame in its body's frame, in three dimensions and with the plane's axes: forward, normal, up.
@@ -48,10 +47,8 @@ impl Place {
 /// Bodies and joints, still without inertia, and the places of all links.
 pub(super) struct Tree {
     pub(super) bodies: Vec<Body>,
-    /// The moving joints, in the file's order.
     pub(super) joints: Vec<Joint>,
-    /// The joint of the file that each of `joints` is.
-    pub(super) sources: Vec<usize>,
+    pub(super) followers: Vec<Follower>,
     /// The place of each link; none for those that do not hang on the root.
     pub(super) places: Vec<Option<Place>>,
 }
@@ -65,37 +62,41 @@ impl Tree {
         roles: &[Role],
         root: usize,
         rotation: Matrix,
-    ) -> Result<Self> {
+    ) -> Self {
         let links = &description.links;
-        // The coordinate of each moving joint.
         let outward = description.outward_from(root);
-        let mut sources: Vec<usize> =
-            outward.iter().copied().filter(|&index| !matches!(roles[index], Role::Held(_))).collect();
-        sources.sort_unstable();
-        let mut coordinates = vec![None; roles.len()];
-        for (coordinate, &index) in sources.iter().enumerate() {
-            coordinates[index] = Some(coordinate);
+        // What each joint of the file moves with: coordinates and followers are numbered in its order.
+        let mut movers = vec![None; roles.len()];
+        let (mut coordinates, mut followers) = (0, 0);
+        let mut in_the_tree = outward.clone();
+        in_the_tree.sort_unstable();
+        for index in in_the_tree {
+            match roles[index] {
+                Role::Moves { leader: None, .. } => movers[index] = Some(Mover::Joint(next(&mut coordinates))),
+                Role::Moves { leader: Some(_), .. } => movers[index] = Some(Mover::Follower(next(&mut followers))),
+                Role::Held(_) | Role::Free => {}
+            }
         }
 
         let mut places = vec![None; links.len()];
         places[root] = Some(Place { body: 0, rotation, offset: [0.0; 3] });
         let mut bodies = vec![Body::of(&links[root].name, None)];
-        let mut joints: Vec<(usize, Joint)> = Vec::with_capacity(sources.len());
+        let (mut joints, mut following) = (Vec::with_capacity(coordinates), Vec::with_capacity(followers));
         for index in outward {
             let joint = &description.joints[index];
             // Outward: the parent's place is known.
             let Some(parent) = &places[joint.parent] else { continue };
             let at = parent.frame(&joint.origin);
-            let child = match (&roles[index], coordinates[index]) {
-                (Role::Moves { axis, leader, .. }, Some(coordinate)) => {
-                    if leader.is_some() {
-                        let refused = joint.refuse(Reason::Unsupported("mimic joints are not handled yet".into()));
-                        return Err(refused.hint("remove <mimic> to let the joint move freely, or make it fixed"));
+            let child = match (&roles[index], movers[index]) {
+                (&Role::Moves { axis, ref leader, .. }, Some(mover)) => {
+                    let (name, parent, child, origin) = (joint.name.clone(), at.body, bodies.len(), at.in_plane());
+                    bodies.push(Body::of(&links[joint.child].name, Some(mover)));
+                    let led = leader.as_ref().map(|leader| (movers[leader.joint], leader));
+                    if let Some((Some(Mover::Joint(leader)), &Mimic { multiplier, offset, .. })) = led {
+                        following.push(Follower { name, leader, multiplier, offset, parent, child, origin, axis });
+                    } else {
+                        joints.push(Joint { name, parent, child, origin, axis });
                     }
-                    let (name, child) = (joint.name.clone(), bodies.len());
-                    bodies.push(Body::of(&links[joint.child].name, Some(coordinate)));
-                    joints
-                        .push((coordinate, Joint { name, parent: at.body, child, origin: at.in_plane(), axis: *axis }));
                     Place { body: child, offset: [0.0; 3], ..at }
                 }
                 _ => match posture.held[index] {
@@ -108,14 +109,28 @@ impl Tree {
             };
             places[joint.child] = Some(child);
         }
-        joints.sort_by_key(|(coordinate, _)| *coordinate);
-        Ok(Self { bodies, joints: joints.into_iter().map(|(_, joint)| joint).collect(), sources, places })
+        joints.sort_by_key(|joint| bodies[joint.child].joint.map(order));
+        following.sort_by_key(|follower| bodies[follower.child].joint.map(order));
+        Self { bodies, joints, followers: following, places }
+    }
+}
+
+/// Counts one on.
+fn next(count: &mut usize) -> usize {
+    *count += 1;
+    *count - 1
+}
+
+/// The place of a mover among those of its kind.
+fn order(mover: Mover) -> usize {
+    match mover {
+        Mover::Joint(index) | Mover::Follower(index) => index,
     }
 }
 
 impl Body {
     /// A body that still weighs nothing.
-    fn of(link: &str, joint: Option<usize>) -> Self {
+    fn of(link: &str, joint: Option<Mover>) -> Self {
         Self { name: link.into(), joint, mass: 0.0, com: [0.0; 2], moment: 0.0 }
     }
 }

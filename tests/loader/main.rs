@@ -3,7 +3,7 @@
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
 use heelstrike::description::Description;
-use heelstrike::robot::{Axis, Base, FootShape, LeftOut, Reduction, Robot};
+use heelstrike::robot::{Axis, Base, FootShape, LeftOut, Mover, Reduction, Robot};
 use serde::Deserialize;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -169,9 +169,8 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
         // Body origins at zero in the root's frame.
         let mut origins = vec![[0.0; 2]; robot.bodies.len()];
         for (index, body) in robot.bodies.iter().enumerate().skip(1) {
-            let joint = &robot.joints[body.joint.expect("all but the root have a joint")];
-            assert_eq!(joint.child, index);
-            origins[index] = [0, 1].map(|k| origins[joint.parent][k] + joint.origin[k]);
+            let (parent, origin, _) = robot.hinge(body.joint.expect("all but the root have a joint"));
+            origins[index] = [0, 1].map(|k| origins[parent][k] + origin[k]);
         }
 
         let body = |name: &str| robot.bodies.iter().position(|body| body.name == name).expect("the body");
@@ -289,7 +288,11 @@ fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
     let robot = load(&text);
     assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
     let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
-    assert_eq!(bodies, [("root", None), ("thigh", Some(2)), ("shank", Some(1)), ("foot", Some(0)), ("tip", Some(3))]);
+    let joint = |joint| Some(Mover::Joint(joint));
+    assert_eq!(
+        bodies,
+        [("root", None), ("thigh", joint(2)), ("shank", joint(1)), ("foot", joint(0)), ("tip", joint(3))]
+    );
     assert_eq!(robot.links.iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
 }
 
