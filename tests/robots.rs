@@ -22,7 +22,8 @@ const TOLERANCE: f64 = 1e-10;
 #[derive(Deserialize)]
 struct Reference {
     urdf: String,
-    variants: BTreeMap<String, Variant>,
+    /// Some variants lack a Delassus matrix, so each is read when it is wanted.
+    variants: BTreeMap<String, Value>,
 }
 
 #[derive(Deserialize)]
@@ -85,6 +86,7 @@ impl Robot {
         let text = std::fs::read_to_string(format!("{folder}/reference.json")).expect("the robot's reference");
         let Reference { urdf, mut variants } = serde_json::from_str(&text).expect("the reference is readable");
         let variant = variants.remove(variant).expect("the variant");
+        let variant = serde_json::from_value(variant).expect("the variant is readable");
         Self { urdf: format!("{folder}/{urdf}"), variant }
     }
 
