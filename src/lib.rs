@@ -94,6 +94,7 @@ pub mod pipeline;
 pub mod accuracy;
 pub mod report;
 pub mod documents;
+pub mod spatial;
 pub mod table;
 pub mod touchdown;
 pub mod batch;

@@ -88,6 +88,14 @@ enum Moment {
     After { at: usize, height: f64, smooth: usize },
 }
 
+impl Moment {
+    /// The row of the window that it is, or the last one before it.
+    fn row(self) -> usize {
+        let (Self::Row(at) | Self::After { at, .. }) = self;
+        at
+    }
+}
+
 /// So many rows before the moment of contact are used for the state at it.
 const BEFORE: usize = 3;
 
@@ -217,8 +225,9 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         Some((last..self.window.len()).find(marked).map_or(after, Moment::Row))
     }
 
-    /// Makes touchdowns of the points that strike; those that strike together are one.
-    fn strike(&mut self, struck: Vec<(usize, Moment)>) {
+    /// Makes touchdowns of the points that strike and are free to; those that strike together are one.
+    fn strike(&mut self, mut struck: Vec<(usize, Moment)>) {
+        struck.retain(|&(point, moment)| self.points.is_free(point, &self.window[moment.row()].places));
         let mut left = VecDeque::from(struck);
         while let Some((striking, moment)) = left.pop_front() {
             let also = left.iter().filter(|&&other| self.together((striking, moment), other));
@@ -253,7 +262,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
 
     /// The state of a point's touchdown, its time, and the frame that it is of.
     fn state(&self, point: usize, moment: Moment) -> (State, f64, usize) {
-        let (Moment::Row(at) | Moment::After { at, .. }) = moment;
+        let at = moment.row();
         let Frame { sample, .. } = &self.window[at];
         let (mut state, mut time) = (sample.state.clone(), sample.time);
         if let (At::Crossing, Moment::After { height, smooth, .. }, Some(next)) =
