@@ -35,8 +35,7 @@ pub struct Spatial {
 pub fn project(origin: [f64; 2], quaternion: [f64; 4], plane: Plane) -> Result<(f64, Spatial)> {
     let length = quaternion.iter().fold(0.0, |length, &part| libm::hypot(length, part));
     if (length - 1.0).abs() > UNIT {
-        let reason =
-            Reason::OutOfRange { what: "the length of the quaternion".into(), allowed: "1", value: length };
+        let reason = Reason::OutOfRange { what: "the length of the quaternion".into(), allowed: "1", value: length };
         return Err(Error::new(reason).hint("its components are qw, qx, qy, qz of a rotation, qw its real part"));
     }
     let rotation = rotation(quaternion.map(|part| part / length));

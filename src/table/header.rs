@@ -76,8 +76,14 @@ impl Header {
     pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
         let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let names = names(record)?;
-        let mut header =
-            Self { columns: Vec::with_capacity(names.len()), carried: vec![], id: None, time: None, spatial: None, names };
+        let mut header = Self {
+            columns: Vec::with_capacity(names.len()),
+            carried: vec![],
+            id: None,
+            time: None,
+            spatial: None,
+            names,
+        };
         let mut seen = HashSet::new();
         for (at, name) in header.names.iter().enumerate() {
             let refused = |error: Error| in_column(error, record, at);
@@ -163,7 +169,8 @@ impl Header {
             let what = format!("a column of {what}, such as {prefix}{example},");
             Err(Error::new(Reason::Missing(what)).on(1, 1).hint(hint))
         };
-        if first(|column| matches!(column, Column::Position(_) | Column::Quaternion(_))).is_none() && velocity.is_none() {
+        if first(|column| matches!(column, Column::Position(_) | Column::Quaternion(_))).is_none() && velocity.is_none()
+        {
             return missing("positions", "q_", "the first line must name the columns");
         }
         if let (true, Some(at)) = (self.is_spatial(), velocity) {
@@ -172,7 +179,8 @@ impl Header {
         }
         match (rates, velocity) {
             (Rates::Columns, None) if self.is_spatial() && self.has_time() => {
-                let hint = "give --velocity central or backward: those of a base in three dimensions are taken from the time";
+                let hint =
+                    "give --velocity central or backward: those of a base in three dimensions are taken from the time";
                 Err(Error::new(Reason::Missing("a source of velocities".into())).on(1, 1).hint(hint))
             }
             (Rates::Columns, None) if self.has_time() => missing(
@@ -274,7 +282,8 @@ fn spatial_velocity() -> Reason {
     Reason::Unsupported("velocities beside a base in three dimensions are not read".into())
 }
 
-const SPATIAL_VELOCITY: &str = "leave out the columns v_..., and give --velocity central to take velocities from the time";
+const SPATIAL_VELOCITY: &str =
+    "leave out the columns v_..., and give --velocity central to take velocities from the time";
 
 /// What the column of a coordinate holds: `moving` where it is one of the robot's, by its index in q.
 fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Column) -> Result<Column> {

@@ -227,14 +227,17 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
 
     /// Makes touchdowns of the points that strike and are free to; those that strike together are one.
     fn strike(&mut self, mut struck: Vec<(usize, Moment)>) {
-        struck.retain(|&(point, moment)| self.points.is_free(point, &self.window[moment.row()].places));
+        struck.retain(|&(point, moment)| {
+            self.points.is_free(point, &self.window[moment.row()].places, self.thresholds.together)
+        });
         let mut left = VecDeque::from(struck);
         while let Some((striking, moment)) = left.pop_front() {
             let also = left.iter().filter(|&&other| self.together((striking, moment), other));
             let also: Vec<usize> = also.map(|&(point, _)| point).collect();
             left.retain(|(point, _)| !also.contains(point));
             let (mut state, time, at) = self.state(striking, moment);
-            let (shift_z, contact) = self.points.touch(&mut state, striking, &also, self.touching);
+            let together = self.thresholds.together;
+            let (shift_z, contact) = self.points.touch(&mut state, striking, &also, self.touching, together);
             let Frame { sample, row, .. } = &self.window[at];
             let (row, source) = (*row, sample.source.clone());
             let finite = state.position.iter().chain(&state.velocity).all(|entry| entry.is_finite());

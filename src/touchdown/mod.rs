@@ -9,12 +9,11 @@
 //! over the ground. So a touchdown is told by the foot's motion. Of every point that can touch (a circle's lowest, a
 //! polygon's corners) the height is followed: a *descent* is a run of rows in which it falls faster than
 //! [`Thresholds::slow`]; it is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last not
-//! falling, ends no higher than [`Thresholds::ground`] above z = 0, and the point is free toward the ground:
+//! falling, ends no higher than [`Thresholds::ground`] above z = 0, and the point is free toward the ground: the lowest of its
+//! body over a ground of some slope m near to level.
 //!
 //! ```text
-//!        i            of two points of one body i is covered by j where         z_i - z_j > 0.15 |x_i - x_j|
-//!         \           (on no ground within 0.15 rad of the level, as slopes and recorded soles are, would i touch before j)
-//!          j
+//!     z_i - m x_i <= z_j - m x_j  for all points j of the body of i,        with one |m| <= 0.15
 //! ```
 //!
 //! So the toe of a flat foot comes down though the heel is recorded a little lower, and the upper side of a sole or what is

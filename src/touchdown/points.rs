@@ -9,7 +9,7 @@ use crate::robot::{Base, Robot};
 use crate::scene::{NamedContact, Scene};
 use crate::state::State;
 
-/// Ground and soles that are recorded as level are so up to this slope.
+/// Ground and soles that are taken for level are so up to this slope.
 const SLOPE: f64 = 0.15;
 
 /// All points of a robot's feet, in the order of its links, and the memory to place them.
@@ -50,19 +50,35 @@ impl<'r> Points<'r> {
         self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
     }
 
-    /// Whether no other point of its body keeps a point from the ground, all being at `places`.
-    pub fn is_free(&self, point: usize, places: &[Vector<f64>]) -> bool {
+    /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them to
+    /// within `together` \[m\]; all are at `places`.
+    pub fn is_free(&self, point: usize, places: &[Vector<f64>], together: f64) -> bool {
         let [x, z] = places[point];
-        let covers = |&other: &usize| {
-            let [below_x, below_z] = places[other];
-            z - below_z > SLOPE * (x - below_x).abs()
-        };
-        !self.of_body(self.body(point)).any(|other| covers(&other))
+        // Over the slope m a point is z - m x high.
+        let (mut least, mut most) = (-SLOPE, SLOPE);
+        for other in self.of_body(self.body(point)) {
+            let [across, above] = [x - places[other][0], z - places[other][1] - together];
+            if across > 0.0 {
+                least = least.max(above / across);
+            } else if across < 0.0 {
+                most = most.min(above / across);
+            } else if above > 0.0 {
+                return false;
+            }
+        }
+        least <= most
     }
 
     /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
-    /// (`also`) among them; gives the shift \[m\] and the striking one's name.
-    pub fn touch(&mut self, state: &mut State, striking: usize, also: &[usize], touching: Touching) -> (f64, String) {
+    /// (`also`) among them, `together` as in [`Points::is_free`]; gives the shift \[m\] and the striking one's name.
+    pub fn touch(
+        &mut self,
+        state: &mut State,
+        striking: usize,
+        also: &[usize],
+        touching: Touching,
+        together: f64,
+    ) -> (f64, String) {
         let places = self.at(&state.position);
         let above = |point: usize| (places[point][1] - places[striking][1]).abs();
         let mut closed = vec![striking];
@@ -75,7 +91,7 @@ impl<'r> Points<'r> {
                 closed.append(&mut feet);
             }
             Touching::Near { height } => {
-                let free = |point: &usize| above(*point) <= height && self.is_free(*point, &places);
+                let free = |point: &usize| above(*point) <= height && self.is_free(*point, &places, together);
                 let near = |point: &usize| *point != striking && !also.contains(point) && free(point);
                 closed.extend((0..places.len()).filter(near));
             }
