@@ -170,10 +170,9 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             if (height - last) / passed < -slow {
                 descent.falling = true;
             } else {
-                let level = height.min(last);
                 if descent.falling {
-                    if descent.from - level >= drop && level <= ground {
-                        struck.extend(self.moment(point, level + above, smooth).map(|moment| (point, moment)));
+                    if descent.from - last >= drop && last <= ground {
+                        struck.extend(self.moment(point, last + above, smooth).map(|moment| (point, moment)));
                     }
                     descent = Descent { from: height, falling: false };
                 }
