@@ -294,8 +294,9 @@ fn read_link(
 ) -> Result<Link> {
     strict.push_str("<link name=\"\">");
     let inertial = match xml::child(element, "inertial")? {
-        Some(inertial) => read_inertial(inertial, strict)?,
-        None => Stated::Nothing,
+        // An empty one says no more than none.
+        Some(inertial) if inertial.children().any(|child| child.is_element()) => read_inertial(inertial, strict)?,
+        _ => Stated::Nothing,
     };
     let mut shapes = Vec::new();
     for child in element.children().filter(Node::is_element) {
@@ -382,11 +383,11 @@ struct JointElement<'a, 'input> {
 impl JointElement<'_, '_> {
     fn read(self, links: &Named, joints: &Named, ignored: &mut Tally, strict: &mut String) -> Result<Joint> {
         let Self { name, element, location } = self;
-        let (word, kind) = joint_kind(element)?;
+        let kind = joint_kind(element)?;
         let parent = links.find(xml::required_child(element, "parent")?, "link")?;
         let child = links.find(xml::required_child(element, "child")?, "link")?;
 
-        strict.push_str(&format!("<joint name=\"\" type=\"{word}\">"));
+        strict.push_str(&format!("<joint name=\"\" type=\"{}\">", kind.name()));
         copy_origin(element, strict)?;
         strict.push_str("<parent link=\"\"/><child link=\"\"/>");
         if let Some(axis) = xml::child(element, "axis")? {
@@ -413,9 +414,10 @@ impl JointElement<'_, '_> {
     }
 }
 
-/// The joint's type and the file's word for it.
-fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
-    const KINDS: [(&str, JointKind); 7] = [
+/// The joint's type.
+fn joint_kind(element: Node<'_, '_>) -> Result<JointKind> {
+    // Drake calls a spherical joint a ball.
+    const KINDS: [(&str, JointKind); 8] = [
         ("fixed", JointKind::Fixed),
         ("revolute", JointKind::Revolute),
         ("continuous", JointKind::Continuous),
@@ -423,10 +425,11 @@ fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
         ("planar", JointKind::Planar),
         ("floating", JointKind::Floating),
         ("spherical", JointKind::Spherical),
+        ("ball", JointKind::Spherical),
     ];
     let word = xml::required_attribute(element, "type")?;
     match KINDS.iter().find(|(known, _)| *known == word) {
-        Some(&(_, kind)) => Ok((word, kind)),
+        Some(&(_, kind)) => Ok(kind),
         None => Err(xml::refuse(element, Reason::Unsupported(format!("unknown joint type \"{word}\"")))
             .did_you_mean(word, KINDS.map(|(known, _)| known))),
     }

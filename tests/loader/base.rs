@@ -185,6 +185,16 @@ fn a_chain_whose_links_were_only_given_a_mass_gets_a_word() {
 }
 
 #[test]
+fn a_foot_on_a_link_of_the_base_gets_a_word() {
+    let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]).replace(
+        "<link name=\"c\">",
+        "<link name=\"c\"><collision><geometry><sphere radius=\"0\"/></geometry></collision>",
+    );
+    let [caution] = &load(&text).reading.cautions[..] else { panic!("one caution") };
+    assert!(caution.starts_with("c has collision shapes but belongs to the base"), "{caution}");
+}
+
+#[test]
 fn a_bolted_robot_of_which_nothing_moves_is_refused_with_the_remedy() {
     let still = Description::from_urdf(&two_links("fixed", "").replace("\"a\"", "\"world\"")).expect("a description");
     let refused = Robot::reduce(&still, &Reduction::default()).expect_err("nothing moves");

@@ -167,10 +167,12 @@ fn what_cannot_be_held_is_refused() {
 
 #[test]
 fn joints_without_a_single_axis_are_held_and_a_word_said() {
-    for kind in ["planar", "floating", "spherical"] {
+    for (kind, word) in
+        [("planar", "planar"), ("floating", "floating"), ("spherical", "spherical"), ("ball", "spherical")]
+    {
         let robot = load(&chain(&[("revolute", "0 1 0"), (kind, "0 1 0")]));
         assert_eq!(kept(&robot), ["j"]);
-        let why = format!("held at zero, being {kind}: welded into b");
+        let why = format!("held at zero, being {word}: welded into b");
         assert_eq!(robot.left_out, [left_out("joint \"k\"", &why)]);
         let caution = "k could move in the plane and is held all the same, having no single axis: replace it by revolute \
                        and prismatic joints";
@@ -185,14 +187,21 @@ fn axes_that_are_all_a_little_off_get_a_loud_word() {
     let robot = load(&chain(&[("revolute", "1 0 0"), tilted, tilted]));
     assert!(robot.joints.is_empty());
     let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
-    assert!(
-        caution.starts_with("2 of 3 joints that could move are held only because their axes are 5.0 degrees off"),
-        "{caution}"
-    );
-    assert!(caution.contains("--hold"), "{caution}");
+    let held = "2 of 3 joints that could move are held only because their axes are 5.0 degrees off the plane (k, l); to keep them";
+    // From y + z tan 5 degrees back to y is a turn about x by minus 5 degrees.
+    assert_eq!(caution, &format!("{held}: --hold j=-0.087266"));
+    let text = chain(&[("revolute", "1 0 0"), tilted, tilted]);
+    assert_eq!(kept(&reduce(&text, &Reduction { hold: vec![(0, -0.087266)], ..Reduction::default() })), ["k", "l"]);
+
+    // A mounting that is tilted cannot be held elsewhere.
+    let hinge = ("revolute", "0 1 0");
+    let mounted = chain(&[("fixed", "1 0 0"), hinge, hinge, ("revolute", "1 0 0")])
+        .replace("<child link=\"b\"/><origin", "<child link=\"b\"/><origin rpy=\"0.0872665 0 0\"");
+    let robot = load(&mounted);
+    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    assert!(caution.ends_with("(k, l); to keep them: straighten the rpy of j"), "{caution}");
 
     // Two shoulders among four joints that stay are no reason to shout.
-    let hinge = ("revolute", "0 1 0");
     let robot = load(&chain(&[hinge, hinge, hinge, hinge, tilted, tilted]));
     assert!(robot.reading.cautions.is_empty(), "{:?}", robot.reading.cautions);
 
