@@ -1,5 +1,6 @@
 //! The robot and the options that shape it.
 
+use super::complaint::note;
 use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::description::Description;
@@ -135,8 +136,15 @@ impl RobotOptions {
         Self { robot: robot.to_owned(), plane: Plane::Auto, hold: Vec::new(), base: None, contact: Vec::new() }
     }
 
-    /// Reads the robot.
+    /// Reads the robot, and tells what a user must know before trusting it.
     pub fn load(&self) -> Result<Robot, Failure> {
+        let robot = self.read()?;
+        robot.reading.cautions.iter().for_each(|caution| note(caution));
+        Ok(robot)
+    }
+
+    /// Reads the robot.
+    pub fn read(&self) -> Result<Robot, Failure> {
         let name = input::name(&self.robot);
         let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
         let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;

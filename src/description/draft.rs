@@ -115,7 +115,7 @@ fn read_document(document: &Document<'_>) -> Result<Draft> {
     if links.elements.is_empty() {
         return Err(xml::refuse(robot, Reason::Missing("a <link>".into())));
     }
-    let world = undefined_world(&links, &joints)?;
+    let world = undefined_world(&links, &joints);
     links.by_name.extend(world.map(|_| (WORLD, links.elements.len())));
     refuse_many_joints(&joints)?;
 
@@ -158,16 +158,15 @@ fn read_document(document: &Document<'_>) -> Result<Draft> {
 }
 
 /// Where a joint names the parent link `world` that no element defines, as many files do: the world needs no description.
-fn undefined_world(links: &Named, joints: &Named) -> Result<Option<Location>> {
+fn undefined_world(links: &Named, joints: &Named) -> Option<Location> {
     if links.by_name.contains_key(WORLD) {
-        return Ok(None);
+        return None;
     }
-    for &(_, element, location) in &joints.elements {
-        if xml::child(element, "parent")?.is_some_and(|parent| parent.attribute("link") == Some(WORLD)) {
-            return Ok(Some(location));
-        }
-    }
-    Ok(None)
+    let hangs_on_it = |element: Node| {
+        let mut parents = xml::children(element).filter(|child| child.tag_name().name() == "parent");
+        parents.any(|parent| parent.attribute("link") == Some(WORLD))
+    };
+    joints.elements.iter().find(|(_, element, _)| hangs_on_it(*element)).map(|&(_, _, location)| location)
 }
 
 /// Before the costly part: a tree has fewer joints than links, but this is no tree yet.

@@ -10,12 +10,12 @@ use std::fmt::Write;
 const WIDTH: usize = 118;
 /// Where the head's second column begins.
 const INDENT: usize = 15;
-/// The most names of a list that are written out.
-const NAMES: usize = 12;
-/// The most feet of one shape that are written out.
-const FEET: usize = 24;
-/// The most links of a body that are written out.
-const LINKS: usize = 3;
+/// The room for a list of names, in characters.
+const NAMES: usize = 300;
+/// The room for the feet of one shape, in characters.
+const FEET: usize = 600;
+/// The room for the links of a body, in characters.
+const LINKS: usize = 50;
 
 /// The whole text, with a line break at its end.
 pub(super) fn text(inspection: &Inspection, palette: &Palette) -> String {
@@ -159,10 +159,14 @@ fn grouped<T>(pairs: impl Iterator<Item = (String, T)>) -> Vec<(String, Vec<T>)>
     groups
 }
 
-/// The first names, and how many more there are.
-fn list(names: &[impl AsRef<str>], most: usize) -> String {
-    // One more name takes no more room than the word about it.
-    let shown = if names.len() <= most + 1 { names.len() } else { most };
+/// The names that there is `room` for, at least the first, and how many more there are.
+fn list(names: &[impl AsRef<str>], room: usize) -> String {
+    let lengths = names.iter().map(|name| name.as_ref().chars().count() + 2);
+    let ends = lengths.scan(0, |end, length| {
+        *end += length;
+        Some(*end)
+    });
+    let shown = ends.take_while(|&end| end <= room + 2).count().max(1).min(names.len());
     let mut text = names[..shown].iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
     if shown < names.len() {
         text.push_str(&format!(" and {} more", names.len() - shown));
