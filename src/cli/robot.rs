@@ -175,7 +175,7 @@ impl RobotOptions {
     pub fn feet(&self, robot: &Robot) -> Result<Vec<NamedContact>, Failure> {
         let foot = |foot: &Foot| {
             let link = robot.link(&foot.link).ok_or_else(|| {
-                let reason = Reason::UnknownName { what: "link", name: foot.link.clone() };
+                let reason = robot.no_link(&foot.link);
                 let known = robot.links.iter().map(|link| link.name.as_str());
                 Failure::Usage(Error::new(reason).at("--contact").did_you_mean(&foot.link, known))
             })?;

@@ -185,6 +185,15 @@ fn a_chain_whose_links_were_only_given_a_mass_gets_a_word() {
 }
 
 #[test]
+fn a_link_of_the_base_is_no_place_for_a_contact() {
+    let robot = load(&chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]));
+    let state = r#"{"friction": 1, "contacts": [{"link": "b"}]}"#;
+    let defaults = heelstrike::state::Defaults::default();
+    let refused = heelstrike::state::State::from_json(state, &robot, &defaults).expect_err("a link of the base");
+    assert!(refused.to_string().ends_with("link \"b\" is part of the base, not of the robot"), "{refused}");
+}
+
+#[test]
 fn a_foot_on_a_link_of_the_base_gets_a_word() {
     let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]).replace(
         "<link name=\"c\">",

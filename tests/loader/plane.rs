@@ -271,6 +271,24 @@ fn a_follower_of_a_held_joint_is_held_with_it() {
 // Whatever the order and the names.
 
 #[test]
+fn names_change_nothing() {
+    let text = chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0"), ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
+    // Each letter the one that stands opposite in the alphabet, so that their order turns round; joints named like links.
+    let opposite = |letter: char| char::from_u32('a' as u32 + 'z' as u32 - letter as u32).expect("a letter");
+    let renamed: String = "abcdejklm".chars().fold(text.clone(), |text, letter| {
+        text.replace(&format!("\"{letter}\""), &format!("\"*{}\"", opposite(letter)))
+    });
+    let (robot, renamed) = (load(&text), load(&renamed.replace('*', "a name ü ")));
+    assert_eq!(renamed.joints[0].name, "a name ü q");
+    let numbers = |robot: &Robot| {
+        let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.mass, body.com, body.moment, body.joint)).collect();
+        let joints: Vec<_> = robot.joints.iter().map(|joint| (joint.parent, joint.origin, joint.axis)).collect();
+        (bodies, joints)
+    };
+    assert_eq!(numbers(&robot), numbers(&renamed));
+}
+
+#[test]
 fn order_in_the_file_changes_only_the_order() {
     let text = chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0"), ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
     let forward = load(&text);
