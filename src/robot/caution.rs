@@ -26,18 +26,18 @@ pub(super) fn about_held(seen: &Seen, held: &[HeldJoint], kept: usize) -> Vec<St
         _ => None,
     });
     let nearly: Vec<(&str, f64)> = nearly.collect();
+    let hidden = movable.iter().filter(|joint| matches!(joint.still, Still::Kind(_))).map(|joint| joint.name.as_str());
+    let hidden: Vec<&str> = hidden.collect();
     let mut cautions = Vec::new();
     if !nearly.is_empty() && nearly.len() >= kept {
         cautions.push(about_tilted(seen, &nearly, movable.len() + kept));
-    } else if kept == 0 && !movable.is_empty() {
+    } else if kept == 0 && movable.len() > hidden.len() {
         cautions.push(format!(
-            "no joint moves in this plane, so the robot is one rigid body: all {} are held; choose another with --plane, or \
-             hold joints where axes are in line (--hold NAME=VALUE)",
-            movable.len()
+            "no joint moves in this plane, so the robot is one rigid body ({} held): choose another plane (--plane), or hold \
+             joints where the axes of others are in line (--hold NAME=VALUE)",
+            names(&movable.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>())
         ));
     }
-    let hidden = movable.iter().filter(|joint| matches!(joint.still, Still::Kind(_))).map(|joint| joint.name.as_str());
-    let hidden: Vec<&str> = hidden.collect();
     if !hidden.is_empty() {
         cautions.push(format!(
             "{} could move in the plane and is held all the same, having no single axis: replace it by revolute and prismatic \

@@ -80,7 +80,7 @@ impl Reading {
         let because = match self.plane_because {
             PlaneReason::Asked => "as asked",
             PlaneReason::CommonAxis => "all hinges of the file turn in it",
-            PlaneReason::Usual => "the usual one, as hinges of the file turn in several",
+            PlaneReason::Usual => "the usual one, as the file's hinges have no common direction",
         };
         match self.better_plane {
             Some((plane, joints)) => format!("{because}; --plane {} would keep {joints} joints", plane.name()),
