@@ -13,8 +13,10 @@
 mod draft;
 mod mend;
 mod mimic;
+mod named;
 mod pose;
 mod strict;
+mod tally;
 mod tree;
 mod values;
 mod xml;
