@@ -3,6 +3,7 @@
 
 use heelstrike::Reason;
 use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, cases, study};
+use heelstrike::pipeline::Options;
 use std::time::Duration;
 
 /// A single run of each method: errors are looked at here, never times.
@@ -17,7 +18,7 @@ fn walk(choose: impl Fn(&Case) -> bool) {
     let chosen: Vec<Case> = cases().expect("the suite's robots are read").into_iter().filter(choose).collect();
     assert!(!chosen.is_empty());
     for case in chosen {
-        let study = study(&case.name, &case.subject, ONCE);
+        let study = study(&case.name, &case.subject, &Options::default(), ONCE);
         match case.end {
             End::Singular => {
                 let refused = study.refused.unwrap_or_else(|| panic!("{} must be refused", case.name));
