@@ -159,7 +159,7 @@ impl<'r> Pipeline<'r> {
         contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
         let resting = self.snap(&contacts, &mut notes);
         delassus(&self.plan, &mut self.workspace);
-        let kinetic_energy = self.energy_in_range(&velocity)?;
+        let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
         if !scene.impulses.is_empty() {
@@ -282,15 +282,27 @@ impl<'r> Pipeline<'r> {
         Ok(())
     }
 
-    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything.
-    fn energy_in_range(&self, velocity: &[f64]) -> Result<f64> {
+    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything. The refusal names the
+    /// greatest of the velocities that were `given`.
+    fn energy_in_range(&self, given: &[f64], velocity: &[f64]) -> Result<f64> {
         let too_large =
             |error: Error| error.hint("positions and velocities are too large for f64: are they in SI units?");
         for &entry in &self.workspace.delassus {
             finite(entry, || "an entry of the Delassus matrix".into()).map_err(too_large)?;
         }
         let energy = kinetic_energy(&self.plan, velocity, &self.workspace);
-        finite(energy, || "the kinetic energy".into()).map_err(too_large)
+        let greatest = || {
+            let named = self.robot.coordinates().zip(given).enumerate();
+            let greatest = named.max_by(|(_, (_, a)), (_, (_, b))| a.abs().total_cmp(&b.abs()));
+            greatest.map(|(at, (name, _))| {
+                let part = if at < self.robot.base_dofs() { "base" } else { "joints" };
+                format!("velocity.{part}.{name}")
+            })
+        };
+        finite(energy, || "the kinetic energy".into()).map_err(|error| match greatest() {
+            Some(place) => too_large(error).at(place),
+            None => too_large(error),
+        })
     }
 
     fn tolerance(&self) -> f64 {
