@@ -2,8 +2,10 @@
 //! digits against a reference of at least 256 bits.
 
 use heelstrike::Reason;
-use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, cases, study};
-use heelstrike::pipeline::Options;
+use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, Subject, cases, study};
+use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::plan::{Plan, Posture};
 use std::time::Duration;
 
 /// A single run of each method: errors are looked at here, never times.
@@ -71,6 +73,30 @@ fn chains_of_a_thousand_links_keep_their_digits() {
 #[test]
 fn every_other_case_keeps_its_digits() {
     walk(|case| !case.name.starts_with("chain of 1000"));
+}
+
+#[test]
+fn velocities_of_base_and_joints_keep_their_digits_in_chains() {
+    for case in cases().expect("read").into_iter().filter(|case| case.name.starts_with("chain of 100 links")) {
+        let Subject::State(subject) = &case.subject else { panic!("a state") };
+        let (robot, state) = subject.as_ref();
+        let impact = Pipeline::new(robot, Options::default()).impact(state).expect("an answer");
+        let (plan, mut posture, mut workspace) = (Plan::new(robot, &[], &[]), Posture::default(), Workspace::default());
+        posture.set(&state.position);
+        kinematics(&plan, &posture, &mut workspace);
+        let outcomes = &impact.analysis.as_ref().expect("outcomes").outcomes;
+        assert!(!outcomes.is_empty());
+        for (outcome, after) in outcomes.iter().zip(&impact.velocity_after) {
+            // The first contact is the root's own origin.
+            for (base, contact) in after.iter().zip(outcome.velocity_after[0]) {
+                assert!((base - contact).abs() <= DIGITS, "{}: {base} {contact}", case.name);
+            }
+            // The energy of all bodies, link by link, is what the contacts left of it.
+            let (energy, left) =
+                (kinetic_energy(&plan, after, &workspace), impact.kinetic_energy - outcome.energy_loss);
+            assert!((energy - left).abs() <= DIGITS * impact.kinetic_energy, "{}: {energy} {left}", case.name);
+        }
+    }
 }
 
 #[test]
