@@ -395,6 +395,8 @@ fn inspect_prints_the_reduced_robot_with_every_digit() {
 fn every_example_is_answered() {
     for (robot, state) in [
         (RAMONE, "examples/ramone.json"),
+        (RAMONE, "examples/ramone_measured.json"),
+        (RAMONE, "examples/ramone_measured_by_name.json"),
         ("urdf/ramone_paper.urdf", "examples/ramone_paper.json"),
         (WALKER, "examples/minimalistic.json"),
         ("urdf/pdw.urdf", "examples/pdw.json"),
