@@ -40,7 +40,7 @@ impl<'r> Points<'r> {
 
     /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
     pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
-        self.posture.set(position);
+        self.posture.set(&self.plan, position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
         let placement = Placement::new(&self.plan, &self.workspace, base, Scene::default().ground());
