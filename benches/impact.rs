@@ -80,7 +80,7 @@ fn velocity_after(bencher: Bencher) {
     let state = state(&robot);
     let points = points(&robot, &state);
     let (plan, mut posture, mut workspace) = (Plan::new(&robot, &[], &[]), Posture::default(), Workspace::default());
-    posture.set(&state.position);
+    posture.set(&plan, &state.position);
     kinematics(&plan, &posture, &mut workspace);
     let (mut rates, mut motions) = (Vec::new(), Vec::new());
     bencher.bench_local(move || {

@@ -193,7 +193,7 @@ impl<'r> Pipeline<'r> {
         let asked = Asked { explain, prove: !self.options.no_proof };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
-        if outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+        if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.plan, &mut self.workspace);
         }
         let velocity_after = outcomes.iter().map(|outcome| self.struck(&free, &outcome.impulse)).collect();
@@ -421,7 +421,7 @@ impl<'r> Pipeline<'r> {
     }
 
     /// The velocity by coordinate after contact impulses, from the one without them: by articulated bodies, which keep
-    /// thirteen digits and more in chains where M = L^T D L leaves eight.
+    /// thirteen digits and more in chains where M = L^T D L leaves eight, unless joints follow others.
     fn struck(&mut self, free: &[f64], impulse: &[Vector<f64>]) -> Vec<f64> {
         let mut after = free.to_vec();
         let Self { plan, workspace, points, column, motions, .. } = self;
@@ -429,7 +429,11 @@ impl<'r> Pipeline<'r> {
             let axes = point.axes();
             let vector = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
             let at = (point.body, point.arm(workspace));
-            add_articulated_impulse(plan, workspace, at, vector, (&mut *column, &mut *motions), &mut after);
+            if plan.tied {
+                add_impulse(plan, workspace, at, vector, column, &mut after);
+            } else {
+                add_articulated_impulse(plan, workspace, at, vector, (&mut *column, &mut *motions), &mut after);
+            }
         }
         after
     }
