@@ -261,8 +261,7 @@ fn detected(robot: &Robot, feet: &Feet, placement: &Placement, tolerance: f64) -
 
 /// The foot nearest to the ground, and its height above it \[m\]; none where the robot has no feet.
 pub fn nearest(robot: &Robot, feet: &Feet, placement: &Placement) -> Option<(String, f64)> {
-    let heights =
-        feet.iter().flat_map(|foot| points(foot).map(|point| (foot.link, placement.height(point))));
+    let heights = feet.iter().flat_map(|foot| points(foot).map(|point| (foot.link, placement.height(point))));
     let (link, height) = heights.min_by(|a, b| a.1.total_cmp(&b.1))?;
     Some((robot.links[link].name.clone(), height))
 }

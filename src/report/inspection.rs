@@ -218,9 +218,7 @@ impl<'a> Inspection<'a> {
         if self.feet.is_empty() {
             return "none: name them by --contact, or in each state by \"contacts\"".to_owned();
         }
-        let foot = |foot: &Foot| {
-            format!("{} ({})", foot.link, foot.in_words())
-        };
+        let foot = |foot: &Foot| format!("{} ({})", foot.link, foot.in_words());
         self.feet.iter().map(foot).collect::<Vec<_>>().join(", ")
     }
 }
@@ -246,7 +244,9 @@ impl<'a> Foot<'a> {
             Rim::Ellipse { half_diameters } => (0.0, Some(half_diameters)),
         };
         match shape.corners() {
-            &[centre] if half_diameters.is_none() => Self { mesh: shape.mesh(), ..Self::disc(robot, link, centre, radius) },
+            &[centre] if half_diameters.is_none() => {
+                Self { mesh: shape.mesh(), ..Self::disc(robot, link, centre, radius) }
+            }
             corners => Self {
                 link: &link.name,
                 body: &robot.bodies[link.body].name,

@@ -68,9 +68,7 @@ impl Rim {
     pub fn bound(&self) -> f64 {
         match *self {
             Self::Circle { radius } => radius,
-            Self::Ellipse { half_diameters: [a, b] } => {
-                libm::hypot(libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1]))
-            }
+            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1])),
         }
     }
 }
