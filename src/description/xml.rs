@@ -26,6 +26,15 @@ pub(super) enum Unparsed {
     Refused(Error),
 }
 
+impl Unparsed {
+    /// The refusal of a text that nobody mends.
+    pub(super) fn into_error(self) -> Error {
+        match self {
+            Self::Prefix(_, refused) | Self::Refused(refused) => refused,
+        }
+    }
+}
+
 impl From<Error> for Unparsed {
     fn from(refused: Error) -> Self {
         Self::Refused(refused)

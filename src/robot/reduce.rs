@@ -7,7 +7,7 @@ use super::posture::Posture;
 use super::reading::{HeldJoint, PlaneReason, Reading, Still};
 use super::role::{Role, roles};
 use super::tree::{Place, Tree};
-use super::{Base, FootShape, LeftOut, Link, Robot, base, caution, left_out};
+use super::{Base, LeftOut, Link, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, product};
 use crate::error::{Error, Reason, Result};
 
@@ -215,11 +215,8 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;
         for shape in &link.shapes {
-            let points = match shape {
-                FootShape::Disc { centre, .. } => centre.as_slice(),
-                FootShape::Polygon { corners, .. } => corners.as_flattened(),
-            };
-            refuse("the place of a collision shape", points, description::link_place(&link.name))?;
+            let corners = shape.corners().as_flattened();
+            refuse("the place of a collision shape", corners, description::link_place(&link.name))?;
         }
     }
     refuse("the mass", &[robot.mass()], "robot".into())

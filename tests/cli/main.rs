@@ -202,6 +202,34 @@ fn solve_tells_borders_and_families_in_words() {
     let run = heelstrike_reads(&["solve", "-", "--format", "text"], problems);
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));
     insta::assert_snapshot!("solve_borders", run.stdout);
+
+    let run = heelstrike_reads(&["solve", "-", "--format", "text", "--brief"], problems);
+    insta::assert_snapshot!(run.stdout, @r"
+    contact problem (cone edge): tip touches the ground.
+
+    Exactly one outcome.
+      1  tip sticks, on a border   (margin 0)
+
+    contact problem (family): tip touches the ground.
+
+    Two outcomes are equally valid.
+      1  tip sticks, on a border, the end of a family   (margin 0)
+      2  tip slides forward, on a border, the end of a family
+    ");
+}
+
+#[test]
+fn a_verdict_without_outcome_is_explained() {
+    // A point between floor and ceiling, of which the floor alone throws back.
+    let walls = r#"{"id": "walls", "mass_matrix": [[1, 0], [0, 1]], "velocity": [0, -1], "friction": 0,
+        "contact_jacobian": [[1, 0], [0, 1], [-1, 0], [0, -1]], "restitution": [0.5, 0], "names": ["floor", "ceiling"]}"#;
+    let run = heelstrike_reads(&["solve", "-", "--format", "text", "--brief"], walls);
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    insta::assert_snapshot!(run.stdout, @"
+    contact problem (walls): floor and ceiling touch the ground.
+
+    No outcome is consistent: the contacts depend on each other, and no impulse makes every one of them rebound as its restitution asks.
+    ");
 }
 
 #[test]
@@ -460,6 +488,8 @@ fn inspect_prints_the_reduced_robot_with_every_digit() {
 fn every_example_is_answered() {
     for (robot, state) in [
         (RAMONE, "examples/ramone.json"),
+        (RAMONE, "examples/ramone_measured.json"),
+        (RAMONE, "examples/ramone_measured_by_name.json"),
         ("urdf/ramone_paper.urdf", "examples/ramone_paper.json"),
         (WALKER, "examples/minimalistic.json"),
         ("urdf/pdw.urdf", "examples/pdw.json"),

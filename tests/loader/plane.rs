@@ -84,7 +84,8 @@ fn each_plane_takes_its_own_components_bit_for_bit() {
         let robot = reduce(&alone, &in_plane(plane));
         assert_eq!((robot.bodies[0].com, robot.bodies[0].moment), (com, moment), "{plane:?}");
         assert_eq!(robot.links[1].point::<f64>([1.0, 2.0, 3.0]), point);
-        let [FootShape::Polygon { corners, .. }] = &robot.links[1].shapes[..] else { panic!("one polygon") };
+        let [shape] = &robot.links[1].shapes[..] else { panic!("one shape") };
+        let corners = shape.corners();
         assert!(corners.contains(&corner), "{plane:?}: {corners:?}");
     }
 }
