@@ -4,21 +4,19 @@
 //! wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
 //! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
 
+use super::mend::Mended;
+use super::named::{EXPAND, Named, WORLD, undefined_world};
 use super::strict::{Range, copy, copy_axis, copy_origin, copy_required, write_attribute};
-use super::xml::{self, Cursor, MOST_LINKS};
+use super::tally::Tally;
+use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
 use super::{Ignored, JointKind, joint_place, link_place};
 use crate::error::{Location, Reason, Result};
-use roxmltree::Node;
-use std::collections::HashMap;
+use roxmltree::{Document, Node};
 
 /// The most joints that move: a chain of n of them takes n^3 / 3 steps to factorize.
 const MOST_MOVING: usize = 2000;
-/// The most kinds of elements that are passed over and told.
-const MOST_IGNORED: usize = 1000;
 /// The links or joints in one part of the strict copy; parts bound the memory that urdf-rs needs.
 const PART: usize = 1000;
-/// The link that joints may name as their parent without its being defined.
-const WORLD: &str = "world";
 /// How a part of the strict copy begins.
 const OPENING: &str = "<robot name=\"\">";
 /// How a part of the strict copy ends.
@@ -75,9 +73,27 @@ pub(super) struct Joint {
 
 /// Reads and checks `text`; see [`super::Description::from_urdf`] for what is refused.
 pub(super) fn read(text: &str) -> Result<Draft> {
-    let document = xml::parse(text)?;
+    let mut mended = Mended::new(text);
+    loop {
+        match xml::parse(&mended.text) {
+            Ok(document) => {
+                let draft = read_document(&document).map_err(|error| mended.refusal(error));
+                return draft.map(|draft| draft.moved(|place| mended.in_file(place)));
+            }
+            Err(Unparsed::Prefix(prefix, refused)) => {
+                let refused = mended.refusal(refused);
+                mended = mended.declaring(&prefix).ok_or(refused)?;
+            }
+            Err(Unparsed::Refused(refused)) => return Err(mended.refusal(refused)),
+        }
+    }
+}
+
+fn read_document(document: &Document<'_>) -> Result<Draft> {
+    let text = document.input_text();
     let robot = document.root_element();
     require_urdf(robot)?;
+    refuse_xacro(robot)?;
 
     let mut cursor = Cursor::new(text);
     let (mut links, mut joints) = (Named::new("link"), Named::new("joint"));
@@ -94,7 +110,7 @@ pub(super) fn read(text: &str) -> Result<Draft> {
     if links.elements.is_empty() {
         return Err(xml::refuse(robot, Reason::Missing("a <link>".into())));
     }
-    let world = undefined_world(&links, &joints)?;
+    let world = undefined_world(&links, &joints);
     links.by_name.extend(world.map(|_| (WORLD, links.elements.len())));
     refuse_many_joints(&joints)?;
 
@@ -136,19 +152,6 @@ pub(super) fn read(text: &str) -> Result<Draft> {
     Ok(Draft { name, links: draft_links, joints: draft_joints, ignored: ignored.kinds, strict })
 }
 
-/// Where a joint names the parent link `world` that no element defines, as many files do: the world needs no description.
-fn undefined_world(links: &Named, joints: &Named) -> Result<Option<Location>> {
-    if links.by_name.contains_key(WORLD) {
-        return Ok(None);
-    }
-    for &(_, element, location) in &joints.elements {
-        if xml::child(element, "parent")?.is_some_and(|parent| parent.attribute("link") == Some(WORLD)) {
-            return Ok(Some(location));
-        }
-    }
-    Ok(None)
-}
-
 /// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
 fn refuse_many_joints(joints: &Named) -> Result<()> {
     let mut all = joints.elements.iter().map(|&(_, element, _)| element);
@@ -176,67 +179,33 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     })
 }
 
+/// Refuses macros that are still to be expanded; a file that only declares their namespace is plain URDF.
+fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
+    let is_macro = |element: &Node| element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro"));
+    match robot.descendants().find(|node| node.is_element() && is_macro(node)) {
+        Some(element) => {
+            let reason = format!("<xacro:{}> is not URDF", element.tag_name().name());
+            Err(xml::refuse(element, Reason::Unsupported(reason)).hint(EXPAND))
+        }
+        None => Ok(()),
+    }
+}
+
 /// The tag of a child of `robot`, if it is of the same namespace.
 fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
     (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
 }
 
-/// Elements of one kind by name.
-struct Named<'a, 'input> {
-    what: &'static str,
-    elements: Vec<(&'a str, Node<'a, 'input>, Location)>,
-    by_name: HashMap<&'a str, usize>,
-}
-
-impl<'a, 'input> Named<'a, 'input> {
-    fn new(what: &'static str) -> Self {
-        Self { what, elements: Vec::new(), by_name: HashMap::new() }
-    }
-
-    fn push(&mut self, element: Node<'a, 'input>, location: Location) -> Result<()> {
-        let name = xml::required_attribute(element, "name")?;
-        if self.by_name.insert(name, self.elements.len()).is_some() {
-            return Err(xml::refuse(element, Reason::Duplicate { what: self.what, name: name.into() }));
+impl Draft {
+    /// The draft with all places changed.
+    fn moved(mut self, place: impl Fn(Location) -> Location) -> Self {
+        for link in &mut self.links {
+            link.location = place(link.location);
         }
-        self.elements.push((name, element, location));
-        Ok(())
-    }
-
-    /// The index of the thing that `attribute` of `element` names.
-    fn find(&self, element: Node<'_, '_>, attribute: &str) -> Result<usize> {
-        let name = xml::required_attribute(element, attribute)?;
-        self.by_name.get(name).copied().ok_or_else(|| {
-            let error = xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() });
-            error.did_you_mean(name, self.elements.iter().map(|(name, ..)| *name))
-        })
-    }
-}
-
-/// Counts elements that are passed over.
-#[derive(Default)]
-struct Tally {
-    kinds: Vec<Ignored>,
-    by_tag: HashMap<(&'static str, String), usize>,
-}
-
-impl Tally {
-    fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
-        if element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro")) {
-            let reason = format!("<xacro:{}> is not URDF", element.tag_name().name());
-            return Err(xml::refuse(element, Reason::Unsupported(reason))
-                .hint("expand the file first: xacro FILE > robot.urdf"));
+        for joint in &mut self.joints {
+            joint.location = place(joint.location);
         }
-        let tag = element.tag_name().name();
-        let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
-        if kind == MOST_IGNORED {
-            let reason = Reason::TooMany { what: "kinds of unknown elements", limit: MOST_IGNORED };
-            return Err(xml::refuse(element, reason));
-        }
-        match self.kinds.get_mut(kind) {
-            Some(known) => known.count += 1,
-            None => self.kinds.push(Ignored { parent, tag: tag.into(), count: 1 }),
-        }
-        Ok(())
+        self
     }
 }
 
@@ -249,8 +218,9 @@ fn read_link(
 ) -> Result<Link> {
     strict.push_str("<link name=\"\">");
     let inertial = match xml::child(element, "inertial")? {
-        Some(inertial) => read_inertial(inertial, strict)?,
-        None => Stated::Nothing,
+        // An empty one says no more than none.
+        Some(inertial) if inertial.children().any(|child| child.is_element()) => read_inertial(inertial, strict)?,
+        _ => Stated::Nothing,
     };
     let mut shapes = Vec::new();
     for child in element.children().filter(Node::is_element) {
@@ -337,11 +307,11 @@ struct JointElement<'a, 'input> {
 impl JointElement<'_, '_> {
     fn read(self, links: &Named, joints: &Named, ignored: &mut Tally, strict: &mut String) -> Result<Joint> {
         let Self { name, element, location } = self;
-        let (word, kind) = joint_kind(element)?;
+        let kind = joint_kind(element)?;
         let parent = links.find(xml::required_child(element, "parent")?, "link")?;
         let child = links.find(xml::required_child(element, "child")?, "link")?;
 
-        strict.push_str(&format!("<joint name=\"\" type=\"{word}\">"));
+        strict.push_str(&format!("<joint name=\"\" type=\"{}\">", kind.name()));
         copy_origin(element, strict)?;
         strict.push_str("<parent link=\"\"/><child link=\"\"/>");
         if let Some(axis) = xml::child(element, "axis")? {
@@ -368,9 +338,10 @@ impl JointElement<'_, '_> {
     }
 }
 
-/// The joint's type and the file's word for it.
-fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
-    const KINDS: [(&str, JointKind); 7] = [
+/// The joint's type.
+fn joint_kind(element: Node<'_, '_>) -> Result<JointKind> {
+    // Drake calls a spherical joint a ball.
+    const KINDS: [(&str, JointKind); 8] = [
         ("fixed", JointKind::Fixed),
         ("revolute", JointKind::Revolute),
         ("continuous", JointKind::Continuous),
@@ -378,10 +349,11 @@ fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
         ("planar", JointKind::Planar),
         ("floating", JointKind::Floating),
         ("spherical", JointKind::Spherical),
+        ("ball", JointKind::Spherical),
     ];
     let word = xml::required_attribute(element, "type")?;
     match KINDS.iter().find(|(known, _)| *known == word) {
-        Some(&(_, kind)) => Ok((word, kind)),
+        Some(&(_, kind)) => Ok(kind),
         None => Err(xml::refuse(element, Reason::Unsupported(format!("unknown joint type \"{word}\"")))
             .did_you_mean(word, KINDS.map(|(known, _)| known))),
     }

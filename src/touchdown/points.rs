@@ -43,11 +43,15 @@ impl<'r> Points<'r> {
 
     /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
     pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
+        let placement = self.placement(position);
+        self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
+    }
+
+    fn placement(&mut self, position: &[f64]) -> Placement {
         self.posture.set(&self.plan, position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
-        let placement = Placement::new(&self.plan, &self.workspace, base, Scene::default().ground());
-        self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
+        Placement::new(&self.plan, &self.workspace, base, Scene::default().ground())
     }
 
     /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them to
@@ -79,7 +83,8 @@ impl<'r> Points<'r> {
         touching: Touching,
         together: f64,
     ) -> (f64, String) {
-        let places = self.at(&state.position);
+        let placement = self.placement(&state.position);
+        let places: Vec<_> = self.points.iter().map(|&(_, point)| placement.lowest(point)).collect();
         let above = |point: usize| (places[point][1] - places[striking][1]).abs();
         let mut closed = vec![striking];
         closed.extend(also);
@@ -87,7 +92,7 @@ impl<'r> Points<'r> {
             Touching::Strike => {}
             Touching::Slow { speed, height } => {
                 let mut feet = self.lowest_of_other_bodies(&closed, &places);
-                feet.retain(|&point| above(point) <= height && self.speed(point, &state.velocity) < speed);
+                feet.retain(|&point| above(point) <= height && self.speed(point, &placement, &state.velocity) < speed);
                 closed.append(&mut feet);
             }
             Touching::Near { height } => {
@@ -99,7 +104,7 @@ impl<'r> Points<'r> {
         // As detected contacts: in the order of the links, within a link along x.
         let link = |point: usize| self.points[point].0;
         closed.sort_by(|&a, &b| link(a).cmp(&link(b)).then(places[a][0].total_cmp(&places[b][0])));
-        state.scene.contacts = Some(closed.iter().map(|&point| self.named(point)).collect());
+        state.scene.contacts = Some(closed.iter().map(|&point| self.named(point, &placement)).collect());
 
         let name = self.robot.links[link(striking)].name.clone();
         let mut of_link = closed.iter().filter(|&&point| link(point) == link(striking));
@@ -133,15 +138,17 @@ impl<'r> Points<'r> {
     }
 
     /// Speed of a point after `at` \[m/s\].
-    fn speed(&self, point: usize, velocity: &[f64]) -> f64 {
-        let Point { body, centre, radius, .. } = self.points[point].1;
+    fn speed(&self, point: usize, placement: &Placement, velocity: &[f64]) -> f64 {
+        let point = self.points[point].1;
+        let (body, (centre, radius)) = (point.body, placement.circle(point));
         let arm = ContactPoint { body, centre, radius, ground: Scene::default().ground() }.arm(&self.workspace);
         let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
         libm::hypot(x, z)
     }
 
-    fn named(&self, point: usize) -> NamedContact {
-        let (link, Point { centre, radius, .. }) = self.points[point];
+    fn named(&self, point: usize, placement: &Placement) -> NamedContact {
+        let (link, point) = self.points[point];
+        let (centre, radius) = placement.circle(point);
         NamedContact { link, offset: self.robot.links[link].offset(centre), radius }
     }
 }
