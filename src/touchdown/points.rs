@@ -1,12 +1,12 @@
 //! The points of a robot that can touch the ground, and where they are.
 
 use super::Touching;
-use crate::contact::{Feet, Placement, Point, points};
+use crate::contact::{Feet, Placement, Plane, Point, points};
 use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
 use crate::plan::{Plan, Posture};
-use crate::planar::Vector;
+use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Link, Robot};
-use crate::scene::{NamedContact, Scene};
+use crate::scene::NamedContact;
 use crate::state::State;
 
 /// All points of a robot's feet, in the order of its links, and the memory to place them.
@@ -43,8 +43,9 @@ impl<'r> Points<'r> {
         self.posture.set(position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
-        let placement = Placement::new(&self.plan, &self.workspace, base, Scene::default().ground());
-        self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
+        let placement = Placement::new(&self.plan, &self.workspace, base);
+        let level = Plane::sloped(0.0);
+        self.points.iter().map(|&(_, point)| level.lowest(&placement, point)).collect()
     }
 
     /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
@@ -105,7 +106,7 @@ impl<'r> Points<'r> {
     /// Speed of a point after `at` \[m/s\].
     fn speed(&self, point: usize, velocity: &[f64]) -> f64 {
         let Point { body, centre, radius, .. } = self.points[point].1;
-        let arm = ContactPoint { body, centre, radius, ground: Scene::default().ground() }.arm(&self.workspace);
+        let arm = ContactPoint { body, centre, radius, ground: Rotation::identity() }.arm(&self.workspace);
         let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
         libm::hypot(x, z)
     }

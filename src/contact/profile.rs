@@ -1,0 +1,231 @@
+//! Feet against a profile: where a foot touches, with which normal, and how deep it is.
+//!
+//! ```text
+//!     a corner's circle at a segment           the segment's normal; in a notch two contacts, one for each segment
+//!     a circle at a convex corner              from the ground's corner to the circle's centre
+//!     a foot's side across a convex corner     the side's own normal, turned round: the edge of a stair under a sole
+//!     a foot's corner on a convex corner       the middle of the normals that both allow
+//! ```
+//!
+//! Each corner of one boundary belongs to the side of the other that it is above, or to the corner whose sides it is past, so
+//! that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches with its
+//! corner and at the edge that it overhangs. A side may go behind another by twice the tolerance, and only at a small angle.
+
+use super::face::{Face, PARALLEL, distance, unit, upright};
+use super::feet::Foot;
+use super::outline::Outline;
+use super::placement::Placement;
+use super::point::Touch;
+use super::terrain::Terrain;
+use crate::planar::{Vector, difference, dot, scaled, sum};
+
+/// A foot deeper in the ground than the tolerance, by how much \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TooDeep(pub f64);
+
+/// What is touching, and how exactly that is known.
+#[derive(Debug, Clone, Copy)]
+struct Closeness {
+    /// What counts as touching \[m\].
+    tolerance: f64,
+    /// What counts as the same place \[m\]: the rounding of positions.
+    rounding: f64,
+}
+
+/// The contacts of a foot within `tolerance` of the ground, ascending in x; positions are known up to `rounding` \[m\].
+///
+/// # Errors
+/// The depth of a foot that is deeper than the tolerance.
+pub(super) fn touching(
+    terrain: &Terrain,
+    foot: &Foot,
+    placement: &Placement,
+    (tolerance, rounding): (f64, f64),
+) -> Result<Vec<Touch>, TooDeep> {
+    let outline = Outline::new(foot, placement);
+    let [low, high] = outline.region(outline.radius + tolerance);
+    let near = terrain.near(low, high);
+    let deepest = depth(terrain, &outline, &near);
+    if deepest > tolerance {
+        return Err(TooDeep(deepest));
+    }
+    let close = Closeness { tolerance, rounding };
+    let mut touches = Vec::new();
+    for &segment in &near {
+        for corner in 0..outline.corners().len() {
+            touches.extend(on_segment(terrain, segment, &outline, corner, close));
+        }
+    }
+    for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
+        touches.extend(
+            corner_on_corner(terrain, corner, &outline, close).or_else(|| side_on_corner(terrain, corner, &outline, close)),
+        );
+    }
+    touches.sort_by(|a, b| x_of(placement, a).total_cmp(&x_of(placement, b)));
+    Ok(touches)
+}
+
+/// How far heights are off by rounding alone \[m\]: they are sums of a few terms of this size.
+pub(super) fn rounding(placement: &Placement, size: f64) -> f64 {
+    let [x, z] = placement.base();
+    16.0 * f64::EPSILON * (size + x.abs() + z.abs())
+}
+
+/// x of the material point of a contact \[m\].
+fn x_of(placement: &Placement, touch: &Touch) -> f64 {
+    placement.world(touch.point.body, touch.point.centre)[0] - touch.point.radius * touch.ground.sin
+}
+
+/// The corners of these segments, ascending.
+fn corners_of(segments: &[usize]) -> impl Iterator<Item = usize> + '_ {
+    let new = |at: usize| at == 0 || segments[at - 1] + 1 != segments[at];
+    (0..segments.len()).flat_map(move |at| new(at).then(|| segments[at] - 1).into_iter().chain([segments[at]]))
+}
+
+/// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' circles, of the ground's corners in
+/// the foot, and of sides that cross.
+fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
+    let corners = outline.corners().iter().map(|&corner| outline.radius - terrain.clearance(corner));
+    let ground = corners_of(near).map(|corner| outline.depth_of(terrain.at_corner(corner)[0].to));
+    let across = near.iter().flat_map(|&segment| {
+        outline.sides().iter().filter_map(move |side| crossing(terrain.face(segment), side)).map(|depth| outline.radius + depth)
+    });
+    corners.chain(ground).chain(across).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// How far a foot is from the ground \[m\].
+pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
+    let all: Vec<usize> = (1..=terrain.segments().len()).collect();
+    -depth(terrain, outline, &all)
+}
+
+/// The x of the end that a foot reaches beyond, not higher than `tolerance` above it.
+pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) -> Option<f64> {
+    let [rear, front] = terrain.ends();
+    let hangs = |[x, z]: Vector<f64>, way: f64| {
+        outline.corners().iter().any(|&[foot_x, foot_z]| {
+            way * (foot_x - x) + outline.radius > tolerance && foot_z - outline.radius <= z + tolerance
+        })
+    };
+    if hangs(rear, -1.0) { Some(rear[0]) } else { hangs(front, 1.0).then_some(front[0]) }
+}
+
+/// The shortest way that takes one of two crossing sides off the other \[m\]; none where they do not cross.
+fn crossing(a: &Face, b: &Face) -> Option<f64> {
+    let [from, to] = [a.height(b.from), a.height(b.to)];
+    let [begin, end] = [b.height(a.from), b.height(a.to)];
+    let parted = |one: f64, other: f64| one.min(other) < 0.0 && one.max(other) > 0.0;
+    let shortest = [from, to, begin, end].map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+    (parted(from, to) && parted(begin, end)).then_some(shortest)
+}
+
+/// A corner's circle at a segment.
+fn on_segment(
+    terrain: &Terrain,
+    segment: usize,
+    outline: &Outline,
+    corner: usize,
+    close: Closeness,
+) -> Option<Touch> {
+    let face = terrain.face(segment);
+    let centre = outline.corners()[corner];
+    let lowest = difference(centre, scaled(outline.radius, face.normal));
+    let gap = face.height(lowest);
+    if gap.abs() > close.tolerance {
+        return None;
+    }
+    // In a notch the foot may be a little behind the other segment; beyond a convex corner it is not above this one.
+    let [rear, front] = [segment - 1, segment].map(|end| terrain.is_convex(end));
+    let reach = |convex: bool| if convex { 0.0 } else { close.tolerance };
+    let above = face.past_begin(lowest) >= -reach(rear) && face.past_end(lowest) <= reach(front);
+    let at_corner = |end: Vector<f64>, convex: bool| convex && distance(lowest, end) <= close.rounding;
+    if !above || at_corner(face.from, rear) || at_corner(face.to, front) {
+        return None;
+    }
+    // Behind both sides of a convex corner the one that is left by the shorter way counts.
+    let height = face.height(centre);
+    let nearer = |other: usize, convex: bool| {
+        let beside = terrain.face(other);
+        let shorter = |other_height: f64| other_height > height || (other_height == height && other < segment);
+        convex && height < 0.0 && !terrain.is_wall(other) && beside.faces(centre) && shorter(beside.height(centre))
+    };
+    if nearer(segment - 1, rear) || nearer(segment + 1, front) {
+        return None;
+    }
+    if let Some([before, after]) = outline.at_corner(corner) {
+        let slack = 2.0 * close.tolerance;
+        if !face.clears(centre, before.from, slack) || !face.clears(centre, after.to, slack) {
+            return None;
+        }
+    }
+    Some(Touch { point: outline.point(corner), ground: face.axes(), gap })
+}
+
+/// A foot's corner, or the circle about it, on a convex corner of the ground.
+fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Closeness) -> Option<Touch> {
+    let [before, after] = terrain.at_corner(corner);
+    let at = before.to;
+    let on = |foot: usize| {
+        let way = difference(outline.corners()[foot], at);
+        let far = libm::hypot(way[0], way[1]);
+        let past = |face: &Face| difference(outline.corners()[foot], scaled(outline.radius, face.normal));
+        let together = outline.radius == 0.0 && far <= close.rounding;
+        let is_nearest_ground = together || (before.past_end(past(before)) > 0.0 && after.past_begin(past(after)) < 0.0);
+        let is_nearest_foot = outline.at_corner(foot).is_none_or(|[ending, beginning]| {
+            ending.past_end(at) >= -close.rounding && beginning.past_begin(at) <= close.rounding
+        });
+        if far - outline.radius > close.tolerance || !is_nearest_ground || !is_nearest_foot {
+            return None;
+        }
+        let normal = if outline.radius > 0.0 && far > 0.0 {
+            unit(way)
+        } else {
+            common_normal([before, after], outline.at_corner(foot))
+        };
+        Some(Touch { point: outline.point(foot), ground: upright(normal), gap: dot(normal, way) - outline.radius })
+    };
+    (0..outline.corners().len()).find_map(on)
+}
+
+/// The middle of the normals that a convex corner of the ground and a corner of the foot both allow; where the foot lies
+/// flat on a segment, that segment's normal.
+fn common_normal(ground: [&Face; 2], foot: Option<[&Face; 2]>) -> Vector<f64> {
+    // From the rear face's normal clockwise to the front one's. A foot pushes the ground the other way.
+    let ground = ground.map(|face| face.normal);
+    let Some(foot) = foot.map(|[before, after]| [before, after].map(|side| scaled(-1.0, side.normal))) else {
+        return unit(sum(ground[0], ground[1]));
+    };
+    // A foot's sides run counter-clockwise: its normals, turned round, go clockwise from the second to the first.
+    let foot = [foot[1], foot[0]];
+    let sine = |a: Vector<f64>, b: Vector<f64>| a[1] * b[0] - a[0] * b[1];
+    let within = |[first, last]: [Vector<f64>; 2], normal: Vector<f64>| {
+        sine(first, normal) >= -PARALLEL && sine(normal, last) >= -PARALLEL && dot(normal, sum(first, last)) >= -PARALLEL
+    };
+    // The later of both beginnings and the earlier of both ends.
+    let first = if within(ground, foot[0]) { foot[0] } else { ground[0] };
+    let last = if within(ground, foot[1]) { foot[1] } else { ground[1] };
+    let flat = ground.into_iter().find(|&normal| sine(first, last).abs() <= PARALLEL && sine(normal, last).abs() <= PARALLEL);
+    flat.unwrap_or_else(|| unit(sum(first, last)))
+}
+
+/// A foot's side across a convex corner of the ground.
+fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Closeness) -> Option<Touch> {
+    let [before, after] = terrain.at_corner(corner);
+    let at = before.to;
+    let across = |side: usize| {
+        let face = &outline.sides()[side];
+        let (height, slack) = (face.height(at), 2.0 * close.tolerance);
+        let gap = height - outline.radius;
+        let beneath = face.past_begin(at) > close.rounding && face.past_end(at) < -close.rounding;
+        // Of a line, which is all surface, the ground's way tells the side.
+        let solid = outline.sides().len() > 2;
+        let nearer = |other: &Face| solid && height < 0.0 && other.faces(at) && other.height(at) > height;
+        let clear = face.clears(at, before.from, slack) && face.clears(at, after.to, slack);
+        if gap.abs() > close.tolerance || !beneath || outline.beside(side).into_iter().any(nearer) || !clear {
+            return None;
+        }
+        let ground = upright(scaled(-1.0, face.normal));
+        Some(Touch { point: outline.on_side(side, at), ground, gap })
+    };
+    (0..outline.sides().len()).find_map(across)
+}
