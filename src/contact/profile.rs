@@ -142,21 +142,22 @@ fn on_segment(
     if !above || at_corner(face.from, rear) || at_corner(face.to, front) {
         return None;
     }
+    let clear = |face: &Face| {
+        let slack = 2.0 * close.tolerance;
+        outline
+            .at_corner(corner)
+            .is_none_or(|[before, after]| face.clears(centre, before.from, slack) && face.clears(centre, after.to, slack))
+    };
     // Behind both sides of a convex corner the one that is left by the shorter way counts.
     let height = face.height(centre);
     let nearer = |other: usize, convex: bool| {
         let beside = terrain.face(other);
         let shorter = |other_height: f64| other_height > height || (other_height == height && other < segment);
-        convex && height < 0.0 && !terrain.is_wall(other) && beside.faces(centre) && shorter(beside.height(centre))
+        let behind_both = convex && height < 0.0 && !terrain.is_wall(other) && beside.faces(centre);
+        behind_both && shorter(beside.height(centre)) && clear(beside)
     };
-    if nearer(segment - 1, rear) || nearer(segment + 1, front) {
+    if !clear(face) || nearer(segment - 1, rear) || nearer(segment + 1, front) {
         return None;
-    }
-    if let Some([before, after]) = outline.at_corner(corner) {
-        let slack = 2.0 * close.tolerance;
-        if !face.clears(centre, before.from, slack) || !face.clears(centre, after.to, slack) {
-            return None;
-        }
     }
     Some(Touch { point: outline.point(corner), ground: face.axes(), gap })
 }
@@ -219,9 +220,10 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         let beneath = face.past_begin(at) > close.rounding && face.past_end(at) < -close.rounding;
         // Of a line, which is all surface, the ground's way tells the side.
         let solid = outline.sides().len() > 2;
-        let nearer = |other: &Face| solid && height < 0.0 && other.faces(at) && other.height(at) > height;
-        let clear = face.clears(at, before.from, slack) && face.clears(at, after.to, slack);
-        if gap.abs() > close.tolerance || !beneath || outline.beside(side).into_iter().any(nearer) || !clear {
+        let clear = |side: &Face| side.clears(at, before.from, slack) && side.clears(at, after.to, slack);
+        let nearer =
+            |other: &Face| solid && height < 0.0 && other.faces(at) && other.height(at) > height && clear(other);
+        if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
             return None;
         }
         let ground = upright(scaled(-1.0, face.normal));

@@ -143,6 +143,26 @@ fn states_are_refused_word_for_word() {
             "{\"ground\": {\"slope\": \"steep\"}}".into(),
             "1:22: ground.slope: expected a number, found a string",
         ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": [[0, 0], [1, 1e999]]}}".into(),
+            "1:38: ground.profile[1][1]: number out of range",
+        ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": [[1, 0], [0, 0]]}}".into(),
+            "1:13: ground.profile[1]: a profile's x rises from point to point, but 0.0 follows 1.0",
+        ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": [[-1e308, 0], [1e308, 0]]}}".into(),
+            "1:13: ground.profile[1]: the distance from the point before is beyond the range of f64",
+        ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": []}}".into(),
+            "1:13: ground.profile: a profile has at least two points, not 0",
+        ),
         case("slopes", "{\"ground\": 0.1}".into(), "1:2: ground: expected an object, found a number"),
         case(
             "restitution",

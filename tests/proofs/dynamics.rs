@@ -10,6 +10,7 @@
 use crate::number::Number;
 use heelstrike::impact::Friction;
 use heelstrike::robot::{Axis, Robot};
+use heelstrike::scene::Ground;
 use heelstrike::state::State;
 use std::cmp::Ordering;
 
@@ -230,8 +231,16 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     }
     let factor = Factor::new(mass_matrix, bits)?;
 
-    // The ground's tangent and normal; uphill toward +x is a turn against the pitch.
-    let [cos, sin] = number(scene.slope).cos_sin();
+    // The ground's tangent and normal; uphill toward +x is a turn against the pitch. Of a profile, here of one segment, they
+    // are the rounded numbers that the product works with.
+    let [cos, sin] = match &scene.ground {
+        Ground::Slope(slope) => number(*slope).cos_sin(),
+        Ground::Profile(profile) => {
+            let [[x, z], [to_x, to_z]] = profile.points()[..] else { return None };
+            let length = f64::hypot(to_x - x, to_z - z);
+            [number((to_x - x) / length), number((to_z - z) / length)]
+        }
+    };
     let axes = [[cos.clone(), sin.clone()], [sin.negative(), cos]];
     let in_body = |link: usize, offset: [f64; 3]| {
         robot.links[link].pose.map(|row| {
