@@ -244,7 +244,8 @@ fn a_straight_profile_is_a_slope() {
     let biped = Robot::from_urdf(BIPED).expect("a good robot");
     for slope in [-0.6_f64, -0.1, 0.0, 0.2, 0.6] {
         let rise = 3.0 * slope.tan();
-        let grounds = [format!(r#"{{"slope": {slope:?}}}"#), format!(r#"{{"profile": [[-3, {:?}], [3, {rise:?}]]}}"#, -rise)];
+        let grounds =
+            [format!(r#"{{"slope": {slope:?}}}"#), format!(r#"{{"profile": [[-3, {:?}], [3, {rise:?}]]}}"#, -rise)];
         // A point foot that stands while the other is in the air, and a sole that lies flat.
         let standing = r#""stance": "rear", "position": {"joints": {"front": 0.2}},
             "velocity": {"base": {"pitch": -0.6}, "joints": {"rear": 0.9, "front": 0.4}}"#;
@@ -268,12 +269,15 @@ fn a_straight_profile_is_a_slope() {
 #[test]
 fn a_stance_stands_on_the_profile_at_x_0() {
     let robot = sole();
-    let state = |profile: &str, more: &str| format!(r#"{{"stance": "body", "friction": 1{more}, "ground": {{"profile": {profile}}}}}"#);
+    let state = |profile: &str, more: &str| {
+        format!(r#"{{"stance": "body", "friction": 1{more}, "ground": {{"profile": {profile}}}}}"#)
+    };
     let raised = impact(&robot, &state("[[-1, 0.25], [1, 0.75]]", r#", "position": {"base": {"pitch": 0.1}}"#));
     assert_close(&raised.contacts[0].point, &[0.0, 0.5]);
     assert_eq!(raised.velocity_before, [[0.0; 2]]);
     // Of the two segments at the foot of a riser it is the tread; the rear end stands there, and the rest is in the step.
-    let error = try_impact(&robot, Options::default(), &state("[[-1, 0], [0, 0], [1e-6, 0.15], [1, 0.15]]", "")).unwrap_err();
+    let error =
+        try_impact(&robot, Options::default(), &state("[[-1, 0], [0, 0], [1e-6, 0.15], [1, 0.15]]", "")).unwrap_err();
     assert!(matches!(error.reason(), Reason::Penetration { depth, .. } if (depth - 0.15).abs() < 1e-6), "{error}");
     let error = try_impact(&robot, Options::default(), &state("[[1, 0], [2, 0]]", "")).unwrap_err();
     assert_eq!(error.place(), Some("stance"));
@@ -314,10 +318,7 @@ fn over_a_gap_and_beyond_an_end_there_is_nothing() {
     assert_eq!(bridge.contacts.len(), 4);
     let beyond = impact(&sole(), &state([1.1, 0.1, 0.0], FALLING, "1", &gap));
     assert_touches(&beyond, &[[[0.9, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 1.0]]]);
-    assert_eq!(
-        beyond.notes,
-        ["body reaches beyond the end of the ground's profile at x = 1.0 m: there is no ground"]
-    );
+    assert_eq!(beyond.notes, ["body reaches beyond the end of the ground's profile at x = 1.0 m: there is no ground"]);
     let above = impact(&sole(), &state([1.1, 0.2, 0.0], FALLING, "1", &gap));
     assert!(above.contacts.is_empty() && above.notes.len() == 1, "{:?}", above.notes);
 }
@@ -451,11 +452,13 @@ impl Walker {
         let rates = prop::array::uniform5(-1.0..1.0);
         let pitch = prop_oneof![Just(0.0), -0.4..0.4];
         let hips = (prop_oneof![Just(0.0), -0.6..0.6], -0.6..0.6);
-        (-0.5..0.5, pitch, hips, rates, steps).prop_map(|(x, pitch, (one, other), rates, steps): (f64, f64, _, _, _)| {
-            // The box is level half the time.
-            let hip = if one == 0.0 { -pitch } else { one };
-            Self { x, pitch, hips: [hip, other], rates, steps }
-        })
+        (-0.5..0.5, pitch, hips, rates, steps).prop_map(
+            |(x, pitch, (one, other), rates, steps): (f64, f64, _, _, _)| {
+                // The box is level half the time.
+                let hip = if one == 0.0 { -pitch } else { one };
+                Self { x, pitch, hips: [hip, other], rates, steps }
+            },
+        )
     }
 
     fn profile(&self) -> Vec<[f64; 2]> {

@@ -132,7 +132,9 @@ impl<T: Number> Computation<T> {
             // Level ground is level in every number.
             Ground::Slope(0.0) => Rotation::identity(),
             Ground::Slope(slope) => T::rotation(-slope),
-            Ground::Profile(_) => Rotation { cos: T::from_f64(contact.ground.cos), sin: T::from_f64(contact.ground.sin) },
+            Ground::Profile(_) => {
+                Rotation { cos: T::from_f64(contact.ground.cos), sin: T::from_f64(contact.ground.sin) }
+            }
         };
         points.clear();
         points.extend(pose.contacts.iter().map(|contact| contact.exact_point(pose.robot, axes(contact))));

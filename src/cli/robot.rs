@@ -1,5 +1,6 @@
 //! The robot and the options that shape it.
 
+use super::meshes::Meshes;
 use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::description::Description;
@@ -23,6 +24,9 @@ pub(super) struct RobotOptions {
     /// Whether the root link moves freely or is bolted to the world
     #[arg(long, value_enum, help_heading = "Robot")]
     pub base: Option<Base>,
+    /// A folder that holds packages, or is one, for meshes named by package:// [repeatable]
+    #[arg(long, value_name = "DIR", help_heading = "Robot")]
+    pub package_path: Vec<PathBuf>,
     /// Add a foot: a point of a link, or a circle about it [repeatable]
     #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", allow_hyphen_values = true, help_heading = "Robot")]
     pub contact: Vec<Foot>,
@@ -87,8 +91,12 @@ impl RobotOptions {
         let name = input::name(&self.robot);
         let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
         let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
+        let meshes = Meshes::of(&self.robot, &self.package_path);
         let robot = Description::from_urdf(text)
-            .and_then(|description| Robot::reduce(&description, self.base.map(Into::into)))
+            .and_then(|mut description| {
+                description.read_meshes(|name| meshes.fetch(name))?;
+                Robot::reduce(&description, self.base.map(Into::into))
+            })
             .map_err(|error| {
                 let excerpt = error.location().and_then(|place| Excerpt::around(text.as_bytes(), 1, place));
                 Failure::RefusedAt(error.in_file(name), excerpt)

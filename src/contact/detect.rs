@@ -1,29 +1,29 @@
 //! Feet against the ground: which points touch, and where the base must be for a foot to stand.
 
+use super::Contact;
 use super::feet::Feet;
 use super::placement::Placement;
 use super::point::{Point, Touch, points};
 use super::surface::{Sunk, Surface};
-use super::Contact;
 use crate::error::{Error, Reason, Result};
 use crate::planar::{Vector, difference, scaled};
 use crate::robot::Robot;
 use crate::scene::NamedContact;
 
 impl Contact {
-    fn of_touch(link: usize, placement: &Placement, Touch { point, ground, gap }: Touch) -> Self {
+    fn of_touch(link: usize, placement: &Placement, Touch { circle, ground, gap }: Touch) -> Self {
         let mut contact = Self {
             link,
             name: String::new(),
-            body: point.body,
-            centre: point.centre,
-            offset: point.offset,
-            radius: point.radius,
-            point: placement.world(point.body, point.centre),
+            body: circle.body,
+            centre: circle.centre,
+            offset: circle.offset,
+            radius: circle.radius,
+            point: placement.world(circle.body, circle.centre),
             ground,
             gap,
         };
-        contact.point = difference(contact.point, scaled(point.radius, contact.normal()));
+        contact.point = difference(contact.point, scaled(circle.radius, contact.normal()));
         contact
     }
 }

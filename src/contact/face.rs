@@ -65,17 +65,6 @@ impl Face {
         self.past_begin(point) >= 0.0 && self.past_end(point) <= 0.0
     }
 
-    /// Distance of a point \[m\].
-    pub fn distance(&self, point: Vector<f64>) -> f64 {
-        if self.past_begin(point) < 0.0 {
-            distance(point, self.from)
-        } else if self.past_end(point) > 0.0 {
-            distance(point, self.to)
-        } else {
-            self.height(point).abs()
-        }
-    }
-
     /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbour` stays in front of the
     /// side: it may go behind it by `slack` \[m\] where both lie flat on each other.
     pub fn clears(&self, point: Vector<f64>, neighbour: Vector<f64>, slack: f64) -> bool {

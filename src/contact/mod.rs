@@ -19,7 +19,7 @@ pub use detect::{Stance, detect, left_behind, nearest, stance};
 pub use feet::{Feet, Foot};
 pub use placement::Placement;
 pub(crate) use plane::Plane;
-pub(crate) use point::{Point, points};
+pub(crate) use point::{Circle, Point, points};
 pub use surface::Surface;
 
 use crate::planar::{Rotation, Vector};

@@ -1,8 +1,10 @@
 //! Where the bodies are in the world.
 
+use super::point::{Circle, Point};
 use crate::dynamics::Workspace;
 use crate::plan::Plan;
-use crate::planar::{Rotation, Vector, sum};
+use crate::planar::{Rotation, Vector, scaled, sum};
+use crate::robot::Rim;
 use parry2d::math::{Pose, Vector as ParryVector};
 
 /// Poses of all bodies.
@@ -31,13 +33,37 @@ impl Placement {
 
     /// The world's point that is `local` in the frame of `body` \[m\].
     pub(super) fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
-        sum(self.origins[body], self.turns[body].apply(local))
+        sum(self.origins[body], self.turned(body, local))
     }
 
-    /// The pose of a shape that is placed at `local` on `body`.
-    pub(super) fn pose(&self, body: usize, local: Vector<f64>) -> Pose {
+    /// A vector of a body's frame in the world's axes.
+    pub(super) fn turned(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
+        self.turns[body].apply(vector)
+    }
+
+    /// A vector of the world in a body's axes.
+    pub(super) fn turned_back(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
         let Rotation { cos, sin } = self.turns[body];
-        let [x, z] = self.world(body, local);
+        Rotation { cos, sin: -sin }.apply(vector)
+    }
+
+    /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material point
+    /// that is lowest along the normal now.
+    pub(super) fn circle(&self, point: Point, normal: Vector<f64>) -> Circle {
+        let Point { body, centre, offset, rim } = point;
+        match rim {
+            Rim::Circle { radius } => Circle { body, centre, offset, radius },
+            Rim::Ellipse { .. } => {
+                let down = self.turned_back(body, scaled(-1.0, normal));
+                Circle { body, centre: sum(centre, rim.support(down)), offset, radius: 0.0 }
+            }
+        }
+    }
+
+    /// The body's frame for parry.
+    pub(super) fn pose(&self, body: usize) -> Pose {
+        let Rotation { cos, sin } = self.turns[body];
+        let [x, z] = self.origins[body];
         // parry turns counter-clockwise, a positive pitch clockwise.
         Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
     }

@@ -1,17 +1,21 @@
 //! Feet against a line through the world's origin, level or sloped.
 //!
-//! parry's contact manifolds (ground as half space first, the order in which they are right) say which corners of a shape
-//! are within the tolerance; the corner itself, its gap and its velocity are those of the exact material point.
+//! ```text
+//!     bounding circle --reaches the ground?--> polygon without its rim --parry--> corners within reach of the ground
+//! ```
+//!
+//! parry's contact manifolds (ground as half space first, the order in which they are right) say which corners of a polygon
+//! are near; the rim reaches equally far from each. The point that touches, its gap and its velocity are those of the
+//! exact material point, not parry's.
 
 use super::feet::Foot;
 use super::placement::Placement;
-use super::point::{Point, Touch};
+use super::point::{Circle, Point, Touch, points};
 use crate::error::{Error, Reason, Result};
 use crate::planar::{Rotation, Vector, difference, dot, scaled};
-use crate::robot::FootShape;
-use parry2d::math::{Pose, Vector as ParryVector};
+use parry2d::math::Vector as ParryVector;
 use parry2d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
-use parry2d::shape::{Ball, HalfSpace, Shape};
+use parry2d::shape::HalfSpace;
 
 /// Solid ground below a line through the world's origin.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +25,9 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
+    /// The ground at z = 0.
+    pub const LEVEL: Self = Self { ground: Rotation { cos: 1.0, sin: 0.0 } };
+
     /// The ground of this slope \[rad\], uphill toward +x, which is a turn against the pitch.
     pub fn sloped(slope: f64) -> Self {
         Self { ground: Rotation::by(-slope) }
@@ -35,9 +42,15 @@ impl Plane {
         self.ground.apply([0.0, 1.0])
     }
 
-    /// The world's point of a circle (or, with radius 0, a point) of a body that is lowest along the normal.
+    /// The circle with which a point of a foot touches.
+    pub fn circle(&self, placement: &Placement, point: Point) -> Circle {
+        placement.circle(point, self.normal())
+    }
+
+    /// The world's point of a rim about a corner that is lowest along the normal.
     pub fn lowest(&self, placement: &Placement, point: Point) -> Vector<f64> {
-        difference(placement.world(point.body, point.centre), scaled(point.radius, self.normal()))
+        let Circle { body, centre, radius, .. } = self.circle(placement, point);
+        difference(placement.world(body, centre), scaled(radius, self.normal()))
     }
 
     pub(super) fn height(&self, placement: &Placement, point: Point) -> f64 {
@@ -58,42 +71,41 @@ impl Plane {
     }
 
     pub(super) fn touch(&self, placement: &Placement, point: Point) -> Touch {
-        Touch { point, ground: self.ground, gap: self.height(placement, point) }
+        Touch { circle: self.circle(placement, point), ground: self.ground, gap: self.height(placement, point) }
     }
 
-    /// The points of a foot that parry finds within `tolerance` of the ground or below it.
+    /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that faces
+    /// it.
     ///
     /// # Errors
     /// [`Reason::Unsupported`] for a pair of shapes that parry does not serve; none of ours is.
     pub(super) fn touching(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Touch>> {
+        let (centre, radius) = foot.bounding_circle;
+        let touch = |point: Point| self.touch(placement, point);
+        if dot(self.normal(), placement.world(foot.body, centre)) - radius > tolerance {
+            return Ok(Vec::new());
+        }
+        let Some(polygon) = foot.outline.polygon() else {
+            return Ok(points(foot).map(touch).filter(|touch| touch.gap <= tolerance).collect());
+        };
         let [x, z] = self.normal();
         let ground = HalfSpace::new(ParryVector::new(x, z));
         let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
-        let mut collide = |pose: Pose, shape: &dyn Shape| {
-            DefaultQueryDispatcher.contact_manifolds(&pose, &ground, shape, tolerance, &mut manifolds, &mut None).map_err(
-                |unsupported| Error::new(Reason::Unsupported(format!("a foot against the ground: {unsupported}"))),
-            )?;
-            let points = manifolds.iter().flat_map(|manifold| &manifold.points);
-            Ok::<Vec<_>, Error>(points.map(|point| (point.local_p2, point.dist)).collect())
-        };
-        let mut points: Vec<Point> = Vec::new();
-        match &foot.outline {
-            FootShape::Disc { centre, radius } => {
-                let found = collide(placement.pose(foot.body, *centre), &Ball::new(*radius))?;
-                let near = found.iter().any(|&(_, distance)| distance <= tolerance);
-                let point = Point { body: foot.body, centre: *centre, offset: foot.offset, radius: *radius };
-                points.extend(near.then_some(point));
-            }
-            FootShape::Polygon { corners, shape } => {
-                let found = collide(placement.pose(foot.body, [0.0; 2]), &*shape.0)?;
-                for (at, _) in found.into_iter().filter(|&(_, distance)| distance <= tolerance) {
-                    let far = |corner: &Vector<f64>| libm::hypot(corner[0] - at.x, corner[1] - at.y);
-                    let nearest = corners.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-                    let point = nearest.map(|&centre| Point { body: foot.body, centre, offset: None, radius: 0.0 });
-                    points.extend(point.filter(|point| !points.contains(point)));
-                }
-            }
+        let down = placement.turned_back(foot.body, [-x, -z]);
+        let prediction = tolerance + foot.outline.rim().reach(down);
+        let pose = placement.pose(foot.body);
+        DefaultQueryDispatcher
+            .contact_manifolds(&pose, &ground, &*polygon.0, prediction, &mut manifolds, &mut None)
+            .map_err(|unsupported| {
+                Error::new(Reason::Unsupported(format!("a foot against the ground: {unsupported}")))
+            })?;
+        let mut touching: Vec<Point> = Vec::new();
+        let near = manifolds.iter().flat_map(|manifold| &manifold.points).filter(|near| near.dist <= prediction);
+        for at in near.map(|near| near.local_p2) {
+            let far = |point: &Point| libm::hypot(point.centre[0] - at.x, point.centre[1] - at.y);
+            let nearest = points(foot).min_by(|a, b| far(a).total_cmp(&far(b)));
+            touching.extend(nearest.filter(|point| !touching.contains(point)));
         }
-        Ok(points.into_iter().map(|point| self.touch(placement, point)).collect())
+        Ok(touching.into_iter().map(touch).collect())
     }
 }

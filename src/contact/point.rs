@@ -4,13 +4,23 @@ use super::Contact;
 use super::feet::Foot;
 use crate::dynamics::ContactPoint;
 use crate::planar::{Rotation, Vector};
-use crate::robot::{FootShape, Robot};
+use crate::robot::{Rim, Robot};
 use crate::scalar::Real;
 use crate::scene::NamedContact;
 
-/// A circle, or with radius 0 a point, rigid on a body.
+/// A corner and the rim about it, rigid on a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
+    pub body: usize,
+    pub centre: Vector<f64>,
+    /// In the link's own frame, where it was named so.
+    pub offset: Option<[f64; 3]>,
+    pub rim: Rim,
+}
+
+/// A circle, or with radius 0 a point, rigid on a body, that touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Circle {
     pub body: usize,
     pub centre: Vector<f64>,
     /// In the link's own frame, where it was named so.
@@ -21,7 +31,7 @@ pub(crate) struct Point {
 /// Where a circle or point meets the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Touch {
-    pub point: Point,
+    pub circle: Circle,
     /// Turn from the world's axes to the ground's (tangent, normal) there.
     pub ground: Rotation<f64>,
     /// Height of the material point, centre - radius * normal, above the ground \[m\].
@@ -32,17 +42,14 @@ impl Point {
     pub(super) fn named(robot: &Robot, contact: &NamedContact) -> Self {
         let link = &robot.links[contact.link];
         let (centre, offset) = (link.point(contact.offset), Some(contact.offset));
-        Self { body: link.body, centre, offset, radius: contact.radius }
+        Self { body: link.body, centre, offset, rim: Rim::Circle { radius: contact.radius } }
     }
 }
 
-/// The corners and circles of a foot.
-pub(crate) fn points(foot: &Foot) -> Vec<Point> {
-    let point = |centre, radius| Point { body: foot.body, centre, offset: foot.offset, radius };
-    match &foot.outline {
-        FootShape::Disc { centre, radius } => vec![point(*centre, *radius)],
-        FootShape::Polygon { corners, .. } => corners.iter().map(|&corner| point(corner, 0.0)).collect(),
-    }
+/// The points of a foot that can touch.
+pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
+    let corners = foot.outline.corners().iter();
+    corners.map(|&centre| Point { body: foot.body, centre, offset: foot.offset, rim: foot.outline.rim() })
 }
 
 impl Contact {

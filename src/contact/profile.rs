@@ -1,7 +1,7 @@
 //! Feet against a profile: where a foot touches, with which normal, and how deep it is.
 //!
 //! ```text
-//!     a corner's circle at a segment           the segment's normal; in a notch two contacts, one for each segment
+//!     a corner's rim at a segment              the segment's normal; in a notch two contacts, one for each segment
 //!     a circle at a convex corner              from the ground's corner to the circle's centre
 //!     a foot's side across a convex corner     the side's own normal, turned round: the edge of a stair under a sole
 //!     a foot's corner on a convex corner       the middle of the normals that both allow
@@ -43,7 +43,7 @@ pub(super) fn touching(
     (tolerance, rounding): (f64, f64),
 ) -> Result<Vec<Touch>, TooDeep> {
     let outline = Outline::new(foot, placement);
-    let [low, high] = outline.region(outline.radius + tolerance);
+    let [low, high] = outline.region(tolerance);
     let near = terrain.near(low, high);
     let deepest = depth(terrain, &outline, &near);
     if deepest > tolerance {
@@ -58,7 +58,8 @@ pub(super) fn touching(
     }
     for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
         touches.extend(
-            corner_on_corner(terrain, corner, &outline, close).or_else(|| side_on_corner(terrain, corner, &outline, close)),
+            corner_on_corner(terrain, corner, &outline, close)
+                .or_else(|| side_on_corner(terrain, corner, &outline, close)),
         );
     }
     touches.sort_by(|a, b| x_of(placement, a).total_cmp(&x_of(placement, b)));
@@ -73,7 +74,7 @@ pub(super) fn rounding(placement: &Placement, size: f64) -> f64 {
 
 /// x of the material point of a contact \[m\].
 fn x_of(placement: &Placement, touch: &Touch) -> f64 {
-    placement.world(touch.point.body, touch.point.centre)[0] - touch.point.radius * touch.ground.sin
+    placement.world(touch.circle.body, touch.circle.centre)[0] - touch.circle.radius * touch.ground.sin
 }
 
 /// The corners of these segments, ascending.
@@ -82,15 +83,31 @@ fn corners_of(segments: &[usize]) -> impl Iterator<Item = usize> + '_ {
     (0..segments.len()).flat_map(move |at| new(at).then(|| segments[at] - 1).into_iter().chain([segments[at]]))
 }
 
-/// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' circles, of the ground's corners in
+/// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' rims, of the ground's corners in
 /// the foot, and of sides that cross.
 fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
-    let corners = outline.corners().iter().map(|&corner| outline.radius - terrain.clearance(corner));
+    let corners = (0..outline.corners().len()).map(|corner| depth_of_rim(terrain, outline, corner, near));
     let ground = corners_of(near).map(|corner| outline.depth_of(terrain.at_corner(corner)[0].to));
     let across = near.iter().flat_map(|&segment| {
-        outline.sides().iter().filter_map(move |side| crossing(terrain.face(segment), side)).map(|depth| outline.radius + depth)
+        let face = terrain.face(segment);
+        let reach = outline.reach(scaled(-1.0, face.normal));
+        outline.bones().iter().filter_map(move |bone| crossing(face, bone)).map(move |depth| reach + depth)
     });
     corners.chain(ground).chain(across).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// How deep a corner's rim is behind the segments that it is above \[m\], or as a whole below the profile.
+fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> f64 {
+    let centre = outline.corners()[corner];
+    if let Some((depth, normal)) = terrain.depth_of(centre) {
+        return depth + outline.reach(scaled(-1.0, normal));
+    }
+    let above = near.iter().filter_map(|&segment| {
+        let face = terrain.face(segment);
+        let lowest = outline.lowest(corner, face.normal);
+        (face.height(centre) >= 0.0 && face.faces(lowest)).then(|| -face.height(lowest))
+    });
+    above.fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// How far a foot is from the ground \[m\].
@@ -103,8 +120,9 @@ pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
 pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) -> Option<f64> {
     let [rear, front] = terrain.ends();
     let hangs = |[x, z]: Vector<f64>, way: f64| {
-        outline.corners().iter().any(|&[foot_x, foot_z]| {
-            way * (foot_x - x) + outline.radius > tolerance && foot_z - outline.radius <= z + tolerance
+        let reach = |corner: usize, normal| outline.lowest(corner, normal);
+        (0..outline.corners().len()).any(|corner| {
+            way * (reach(corner, [-way, 0.0])[0] - x) > tolerance && reach(corner, [0.0, 1.0])[1] <= z + tolerance
         })
     };
     if hangs(rear, -1.0) { Some(rear[0]) } else { hangs(front, 1.0).then_some(front[0]) }
@@ -119,17 +137,11 @@ fn crossing(a: &Face, b: &Face) -> Option<f64> {
     (parted(from, to) && parted(begin, end)).then_some(shortest)
 }
 
-/// A corner's circle at a segment.
-fn on_segment(
-    terrain: &Terrain,
-    segment: usize,
-    outline: &Outline,
-    corner: usize,
-    close: Closeness,
-) -> Option<Touch> {
+/// A corner's rim at a segment.
+fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usize, close: Closeness) -> Option<Touch> {
     let face = terrain.face(segment);
     let centre = outline.corners()[corner];
-    let lowest = difference(centre, scaled(outline.radius, face.normal));
+    let lowest = outline.lowest(corner, face.normal);
     let gap = face.height(lowest);
     if gap.abs() > close.tolerance {
         return None;
@@ -144,9 +156,8 @@ fn on_segment(
     }
     let clear = |face: &Face| {
         let slack = 2.0 * close.tolerance;
-        outline
-            .at_corner(corner)
-            .is_none_or(|[before, after]| face.clears(centre, before.from, slack) && face.clears(centre, after.to, slack))
+        let beside = outline.beside_corner(corner);
+        beside.is_none_or(|beside| beside.into_iter().all(|neighbour| face.clears(centre, neighbour, slack)))
     };
     // Behind both sides of a convex corner the one that is left by the shorter way counts.
     let height = face.height(centre);
@@ -159,31 +170,35 @@ fn on_segment(
     if !clear(face) || nearer(segment - 1, rear) || nearer(segment + 1, front) {
         return None;
     }
-    Some(Touch { point: outline.point(corner), ground: face.axes(), gap })
+    Some(Touch { circle: outline.circle(corner, face.normal), ground: face.axes(), gap })
 }
 
-/// A foot's corner, or the circle about it, on a convex corner of the ground.
+/// A foot's corner, or the rim about it, on a convex corner of the ground.
 fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Closeness) -> Option<Touch> {
     let [before, after] = terrain.at_corner(corner);
     let at = before.to;
     let on = |foot: usize| {
-        let way = difference(outline.corners()[foot], at);
-        let far = libm::hypot(way[0], way[1]);
-        let past = |face: &Face| difference(outline.corners()[foot], scaled(outline.radius, face.normal));
-        let together = outline.radius == 0.0 && far <= close.rounding;
-        let is_nearest_ground = together || (before.past_end(past(before)) > 0.0 && after.past_begin(past(after)) < 0.0);
+        let beyond = outline.beyond_rim(foot, at);
+        let together = outline.is_sharp() && beyond.is_none_or(|(_, far)| far <= close.rounding);
+        let past_both = || {
+            before.past_end(outline.lowest(foot, before.normal)) > 0.0
+                && after.past_begin(outline.lowest(foot, after.normal)) < 0.0
+        };
         let is_nearest_foot = outline.at_corner(foot).is_none_or(|[ending, beginning]| {
             ending.past_end(at) >= -close.rounding && beginning.past_begin(at) <= close.rounding
         });
-        if far - outline.radius > close.tolerance || !is_nearest_ground || !is_nearest_foot {
+        let far = beyond.map_or(0.0, |(_, far)| far);
+        if far > close.tolerance || !is_nearest_foot || !(together || past_both()) {
             return None;
         }
-        let normal = if outline.radius > 0.0 && far > 0.0 {
-            unit(way)
-        } else {
-            common_normal([before, after], outline.at_corner(foot))
+        let (normal, gap) = match beyond {
+            Some((out, far)) if !outline.is_sharp() => (scaled(-1.0, out), far),
+            _ => {
+                let normal = common_normal([before, after], outline.at_corner(foot));
+                (normal, dot(normal, difference(outline.corners()[foot], at)))
+            }
         };
-        Some(Touch { point: outline.point(foot), ground: upright(normal), gap: dot(normal, way) - outline.radius })
+        Some(Touch { circle: outline.circle(foot, normal), ground: upright(normal), gap })
     };
     (0..outline.corners().len()).find_map(on)
 }
@@ -200,12 +215,15 @@ fn common_normal(ground: [&Face; 2], foot: Option<[&Face; 2]>) -> Vector<f64> {
     let foot = [foot[1], foot[0]];
     let sine = |a: Vector<f64>, b: Vector<f64>| a[1] * b[0] - a[0] * b[1];
     let within = |[first, last]: [Vector<f64>; 2], normal: Vector<f64>| {
-        sine(first, normal) >= -PARALLEL && sine(normal, last) >= -PARALLEL && dot(normal, sum(first, last)) >= -PARALLEL
+        sine(first, normal) >= -PARALLEL
+            && sine(normal, last) >= -PARALLEL
+            && dot(normal, sum(first, last)) >= -PARALLEL
     };
     // The later of both beginnings and the earlier of both ends.
     let first = if within(ground, foot[0]) { foot[0] } else { ground[0] };
     let last = if within(ground, foot[1]) { foot[1] } else { ground[1] };
-    let flat = ground.into_iter().find(|&normal| sine(first, last).abs() <= PARALLEL && sine(normal, last).abs() <= PARALLEL);
+    let flat =
+        ground.into_iter().find(|&normal| sine(first, last).abs() <= PARALLEL && sine(normal, last).abs() <= PARALLEL);
     flat.unwrap_or_else(|| unit(sum(first, last)))
 }
 
@@ -215,19 +233,17 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
     let at = before.to;
     let across = |side: usize| {
         let face = &outline.sides()[side];
-        let (height, slack) = (face.height(at), 2.0 * close.tolerance);
-        let gap = height - outline.radius;
+        let (gap, slack) = (face.height(at), 2.0 * close.tolerance);
         let beneath = face.past_begin(at) > close.rounding && face.past_end(at) < -close.rounding;
         // Of a line, which is all surface, the ground's way tells the side.
         let solid = outline.sides().len() > 2;
         let clear = |side: &Face| side.clears(at, before.from, slack) && side.clears(at, after.to, slack);
-        let nearer =
-            |other: &Face| solid && height < 0.0 && other.faces(at) && other.height(at) > height && clear(other);
+        let nearer = |other: &Face| solid && gap < 0.0 && other.faces(at) && other.height(at) > gap && clear(other);
         if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
             return None;
         }
         let ground = upright(scaled(-1.0, face.normal));
-        Some(Touch { point: outline.on_side(side, at), ground, gap })
+        Some(Touch { circle: outline.on_side(side, at), ground, gap })
     };
     (0..outline.sides().len()).find_map(across)
 }

@@ -48,7 +48,8 @@ impl Surface {
             Kind::Profile(terrain) => {
                 let (axes, point) = terrain.at_origin().ok_or_else(|| {
                     let [[rear, _], [front, _]] = terrain.ends();
-                    let reason = format!("a stance is at x = 0, and the ground's profile goes from {rear:?} to {front:?}");
+                    let reason =
+                        format!("a stance is at x = 0, and the ground's profile goes from {rear:?} to {front:?}");
                     Error::new(Reason::Inconsistent(reason))
                         .at("stance")
                         .hint("shift the profile along x, or give the base's x and z instead of a stance")
@@ -58,12 +59,14 @@ impl Surface {
         }
     }
 
-    /// The contact of a point that was named, whatever its height.
-    pub(super) fn touch(&self, placement: &Placement, point: Point, tolerance: f64) -> Touch {
+    /// The contact of a circle or point that was named, whatever its height.
+    pub(super) fn touch(&self, placement: &Placement, named: Point, tolerance: f64) -> Touch {
         match &self.0 {
-            Kind::Plane(plane) => plane.touch(placement, point),
+            Kind::Plane(plane) => plane.touch(placement, named),
             Kind::Profile(terrain) => {
-                terrain.nearest_touch(point, placement.world(point.body, point.centre), tolerance)
+                // A circle's place is the same whatever the normal.
+                let circle = placement.circle(named, [0.0, 1.0]);
+                terrain.nearest_touch(circle, placement.world(circle.body, circle.centre), tolerance)
             }
         }
     }
@@ -144,7 +147,7 @@ impl Surface {
     pub(super) fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match &self.0 {
             Kind::Plane(plane) => {
-                points(foot).into_iter().map(|point| plane.height(placement, point)).fold(f64::INFINITY, f64::min)
+                points(foot).map(|point| plane.height(placement, point)).fold(f64::INFINITY, f64::min)
             }
             Kind::Profile(terrain) => profile::clearance(terrain, &Outline::new(foot, placement)),
         }

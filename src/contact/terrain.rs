@@ -9,7 +9,7 @@
 //! parry's polyline finds the segments near a foot and the nearest point; which side is inside, it does not know.
 
 use super::face::{Face, distance, unit, upright};
-use super::point::{Point, Touch};
+use super::point::{Circle, Touch};
 use crate::planar::{Rotation, Vector, difference, dot, sum};
 use crate::scene::Profile;
 use parry2d::bounding_volume::Aabb;
@@ -31,7 +31,8 @@ impl Terrain {
         let mut faces: Vec<Face> = points.windows(2).map(|pair| Face::of_ground(pair[0], pair[1])).collect();
         if let (Some(&first), Some(&last)) = (faces.first(), faces.last()) {
             let below = |[x, z]: Vector<f64>, beside: Face| [x, z - distance(beside.from, beside.to)];
-            let rear = Face { from: below(first.from, first), to: first.from, tangent: [0.0, 1.0], normal: [-1.0, 0.0] };
+            let rear =
+                Face { from: below(first.from, first), to: first.from, tangent: [0.0, 1.0], normal: [-1.0, 0.0] };
             let front = Face { from: last.to, to: below(last.to, last), tangent: [0.0, -1.0], normal: [1.0, 0.0] };
             faces.insert(0, rear);
             faces.push(front);
@@ -75,13 +76,14 @@ impl Terrain {
         near
     }
 
-    /// Distance of a point from the solid \[m\], negative inside.
-    pub(super) fn clearance(&self, point: Vector<f64>) -> f64 {
-        let distance = match self.nearest(point) {
-            (face, None) => self.faces[face].height(point).abs(),
-            (_, Some(corner)) => distance(point, self.faces[corner].to),
+    /// How deep a point is in the solid \[m\], and the normal of the segment that is nearest; none outside.
+    pub(super) fn depth_of(&self, point: Vector<f64>) -> Option<(f64, Vector<f64>)> {
+        let (face, corner) = self.is_inside(point).then(|| self.nearest(point))?;
+        let depth = match corner {
+            None => -self.faces[face].height(point),
+            Some(corner) => distance(point, self.faces[corner].to),
         };
-        if self.is_inside(point) { -distance } else { distance }
+        Some((depth, self.faces[face].normal))
     }
 
     /// The segment nearest to a point, and its corner where that is nearest.
@@ -118,24 +120,20 @@ impl Terrain {
     /// The contact of a circle or point that was named: with the ground nearest to its centre, which is in the world at
     /// `centre`. A point within `tolerance` of a corner takes the middle of the corner's normals; beyond the ends the last
     /// segment counts as going on.
-    pub(super) fn nearest_touch(&self, point: Point, centre: Vector<f64>, tolerance: f64) -> Touch {
+    pub(super) fn nearest_touch(&self, circle: Circle, centre: Vector<f64>, tolerance: f64) -> Touch {
         let (face, corner) = self.nearest(centre);
         let inner = corner.filter(|&corner| corner > 0 && corner + 2 < self.faces.len() && self.is_convex(corner));
         let (ground, height) = match inner {
             Some(corner) if !self.is_inside(centre) => {
                 let at = self.faces[corner].to;
-                let way = difference(centre, at);
-                let far = libm::hypot(way[0], way[1]);
-                let normal = if far <= tolerance && point.radius == 0.0 || far == 0.0 {
-                    self.middle_normal(corner)
-                } else {
-                    unit(way)
-                };
+                let (way, far) = (difference(centre, at), distance(centre, at));
+                let meets = far == 0.0 || circle.radius == 0.0 && far <= tolerance;
+                let normal = if meets { self.middle_normal(corner) } else { unit(way) };
                 (upright(normal), dot(normal, way))
             }
             _ => (self.faces[face].axes(), self.faces[face].height(centre)),
         };
-        Touch { point, ground, gap: height - point.radius }
+        Touch { circle, ground, gap: height - circle.radius }
     }
 
     /// The middle of the normals that a corner's faces have.

@@ -11,12 +11,14 @@
 //! file or starts a process, nothing recurses, and time and memory grow linearly with the text.
 
 mod draft;
+mod mesh;
 mod pose;
 mod strict;
 mod tree;
 mod values;
 mod xml;
 
+pub use mesh::{Fetched, Mesh};
 pub use pose::{Matrix, Pose, apply, product};
 
 use crate::error::{Error, Location, Result};
@@ -100,12 +102,14 @@ pub enum Geometry {
         /// Radius \[m\].
         radius: f64,
     },
-    /// A mesh, which is not read here.
+    /// A mesh.
     Mesh {
         /// The file's name as given.
         file: String,
         /// Factors along x, y and z; a negative one mirrors.
         scale: [f64; 3],
+        /// What was read of the file, before the factors.
+        mesh: Mesh,
     },
     /// A shape that URDF does not know.
     Unknown {
@@ -287,7 +291,7 @@ mod tests {
             &Geometry::Cylinder { radius: 0.5, length: 2.0 },
             &Geometry::Capsule { radius: 0.5, length: 2.0 },
             &Geometry::Sphere { radius: 0.0 },
-            &Geometry::Mesh { file: "a & b.stl".into(), scale: [1.0, -1.0, 1.0] },
+            &Geometry::Mesh { file: "a & b.stl".into(), scale: [1.0, -1.0, 1.0], mesh: Mesh::Unread },
             &Geometry::Unknown { tag: "plane".into() },
         ];
         assert_eq!(shapes, expected);

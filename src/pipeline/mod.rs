@@ -340,7 +340,9 @@ impl<'r> Pipeline<'r> {
                 (Some((link, distance)), Ground::Profile(_)) => {
                     format!("nothing touches the ground: the nearest foot, {link}, is {distance:?} m away from it")
                 }
-                (None, _) => "the robot has no feet: name contact points by `contacts` in the state or by --contact".into(),
+                (None, _) => {
+                    "the robot has no feet: name contact points by `contacts` in the state or by --contact".into()
+                }
             });
         }
         if named.is_none() {

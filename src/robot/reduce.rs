@@ -11,7 +11,7 @@
 
 use super::composite::{Part, composite};
 use super::outline::outline;
-use super::{Axis, Base, Body, FootShape, Joint, LeftOut, Link, Robot};
+use super::{Axis, Base, Body, Joint, LeftOut, Link, Robot};
 use crate::description::{
     self, Collision, Description, Geometry, Ignored, Inertial, JointKind, Matrix, Pose, apply, product,
 };
@@ -304,11 +304,8 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;
         for shape in &link.shapes {
-            let points = match shape {
-                FootShape::Disc { centre, .. } => centre.as_slice(),
-                FootShape::Polygon { corners, .. } => corners.as_flattened(),
-            };
-            refuse("the place of a collision shape", points, description::link_place(&link.name))?;
+            let corners = shape.corners().as_flattened();
+            refuse("the place of a collision shape", corners, description::link_place(&link.name))?;
         }
     }
     refuse("the mass", &[robot.mass()], "robot".into())

@@ -55,9 +55,12 @@ impl Profile {
             let reason = format!("a profile has at least two points, not {}", points.len());
             return Err(Error::new(Reason::Inconsistent(reason)).hint("level ground is \"ground\": {\"slope\": 0}"));
         }
-        for (at, &value) in points.iter().enumerate().flat_map(|(at, point)| point.iter().map(move |entry| (at, entry))) {
+        for (at, &value) in points.iter().enumerate().flat_map(|(at, point)| point.iter().map(move |entry| (at, entry)))
+        {
             if !value.is_finite() {
-                return Err(Error::new(Reason::NotFinite { what: "a profile's point".into(), value }).at(format!("[{at}]")));
+                return Err(
+                    Error::new(Reason::NotFinite { what: "a profile's point".into(), value }).at(format!("[{at}]"))
+                );
             }
         }
         for (at, pair) in points.windows(2).enumerate() {

@@ -1,19 +1,19 @@
-//! Collision shape -> its outline in the plane.
+//! Collision shape -> its outline in the plane: corners and the rim about them (see [`super::shape`]).
 //!
-//! A ball is a disc, and so is a cylinder about the plane's normal. Boxes, and cylinders that lie in the plane, project to
-//! a polygon with parallel sides, `{c + sum of s_i g_i, |s_i| <= 1}`, whose half sides g_i are the projected half axes;
-//! walking along them in the order of their angles gives its corners. So corners of a shape that is not turned come from
-//! its centre and half sizes by one sum each.
+//! ```text
+//!     ball, capsule                     projected centre line + circle
+//!     cylinder along the normal         centre + circle
+//!     cylinder in the plane, box        zonogon of the projected half axes
+//!     cylinder oblique to the plane     projected centre line + ellipse, the projection of its rims
+//!     mesh                              convex hull of its projected vertices
+//! ```
 
-use super::FootShape;
-use crate::description::{Geometry, Matrix};
-use crate::planar::{Vector, difference, dot, sum};
-use parry2d::math::Vector as ParryVector;
-use parry2d::shape::SharedShape;
+mod hull;
+mod zonogon;
 
-/// Half sides shorter than this part of the longest, or as nearly parallel, are rounding (a quarter turn, whose cosine is
-/// 6e-17 in f64, leaves them) and would tear one corner into two.
-const ROUNDING: f64 = 1e-12;
+use super::{FootShape, Rim};
+use crate::description::{Geometry, Matrix, Mesh, apply};
+use crate::planar::{Vector, sum};
 
 /// The outline of `geometry`, whose frame has its origin at `centre` and its axes in the columns of `rotation`, both in
 /// the body's frame; `off_axis` is the greatest angle \[rad\] that still counts as parallel. Or why there is none.
@@ -25,90 +25,54 @@ pub(super) fn outline(
 ) -> Result<FootShape, String> {
     // The shape's axis `k` in the plane.
     let axis = |k: usize| [rotation[0][k], rotation[2][k]];
-    match *geometry {
-        Geometry::Sphere { radius } => Ok(FootShape::Disc { centre, radius }),
-        Geometry::Box { size } => {
-            let half = |k: usize| axis(k).map(|component| component * (0.5 * size[k]));
-            polygon(centre, &[half(0), half(1), half(2)])
+    let half = |k: usize, length: f64| axis(k).map(|component| component * (0.5 * length));
+    let [x, z] = axis(2);
+    let (in_plane, along_normal) = (libm::hypot(x, z), rotation[1][2].abs());
+    let lies_along_normal = libm::atan2(in_plane, along_normal) <= off_axis;
+    let lies_in_plane = libm::atan2(along_normal, in_plane) <= off_axis;
+    match geometry {
+        &Geometry::Sphere { radius } => Ok(FootShape::disc(centre, radius)),
+        &Geometry::Capsule { radius, .. } | &Geometry::Cylinder { radius, .. } if lies_along_normal => {
+            Ok(FootShape::disc(centre, radius))
         }
-        Geometry::Cylinder { radius, length } => {
-            let [x, z] = axis(2);
-            let (in_plane, along_normal) = (libm::hypot(x, z), rotation[1][2].abs());
-            if libm::atan2(in_plane, along_normal) <= off_axis {
-                Ok(FootShape::Disc { centre, radius })
-            } else if libm::atan2(along_normal, in_plane) <= off_axis {
-                polygon(centre, &[[x * (0.5 * length), z * (0.5 * length)], [z * radius, -x * radius]])
-            } else {
-                let degrees = libm::atan2(in_plane, along_normal).to_degrees();
-                Err(format!("its axis is {degrees:.1} degrees off the plane's normal: not handled yet"))
-            }
+        &Geometry::Capsule { radius, length } => projected(centre, &[half(2, length)], Rim::Circle { radius }),
+        &Geometry::Cylinder { radius, length } if lies_in_plane => {
+            projected(centre, &[half(2, length), [z * radius, -x * radius]], POINT)
         }
-        Geometry::Capsule { .. } => Err("capsules are not handled yet".into()),
-        Geometry::Mesh { .. } => Err("meshes are not handled yet".into()),
+        &Geometry::Cylinder { radius, length } => {
+            // The rims are circles about the shape's own z axis; their half diameters along its x and y stay conjugate.
+            let half_diameters = [half(0, 2.0 * radius), half(1, 2.0 * radius)];
+            projected(centre, &[half(2, length)], Rim::Ellipse { half_diameters })
+        }
+        &Geometry::Box { size } => projected(centre, &[0, 1, 2].map(|k| half(k, size[k])), POINT),
+        Geometry::Mesh { file, scale, mesh } => {
+            let vertices = match mesh {
+                Mesh::Vertices(vertices) => vertices,
+                Mesh::LeftOut { why } => return Err(why.clone()),
+                Mesh::Unread => return Err("its file was not read".into()),
+            };
+            let project = |vertex: &[f64; 3]| {
+                let [x, _, z] = apply(rotation, [0, 1, 2].map(|k| scale[k] * vertex[k]));
+                sum(centre, [x, z])
+            };
+            let corners = hull::corners(&vertices.iter().map(project).collect::<Vec<_>>())?;
+            let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+            Ok(swept(corners, POINT)?.of_mesh(name))
+        }
         Geometry::Unknown { .. } => Err("no shape of URDF".into()),
     }
 }
 
-/// The polygon about `centre` with these half sides: a point if all vanish, a line of two corners if all are parallel.
-fn polygon(centre: Vector<f64>, half_sides: &[Vector<f64>]) -> Result<FootShape, String> {
-    let sides = distinct(half_sides);
-    if sides.is_empty() {
-        return Ok(FootShape::Disc { centre, radius: 0.0 });
-    }
-    // From the lowest corner up along all sides, and back down along them.
-    let count = sides.len();
-    let corner = |step: usize| {
-        sides.iter().enumerate().fold([0.0; 2], |corner, (index, &side)| {
-            let forward = index < step && step <= index + count;
-            if forward { sum(corner, side) } else { difference(corner, side) }
-        })
-    };
-    let corners: Vec<Vector<f64>> = (0..2 * count).map(|step| sum(centre, corner(step))).collect();
-    let points: Vec<ParryVector> = corners.iter().map(|&[x, z]| ParryVector::new(x, z)).collect();
-    let shape = match points[..] {
-        [a, b] => Some(SharedShape::segment(a, b)),
-        _ => SharedShape::convex_polyline_unmodified(points),
-    };
-    match shape {
-        Some(shape) => Ok(FootShape::Polygon { corners, shape }),
-        None => Err("too small beside its distance from the body's origin".into()),
-    }
+/// A rim that is its corner.
+const POINT: Rim = Rim::Circle { radius: 0.0 };
+
+/// The zonogon of `half_sides` about `centre`, with `rim` about its corners.
+fn projected(centre: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Result<FootShape, String> {
+    swept(zonogon::corners(centre, half_sides), rim)
 }
 
-/// The half sides that remain when rounding is dropped and parallel ones are joined, all pointing up (or level and
-/// forward), by rising angle from level.
-fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
-    let longest = half_sides.iter().map(|&side| length(side)).fold(0.0, f64::max);
-    let mut sides: Vec<Vector<f64>> = Vec::with_capacity(half_sides.len());
-    for &side in half_sides {
-        if length(side) <= ROUNDING * longest {
-            continue;
-        }
-        let parallel = sides.iter_mut().find(|known| sine(**known, side).abs() <= ROUNDING);
-        match parallel {
-            Some(known) if dot(*known, side) > 0.0 => *known = sum(*known, side),
-            Some(known) => *known = difference(*known, side),
-            None => sides.push(side),
-        }
-    }
-    for side in &mut sides {
-        if side[1] < 0.0 || (side[1] == 0.0 && side[0] < 0.0) {
-            *side = side.map(|component| 0.0 - component);
-        }
-    }
-    sides.sort_by(|&a, &b| 0.0_f64.total_cmp(&sine(a, b)));
-    sides
-}
-
-fn length([x, z]: Vector<f64>) -> f64 {
-    libm::hypot(x, z)
-}
-
-/// Sine of the angle from `a` to `b`; positive where `b` points to the left of `a`, seen with forward to the right and up
-/// upward.
-fn sine(a: Vector<f64>, b: Vector<f64>) -> f64 {
-    let (la, lb) = (length(a), length(b));
-    (a[0] / la) * (b[1] / lb) - (a[1] / la) * (b[0] / lb)
+fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
+    FootShape::swept(corners, rim).ok_or_else(|| "too small beside its distance from the body's origin".into())
 }
 
 #[cfg(test)]

@@ -1,0 +1,1 @@
+//! Readers of mesh files, against shapes written by hand.
