@@ -4,9 +4,11 @@
 //! Signs: x forward, z up, a positive pitch dips the nose; a body that turns at w moves its point at (x, z) from the CoG at
 //! w (z, -x), and an impulse (Lx, Lz) there turns it by I w = z Lx - x Lz.
 
-use heelstrike::impact::{Friction, Verdict};
+use heelstrike::impact::Verdict;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::scene::{Ground, Profile};
 use heelstrike::state::{Defaults, State};
+use heelstrike::uncertain::Holds;
 use heelstrike::{Error, Reason, Robot};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
@@ -46,11 +48,15 @@ fn impact(robot: &Robot, state: &str) -> Impact {
 
 /// The body at `[x, z, pitch]` with velocity `[x, z, pitch]` over a profile.
 fn state(position: [f64; 3], velocity: [f64; 3], friction: &str, profile: &[[f64; 2]]) -> String {
+    state_on(position, velocity, friction, &format!(r#"{{"profile": {profile:?}}}"#))
+}
+
+fn state_on(position: [f64; 3], velocity: [f64; 3], friction: &str, ground: &str) -> String {
     let ([x, z, pitch], [u, w, rate]) = (position, velocity);
     format!(
         r#"{{"position": {{"base": {{"x": {x:?}, "z": {z:?}, "pitch": {pitch:?}}}}},
             "velocity": {{"base": {{"x": {u:?}, "z": {w:?}, "pitch": {rate:?}}}}},
-            "friction": {friction}, "ground": {{"profile": {profile:?}}}}}"#
+            "friction": {friction}, "ground": {ground}}}"#
     )
 }
 
@@ -246,23 +252,24 @@ fn a_straight_profile_is_a_slope() {
         let rise = 3.0 * slope.tan();
         let grounds =
             [format!(r#"{{"slope": {slope:?}}}"#), format!(r#"{{"profile": [[-3, {:?}], [3, {rise:?}]]}}"#, -rise)];
-        // A point foot that stands while the other is in the air, and a sole that lies flat.
-        let standing = r#""stance": "rear", "position": {"joints": {"front": 0.2}},
-            "velocity": {"base": {"pitch": -0.6}, "joints": {"rear": 0.9, "front": 0.4}}"#;
-        let flat = format!(
-            r#""position": {{"base": {{"x": {:?}, "z": {:?}, "pitch": {:?}}}}},
-                "velocity": {{"base": {{"x": 0.4, "z": -1, "pitch": 0.3}}}}"#,
-            -0.1 * slope.sin(),
-            0.1 * slope.cos(),
-            -slope
-        );
-        for (robot, fields, contacts) in [(&biped, standing, 1), (&sole(), flat.as_str(), 2)] {
-            let [sloped, straight] = grounds.each_ref().map(|ground| {
-                impact(robot, &format!(r#"{{{fields}, "friction": 0.8, "restitution": 0.2, "ground": {ground}}}"#))
-            });
-            assert_eq!([sloped.contacts.len(), straight.contacts.len()], [contacts; 2], "{slope}");
-            assert_same_outcomes(&sloped, &straight);
-        }
+        // Feet half a metre or less above and in the ground touch, so that there are two.
+        let wide = || Options { contact_tolerance: Some(0.5), ..Options::default() };
+        let state = |ground: &String| {
+            format!(
+                r#"{{"stance": "rear", "position": {{"base": {{"pitch": 0.1}}, "joints": {{"rear": 0.1, "front": 0.2}}}},
+                    "velocity": {{"base": {{"pitch": -0.6}}, "joints": {{"rear": 0.9, "front": 0.4}}}},
+                    "friction": 0.8, "restitution": 0.2, "ground": {ground}}}"#
+            )
+        };
+        let [sloped, straight] =
+            grounds.each_ref().map(|ground| try_impact(&biped, wide(), &state(ground)).expect("within the tolerance"));
+        assert_eq!([sloped.contacts.len(), straight.contacts.len()], [2; 2], "{slope}");
+        assert_same_outcomes(&sloped, &straight);
+
+        let (sin, cos) = slope.sin_cos();
+        let flat = [-0.1 * sin, 0.1 * cos, -slope];
+        let found = impact(&sole(), &state_on(flat, [0.4, -1.0, 0.3], "1", &grounds[1]));
+        assert_touches(&found, &[[[-0.2 * cos, -0.2 * sin], [-sin, cos]], [[0.2 * cos, 0.2 * sin], [-sin, cos]]]);
     }
 }
 
@@ -409,6 +416,76 @@ fn a_plate_without_thickness_lies_on_an_edge() {
         assert_eq!(found.contacts.len(), 1, "{height}");
         assert_close(&found.contacts[0].normal(), &[0.2_f64.sin(), 0.2_f64.cos()]);
     }
+}
+
+/// A cylinder of radius 0.2 m and 0.5 m long whose axis is `yaw` off the plane's normal, toward x: its ends are ellipses,
+/// 0.2 cos(yaw) by 0.2 m, at 0.25 sin(yaw) before and behind the CoG.
+fn oblique(yaw: f64) -> Robot {
+    body(&format!(
+        r#"<origin rpy="1.5707963267948966 0 {yaw:?}"/><geometry><cylinder radius="0.2" length="0.5"/></geometry>"#
+    ))
+}
+
+#[test]
+fn an_oblique_cylinder_meets_segments_and_corners() {
+    let yaw = 0.7_f64;
+    let (robot, half, reach) = (oblique(yaw), 0.2 * yaw.cos(), 0.25 * yaw.sin());
+    let near = |found: &Impact, expected: &[[[f64; 2]; 2]]| {
+        let (found, expected) = (touches(found), expected.as_flattened().as_flattened());
+        let found = found.as_flattened().as_flattened();
+        assert!(
+            found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12),
+            "{found:?}"
+        );
+    };
+    // Flat on a tread, and with its middle on an edge.
+    let up = [0.0, 1.0];
+    near(
+        &impact(&robot, &state([-1.0, 0.2, 0.0], FALLING, "1", &step_down(0.0, 1.0))),
+        &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]],
+    );
+    near(
+        &impact(&robot, &state([0.0, 0.2, 0.0], FALLING, "1", &step_down(0.0, 1.0))),
+        &[[[-reach, 0.0], up], [[0.0, 0.0], up]],
+    );
+    // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there is
+    // along (cos s / half, sin s / 0.2).
+    let s = FRAC_1_SQRT_2;
+    let out = [s / half, -s / 0.2];
+    let size = f64::hypot(out[0], out[1]);
+    let place = [-reach - half * s, 0.2 * s, 0.0];
+    let ridge = [[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]];
+    near(&impact(&robot, &state(place, FALLING, "1", &ridge)), &[[[0.0, 0.0], [-out[0] / size, -out[1] / size]]]);
+    // On a slope up: the front end reaches hypot(half sin, 0.2 cos) along the normal.
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let far = f64::hypot(half * sin, 0.2 * cos);
+    let place = [-reach - far * sin, far * cos, 0.0];
+    let found = impact(&robot, &state(place, FALLING, "1", &[[-4.0 * cos, -4.0 * sin], [4.0 * cos, 4.0 * sin]]));
+    let point = [-far * sin + half * half * sin / far, far * cos - 0.2 * 0.2 * cos / far];
+    near(&found, &[[point, [-sin, cos]]]);
+    // Sunk: by as much as it is too low.
+    assert!((depth(&robot, &state([-1.0, 0.15, 0.0], [0.0; 3], "1", &step_down(0.0, 1.0))) - 0.05).abs() < 1e-12);
+    assert!((depth(&robot, &state([0.0, 0.15, 0.0], [0.0; 3], "1", &ridge)) - 0.05).abs() < 1e-12);
+    assert!((depth(&robot, &state([-1.0, -0.3, 0.0], [0.0; 3], "1", &step_down(0.0, 1.0))) - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn a_box_of_uncertainty_keeps_the_contacts_of_its_state() {
+    let with =
+        |state: String, uncertainty: &str| state.replacen('{', &format!(r#"{{"uncertainty": {uncertainty}, "#), 1);
+    // A disc on an edge, its pitch uncertain: the same edge with the same normal.
+    let (sin, cos) = 0.4_f64.sin_cos();
+    let text = state([0.5 * sin, 0.5 * cos, 0.0], FALLING, "0.6", &[[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]]);
+    let found = impact(&disc(), &with(text, r#"{"position": 1e-3, "velocity": 1e-3}"#));
+    assert!(matches!(found.holds, Some(Holds::Everywhere)), "{:?}", found.holds);
+    // On a tread at 0.9 m/s: L_t = 0.9 / (1 / m + r^2 / I) = 0.9, L_n = 2. It sticks where friction is more than 0.45.
+    let text = state([-1.0, 0.5, 0.0], [-0.9, -1.0, 0.0], "0.5", &[[-3.0, 0.0], [3.0, 0.0]]);
+    let found = impact(&disc(), &with(text, r#"{"friction": 0.25}"#));
+    let Some(Holds::Not(other)) = &found.holds else { panic!("{:?}", found.holds) };
+    assert_eq!(other.state.scene.ground, Ground::Profile(Profile::new(vec![[-3.0, 0.0], [3.0, 0.0]]).unwrap()));
+    let again = Pipeline::new(&disc(), Options::default()).impact(&other.state).expect("an answer");
+    let modes: Vec<_> = again.analysis.unwrap().outcomes.into_iter().map(|outcome| outcome.modes).collect();
+    assert_eq!(modes, other.outcomes);
 }
 
 #[test]

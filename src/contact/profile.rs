@@ -50,31 +50,42 @@ pub(super) fn touching(
         return Err(TooDeep(deepest));
     }
     let close = Closeness { tolerance, rounding };
-    let mut touches = Vec::new();
+    let mut touches: Vec<Touch> = Vec::new();
     for &segment in &near {
         for corner in 0..outline.corners().len() {
             touches.extend(on_segment(terrain, segment, &outline, corner, close));
         }
     }
+    let on_segments = touches.len();
     for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
-        touches.extend(
-            corner_on_corner(terrain, corner, &outline, close)
-                .or_else(|| side_on_corner(terrain, corner, &outline, close)),
-        );
+        // A foot's corner that is at the end of a segment, to rounding, touches there already.
+        let known = |touch: &Touch| {
+            let [before, after] = terrain.at_corner(corner);
+            let place = place(placement, touch);
+            touch.ground == before.axes() && before.past_end(place).abs() <= 2.0 * rounding
+                || touch.ground == after.axes() && after.past_begin(place).abs() <= 2.0 * rounding
+        };
+        let beneath = || match touches[..on_segments].iter().any(known) {
+            true => None,
+            false => side_on_corner(terrain, corner, &outline, close),
+        };
+        let found = corner_on_corner(terrain, corner, &outline, close).or_else(beneath);
+        touches.extend(found);
     }
-    touches.sort_by(|a, b| x_of(placement, a).total_cmp(&x_of(placement, b)));
+    touches.sort_by(|a, b| place(placement, a)[0].total_cmp(&place(placement, b)[0]));
     Ok(touches)
+}
+
+/// The material point of a contact in the world \[m\].
+fn place(placement: &Placement, touch: &Touch) -> Vector<f64> {
+    let normal = touch.ground.apply([0.0, 1.0]);
+    difference(placement.world(touch.circle.body, touch.circle.centre), scaled(touch.circle.radius, normal))
 }
 
 /// How far heights are off by rounding alone \[m\]: they are sums of a few terms of this size.
 pub(super) fn rounding(placement: &Placement, size: f64) -> f64 {
     let [x, z] = placement.base();
     16.0 * f64::EPSILON * (size + x.abs() + z.abs())
-}
-
-/// x of the material point of a contact \[m\].
-fn x_of(placement: &Placement, touch: &Touch) -> f64 {
-    placement.world(touch.circle.body, touch.circle.centre)[0] - touch.circle.radius * touch.ground.sin
 }
 
 /// The corners of these segments, ascending.
@@ -234,7 +245,7 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
     let across = |side: usize| {
         let face = &outline.sides()[side];
         let (gap, slack) = (face.height(at), 2.0 * close.tolerance);
-        let beneath = face.past_begin(at) > close.rounding && face.past_end(at) < -close.rounding;
+        let beneath = face.past_begin(at) >= -close.rounding && face.past_end(at) <= close.rounding;
         // Of a line, which is all surface, the ground's way tells the side.
         let solid = outline.sides().len() > 2;
         let clear = |side: &Face| side.clears(at, before.from, slack) && side.clears(at, after.to, slack);
