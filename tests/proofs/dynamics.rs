@@ -265,9 +265,11 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     let mut velocity: Vec<N> = state.velocity.iter().copied().map(number).collect();
     let stance = scene.stance.and_then(|link| contacts.iter().position(|contact| contact.link == link));
     if let Some(stance) = stance {
-        // x and z go along the world's axes, so that the tangent's and normal's share are to be turned back.
+        // x and z go along the world's axes, so that the tangent's and normal's share are to be turned back; both are as long
+        // as the ground's axes, which a profile's rounding leaves not quite at one.
+        let square = dot(axes[0].iter().zip(&axes[0]), bits);
         velocity[..2].fill(number(0.0));
-        let [t, n] = rows[stance].each_ref().map(|row| dot(row.iter().zip(&velocity), bits).negative());
+        let [t, n] = rows[stance].each_ref().map(|row| dot(row.iter().zip(&velocity), bits).negative().over(&square));
         for k in 0..2 {
             velocity[k] = axes[0][k].times(&t).plus(&axes[1][k].times(&n));
         }
