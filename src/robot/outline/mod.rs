@@ -72,35 +72,38 @@ fn projected(centre: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Resul
 }
 
 fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
-    FootShape::swept(corners, rim).ok_or_else(|| "too small beside its distance from the body's origin".into())
+    FootShape::swept(corners, rim).ok_or_else(|| "its corners cannot be told apart in f64".into())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::description::Pose;
-    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+    use crate::planar::{difference, dot};
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4};
 
     fn outline_of(geometry: Geometry, rpy: [f64; 3]) -> Result<FootShape, String> {
         outline(&geometry, &Pose { xyz: [0.0; 3], rpy }.rotation(), [0.1, -0.3], 1e-3)
     }
 
-    fn corners_of(geometry: Geometry, rpy: [f64; 3]) -> Vec<Vector<f64>> {
-        match outline_of(geometry, rpy).expect("an outline") {
-            FootShape::Polygon { corners, shape } => {
-                if let Some(polygon) = shape.as_convex_polygon() {
-                    assert_eq!(polygon.points().iter().map(|p| [p.x, p.y]).collect::<Vec<_>>(), corners);
-                }
-                corners
-            }
-            FootShape::Disc { .. } => panic!("a disc"),
+    fn polygon_of(geometry: Geometry, rpy: [f64; 3]) -> (Vec<Vector<f64>>, Rim) {
+        let shape = outline_of(geometry, rpy).expect("an outline");
+        if let Some(polygon) = shape.polygon().and_then(|polygon| polygon.as_convex_polygon()) {
+            assert_eq!(polygon.points().iter().map(|p| [p.x, p.y]).collect::<Vec<_>>(), shape.corners());
         }
+        (shape.corners().to_vec(), shape.rim())
+    }
+
+    fn corners_of(geometry: Geometry, rpy: [f64; 3]) -> Vec<Vector<f64>> {
+        let (corners, rim) = polygon_of(geometry, rpy);
+        assert_eq!(rim, POINT);
+        corners
     }
 
     fn disc_of(geometry: Geometry, rpy: [f64; 3]) -> (Vector<f64>, f64) {
-        match outline_of(geometry, rpy).expect("an outline") {
-            FootShape::Disc { centre, radius } => (centre, radius),
-            FootShape::Polygon { .. } => panic!("a polygon"),
+        match polygon_of(geometry, rpy) {
+            (corners, Rim::Circle { radius }) if corners.len() == 1 => (corners[0], radius),
+            other => panic!("{other:?} is no disc"),
         }
     }
 
@@ -166,9 +169,89 @@ mod tests {
     }
 
     #[test]
-    fn an_oblique_cylinder_is_skipped_and_its_angle_told() {
-        let why = outline_of(ROD, [FRAC_PI_4, 0.0, 0.0]).expect_err("oblique");
-        assert_eq!(why, "its axis is 45.0 degrees off the plane's normal: not handled yet");
+    fn a_capsule_is_a_disc_along_the_normal_and_else_its_centre_line_with_its_radius() {
+        let capsule = Geometry::Capsule { radius: 0.05, length: 0.4 };
+        assert_eq!(disc_of(capsule.clone(), [FRAC_PI_2, 0.0, 0.0]), ([0.1, -0.3], 0.05));
+        let round = Rim::Circle { radius: 0.05 };
+        assert_eq!(polygon_of(capsule.clone(), [0.0; 3]), (vec![[0.1, -0.5], [0.1, -0.3 + 0.2]], round));
+        // Rolled by 60 degrees the centre line is seen at half its length.
+        let (corners, rim) = polygon_of(capsule, [FRAC_PI_3, 0.0, 0.0]);
+        assert_near(&corners, &[[0.1, -0.4], [0.1, -0.2]]);
+        assert_eq!(rim, round);
+    }
+
+    /// How far the outline reaches from (0.1, -0.3) along `direction`, and its point there.
+    fn farthest(shape: &FootShape, direction: Vector<f64>) -> (f64, Vector<f64>) {
+        let along = |point: Vector<f64>| dot(difference(point, [0.1, -0.3]), direction);
+        let tip = |&corner: &Vector<f64>| sum(corner, shape.rim().support(direction));
+        let point = shape.corners().iter().map(tip).max_by(|&a, &b| along(a).total_cmp(&along(b))).expect("a corner");
+        (along(point), point)
+    }
+
+    #[test]
+    fn every_outline_reaches_as_far_as_the_points_of_its_surface_in_space() {
+        // Rims of a cylinder and circles of a ball by their angle: 1 - cos of half a step is what sampling misses.
+        const STEPS: u32 = 4000;
+        let turns = || (0..STEPS).map(|step| (f64::from(step) * std::f64::consts::TAU / f64::from(STEPS)).sin_cos());
+        let (radius, length) = (0.05, 0.4);
+        let rims = || [-0.5 * length, 0.5 * length].into_iter().flat_map(move |z| turns().map(move |(s, c)| (s, c, z)));
+        let cylinder: Vec<[f64; 3]> = rims().map(|(sin, cos, z)| [radius * cos, radius * sin, z]).collect();
+        let shapes = [
+            (Geometry::Cylinder { radius, length }, cylinder),
+            (Geometry::Box { size: [0.2, 0.4, 0.6] }, eight([0.1, 0.2, 0.3])),
+        ];
+        for rpy in [[0.7, 0.3, 0.2], [FRAC_PI_4, 0.0, 0.0], [1.5, 0.1, -2.0], [0.1, FRAC_PI_2, 0.4], [0.01, 0.0, 0.0]] {
+            let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
+            for (geometry, surface) in &shapes {
+                let shape = outline_of(geometry.clone(), rpy).expect("an outline");
+                let seen: Vec<Vector<f64>> =
+                    surface.iter().map(|&point| apply(&rotation, point)).map(|[x, _, z]| [x, z]).collect();
+                for direction in (0..24).map(|step| (0.1 + f64::from(step)).sin_cos()).map(|(s, c)| [c, s]) {
+                    let (reach, point) = farthest(&shape, direction);
+                    let sampled = seen.iter().map(|&at| dot(at, direction)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!((reach - sampled).abs() < 1e-7, "{geometry:?} {rpy:?} {direction:?}: {reach}, {sampled}");
+                    // The point is one of the surface, not merely as high as one.
+                    let apart = |at: &Vector<f64>| difference(difference(point, [0.1, -0.3]), *at);
+                    let nearest =
+                        seen.iter().map(|at| libm::hypot(apart(at)[0], apart(at)[1])).fold(f64::MAX, f64::min);
+                    assert!(nearest < 1e-4, "{geometry:?} {rpy:?} {direction:?}: {nearest}");
+                }
+            }
+        }
+    }
+
+    fn mesh(vertices: Vec<[f64; 3]>, scale: [f64; 3]) -> Geometry {
+        Geometry::Mesh { file: "package://p/sole.stl".into(), scale, mesh: Mesh::Vertices(vertices.into()) }
+    }
+
+    /// The corners of a box of these half sizes.
+    fn eight(half: [f64; 3]) -> Vec<[f64; 3]> {
+        (0..8).map(|bits| [0, 1, 2].map(|k| if bits >> k & 1 == 0 { -half[k] } else { half[k] })).collect()
+    }
+
+    fn sole() -> Vec<[f64; 3]> {
+        eight([0.1, 0.05, 0.02])
+    }
+
+    #[test]
+    fn a_mesh_of_a_box_is_that_box() {
+        let corners = corners_of(mesh(sole(), [1.0; 3]), [0.0; 3]);
+        assert_eq!(corners, corners_of(SOLE, [0.0; 3]));
+        let turned = [0.4, 0.3, 0.9];
+        let corners = corners_of(mesh(sole(), [1.0; 3]), turned);
+        assert_near(&corners, &corners_of(SOLE, turned));
+        assert_eq!(outline_of(mesh(sole(), [1.0; 3]), [0.0; 3]).expect("an outline").mesh(), Some("sole.stl"));
+    }
+
+    #[test]
+    fn a_mesh_is_scaled_and_mirrored_along_its_own_axes() {
+        // A wedge whose tip points forward and down, seen from the side; as seen after the factors.
+        let wedge = || vec![[0.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.5, 1.0]];
+        let corners = |scale| corners_of(mesh(wedge(), scale), [0.0; 3]);
+        assert_near(&corners([1.0; 3]), &[[1.1, -1.3], [0.1, 0.7], [0.1, -0.3]]);
+        assert_near(&corners([-0.5, 3.0, 0.25]), &[[-0.4, -0.55], [0.1, -0.3], [0.1, -0.05]]);
+        assert_near(&corners([1.0, 1.0, 0.0]), &[[0.1, -0.3], [1.1, -0.3]]);
+        assert_eq!(disc_of(mesh(wedge(), [0.0; 3]), [0.0; 3]), ([0.1, -0.3], 0.0));
     }
 
     #[test]
