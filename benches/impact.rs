@@ -46,7 +46,7 @@ fn problem(robot: &Robot, state: &State) -> ContactProblem {
     let (friction, restitution) = (vec![Friction::Finite(0.8); 2], vec![0.0; 2]);
     let contacts = state.scene.contacts.as_deref().expect("named contacts");
     let mut posture = Posture::default();
-    posture.set(&state.position);
+    posture.set(&Plan::new(robot, &[], &[]), &state.position);
     Pipeline::new(robot, Options::default())
         .contact_problem(&posture, &state.velocity, contacts, friction, restitution)
         .expect("a good problem")
@@ -60,7 +60,7 @@ fn dynamics(bencher: Bencher) {
     let points = points(&robot, &state);
     let (plan, mut posture, mut workspace) = (Plan::new(&robot, &[], &[]), Posture::default(), Workspace::default());
     bencher.bench_local(move || {
-        posture.set(black_box(&state.position));
+        posture.set(&plan, black_box(&state.position));
         kinematics(&plan, &posture, &mut workspace);
         mass_matrix(&plan, &mut workspace);
         factorize(&plan, &mut workspace);

@@ -7,21 +7,34 @@
 //! Moving coordinates are the *columns* of the plan. They are numbered from the root outward, so that a column's parent
 //! (the nearest moving joint below it in the tree, lambda in Featherstone 2008) comes before it; the coordinates of the
 //! user's q keep the file's order. A held joint keeps its place in the chain of bodies and loses its column.
+//!
+//! A joint that follows another shares its leader's column, and its motion is that for a unit rate of the leader:
+//!
+//! ```text
+//!     v_joints = T v,   M = T^T M_joints T,   J = J_joints T         a row of T has one entry: 1, or the multiplier
+//! ```
+//!
+//! T is never formed: what several bodies bring to one entry is added up. A column then hangs on more than one branch, and
+//! its parent is that of the elimination tree, so that the factorization fills in nothing beyond its ancestors.
 
 use crate::planar::{Inertia, Rotation, Vector, dot, scaled};
-use crate::robot::{Axis, Base, Robot};
-use crate::scalar::Real;
+use crate::robot::{Axis, Base, Follower, Mover, Robot};
+use crate::scalar::{Real, Trigonometry};
 
 /// A robot compiled in numbers of kind `T`.
 #[derive(Debug, Clone)]
 pub struct Plan<T = f64> {
     /// Bodies from the root outward.
     pub(crate) bodies: Vec<PlanBody<T>>,
-    /// Parent column of each column.
+    /// Parent of each column in the elimination tree of M; without followers the nearest moving joint below it.
     pub(crate) parents: Vec<Option<usize>>,
     /// Coordinate (index into q) of each column.
     pub(crate) coordinates: Vec<usize>,
+    /// Entries of a [`Posture`]: coordinates and followers.
+    pub(crate) places: usize,
     pub(crate) floating: bool,
+    /// Whether some column moves more than one joint.
+    pub(crate) tied: bool,
 }
 
 /// A rigid body and the joint that moves it.
@@ -31,26 +44,37 @@ pub(crate) struct PlanBody<T> {
     /// Origin of the joint in the parent's frame \[m\].
     pub origin: Vector<T>,
     pub motion: Motion<T>,
-    /// The joint's coordinate; of no meaning for the root.
+    /// The joint's coordinate, or its leader's; of no meaning for the root.
     pub coordinate: usize,
+    /// Where a [`Posture`] has the joint's angle or displacement.
+    pub place: usize,
+    /// How it follows, if it does.
+    pub tie: Option<Tie>,
     /// The joint's column, or for the root the last of the base (pitch); none where it is held or bolted.
     pub column: Option<usize>,
     /// About the body's origin, in its own axes.
     pub inertia: Inertia<T>,
-    /// Added to the mass matrix's diagonal \[kg m^2\].
+    /// Added to the mass matrix's diagonal, as seen by the coordinate \[kg m^2\].
     pub rotor: T,
 }
 
-/// The joint's motion in numbers of the plan.
+/// The joint's motion in numbers of the plan; `rate` is its motion for a unit rate of its coordinate.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Motion<T> {
     Root,
-    Turn { sign: T },
-    Slide { direction: Vector<T> },
+    Turn { sign: T, rate: T },
+    Slide { direction: Vector<T>, rate: Vector<T> },
 }
 
-/// Cosines, sines and displacements of a configuration, one entry per coordinate of q: of pitch and revolute joints cosine
-/// and sine, of x, z and prismatic joints the displacement \[m\].
+/// A follower's coordinate: multiplier q + offset of its leader's.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tie {
+    pub multiplier: f64,
+    pub offset: f64,
+}
+
+/// Cosines, sines and displacements of a configuration, one entry per coordinate of q and then one per follower of the robot:
+/// of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
 #[derive(Debug, Clone)]
 pub struct Posture<T = f64> {
     /// Cosine of each angle.
@@ -67,30 +91,66 @@ impl<T> Default for Posture<T> {
     }
 }
 
-impl Posture {
-    /// Takes the cosines and sines of `position` (q), the same bits on every platform.
-    pub fn set(&mut self, position: &[f64]) {
+impl<T: Trigonometry> Posture<T> {
+    /// Takes the cosines and sines of exactly `position` (q), in f64 the same bits on every platform.
+    pub fn set(&mut self, plan: &Plan<T>, position: &[f64]) {
         self.displacement.clear();
-        self.displacement.extend_from_slice(position);
+        self.displacement.extend(position.iter().map(|&entry| T::from_f64(entry)));
+        self.displacement.resize(plan.places, T::zero());
         self.cos.clear();
+        self.cos.resize(plan.places, T::one());
         self.sin.clear();
-        for &angle in position {
-            let Rotation { cos, sin } = Rotation::by(angle);
-            self.cos.push(cos);
-            self.sin.push(sin);
+        self.sin.resize(plan.places, T::zero());
+        for body in &plan.bodies {
+            let (place, value) = (body.place, position.get(body.coordinate).copied().unwrap_or(0.0));
+            let turn = match (body.motion, body.tie) {
+                (Motion::Root, _) if !plan.floating => continue,
+                (Motion::Root | Motion::Turn { .. }, None) => {
+                    let [cos, sin] = T::cos_sin(value);
+                    Rotation { cos, sin }
+                }
+                (Motion::Root | Motion::Turn { .. }, Some(tie)) => tie.turn(value),
+                (Motion::Slide { .. }, None) => continue,
+                (Motion::Slide { .. }, Some(tie)) => {
+                    let [multiplier, value, offset] = [tie.multiplier, value, tie.offset].map(T::from_f64);
+                    self.displacement[place] = multiplier * value + offset;
+                    continue;
+                }
+            };
+            (self.cos[place], self.sin[place]) = (turn.cos, turn.sin);
         }
     }
 }
 
 impl<T: Real> Posture<T> {
-    pub(crate) fn turn(&self, coordinate: usize) -> Rotation<T> {
-        Rotation { cos: self.cos[coordinate], sin: self.sin[coordinate] }
+    pub(crate) fn turn(&self, place: usize) -> Rotation<T> {
+        Rotation { cos: self.cos[place], sin: self.sin[place] }
+    }
+}
+
+impl Tie {
+    /// The turn by exactly multiplier `angle` + offset, as f64 angles that add up to it.
+    ///
+    /// A product whose rounding error lies below the range of f64 (|multiplier angle| < 1e-290) is taken as rounded.
+    fn turn<T: Trigonometry>(self, angle: f64) -> Rotation<T> {
+        let product = self.multiplier * angle;
+        let error = libm::fma(self.multiplier, angle, -product);
+        // A part that is zero turns nothing, in any number.
+        let parts = [error, self.offset].into_iter().filter(|&part| part != 0.0);
+        let by = |angle: f64| {
+            let [cos, sin] = T::cos_sin(angle);
+            Rotation { cos, sin }
+        };
+        parts.fold(by(product), |turn, part| turn.then(by(part)))
     }
 }
 
 impl<T: Real> Plan<T> {
     /// Compiles `robot` with the joints `held` (indices into [`Robot::joints`]) kept at their rate, and `rotor_inertia`
-    /// per joint (empty for none) \[kg m^2\].
+    /// per joint and then per follower (empty for none) \[kg m^2\].
+    ///
+    /// A follower whose leader is held does not move either. A rotor at a follower's joint turns at the follower's rate, so
+    /// that it adds multiplier^2 of its inertia to the leader's coordinate.
     pub fn new(robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Self {
         let base = robot.base_dofs();
         let floating = robot.base == Base::Floating;
@@ -98,49 +158,126 @@ impl<T: Real> Plan<T> {
             bodies: Vec::with_capacity(robot.bodies.len()),
             parents: if floating { vec![None, Some(0), Some(1)] } else { Vec::new() },
             coordinates: (0..base).collect(),
+            places: robot.dofs() + robot.followers.len(),
             floating,
+            tied: false,
         };
+        // The column of each joint that has one, and of each body the greatest one on its way to the root.
+        let mut columns = vec![None; robot.joints.len()];
+        let mut greatest: Vec<Option<usize>> = Vec::with_capacity(robot.bodies.len());
         for body in &robot.bodies {
             let number = |entry: f64| T::from_f64(entry);
             let com = body.com.map(number);
             let mass = number(body.mass);
             let inertia =
                 Inertia { mass, first: scaled(mass, com), second: number(body.moment) + mass * dot(com, com) };
-            let Some(index) = body.joint else {
+            let Some(mover) = body.joint else {
+                greatest.push(floating.then_some(2));
                 plan.bodies.push(PlanBody {
                     parent: None,
                     origin: [T::zero(); 2],
                     motion: Motion::Root,
-                    coordinate: 0,
+                    coordinate: 2,
+                    place: 2,
+                    tie: None,
                     column: floating.then_some(2),
                     inertia,
                     rotor: T::zero(),
                 });
                 continue;
             };
-            let joint = &robot.joints[index];
-            let coordinate = base + index;
-            let column = (!held.contains(&index)).then(|| {
-                let below = std::iter::successors(Some(joint.parent), |&body| plan.bodies[body].parent);
-                let parent = below.filter_map(|body| plan.bodies[body].column).next();
-                plan.parents.push(parent);
-                plan.coordinates.push(coordinate);
-                plan.coordinates.len() - 1
+            // The joint whose coordinate moves the body, the body's own place in lists per joint and follower, and its tie.
+            let (index, own, tie) = match mover {
+                Mover::Joint(index) => (index, index, None),
+                Mover::Follower(index) => {
+                    let Follower { leader, multiplier, offset, .. } = robot.followers[index];
+                    (leader, robot.joints.len() + index, Some(Tie { multiplier, offset }))
+                }
+            };
+            let (parent, origin, axis) = robot.hinge(mover);
+            let column = (!held.contains(&index)).then(|| plan.column(&mut columns[index], base + index));
+            greatest.push(match column {
+                Some(column) => plan.join_branch(column, parent, greatest[parent]),
+                None => greatest[parent],
             });
+            let multiplier = tie.map_or(1.0, |tie| tie.multiplier);
+            let rotor = number(rotor_inertia.get(own).copied().unwrap_or(0.0));
             plan.bodies.push(PlanBody {
-                parent: Some(joint.parent),
-                origin: joint.origin.map(number),
-                motion: match joint.axis {
-                    Axis::Turn { sign } => Motion::Turn { sign: number(sign) },
-                    Axis::Slide { direction } => Motion::Slide { direction: direction.map(number) },
+                parent: Some(parent),
+                origin: origin.map(number),
+                motion: match axis {
+                    // Exactly: the sign is one or minus one.
+                    Axis::Turn { sign } => Motion::Turn { sign: number(sign), rate: number(sign * multiplier) },
+                    Axis::Slide { direction } => {
+                        let direction = direction.map(number);
+                        let rate = if tie.is_some() { scaled(number(multiplier), direction) } else { direction };
+                        Motion::Slide { direction, rate }
+                    }
                 },
-                coordinate,
+                coordinate: base + index,
+                place: base + own,
+                tie,
                 column,
                 inertia,
-                rotor: number(rotor_inertia.get(index).copied().unwrap_or(0.0)),
+                rotor: if tie.is_some() { number(multiplier) * number(multiplier) * rotor } else { rotor },
             });
         }
         plan
+    }
+
+    /// The column of a coordinate, which may be known already from another joint that it moves.
+    fn column(&mut self, known: &mut Option<usize>, coordinate: usize) -> usize {
+        self.tied |= known.is_some();
+        *known.get_or_insert_with(|| {
+            self.parents.push(None);
+            self.coordinates.push(coordinate);
+            self.coordinates.len() - 1
+        })
+    }
+
+    /// Makes all columns on the way from a new body to the root each other's ancestors in the elimination tree, as they are
+    /// without the body's own `column`; `greatest` of them is on the body's parent. Gives the greatest of all.
+    fn join_branch(&mut self, column: usize, parent: usize, greatest: Option<usize>) -> Option<usize> {
+        match greatest {
+            // Whatever comes before the greatest is its ancestor already.
+            Some(other) if other < column => self.join(column, other),
+            Some(_) => {
+                let mut at = Some(parent);
+                while let Some(body) = at {
+                    if let Some(other) = self.bodies[body].column {
+                        self.join(column.max(other), column.min(other));
+                    }
+                    at = self.bodies[body].parent;
+                }
+                // A floating base has two columns more, and they are everybody's ancestors.
+            }
+            None => {}
+        }
+        Some(greatest.map_or(column, |other| other.max(column)))
+    }
+
+    /// Makes `ancestor` an ancestor of `column` in the elimination tree, for an entry of M that both share
+    /// (J. W. H. Liu, "The role of elimination trees in sparse factorization", SIAM J. Matrix Anal. Appl. 11, 1990).
+    fn join(&mut self, mut column: usize, mut ancestor: usize) {
+        while column != ancestor {
+            match self.parents[column] {
+                Some(parent) if parent >= ancestor => column = parent,
+                Some(parent) => {
+                    self.parents[column] = Some(ancestor);
+                    (column, ancestor) = (ancestor, parent);
+                }
+                None => {
+                    self.parents[column] = Some(ancestor);
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Takes what one body brings to an entry; where a column moves several, the entry is their sum.
+    #[inline]
+    pub(crate) fn bring(&self, entry: &mut T, part: T) {
+        *entry = if self.tied { *entry + part } else { part };
     }
 
     /// Number of columns: the coordinates that are not held.

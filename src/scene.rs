@@ -20,7 +20,8 @@ pub struct Scene {
     pub stance: Option<usize>,
     /// Joints that keep their velocity through the impact.
     pub held: Vec<usize>,
-    /// Rotor inertia of each joint, added to the mass matrix's diagonal \[kg m^2\]; empty for none.
+    /// Rotor inertia at each joint and then at each follower \[kg m^2\]; empty for none. It is added to the mass matrix's
+    /// diagonal, that of a follower times multiplier^2.
     pub rotor_inertia: Vec<f64>,
     /// Contacts named by hand; none where they are detected.
     pub contacts: Option<Vec<NamedContact>>,

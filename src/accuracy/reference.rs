@@ -148,7 +148,7 @@ fn columns(computation: &Computation<Interval>) -> Vec<Column> {
                 columns.extend(axes.map(|axis| column(Axis::Slide(axis), index)));
                 columns.push(column(Axis::Turn(Interval::one()), index));
             }
-            Motion::Turn { sign } => columns.push(column(Axis::Turn(sign), index)),
+            Motion::Turn { sign, .. } => columns.push(column(Axis::Turn(sign), index)),
             Motion::Slide { .. } => columns.push(column(Axis::Slide(workspace.direction[index]), index)),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::Result;
 use crate::planar::scaled;
-use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, Robot};
+use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, Mover, Robot};
 
 /// The paper's minimalistic biped: two point masses on hinged legs.
 pub fn minimalistic() -> Result<Robot> {
@@ -36,7 +36,13 @@ pub fn with_massless_feet() -> Result<Robot> {
         let name = format!("{} foot", robot.links[leg].name);
         let (joint, body) = (robot.joints.len(), robot.bodies.len());
         robot.joints.push(hinge(format!("{name} ankle"), robot.links[leg].body, body, [0.0, -1.0]));
-        robot.bodies.push(Body { name: name.clone(), joint: Some(joint), mass: 0.0, com: [0.0; 2], moment: 0.0 });
+        robot.bodies.push(Body {
+            name: name.clone(),
+            joint: Some(Mover::Joint(joint)),
+            mass: 0.0,
+            com: [0.0; 2],
+            moment: 0.0,
+        });
         robot.links.push(point_foot(name, body, [0.05, -0.05]));
     }
     Ok(robot)
@@ -46,7 +52,7 @@ pub fn with_massless_feet() -> Result<Robot> {
 pub fn chain(links: usize) -> Robot {
     let rod = |index: usize| Body {
         name: format!("rod {index}"),
-        joint: index.checked_sub(1),
+        joint: index.checked_sub(1).map(Mover::Joint),
         mass: 1.0,
         com: [0.0, -0.5],
         moment: 1.0 / 12.0,
@@ -58,7 +64,9 @@ pub fn chain(links: usize) -> Robot {
         bodies: (0..links).map(rod).collect(),
         joints: (0..tip).map(|index| hinge(format!("joint {index}"), index, index + 1, [0.0, -1.0])).collect(),
         links: vec![point_foot("near end".into(), 0, [0.0; 2]), point_foot("far end".into(), tip, [0.0, -1.0])],
+        followers: Vec::new(),
         left_out: Vec::new(),
+        reading: Default::default(),
     }
 }
 
@@ -72,6 +80,9 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
     }
     for joint in &mut robot.joints {
         joint.origin = scaled(length, joint.origin);
+    }
+    for follower in &mut robot.followers {
+        follower.origin = scaled(length, follower.origin);
     }
     for link in &mut robot.links {
         for row in &mut link.pose {

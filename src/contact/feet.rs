@@ -59,8 +59,8 @@ impl Feet {
 fn size(robot: &Robot, feet: &[Foot]) -> f64 {
     let mut origins = vec![[0.0; 2]; robot.bodies.len()];
     for (index, body) in robot.bodies.iter().enumerate() {
-        if let Some(joint) = body.joint.map(|joint| &robot.joints[joint]) {
-            origins[index] = sum(origins[joint.parent], joint.origin);
+        if let Some((parent, origin, _)) = body.joint.map(|mover| robot.hinge(mover)) {
+            origins[index] = sum(origins[parent], origin);
         }
     }
     let distance = |body: usize, point: Vector<f64>| {

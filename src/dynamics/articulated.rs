@@ -8,7 +8,7 @@
 //! A and f are 3 x 3 and 3-vectors in the plane, kept as a moment, a coupling and a linear block about each body's origin in
 //! world axes. A hinge without rotor passes no moment on, so that its child is a 2 x 2 block for the parent. D and Y are
 //! those of M = L^T D L, found without M: a second, independent way to the same numbers, and the only quick one for long
-//! chains. Source: Featherstone 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
+//! chains. It knows no joints that follow others: a column here moves one joint. Source: Featherstone 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
 use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
@@ -151,7 +151,7 @@ pub fn add_articulated_impulse<T: Real>(
         let pivot = workspace.pivots[column];
         motions.push(match body.motion {
             Motion::Root => (spin, carried),
-            Motion::Turn { sign } => {
+            Motion::Turn { sign, .. } => {
                 let moment = own.moment * spin + dot(own.coupling, carried);
                 rates[column] = rates[column] - sign * (moment / pivot);
                 (spin + sign * rates[column], carried)
@@ -203,7 +203,7 @@ fn to_root<T: Real>(
                 tell(0, rest, rest / workspace.pivots[0]);
             }
             (_, None) => {}
-            (Motion::Turn { sign }, Some(column)) => {
+            (Motion::Turn { sign, .. }, Some(column)) => {
                 let rate = force.moment / workspace.pivots[column];
                 tell(column, sign * force.moment, sign * rate);
                 // n - A_nn n / D without the cancellation: nothing at all is passed on where there is no rotor.
@@ -321,13 +321,13 @@ mod tests {
     use crate::dynamics::{contact_jacobian, delassus, factorize, kinematics, mass_matrix};
     use crate::plan::Posture;
     use crate::planar::Rotation;
-    use crate::robot::{Axis, Base, Body, Joint, Robot};
+    use crate::robot::{Axis, Base, Body, Joint, Mover, Robot};
 
     /// Equal rods of 1 m, one hanging on the other; those whose number the divisor divides weigh nothing.
     fn chain(links: usize, massless: usize) -> Robot {
         let body = |index: usize| Body {
             name: String::new(),
-            joint: index.checked_sub(1),
+            joint: index.checked_sub(1).map(Mover::Joint),
             mass: if index % massless == massless - 1 && index + 1 < links { 0.0 } else { 1.0 },
             com: [0.0, -0.5],
             moment: if index % massless == massless - 1 && index + 1 < links { 0.0 } else { 1.0 / 12.0 },
@@ -345,14 +345,16 @@ mod tests {
             bodies: (0..links).map(body).collect(),
             joints: (0..links - 1).map(joint).collect(),
             links: Vec::new(),
+            followers: Vec::new(),
             left_out: Vec::new(),
+            reading: Default::default(),
         }
     }
 
     fn both_ways(robot: &Robot) -> (Vec<f64>, Vec<f64>) {
         let (plan, mut posture, mut workspace) = (Plan::new(robot, &[], &[]), Posture::default(), Workspace::default());
         let q: Vec<f64> = (0..robot.dofs()).map(|index| 0.7 * f64::from(index as u32 % 7) - 2.0).collect();
-        posture.set(&q);
+        posture.set(&plan, &q);
         let tip = robot.bodies.len() - 1;
         let contacts = [0, tip / 2, tip].map(|body| ContactPoint {
             body,

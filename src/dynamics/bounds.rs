@@ -13,14 +13,17 @@
 //!    bounds |S M^-1 S| for S = diag(sqrt K_i). So |dG_rs| <= eps / (1 - eps) sqrt(G_rr G_ss).
 //! 4. *J* adds eta a_r with a_r = sum A_ri sqrt((M^-1)_ii) to the length sqrt(G_rr) of its row in the energy norm, and the
 //!    triangular solves add gamma sqrt(nv tau) of it (Higham 2002, theorem 8.5).
-//! 5. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
+//! 5. A *follower* turns by up to three angles instead of one and brings further roundings to its slide: it counts for three
+//!    levels. Its motion is multiplied by its rate, and where a column moves several joints b, the triangle inequality of the
+//!    energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum likewise.
+//! 6. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
 //!
 //! Everything is doubled for the terms of second order, which are small because the bound counts as unknown beyond a
 //! tenth. The constants are generous: a sign that falls within them is settled by balls.
 
 use super::workspace::Workspace;
 use crate::plan::{Motion, Plan, Posture};
-use crate::planar::Vector;
+use crate::planar::{Vector, dot};
 
 /// Half the distance from 1 to the next f64.
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -51,6 +54,8 @@ pub struct Bounds {
     contacts: Vec<Arm>,
     /// sqrt((M^-1)_ii) per column.
     ease: Vec<f64>,
+    /// sqrt(K_i) per column.
+    roots: Vec<f64>,
     scratch: Vec<f64>,
 }
 
@@ -73,16 +78,21 @@ impl Bounds {
         let length = |[x, z]: Vector<f64>| x.abs() + z.abs();
         self.bodies.clear();
         for body in &plan.bodies {
-            let shift = match body.motion {
-                Motion::Slide { direction } => posture.displacement[body.coordinate].abs() * length(direction),
-                Motion::Root | Motion::Turn { .. } => 0.0,
+            let shift = match (body.motion, body.tie) {
+                (Motion::Slide { direction, .. }, None) => posture.displacement[body.place].abs() * length(direction),
+                (Motion::Slide { direction, .. }, Some(tie)) => {
+                    let terms = (tie.multiplier * posture.displacement[body.coordinate]).abs() + tie.offset.abs();
+                    terms * length(direction)
+                }
+                (Motion::Root | Motion::Turn { .. }, _) => 0.0,
             };
+            let levels = if body.tie.is_some() { 3 } else { 1 };
             self.bodies.push(Stretched {
                 arm: length(body.origin) + shift,
                 mass: body.inertia.mass,
                 first: length(body.inertia.first),
                 second: body.inertia.second,
-                depth: body.parent.map_or(0, |parent| self.bodies[parent].depth + 1),
+                depth: body.parent.map_or(0, |parent| self.bodies[parent].depth + levels),
             });
         }
         for index in (0..plan.bodies.len()).rev() {
@@ -97,16 +107,18 @@ impl Bounds {
     }
 
     /// Relative error of an entry of M or J against its stretched magnitude.
-    fn entry_error(&self) -> f64 {
+    fn entry_error(&self, plan: &Plan) -> f64 {
         let depth = self.bodies.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
-        ENTRY * (depth + self.bodies.len()) as f64 * UNIT_ROUNDOFF
+        // Where columns are shared, an entry may have a term for every body and every level.
+        let terms = if plan.tied { (depth + 1) * (self.bodies.len() + 1) } else { depth + self.bodies.len() };
+        ENTRY * terms as f64 * UNIT_ROUNDOFF
     }
 
     /// Bounds c = J v. With the foot of a `stance` the base's velocity is computed from the others'; `rests` tells which
     /// contacts are exactly at rest.
     pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let mut bounds = std::mem::take(&mut self.velocity);
-        let eta = self.entry_error();
+        let eta = self.entry_error(plan);
         let stretched = |contact: Arm| {
             let mut sum = 0.0;
             self.walk(plan, contact, |_, coordinate, arm| {
@@ -129,24 +141,29 @@ impl Bounds {
     /// Bounds G, from the factorized mass matrix and the Delassus matrix.
     pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
         let nv = plan.columns();
-        let (eta, gamma) = (self.entry_error(), 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
+        let (eta, gamma) = (self.entry_error(plan), 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
         let mut tau = 0.0;
         self.ease.clear();
         for column in 0..nv {
             let ease = squared_ease(plan, workspace, column, &mut self.scratch);
             self.ease.push(ease.sqrt());
         }
+        self.roots.clear();
+        self.roots.resize(nv, 0.0);
         for (body, stretched) in plan.bodies.iter().zip(&self.bodies) {
             let Some(column) = body.column else { continue };
             let moment = match body.motion {
                 Motion::Root => {
-                    tau += stretched.mass * (self.ease[0] * self.ease[0] + self.ease[1] * self.ease[1]);
+                    self.roots[..2].fill(stretched.mass.sqrt());
                     stretched.second
                 }
-                Motion::Turn { .. } => stretched.second + body.rotor,
-                Motion::Slide { .. } => stretched.mass + body.rotor,
+                Motion::Turn { rate, .. } => stretched.second * (rate * rate) + body.rotor,
+                Motion::Slide { rate, .. } => stretched.mass * dot(rate, rate) + body.rotor,
             };
-            tau += moment * self.ease[column] * self.ease[column];
+            self.roots[column] += moment.sqrt();
+        }
+        for (root, ease) in self.roots.iter().zip(&self.ease) {
+            tau += (root * ease) * (root * ease);
         }
         let solve = gamma * (nv as f64 * tau).sqrt();
         let short = 1.0 - solve;
@@ -173,7 +190,8 @@ impl Bounds {
             if sum < SMALL { 2.0 * (2.0 * eps + 2.0 * jacobian + 4.0 * solve + 2.0 * gamma) } else { f64::INFINITY };
     }
 
-    /// Walks from a contact to the root and tells each joint's column, coordinate and stretched arm (1 of a slide).
+    /// Walks from a contact to the root and tells each joint's column, coordinate and stretched arm (1 of a slide), times its
+    /// rate if it follows another.
     fn walk(&self, plan: &Plan, contact: Arm, mut tell: impl FnMut(Option<usize>, usize, f64)) {
         let mut arm = contact.length;
         let mut at = contact.body;
@@ -181,8 +199,11 @@ impl Bounds {
             let body = &plan.bodies[at];
             match body.motion {
                 Motion::Root => break,
-                Motion::Turn { .. } => tell(body.column, body.coordinate, arm),
-                Motion::Slide { .. } => tell(body.column, body.coordinate, 1.0),
+                Motion::Turn { rate, .. } => tell(body.column, body.coordinate, arm * rate.abs()),
+                Motion::Slide { .. } => {
+                    let rate = body.tie.map_or(1.0, |tie| tie.multiplier.abs());
+                    tell(body.column, body.coordinate, rate);
+                }
             }
             arm += self.bodies[at].arm;
             match body.parent {

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Source: Featherstone 2008, section 6.2. Inertias are kept about each body's own origin in world axes, so that moving
-//! one to the parent is a shift without a turn. Cost: O(nb + nv depth).
+//! one to the parent is a shift without a turn. S is the motion for a unit rate of the column, and where a column moves
+//! several joints their entries add up (see [`plan`](crate::plan)). Cost: O(nb depth).
 
 use super::workspace::Workspace;
 use crate::plan::{Motion, Plan};
@@ -42,7 +43,9 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
                 mass_matrix[column * nv + column] = pitch.angular;
                 continue;
             }
-            Motion::Turn { sign } => Momentum { linear: scaled(sign, turned(own.first)), angular: sign * own.second },
+            Motion::Turn { rate, .. } => {
+                Momentum { linear: scaled(rate, turned(own.first)), angular: rate * own.second }
+            }
             Motion::Slide { .. } => Momentum {
                 linear: scaled(own.mass, direction[index]),
                 angular: dot(turned(own.first), direction[index]),
@@ -51,21 +54,26 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
         // `momentum` is that of a unit rate of this joint; the walk to the root projects it on every joint below.
         let along = |at: usize, momentum: Momentum<T>| match plan.bodies[at].motion {
             Motion::Root => momentum.angular,
-            Motion::Turn { sign } => sign * momentum.angular,
+            Motion::Turn { rate, .. } => rate * momentum.angular,
             Motion::Slide { .. } => dot(direction[at], momentum.linear),
         };
-        mass_matrix[column * nv + column] = along(index, momentum) + body.rotor;
+        plan.bring(&mut mass_matrix[column * nv + column], along(index, momentum) + body.rotor);
         let (mut at, mut momentum) = (index, momentum);
         while let Some(parent) = plan.bodies[at].parent {
             momentum.angular = momentum.angular + dot(turned(arm[at]), momentum.linear);
             at = parent;
             if let Some(other) = plan.bodies[at].column {
-                mass_matrix[column * nv + other] = along(at, momentum);
+                let part = along(at, momentum);
+                plan.bring(&mut mass_matrix[column.max(other) * nv + column.min(other)], part);
+                if other == column {
+                    // Both joints move with one coordinate: each meets the other's momentum.
+                    plan.bring(&mut mass_matrix[column * nv + column], part);
+                }
             }
         }
         if plan.floating {
-            mass_matrix[column * nv] = momentum.linear[0];
-            mass_matrix[column * nv + 1] = momentum.linear[1];
+            plan.bring(&mut mass_matrix[column * nv], momentum.linear[0]);
+            plan.bring(&mut mass_matrix[column * nv + 1], momentum.linear[1]);
         }
     }
 }

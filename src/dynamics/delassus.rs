@@ -74,7 +74,7 @@ pub fn add_impulse<T: Real>(
 ) {
     column.clear();
     column.resize(plan.columns(), T::zero());
-    walk(plan, body, arm, velocity, workspace, |index, unit| column[index] = dot(unit, impulse));
+    walk(plan, body, arm, velocity, workspace, |index, unit| plan.bring(&mut column[index], dot(unit, impulse)));
     half_solve(plan, &workspace.factor, column);
     let nv = plan.columns();
     for (i, entry) in column.iter_mut().enumerate() {

@@ -57,8 +57,8 @@ pub fn contact_jacobian<T: Real>(
         let arm = contact.arm(workspace);
         let (rows_t, rows_n) = jacobian[2 * index * nv..2 * (index + 1) * nv].split_at_mut(nv);
         let speed = walk(plan, contact.body, arm, velocity, workspace, |column, unit| {
-            rows_t[column] = dot(axes[0], unit);
-            rows_n[column] = dot(axes[1], unit);
+            plan.bring(&mut rows_t[column], dot(axes[0], unit));
+            plan.bring(&mut rows_n[column], dot(axes[1], unit));
         });
         speeds.push(axes.map(|axis| dot(axis, speed)));
     }
@@ -87,8 +87,8 @@ pub fn point_velocity<T: Real>(
     walk(plan, body, arm, velocity, workspace, |_, _| {})
 }
 
-/// Walks from a point to the root: tells the velocity of the point for a unit rate of every column, and returns the
-/// velocity for all rates, held joints' included.
+/// Walks from a point to the root: tells what every joint on the way brings to the velocity of the point for a unit rate of
+/// its column, and returns the velocity for all rates, held joints' included.
 pub(super) fn walk<T: Real>(
     plan: &Plan<T>,
     body: usize,
@@ -103,7 +103,7 @@ pub(super) fn walk<T: Real>(
         let body = &plan.bodies[at];
         let unit = match body.motion {
             Motion::Root => break,
-            Motion::Turn { sign } => scaled(sign, turned(arm)),
+            Motion::Turn { rate, .. } => scaled(rate, turned(arm)),
             Motion::Slide { .. } => workspace.direction[at],
         };
         if let Some(column) = body.column {
@@ -132,8 +132,8 @@ pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     let mut at = Some(body);
     while let Some(index) = at {
         let body = &plan.bodies[index];
-        if let Motion::Turn { sign } = body.motion {
-            rate = rate + sign * velocity[body.coordinate];
+        if let Motion::Turn { rate: own, .. } = body.motion {
+            rate = rate + own * velocity[body.coordinate];
         }
         at = body.parent;
     }

@@ -7,7 +7,7 @@ use crate::plan::{Motion, Plan, Posture};
 use crate::planar::{Rotation, scaled, sum};
 use crate::scalar::Real;
 
-/// Computes every body's rotation and arm for a posture (cos, sin and displacement per coordinate).
+/// Computes every body's rotation and arm for a posture (cos, sin and displacement per coordinate and follower).
 ///
 /// Only differences of position enter the dynamics, so the base's x and z are not read.
 pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut Workspace<T>) {
@@ -25,17 +25,17 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut
         let base = rotation[parent];
         match body.motion {
             Motion::Root => {}
-            Motion::Turn { sign } => {
-                let Rotation { cos, sin } = posture.turn(body.coordinate);
+            Motion::Turn { sign, .. } => {
+                let Rotation { cos, sin } = posture.turn(body.place);
                 rotation.push(base.then(Rotation { cos, sin: sign * sin }));
                 arm.push(base.apply(body.origin));
                 direction.push([T::zero(); 2]);
             }
-            Motion::Slide { direction: along } => {
-                let displaced = sum(body.origin, scaled(posture.displacement[body.coordinate], along));
+            Motion::Slide { direction: along, rate } => {
+                let displaced = sum(body.origin, scaled(posture.displacement[body.place], along));
                 rotation.push(base);
                 arm.push(base.apply(displaced));
-                direction.push(base.apply(along));
+                direction.push(base.apply(rate));
             }
         }
     }

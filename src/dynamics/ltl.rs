@@ -1,6 +1,6 @@
 //! M = L^T D L along the branches of the tree, without fill-in.
 //!
-//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda the parent columns. It needs no root, so any
+//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda the parent columns of the plan's elimination tree. It needs no root, so any
 //! [`Real`] will do. Cost: O(nv depth^2).
 
 use super::workspace::Workspace;

@@ -35,11 +35,11 @@ mod tests {
     use super::*;
     use crate::plan::{Plan, Posture};
     use crate::planar::{Rotation, Vector, dot};
-    use crate::robot::{Axis, Base, Body, Joint, Robot};
+    use crate::robot::{Axis, Base, Body, Joint, Mover, Robot};
     use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
-    fn body(joint: Option<usize>, mass: f64, com: Vector<f64>, moment: f64) -> Body {
+    fn body(joint: Option<Mover>, mass: f64, com: Vector<f64>, moment: f64) -> Body {
         Body { name: String::new(), joint, mass, com, moment }
     }
 
@@ -70,11 +70,13 @@ mod tests {
                 bodies: vec![body(None, 1.0, [0.1, -0.2], 0.05)],
                 joints: Vec::new(),
                 links: Vec::new(),
+                followers: Vec::new(),
                 left_out: Vec::new(),
+                reading: Default::default(),
             };
             for (parent, origin, axis, mass, com, moment) in parts {
                 let parent = parent.index(robot.bodies.len());
-                robot.bodies.push(body(Some(robot.joints.len()), mass, com, moment));
+                robot.bodies.push(body(Some(Mover::Joint(robot.joints.len())), mass, com, moment));
                 robot.joints.push(Joint { name: String::new(), parent, child: robot.bodies.len() - 1, origin, axis });
             }
             robot
@@ -93,7 +95,7 @@ mod tests {
     fn computed(robot: &Robot, q: &[f64], held: &[usize], rotors: &[f64]) -> (Plan, Workspace) {
         let (plan, mut posture, mut workspace) =
             (Plan::new(robot, held, rotors), Posture::default(), Workspace::default());
-        posture.set(q);
+        posture.set(&plan, q);
         kinematics(&plan, &posture, &mut workspace);
         mass_matrix(&plan, &mut workspace);
         factorize(&plan, &mut workspace);

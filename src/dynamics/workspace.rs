@@ -11,7 +11,7 @@ pub struct Workspace<T = f64> {
     pub rotation: Vec<Rotation<T>>,
     /// Position of each body's origin from its parent's, in the world's axes \[m\]. nb
     pub arm: Vec<Vector<T>>,
-    /// Direction of each sliding joint in the world's axes; of no meaning for others. nb
+    /// Motion of each sliding joint for a unit rate of its column, in the world's axes; of no meaning for others. nb
     pub direction: Vec<Vector<T>>,
 
     // Computed by `mass_matrix`.

@@ -143,7 +143,7 @@ impl<'r> Pipeline<'r> {
     fn answer(&mut self, state: &State) -> Result<Answer> {
         let scene = &state.scene;
         self.compile(scene);
-        self.posture.set(&state.position);
+        self.posture.set(&self.plan, &state.position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         mass_matrix(&self.plan, &mut self.workspace);
         factorize(&self.plan, &mut self.workspace);
@@ -221,11 +221,14 @@ impl<'r> Pipeline<'r> {
         restitution: Vec<f64>,
     ) -> Result<ContactProblem> {
         let dofs = self.robot.dofs();
-        for length in [posture.cos.len(), posture.sin.len(), posture.displacement.len(), velocity.len()] {
-            if length != dofs {
+        let places = dofs + self.robot.followers.len();
+        let lengths = [posture.cos.len(), posture.sin.len(), posture.displacement.len()].map(|length| (length, places));
+        for (length, wanted) in lengths.into_iter().chain([(velocity.len(), dofs)]) {
+            if length != wanted {
                 let reason =
                     Reason::Inconsistent(format!("the robot has {dofs} coordinates, but {length} values are given"));
-                return Err(Error::new(reason).hint("posture and velocity have an entry per coordinate of q"));
+                let hint = "velocity has an entry per coordinate of q, posture these and one per follower";
+                return Err(Error::new(reason).hint(hint));
             }
         }
         self.compile(&Scene::default());

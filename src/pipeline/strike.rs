@@ -2,14 +2,14 @@
 
 use crate::contact::Contact;
 use crate::dynamics::{
-    ContactPoint, Workspace, add_articulated_impulse, articulated_delassus, articulated_inertias, contact_jacobian,
-    kinematics, point_velocity,
+    ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_delassus, articulated_inertias,
+    contact_jacobian, delassus, factorize, kinematics, mass_matrix, point_velocity,
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Vector, dot, sum};
-use crate::robot::{Axis, Robot};
-use crate::scalar::{Ordered, Real, Trigonometry};
+use crate::robot::Robot;
+use crate::scalar::{Ordered, Trigonometry};
 use crate::scene::Scene;
 
 /// A state with its contacts, every f64 of which is meant as the number that it is.
@@ -52,11 +52,10 @@ pub struct Contacts<T> {
 impl Strike<'_> {
     /// The state's own numbers, exactly.
     fn inputs<T: Trigonometry>(&self) -> Inputs<T> {
-        Inputs {
-            posture: posture(self.robot, self.position),
-            velocity: self.velocity.iter().map(|&entry| T::from_f64(entry)).collect(),
-            plan: Plan::new(self.robot, &self.scene.held, &self.scene.rotor_inertia),
-        }
+        let plan = Plan::new(self.robot, &self.scene.held, &self.scene.rotor_inertia);
+        let mut posture = Posture::default();
+        posture.set(&plan, self.position);
+        Inputs { posture, velocity: self.velocity.iter().map(|&entry| T::from_f64(entry)).collect(), plan }
     }
 
     /// G and c for these `inputs`, with the contacts as they are.
@@ -65,8 +64,13 @@ impl Strike<'_> {
         let Inputs { posture, mut velocity, plan } = inputs;
         let mut workspace = Workspace::default();
         kinematics(&plan, &posture, &mut workspace);
-        // Not by the mass matrix: its factor costs the cube of a chain's length, and its enclosures widen faster.
-        articulated_inertias(&plan, &mut workspace);
+        if plan.tied {
+            mass_matrix(&plan, &mut workspace);
+            factorize(&plan, &mut workspace);
+        } else {
+            // Not by the mass matrix: its factor costs the cube of a chain's length, and its enclosures widen faster.
+            articulated_inertias(&plan, &mut workspace);
+        }
 
         let point = |contact: &Contact| contact.exact_point(robot, scene.ground.axes(contact.ground));
         let contacts: Vec<ContactPoint<T>> = self.contacts.iter().map(point).collect();
@@ -76,7 +80,11 @@ impl Strike<'_> {
             velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
         }
         contact_jacobian(&plan, &contacts, &velocity, self.stance, &mut workspace);
-        articulated_delassus(&plan, &contacts, &mut workspace);
+        if plan.tied {
+            delassus(&plan, &mut workspace);
+        } else {
+            articulated_delassus(&plan, &contacts, &mut workspace);
+        }
         for (speed, _) in workspace.contact_velocity.iter_mut().zip(self.resting).filter(|(_, rests)| **rests) {
             *speed = [T::zero(); 2];
         }
@@ -88,8 +96,13 @@ impl Strike<'_> {
                 let link = &robot.links[applied.link];
                 let arm = workspace.rotation[link.body].apply(link.point(applied.offset));
                 let vector = applied.vector.map(T::from_f64);
-                let scratch = (&mut Vec::new(), &mut Vec::new());
-                add_articulated_impulse(&plan, &workspace, (link.body, arm), vector, scratch, &mut change);
+                let (point, column) = ((link.body, arm), &mut Vec::new());
+                if plan.tied {
+                    add_impulse(&plan, &workspace, point, vector, column, &mut change);
+                } else {
+                    let scratch = (column, &mut Vec::new());
+                    add_articulated_impulse(&plan, &workspace, point, vector, scratch, &mut change);
+                }
             }
             for (point, speed) in contacts.iter().zip(&mut free) {
                 let more = point_velocity(&plan, point.body, point.arm(&workspace), &change, &workspace);
@@ -109,21 +122,4 @@ impl Source for Strike<'_> {
     fn errors(&self) -> Errors<'_> {
         self.errors
     }
-}
-
-/// Cosines, sines and displacements of exactly `position`.
-fn posture<T: Real + Trigonometry>(robot: &Robot, position: &[f64]) -> Posture<T> {
-    let base = robot.base_dofs();
-    let turns = |coordinate: usize| match coordinate.checked_sub(base) {
-        Some(joint) => matches!(robot.joints[joint].axis, Axis::Turn { .. }),
-        None => coordinate == 2,
-    };
-    let mut posture = Posture::default();
-    for (coordinate, &entry) in position.iter().enumerate() {
-        let [cos, sin] = if turns(coordinate) { T::cos_sin(entry) } else { [T::one(), T::zero()] };
-        posture.cos.push(cos);
-        posture.sin.push(sin);
-        posture.displacement.push(T::from_f64(entry));
-    }
-    posture
 }

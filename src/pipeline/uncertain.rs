@@ -21,7 +21,7 @@ impl Pipeline<'_> {
         if links.is_empty() {
             return Holds::Everywhere;
         }
-        if links.len() > CONTACT_LIMIT {
+        if links.len() > CONTACT_LIMIT || !self.robot.followers.is_empty() {
             return Holds::Unknown;
         }
         let whole = Cell::new(self.robot, state, uncertainty, &links);

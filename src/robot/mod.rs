@@ -4,16 +4,33 @@
 //!     Description (links and joints of the file, 3-D) --reduce--> Robot (bodies and joints, planar)
 //! ```
 //!
-//! Links joined by fixed joints are one [`Body`]. A body's frame has its origin at its joint's origin (the root body: at
-//! the root link's origin) and, at zero joint coordinates, the axes of the root link; so no constant rotation stands
-//! between a body and its parent, and where the file turns nothing its numbers are kept bit for bit. Bodies are numbered so
-//! that a parent comes before its children; joints, and with them the coordinates, keep the file's order.
+//! Links joined by fixed and held joints are one [`Body`]. A body's frame has its origin at its joint's origin (the root
+//! body: at the root link's origin) and, at zero joint coordinates, the axes of the plane: forward, normal and up among
+//! those of the file's root link. So no constant rotation stands between a body and its parent, and where the file turns
+//! nothing its numbers are kept bit for bit. Bodies are numbered so that a parent comes before its children; joints, and
+//! with them the coordinates, keep the file's order.
+//!
+//! ```text
+//!     Description --posture--> axes in the posture --plane--> plane --role--> hinge, slide or weld --base--> where the robot
+//!     begins --tree--> bodies, places of links --composite, outline--> inertias, feet
+//! ```
 
+mod base;
+mod caution;
 mod composite;
+mod left_out;
 mod outline;
+mod plane;
+mod posture;
+mod reading;
 mod reduce;
+mod role;
 mod shape;
+mod tree;
 
+pub use plane::Plane;
+pub use reading::{HeldJoint, PlaneReason, Reading, Still};
+pub use reduce::Reduction;
 pub use shape::{FootShape, Rim};
 
 use crate::planar::Vector;
@@ -37,12 +54,16 @@ pub struct Robot {
     pub base: Base,
     /// Rigid bodies; a parent comes before its children, the root is 0.
     pub bodies: Vec<Body>,
-    /// Moving joints in the file's order: joint `k` is coordinate `base_dofs + k`.
+    /// Joints that move independently, in the file's order: joint `k` is coordinate `base_dofs + k`.
     pub joints: Vec<Joint>,
-    /// All links of the file, in its order.
+    /// Joints that follow one of these (mimic), in the file's order; they have no coordinate of their own.
+    pub followers: Vec<Follower>,
+    /// The links of the file, in its order; without those that are the base itself.
     pub links: Vec<Link>,
     /// What of the file does not enter the analysis, and why.
     pub left_out: Vec<LeftOut>,
+    /// How the file was read.
+    pub reading: Reading,
 }
 
 /// Links that no moving joint separates.
@@ -50,8 +71,8 @@ pub struct Robot {
 pub struct Body {
     /// The link that carries the body's frame.
     pub name: String,
-    /// The joint that moves the body (an index into [`Robot::joints`]); none for the root.
-    pub joint: Option<usize>,
+    /// What moves the body; none for the root.
+    pub joint: Option<Mover>,
     /// Mass \[kg\].
     pub mass: f64,
     /// CoG in the body's frame \[m\].
@@ -60,11 +81,41 @@ pub struct Body {
     pub moment: f64,
 }
 
+/// What moves a body against its parent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mover {
+    /// A joint with a coordinate of its own: an index into [`Robot::joints`].
+    Joint(usize),
+    /// One that follows another: an index into [`Robot::followers`].
+    Follower(usize),
+}
+
 /// A joint that moves in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Name in the file.
     pub name: String,
+    /// The body it hangs on (an index into [`Robot::bodies`]).
+    pub parent: usize,
+    /// The body it moves.
+    pub child: usize,
+    /// Its origin in the parent body's frame, at coordinate zero \[m\].
+    pub origin: Vector<f64>,
+    /// Its motion.
+    pub axis: Axis,
+}
+
+/// A joint that follows another: q = multiplier q_leader + offset (URDF's mimic).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Follower {
+    /// Name in the file.
+    pub name: String,
+    /// The joint that it follows (an index into [`Robot::joints`]).
+    pub leader: usize,
+    /// How much it moves for a unit of its leader \[1, m/rad, rad/m\].
+    pub multiplier: f64,
+    /// Its coordinate where the leader's is zero \[rad, m\].
+    pub offset: f64,
     /// The body it hangs on (an index into [`Robot::bodies`]).
     pub parent: usize,
     /// The body it moves.
@@ -160,9 +211,31 @@ impl Robot {
             .chain(self.joints.iter().map(|joint| joint.name.as_str()))
     }
 
-    /// Total mass \[kg\].
+    /// The body on which what moves a body hangs, its origin in that body's frame at coordinate zero \[m\], and its motion.
+    pub fn hinge(&self, mover: Mover) -> (usize, Vector<f64>, Axis) {
+        match mover {
+            Mover::Joint(joint) => {
+                let Joint { parent, origin, axis, .. } = self.joints[joint];
+                (parent, origin, axis)
+            }
+            Mover::Follower(follower) => {
+                let Follower { parent, origin, axis, .. } = self.followers[follower];
+                (parent, origin, axis)
+            }
+        }
+    }
+
+    /// Mass of all that can move: of a bolted robot without the root body \[kg\].
     pub fn mass(&self) -> f64 {
-        self.bodies.iter().map(|body| body.mass).sum()
+        self.bodies.iter().skip(self.bolted()).map(|body| body.mass).sum()
+    }
+
+    /// How many bodies, counted from the root, cannot move: 1 where it is bolted to the world, else 0.
+    fn bolted(&self) -> usize {
+        match self.base {
+            Base::Floating => 0,
+            Base::Fixed => 1,
+        }
     }
 
     /// The link of that name.
@@ -173,5 +246,10 @@ impl Robot {
     /// The moving joint of that name.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// The joint of that name that the file has and the reduced robot has not: it is welded, or part of the base.
+    pub fn held(&self, name: &str) -> Option<&HeldJoint> {
+        self.reading.held.iter().find(|held| held.name == name)
     }
 }

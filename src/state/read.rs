@@ -205,11 +205,16 @@ fn held(field: Node, robot: &Robot) -> Result<Vec<usize>> {
     Ok(held)
 }
 
-/// An object of inertias by joint, for every joint of the robot.
+/// An object of inertias by joint, for every joint and then every follower of the robot.
 fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
-    let mut inertia = vec![0.0; robot.joints.len()];
+    let mut inertia = vec![0.0; robot.joints.len() + robot.followers.len()];
     for entry in field.fields("joint")? {
-        inertia[joint(entry, entry.key(), robot)?] = from_zero(entry, "rotor inertia")?;
+        let name = entry.key();
+        let place = match robot.followers.iter().position(|follower| follower.name == name) {
+            Some(follower) => robot.joints.len() + follower,
+            None => joint(entry, name, robot)?,
+        };
+        inertia[place] = from_zero(entry, "rotor inertia")?;
     }
     Ok(inertia)
 }
@@ -271,9 +276,14 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.joints.iter().map(|joint| joint.name.as_str());
     robot.joint(name).ok_or_else(|| {
         let what = format!("joint \"{name}\"");
-        match robot.left_out.iter().find(|left| left.what == what) {
-            Some(left) => {
-                node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", left.why)))
+        if let Some(follower) = robot.followers.iter().find(|follower| follower.name == name) {
+            let leader = &robot.joints[follower.leader].name;
+            let reason = format!("{what} has no coordinate: it follows joint \"{leader}\"");
+            return node.refuse_name(name, Reason::Inconsistent(reason)).hint(format!("name {leader} instead"));
+        }
+        match robot.held(name) {
+            Some(held) => {
+                node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", held.why())))
             }
             None => unknown_name(node, "joint", name, known()),
         }

@@ -45,7 +45,7 @@ impl<'r> Points<'r> {
     }
 
     fn placement(&mut self, position: &[f64]) -> Placement {
-        self.posture.set(position);
+        self.posture.set(&self.plan, position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
         Placement::new(&self.plan, &self.workspace, base)

@@ -2,7 +2,7 @@
 
 use crate::impact::Friction;
 use crate::plan::{Plan, Posture};
-use crate::robot::{Axis, Base, Robot};
+use crate::robot::{Axis, Base, Mover, Robot};
 use crate::scalar::{Affine, Real, Trigonometry};
 use crate::state::{State, Uncertainty};
 
@@ -164,8 +164,8 @@ impl Cell {
     pub fn plan<const N: usize>(&self, robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
         let mut plan = Plan::new(robot, held, rotor_inertia);
         for (body, own) in plan.bodies.iter_mut().zip(&robot.bodies) {
-            if let Some((index, middle, radius)) = own.joint.and_then(|joint| self.find(Quantity::RotorInertia(joint)))
-            {
+            let Some(Mover::Joint(joint)) = own.joint else { continue };
+            if let Some((index, middle, radius)) = self.find(Quantity::RotorInertia(joint)) {
                 body.rotor = Affine::varying(middle, radius, index);
             }
         }

@@ -3,7 +3,7 @@
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
 use heelstrike::description::Description;
-use heelstrike::robot::{Axis, Base, LeftOut, Link, Rim, Robot};
+use heelstrike::robot::{Axis, Base, LeftOut, Link, Mover, Reduction, Rim, Robot};
 use serde::Deserialize;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -178,9 +178,8 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
         // Body origins at zero in the root's frame.
         let mut origins = vec![[0.0; 2]; robot.bodies.len()];
         for (index, body) in robot.bodies.iter().enumerate().skip(1) {
-            let joint = &robot.joints[body.joint.expect("all but the root have a joint")];
-            assert_eq!(joint.child, index);
-            origins[index] = [0, 1].map(|k| origins[joint.parent][k] + joint.origin[k]);
+            let (parent, origin, _) = robot.hinge(body.joint.expect("all but the root have a joint"));
+            origins[index] = [0, 1].map(|k| origins[parent][k] + origin[k]);
         }
 
         let body = |name: &str| robot.bodies.iter().position(|body| body.name == name).expect("the body");
@@ -252,7 +251,7 @@ fn an_axis_is_turned_by_all_origins_before_it() {
 #[test]
 fn an_axis_slightly_off_is_brought_into_line_and_told() {
     let robot = load(&two_links("revolute", "<axis xyz=\"0 1 5e-4\"/>"));
-    let why = "its axis is 5.0e-4 rad off the plane's normal (y): taken as exactly on it";
+    let why = "its axis is 5.0e-4 rad off the plane's normal: taken as exactly on it";
     assert_eq!(robot.left_out, [left_out("joint \"j\"", why)]);
 }
 
@@ -297,7 +296,11 @@ fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
     let robot = load(&text);
     assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
     let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
-    assert_eq!(bodies, [("root", None), ("thigh", Some(2)), ("shank", Some(1)), ("foot", Some(0)), ("tip", Some(3))]);
+    let joint = |joint| Some(Mover::Joint(joint));
+    assert_eq!(
+        bodies,
+        [("root", None), ("thigh", joint(2)), ("shank", joint(1)), ("foot", joint(0)), ("tip", joint(3))]
+    );
     assert_eq!(robot.links.iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
 }
 
@@ -410,11 +413,12 @@ fn a_long_chain_is_reduced_without_recursion() {
 #[test]
 fn a_fixed_base_leaves_the_joints_alone() {
     let description = Description::from_urdf(&two_links("revolute", "<axis xyz=\"0 1 0\"/>")).expect("a description");
-    let robot = Robot::reduce(&description, Some(Base::Fixed)).expect("a robot");
+    let bolted = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
+    let robot = Robot::reduce(&description, &bolted).expect("a robot");
     assert_eq!((robot.base, robot.dofs()), (Base::Fixed, 1));
-    assert_eq!(Robot::reduce(&description, None).expect("a robot").base, Base::Floating);
+    assert_eq!(Robot::reduce(&description, &Reduction::default()).expect("a robot").base, Base::Floating);
 
     let still = Description::from_urdf(&two_links("fixed", "")).expect("a description");
-    let refused = Robot::reduce(&still, Some(Base::Fixed)).expect_err("nothing moves");
+    let refused = Robot::reduce(&still, &bolted).expect_err("nothing moves");
     assert_eq!(refused.to_string(), "robot: nothing that moves has mass");
 }

@@ -191,7 +191,7 @@ fn joints_that_leave_the_plane_are_refused_with_their_angle() {
     }
     assert_refused(
         &two_links("revolute", "<axis xyz=\"0 1 0\"/><mimic joint=\"j\"/>"),
-        "4:1: joint \"j\": mimic joints are not handled yet",
+        "4:1: joint \"j\": it follows joint \"j\", which has no coordinate of its own",
         Some("remove <mimic> to let the joint move freely, or make it fixed"),
     );
 }

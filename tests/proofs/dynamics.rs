@@ -9,7 +9,7 @@
 
 use crate::number::Number;
 use heelstrike::impact::Friction;
-use heelstrike::robot::{Axis, Robot};
+use heelstrike::robot::{Axis, Mover, Robot};
 use heelstrike::scene::Ground;
 use heelstrike::state::State;
 use std::cmp::Ordering;
@@ -120,7 +120,8 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                 }
                 Pose { turn: angle.cos_sin(), angle, origin, motions }
             }
-            Some(index) => {
+            Some(Mover::Follower(_)) => unreachable!("no robot here has followers"),
+            Some(Mover::Joint(index)) => {
                 let joint = &robot.joints[index];
                 let parent = &poses[joint.parent];
                 let coordinate = base + index;

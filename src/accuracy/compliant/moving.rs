@@ -106,7 +106,7 @@ impl<'a> Model<'a> {
     fn new(robot: &'a Moving<'a>, ground: Ground, stiffness: f64) -> Self {
         let mut memory = Memory::default();
         let Memory { workspace, posture, .. } = &mut memory;
-        posture.set(robot.position);
+        posture.set(robot.plan, robot.position);
         kinematics(robot.plan, posture, workspace);
         mass_matrix(robot.plan, workspace);
         factorize(robot.plan, workspace);
@@ -145,7 +145,7 @@ impl<'a> Model<'a> {
         let stretches = &state[2 * dofs..];
         let Memory { workspace, posture, column } = &mut *self.memory.borrow_mut();
         let position: Vec<f64> = self.robot.position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
-        posture.set(&position);
+        posture.set(plan, &position);
         kinematics(plan, posture, workspace);
         mass_matrix(plan, workspace);
         factorize(plan, workspace);
@@ -210,7 +210,7 @@ fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<
                 let (spin, rate) = (spins[parent], velocity[body.coordinate]);
                 let carried = difference(origins[parent], scaled(spin * spin, workspace.arm[index]));
                 match motion {
-                    Motion::Turn { sign } => (spin + sign * rate, carried),
+                    Motion::Turn { sign, .. } => (spin + sign * rate, carried),
                     // Coriolis: twice the turn of the direction of sliding.
                     Motion::Slide { .. } => {
                         (spin, sum(carried, scaled(2.0 * spin * rate, turned(workspace.direction[index]))))
