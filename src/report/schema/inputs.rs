@@ -150,7 +150,7 @@ struct NotNegative(#[schemars(range(min = 0.0))] f64);
 
 /// The ground: level, a slope, or a profile.
 #[derive(JsonSchema)]
-#[schemars(extend("maxProperties" = 1))]
+#[schemars(extend("not" = {"required": ["slope", "profile"]}))]
 struct Ground {
     /// Its slope, uphill toward +x [rad].
     #[schemars(extend("exclusiveMinimum" = -FRAC_PI_2, "exclusiveMaximum" = FRAC_PI_2))]
