@@ -6,7 +6,6 @@ use super::pose::{Computation, Factorization, Pose};
 use super::reference::{PRECISION, Reference, distance, relative, with_precision, worst};
 use super::suite::Subject;
 use super::timing::{Budget, Spread, time};
-use crate::Error;
 use crate::impact::enumerate::Tableau;
 use crate::impact::{Analysis, ContactProblem, Verdict, analyse};
 use crate::pipeline::{Options, Pipeline};
@@ -14,6 +13,7 @@ use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::scalar::{DoubleDouble, Interval, Ordered, Real};
 use crate::state::State;
+use crate::{Error, Reason};
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 
@@ -122,6 +122,10 @@ pub fn study(name: &str, subject: &Subject, budget: Budget) -> Study {
 /// Looks at a robot's state.
 pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> Study {
     let mut study = Study::of(name, Some(robot.dofs()));
+    if !robot.followers.is_empty() || !state.scene.loops.is_empty() {
+        let reason = "loops and joints that follow others are not compared: articulated bodies do not hold them";
+        return study.refuse(Reason::Unsupported(reason.into()).into());
+    }
     let mut pipeline = Pipeline::new(robot, options.clone());
     let impact = match pipeline.impact(state) {
         Ok(impact) => impact,

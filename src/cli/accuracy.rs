@@ -97,7 +97,10 @@ fn own(args: &Args, robot: &std::path::Path, state: &std::path::Path, budget: Bu
         None => robot.name.clone(),
     };
     let study = of_state(&called, &robot, &state, &options, budget);
-    let compliant = compliant(&called, &robot, &state, &options)?;
+    let compliant = match study.refused {
+        Some(_) => None,
+        None => compliant(&called, &robot, &state, &options)?,
+    };
     Ok(Accuracy::new(vec![study], compliant))
 }
 

@@ -3,6 +3,7 @@
 //! ```text
 //!     kinematics --> crba (M) --> ltl (M = L^T D L) ──┐
 //!          ├──────── jacobian (J, c = J v) ───────────┴──> delassus (G = J M^-1 J^T), effect of impulses on v
+//!          ├──────── loops (K) ──────────────────────────────> G without what loops do not let move, their impulses
 //!          └──────── articulated ────────────────────────> the same G and effect, without M
 //! ```
 //!
@@ -15,6 +16,7 @@ mod delassus;
 mod energy;
 mod jacobian;
 mod kinematics;
+mod loops;
 mod ltl;
 mod workspace;
 
@@ -25,6 +27,7 @@ pub use delassus::{add_impulse, delassus};
 pub use energy::kinetic_energy;
 pub use jacobian::{ContactPoint, contact_jacobian, point_velocity};
 pub use kinematics::kinematics;
+pub use loops::{Loop, LoopRows, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize, spent_energy};
 pub use ltl::factorize;
 pub use workspace::Workspace;
 

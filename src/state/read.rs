@@ -5,7 +5,7 @@ use super::{Defaults, State};
 use crate::impact::Friction;
 use crate::json::Node;
 use crate::robot::Base;
-use crate::scene::{AppliedImpulse, ByLink, NamedContact};
+use crate::scene::{AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop};
 use crate::{Error, Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
 
@@ -34,6 +34,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
     let dofs = robot.dofs();
     let mut state = State { position: vec![0.0; dofs], velocity: vec![0.0; dofs], ..State::default() };
     let scene = &mut state.scene;
+    let mut own_loops = None;
 
     for field in root.fields("field")? {
         match field.key() {
@@ -48,7 +49,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
             "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
             "contacts" => scene.contacts = Some(contacts(field, robot)?),
             "impulse" => scene.impulses = impulses(field, robot)?,
-            "loops" => return Err(not_yet(field, "loops are")),
+            "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
             _ => return Err(field.unknown_field(&FIELDS)),
         }
@@ -57,6 +58,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
         refuse_a_placed_base(root)?;
     }
     scene.friction.default = scene.friction.default.or(defaults.friction);
+    scene.loops = own_loops.unwrap_or_else(|| defaults.loops.clone());
     Ok(state)
 }
 
@@ -221,6 +223,39 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
         contacts.push(NamedContact { link, offset, radius });
     }
     Ok(contacts)
+}
+
+/// A list of `{"a": {"link", "offset"}, "b": {"link", "offset"}}`.
+pub(super) fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
+    let mut loops = Vec::new();
+    for entry in field.entries()? {
+        let (mut a, mut b) = (None, None);
+        for part in entry.fields("field")? {
+            match part.key() {
+                "a" => a = Some(link_point(part, robot)?),
+                "b" => b = Some(link_point(part, robot)?),
+                _ => return Err(part.unknown_field(&["a", "b"])),
+            }
+        }
+        let a = a.ok_or_else(|| missing(entry, "a"))?;
+        let b = b.ok_or_else(|| missing(entry, "b"))?;
+        loops.push(NamedLoop { a, b });
+    }
+    Ok(loops)
+}
+
+/// `{"link", "offset"}`.
+fn link_point(field: Node, robot: &Robot) -> Result<LinkPoint> {
+    let (mut named, mut offset) = (None, [0.0; 3]);
+    for part in field.fields("field")? {
+        match part.key() {
+            "link" => named = Some(link(part, part.text()?, robot)?),
+            "offset" => offset = part.numbers("a list of 3 numbers")?,
+            _ => return Err(part.unknown_field(&["link", "offset"])),
+        }
+    }
+    let link = named.ok_or_else(|| missing(field, "link"))?;
+    Ok(LinkPoint { link, offset })
 }
 
 /// A list of `{"link", "offset", "vector"}`.

@@ -137,7 +137,7 @@ fn schema_and_reader_of_problems_agree() {
         "friction": [0.8], "restitution": [0.0], "names": ["tip"]});
     let dynamics = json!({"mass_matrix": [[2, 0], [0, 2]], "contact_jacobian": [[1, 0], [0, 1]], "velocity": [0, -1],
         "friction": "infinite", "restitution": 0.5});
-    let defaults = Defaults { friction: Some(heelstrike::impact::Friction::Infinite) };
+    let defaults = Defaults { friction: Some(heelstrike::impact::Friction::Infinite), ..Defaults::default() };
     let read = |text: &str| Problem::from_json(text, &defaults);
     // Whether the matrices fit each other and are those of a body.
     let beyond = |reason: &Reason| match reason {
