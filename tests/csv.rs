@@ -3,6 +3,7 @@
 use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::report::{Detail, Refused, Report};
+use heelstrike::robot::{Base, Reduction};
 use heelstrike::scene::NamedContact;
 use heelstrike::state::{Defaults, State};
 use heelstrike::table::{Columns, Header, Rates};
@@ -24,7 +25,7 @@ fn leg() -> Robot {
 
 fn bolted_leg() -> Robot {
     let description = heelstrike::description::Description::from_urdf(LEG).unwrap();
-    Robot::reduce(&description, Some(heelstrike::robot::Base::Fixed)).unwrap()
+    Robot::reduce(&description, &Reduction { base: Some(Base::Fixed), ..Reduction::default() }).unwrap()
 }
 
 /// The states of a table whose every row is on a line of its own.

@@ -4,7 +4,7 @@ use heelstrike::impact::{Analysis, ContactProblem, Friction, Mode, Verdict, anal
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::robot::Base;
 use heelstrike::state::{Defaults, State};
-use heelstrike::{Error, Robot, description::Description};
+use heelstrike::{Error, Robot};
 
 use Mode::{Separate, SlideMinus, Stick};
 
@@ -183,7 +183,8 @@ fn a_robot_that_cannot_move_answers() {
          <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><origin xyz=\"0 0 -1\"/>\
          <geometry><sphere radius=\"0\"/></geometry></collision></link><joint name=\"j\" type=\"continuous\">\
          <parent link=\"base\"/><child link=\"rod\"/><axis xyz=\"0 1 0\"/><origin xyz=\"0 0 1\"/></joint></robot>";
-    let robot = Robot::reduce(&Description::from_urdf(pendulum).expect("good"), Some(Base::Fixed)).expect("good");
+    let robot = Robot::from_urdf(pendulum).expect("good");
+    assert_eq!(robot.base, Base::Fixed);
     let found = impact(&robot, r#"{"held": ["j"]}"#).expect("an answer");
     assert_eq!(found.analysis.expect("one contact").verdict, Verdict::NoImpact);
     // Held against the ground, the driven foot slides; nothing can stop it.

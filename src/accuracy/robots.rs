@@ -66,6 +66,7 @@ pub fn chain(links: usize) -> Robot {
         links: vec![point_foot("near end".into(), 0, [0.0; 2]), point_foot("far end".into(), tip, [0.0, -1.0])],
         followers: Vec::new(),
         left_out: Vec::new(),
+        reading: Default::default(),
     }
 }
 

@@ -78,7 +78,7 @@ pub(super) fn run(args: &Args) -> Outcome {
 fn own(args: &Args, robot: &std::path::Path, state: &std::path::Path, budget: Budget) -> Result<Accuracy, Failure> {
     args.output.spare(&[robot, state])?;
     args.plot.spare(&[robot, state])?;
-    let robot = RobotOptions { robot: robot.to_owned(), base: None, contact: Vec::new() }.load()?;
+    let robot = RobotOptions::of_file(robot).load()?;
     let name = input::name(state);
     let bytes = input::bytes_up_to(state, LARGEST)?;
     let document = only_document(&bytes, &name)?;

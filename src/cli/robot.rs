@@ -5,10 +5,10 @@ use clap::ValueEnum;
 use heelstrike::description::Description;
 use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
-use heelstrike::robot;
+use heelstrike::robot::{self, Reduction};
 use heelstrike::scene::NamedContact;
 use heelstrike::{Error, Reason, Robot};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// The largest URDF file that is read \[bytes\].
@@ -20,12 +20,60 @@ pub(super) struct RobotOptions {
     /// The robot's URDF file
     #[arg(value_name = "ROBOT.urdf")]
     pub robot: PathBuf,
-    /// Whether the root link moves freely or is bolted to the world
+    /// The plane that the robot moves in, forward before up in its root link's axes
+    #[arg(long, value_enum, default_value_t = Plane::Auto, help_heading = "Robot")]
+    pub plane: Plane,
+    /// Weld a joint at this value (rad or m); axes are judged in this posture [repeatable]
+    #[arg(long, value_name = "JOINT=VALUE", allow_hyphen_values = true, help_heading = "Robot")]
+    pub hold: Vec<Hold>,
+    /// Whether the root link moves freely or is bolted to the world [default: as the file's masses and joints say]
     #[arg(long, value_enum, help_heading = "Robot")]
     pub base: Option<Base>,
     /// Add a foot: a point of a link, or a circle about it [repeatable]
     #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", allow_hyphen_values = true, help_heading = "Robot")]
     pub contact: Vec<Foot>,
+}
+
+/// The plane that the robot moves in.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Plane {
+    /// The one that all hinges turn in, else x-z
+    Auto,
+    /// x forward, z up
+    Xz,
+    /// y forward, z up
+    Yz,
+    /// x forward, y up
+    Xy,
+}
+
+impl From<Plane> for Option<robot::Plane> {
+    fn from(plane: Plane) -> Self {
+        match plane {
+            Plane::Auto => None,
+            Plane::Xz => Some(robot::Plane::XZ),
+            Plane::Yz => Some(robot::Plane::YZ),
+            Plane::Xy => Some(robot::Plane::XY),
+        }
+    }
+}
+
+/// A joint that is welded at a value.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Hold {
+    joint: String,
+    value: f64,
+}
+
+impl FromStr for Hold {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        // From the right, because a joint's name may hold equals signs.
+        let (joint, value) =
+            text.rsplit_once('=').ok_or_else(|| "expected JOINT=VALUE, as in left_hip_roll=0.1".to_owned())?;
+        Ok(Self { joint: joint.to_owned(), value: finite(value)? })
+    }
 }
 
 /// How the root link is held.
@@ -82,18 +130,37 @@ fn finite(text: &str) -> Result<f64, String> {
 }
 
 impl RobotOptions {
+    /// The robot of this file, with nothing added.
+    pub fn of_file(robot: &Path) -> Self {
+        Self { robot: robot.to_owned(), plane: Plane::Auto, hold: Vec::new(), base: None, contact: Vec::new() }
+    }
+
     /// Reads the robot.
     pub fn load(&self) -> Result<Robot, Failure> {
         let name = input::name(&self.robot);
         let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
         let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
-        let robot = Description::from_urdf(text)
-            .and_then(|description| Robot::reduce(&description, self.base.map(Into::into)))
-            .map_err(|error| {
-                let excerpt = error.location().and_then(|place| Excerpt::around(text.as_bytes(), 1, place));
-                Failure::RefusedAt(error.in_file(name), excerpt)
+        let refuse = |error: Error| {
+            let excerpt = error.location().and_then(|place| Excerpt::around(text.as_bytes(), 1, place));
+            Failure::RefusedAt(error.in_file(&name), excerpt)
+        };
+        let description = Description::from_urdf(text).map_err(refuse)?;
+        let reduction =
+            Reduction { plane: self.plane.into(), hold: self.held(&description)?, base: self.base.map(Into::into) };
+        Robot::reduce(&description, &reduction).map_err(refuse)
+    }
+
+    /// The joints that are given by `--hold`.
+    fn held(&self, description: &Description) -> Result<Vec<(usize, f64)>, Failure> {
+        let held = |hold: &Hold| {
+            let joint = description.joint(&hold.joint).ok_or_else(|| {
+                let reason = Reason::UnknownName { what: "joint", name: hold.joint.clone() };
+                let known = description.joints.iter().map(|joint| joint.name.as_str());
+                Failure::Usage(Error::new(reason).at("--hold").did_you_mean(&hold.joint, known))
             })?;
-        Ok(robot)
+            Ok((joint, hold.value))
+        };
+        self.hold.iter().map(held).collect()
     }
 
     /// The feet that are given by `--contact`.
@@ -119,6 +186,14 @@ mod tests {
         let foot = |link: &str, offset, radius| Ok(Foot { link: link.to_owned(), offset, radius });
         assert_eq!("foot:0,-1,2".parse(), foot("foot", [0.0, -1.0, 2.0], 0.0));
         assert_eq!("ns:foot:0,0,-0.5:0.03".parse(), foot("ns:foot", [0.0, 0.0, -0.5], 0.03));
+    }
+
+    #[test]
+    fn held_joints_are_read_from_the_right() {
+        assert_eq!("a=b=-0.5".parse(), Ok(Hold { joint: "a=b".to_owned(), value: -0.5 }));
+        for text in ["hip", "hip=", "hip=x", "hip=nan", "hip=inf"] {
+            assert!(text.parse::<Hold>().is_err(), "{text}");
+        }
     }
 
     #[test]

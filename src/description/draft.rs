@@ -17,6 +17,8 @@ const MOST_MOVING: usize = 2000;
 const MOST_IGNORED: usize = 1000;
 /// The links or joints in one part of the strict copy; parts bound the memory that urdf-rs needs.
 const PART: usize = 1000;
+/// The link that joints may name as their parent without its being defined.
+const WORLD: &str = "world";
 /// How a part of the strict copy begins.
 const OPENING: &str = "<robot name=\"\">";
 /// How a part of the strict copy ends.
@@ -92,6 +94,8 @@ pub(super) fn read(text: &str) -> Result<Draft> {
     if links.elements.is_empty() {
         return Err(xml::refuse(robot, Reason::Missing("a <link>".into())));
     }
+    let world = undefined_world(&links, &joints)?;
+    links.by_name.extend(world.map(|_| (WORLD, links.elements.len())));
     refuse_many_joints(&joints)?;
 
     let mut strict = Vec::new();
@@ -112,6 +116,10 @@ pub(super) fn read(text: &str) -> Result<Draft> {
         copy.push_str(CLOSING);
         strict.push(copy);
     }
+    if let Some(location) = world {
+        draft_links.push(Link { name: WORLD.into(), location, inertial: Stated::Nothing, shapes: Vec::new() });
+        strict.push(format!("{OPENING}<link name=\"\"/>{CLOSING}"));
+    }
     let mut draft_joints = Vec::with_capacity(joints.elements.len());
     for part in joints.elements.chunks(PART) {
         let mut copy = String::from(OPENING);
@@ -126,6 +134,19 @@ pub(super) fn read(text: &str) -> Result<Draft> {
 
     let name = robot.attribute("name").unwrap_or_default().to_owned();
     Ok(Draft { name, links: draft_links, joints: draft_joints, ignored: ignored.kinds, strict })
+}
+
+/// Where a joint names the parent link `world` that no element defines, as many files do: the world needs no description.
+fn undefined_world(links: &Named, joints: &Named) -> Result<Option<Location>> {
+    if links.by_name.contains_key(WORLD) {
+        return Ok(None);
+    }
+    for &(_, element, location) in &joints.elements {
+        if xml::child(element, "parent")?.is_some_and(|parent| parent.attribute("link") == Some(WORLD)) {
+            return Ok(Some(location));
+        }
+    }
+    Ok(None)
 }
 
 /// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
@@ -186,9 +207,6 @@ impl<'a, 'input> Named<'a, 'input> {
         let name = xml::required_attribute(element, attribute)?;
         self.by_name.get(name).copied().ok_or_else(|| {
             let error = xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() });
-            if name == "world" {
-                return error.hint("add <link name=\"world\"/> to the file");
-            }
             error.did_you_mean(name, self.elements.iter().map(|(name, ..)| *name))
         })
     }

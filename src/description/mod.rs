@@ -11,13 +11,14 @@
 //! file or starts a process, nothing recurses, and time and memory grow linearly with the text.
 
 mod draft;
+mod mimic;
 mod pose;
 mod strict;
 mod tree;
 mod values;
 mod xml;
 
-pub use pose::{Matrix, Pose, apply, product};
+pub use pose::{Matrix, Pose, apply, product, turn, unit};
 
 use crate::error::{Error, Location, Result};
 
@@ -162,6 +163,19 @@ impl JointKind {
             Self::Fixed | Self::Floating | Self::Spherical => false,
         }
     }
+
+    /// The file's word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Revolute => "revolute",
+            Self::Continuous => "continuous",
+            Self::Prismatic => "prismatic",
+            Self::Planar => "planar",
+            Self::Floating => "floating",
+            Self::Spherical => "spherical",
+        }
+    }
 }
 
 /// A joint's coordinate given by another's: `multiplier` times that one plus `offset`.
@@ -205,6 +219,30 @@ impl Description {
         let mut description = values::join(draft)?;
         description.root = tree::hang(&mut description.links, &description.joints)?;
         Ok(description)
+    }
+
+    /// The joint of that name (an index into [`Description::joints`]).
+    pub fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// All joints from the root outward, those of one link in the file's order and each branch before the next.
+    pub fn outward(&self) -> Vec<usize> {
+        tree::outward(self, self.root)
+    }
+
+    /// The joints outward from `link`, in the order of [`Description::outward`].
+    pub fn outward_from(&self, link: usize) -> Vec<usize> {
+        tree::outward(self, link)
+    }
+
+    /// For each joint that follows another the joint that leads in the end, which itself follows none: q = multiplier
+    /// q_leader + offset through all that stand between.
+    ///
+    /// # Errors
+    /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) for joints that follow each other in a circle.
+    pub fn leaders(&self) -> Result<Vec<Option<Mimic>>> {
+        mimic::leaders(&self.joints)
     }
 }
 

@@ -37,6 +37,31 @@ pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     a.map(|row| [0, 1, 2].map(|column| row[0] * b[0][column] + row[1] * b[1][column] + row[2] * b[2][column]))
 }
 
+/// `vector` at length one; one that has it keeps its digits, and zero stays zero.
+pub fn unit(vector: [f64; 3]) -> [f64; 3] {
+    // A power of two first, so that no square overflows or vanishes; it costs no digit.
+    let largest = vector.into_iter().map(f64::abs).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return vector;
+    }
+    let [x, y, z] = vector.map(|component| libm::scalbn(component, -libm::ilogb(largest)));
+    let length = (x * x + y * y + z * z).sqrt();
+    [x / length, y / length, z / length]
+}
+
+/// The turn by `angle` \[rad\] about the vector `axis` of length one, by the right hand (Rodrigues).
+pub fn turn(axis: [f64; 3], angle: f64) -> Matrix {
+    let (sin, cos) = libm::sincos(angle);
+    let [x, y, z] = axis;
+    let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+    [0, 1, 2].map(|row| {
+        [0, 1, 2].map(|column| {
+            let one = if row == column { cos } else { 0.0 };
+            one + sin * cross[row][column] + (1.0 - cos) * axis[row] * axis[column]
+        })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,6 +92,20 @@ mod tests {
         assert_close(apply(&turn([FRAC_PI_2, 0.0, 0.0]), [0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
         assert_close(apply(&turn([0.0, FRAC_PI_2, 0.0]), [0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]);
         assert_close(apply(&turn([0.0, 0.0, FRAC_PI_2]), [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn a_turn_about_an_axis_of_the_frame_is_that_angle_of_the_pose() {
+        for (k, axis) in IDENTITY.into_iter().enumerate() {
+            let mut rpy = [0.0; 3];
+            rpy[k] = 0.7;
+            for (row, expected) in turn(axis, 0.7).into_iter().zip(Pose { xyz: [0.0; 3], rpy }.rotation()) {
+                assert_close(row, expected);
+            }
+        }
+        // A third of a whole turn about the diagonal takes x to y, y to z and z to x.
+        let diagonal = unit([2.0, 2.0, 2.0]);
+        assert_close(apply(&turn(diagonal, 4.0 * FRAC_PI_2 / 3.0), [1.0, 2.0, 3.0]), [3.0, 1.0, 2.0]);
     }
 
     #[test]

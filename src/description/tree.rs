@@ -1,6 +1,6 @@
 //! Joints -> one tree of links.
 
-use super::{Joint, Link};
+use super::{Description, Joint, Link};
 use crate::error::{Reason, Result};
 
 /// Notes in each link the joint that it hangs on, and returns the root.
@@ -34,6 +34,21 @@ pub(super) fn hang(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
         // Without a root every link hangs on a joint, so there is a cycle; without links there was nothing to join.
         (None, None) => Err(Reason::Missing("a <link>".into()).into()),
     }
+}
+
+/// The joints outward from `link`: see [`Description::outward`].
+pub(super) fn outward(description: &Description, link: usize) -> Vec<usize> {
+    let mut hanging = vec![Vec::new(); description.links.len()];
+    // Backward, since a stack is emptied from its end.
+    for (index, joint) in description.joints.iter().enumerate().rev() {
+        hanging[joint.parent].push(index);
+    }
+    let (mut order, mut waiting) = (Vec::with_capacity(description.joints.len()), hanging[link].clone());
+    while let Some(index) = waiting.pop() {
+        order.push(index);
+        waiting.extend(&hanging[description.joints[index].child]);
+    }
+    order
 }
 
 /// A link whose line of ancestors comes back to it, if there is one.

@@ -347,6 +347,7 @@ mod tests {
             links: Vec::new(),
             followers: Vec::new(),
             left_out: Vec::new(),
+            reading: Default::default(),
         }
     }
 

@@ -75,6 +75,7 @@ mod tests {
                 links: Vec::new(),
                 followers: Vec::new(),
                 left_out: Vec::new(),
+                reading: Default::default(),
             };
             for (parent, origin, axis, mass, com, moment) in parts {
                 let parent = parent.index(robot.bodies.len());

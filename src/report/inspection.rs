@@ -130,7 +130,7 @@ impl<'a> Inspection<'a> {
         let links = robot.links.iter();
         Self {
             name: &robot.name,
-            plane: "xz",
+            plane: robot.reading.plane.name(),
             base: match robot.base {
                 Base::Floating => "floating",
                 Base::Fixed => "fixed",

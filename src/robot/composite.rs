@@ -9,9 +9,22 @@
 use crate::description::Matrix;
 use crate::error::Reason;
 use crate::planar::{Vector, difference, dot};
+use nalgebra::Matrix3;
 
 /// Below this share of its terms a negative moment is rounding of a turned inertia.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Files give a few digits: a moment may be greater than the other two together by this share.
+const ROUNDED: f64 = 1e-3;
+
+/// Whether some body has this inertia about its CoG: no moment is negative or greater than the other two together
+/// (Featherstone 2008, section 2.13).
+pub(super) fn is_physical(inertia: &Matrix) -> bool {
+    let moments = Matrix3::from_fn(|row, column| inertia[row][column]).symmetric_eigenvalues();
+    let largest = moments.max();
+    let slack = ROUNDED * largest;
+    moments.min() >= -slack && largest <= 0.5 * moments.sum() + slack
+}
 
 /// The inertia that a link brings to its body, in the body's frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,6 +136,21 @@ mod tests {
         let rotation = [[0.0; 3], [length; 3], [0.0; 3]];
         let part = Part::projected(1.0, [0.0; 2], Some(&rod), &rotation).expect("no error");
         assert!((0.0..1e-15).contains(&part.moment));
+    }
+
+    #[test]
+    fn only_some_inertias_belong_to_a_body() {
+        let diagonal = |x, y, z| [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]];
+        assert!(is_physical(&INERTIA));
+        // A ball, a rod, a plate, a point; digits that were rounded away.
+        for [x, y, z] in [[1.0; 3], [0.0, 1.0, 1.0], [1.0, 1.0, 2.0], [0.0; 3], [1.0, 1.0, 2.001]] {
+            assert!(is_physical(&diagonal(x, y, z)), "{x} {y} {z}");
+        }
+        for [x, y, z] in [[0.0, 1.0, 0.0], [1.0, 1.0, 2.1], [-1.0, 1.0, 1.0], [-1.0; 3]] {
+            assert!(!is_physical(&diagonal(x, y, z)), "{x} {y} {z}");
+        }
+        // Its principal moments are 3, 1 and 1.
+        assert!(!is_physical(&[[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]));
     }
 
     #[test]

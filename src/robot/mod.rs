@@ -4,14 +4,32 @@
 //!     Description (links and joints of the file, 3-D) --reduce--> Robot (bodies and joints, planar)
 //! ```
 //!
-//! Links joined by fixed joints are one [`Body`]. A body's frame has its origin at its joint's origin (the root body: at
-//! the root link's origin) and, at zero joint coordinates, the axes of the root link; so no constant rotation stands
-//! between a body and its parent, and where the file turns nothing its numbers are kept bit for bit. Bodies are numbered so
-//! that a parent comes before its children; joints, and with them the coordinates, keep the file's order.
+//! Links joined by fixed and held joints are one [`Body`]. A body's frame has its origin at its joint's origin (the root
+//! body: at the root link's origin) and, at zero joint coordinates, the axes of the plane: forward, normal and up among
+//! those of the file's root link. So no constant rotation stands between a body and its parent, and where the file turns
+//! nothing its numbers are kept bit for bit. Bodies are numbered so that a parent comes before its children; joints, and
+//! with them the coordinates, keep the file's order.
+//!
+//! ```text
+//!     Description --posture--> axes in the posture --plane--> plane --role--> hinge, slide or weld --base--> where the robot
+//!     begins --tree--> bodies, places of links --composite, outline--> inertias, feet
+//! ```
 
+mod base;
+mod caution;
 mod composite;
+mod left_out;
 mod outline;
+mod plane;
+mod posture;
+mod reading;
 mod reduce;
+mod role;
+mod tree;
+
+pub use plane::Plane;
+pub use reading::{HeldJoint, PlaneReason, Reading, Still};
+pub use reduce::Reduction;
 
 use crate::planar::Vector;
 use crate::scalar::Real;
@@ -39,10 +57,12 @@ pub struct Robot {
     pub joints: Vec<Joint>,
     /// Joints that follow one of these (mimic), in the file's order; they have no coordinate of their own.
     pub followers: Vec<Follower>,
-    /// All links of the file, in its order.
+    /// The links of the file, in its order; without those that are the base itself.
     pub links: Vec<Link>,
     /// What of the file does not enter the analysis, and why.
     pub left_out: Vec<LeftOut>,
+    /// How the file was read.
+    pub reading: Reading,
 }
 
 /// Links that no moving joint separates.
@@ -223,9 +243,17 @@ impl Robot {
         }
     }
 
-    /// Total mass \[kg\].
+    /// Mass of all that can move: of a bolted robot without the root body \[kg\].
     pub fn mass(&self) -> f64 {
-        self.bodies.iter().map(|body| body.mass).sum()
+        self.bodies.iter().skip(self.bolted()).map(|body| body.mass).sum()
+    }
+
+    /// How many bodies, counted from the root, cannot move: 1 where it is bolted to the world, else 0.
+    fn bolted(&self) -> usize {
+        match self.base {
+            Base::Floating => 0,
+            Base::Fixed => 1,
+        }
     }
 
     /// The link of that name.
@@ -236,5 +264,10 @@ impl Robot {
     /// The moving joint of that name.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// The joint of that name that the file has and the reduced robot has not: it is welded, or part of the base.
+    pub fn held(&self, name: &str) -> Option<&HeldJoint> {
+        self.reading.held.iter().find(|held| held.name == name)
     }
 }

@@ -1,269 +1,179 @@
-//! Description -> robot: the tree placed at zero coordinates, projected into its plane, and welded at its fixed joints.
-//!
-//! The plane is x-z of the root link, with the normal n = +y. A link's frame stands in its body's frame at
-//!
-//! ```text
-//!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 behind a moving joint
-//! ```
-//!
-//! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the root's axes. What lies beside the plane
-//! counts as if it lay in it. Linear in links; nothing recurses.
+//! Description -> robot: the tree placed at zero coordinates, projected into its plane, and welded at joints that leave it.
 
 use super::composite::{Part, composite};
 use super::outline::outline;
-use super::{Axis, Base, Body, Follower, FootShape, Joint, LeftOut, Link, Mover, Robot};
-use crate::description::{
-    self, Collision, Description, Geometry, Ignored, Inertial, JointKind, Matrix, Mimic, Pose, apply, product,
-};
+use super::plane::{PARALLEL, Plane};
+use super::posture::Posture;
+use super::reading::{HeldJoint, PlaneReason, Reading, Still};
+use super::role::{Role, roles};
+use super::tree::{Place, Tree};
+use super::{Base, FootShape, LeftOut, Link, Robot, base, caution, left_out};
+use crate::description::{self, Description, Inertial, JointKind, product};
 use crate::error::{Error, Reason, Result};
-use crate::planar::Vector;
 
-/// The greatest angle between two directions that still count as parallel \[rad\]: files round their axes.
-const PARALLEL: f64 = 1e-3;
-/// An axis this near to the normal is off by rounding alone \[rad\].
-const ROUNDING: f64 = 1e-9;
+/// What a user may say about the reduction.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reduction {
+    /// The plane; without one it is found.
+    pub plane: Option<Plane>,
+    /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this posture the axes
+    /// are judged.
+    pub hold: Vec<(usize, f64)>,
+    /// How the root is held; without it that is judged.
+    pub base: Option<Base>,
+}
 
 impl Robot {
-    /// Reads the text of a URDF file and reduces it to the x-z plane, with a floating base.
+    /// Reads the text of a URDF file and reduces it to its plane.
     ///
     /// # Errors
     /// Those of [`Description::from_urdf`] and [`Robot::reduce`].
     pub fn from_urdf(text: &str) -> Result<Self> {
-        Self::reduce(&Description::from_urdf(text)?, None)
+        Self::reduce(&Description::from_urdf(text)?, &Reduction::default())
     }
 
-    /// Reduces `description` to the x-z plane of its root link; without a `base` it floats.
+    /// Reduces `description` to a plane of its root link.
     ///
-    /// Revolute and continuous joints turn about ±y, prismatic ones slide in the plane, both within 1e-3 rad; fixed joints
-    /// are welded. All that does not enter is told in [`Robot::left_out`].
+    /// The plane is the one whose normal all revolute and continuous axes are parallel to, else x-z. Joints that turn about
+    /// the normal or slide in the plane, both within 1e-3 rad, stay; all others are held at zero and welded, with the
+    /// inertia that their links have then. The base floats, is bolted to the world, or is a chain of the file's own joints.
+    /// What was found and why is told in [`Robot::reading`], all that does not enter in [`Robot::left_out`].
     ///
     /// # Errors
-    /// [`Reason::Unsupported`] for a joint off the plane, one that follows a follower or a fixed joint, and planar, floating
-    /// and spherical ones; [`Reason::OutOfRange`] for a negative moment of inertia about the normal; [`Reason::Inconsistent`]
-    /// where nothing that moves has mass; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
-    pub fn reduce(description: &Description, base: Option<Base>) -> Result<Self> {
-        let base = base.unwrap_or(Base::Floating);
-        description.joints.iter().try_for_each(|joint| refuse_unhandled(joint, description))?;
-        let Tree { bodies, joints, followers, places, mut left_out } = Tree::place(description)?;
-        let name = description.name.clone();
-        let mut robot = Self { name, base, bodies, joints, followers, links: Vec::new(), left_out: Vec::new() };
+    /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be held at a value, and
+    /// where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the normal; [`Reason::NotFinite`] where sizes or masses
+    /// add up to more than an f64 holds.
+    pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
+        let posture = Posture::new(description, &reduction.hold)?;
+        let (plane, plane_because) = find_plane(description, &posture, reduction.plane);
+        let mut roles = roles(description, &posture, plane);
+        let found = base::judge(description, &mut roles, reduction.base);
+        let tree = {
+            let rotation = product(&plane.axes(), &posture.rotations[found.root]);
+            Tree::grow(description, &posture, &roles, found.root, rotation)
+        };
+
+        let held = held(description, &roles, &tree, &found);
+        let mut cautions: Vec<String> = found.caution.into_iter().collect();
+        cautions.extend(caution::about_held(&held, tree.joints.len() + tree.followers.len()));
+        let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
+        let reading = Reading {
+            plane,
+            plane_because,
+            better_plane: better_plane(description, &posture, plane),
+            base_because: found.because,
+            held,
+            outside: outside.map(|(link, _)| link.name.clone()).collect(),
+            cautions,
+        };
+        let mut robot = Self {
+            name: description.name.clone(),
+            base: found.base,
+            left_out: joints_left_out(description, &roles, &tree, &reading),
+            reading,
+            bodies: tree.bodies,
+            joints: tree.joints,
+            followers: tree.followers,
+            links: Vec::new(),
+        };
 
         let mut parts = vec![Vec::new(); robot.bodies.len()];
-        for (link, place) in description.links.iter().zip(&places) {
+        for (link, place) in description.links.iter().zip(&tree.places) {
+            let Some(place) = place else { continue };
             if let Some(inertial) = &link.inertial {
                 parts[place.body].push(reduce_inertial(link, inertial, place)?);
-                if inertial.inertia.is_none() {
-                    left_out.push(point_mass(link));
-                }
             }
-            robot.links.push(reduce_link(link, place, &mut left_out));
+            robot.left_out.extend(left_out::doubtful_inertia(link));
+            let mut reduced = reduce_link(link, place, &mut robot.left_out);
+            if place.body < robot.bolted() && !reduced.shapes.is_empty() {
+                reduced.shapes.clear();
+                robot.left_out.push(left_out::bolted_shapes(link));
+            }
+            robot.links.push(reduced);
         }
         for (body, parts) in robot.bodies.iter_mut().zip(&parts) {
             (body.mass, body.com, body.moment) = composite(parts);
         }
-        left_out.extend(description.ignored.iter().map(passed_over));
-        robot.left_out = left_out;
+        robot.left_out.extend(left_out::passed_over(description));
 
         refuse_overflow(&robot)?;
-        let moving = if base == Base::Fixed { 1 } else { 0 };
-        if robot.bodies.iter().skip(moving).all(|body| body.mass == 0.0) {
-            let error = Error::new(Reason::Inconsistent("nothing that moves has mass".into()));
-            return Err(error.at("robot").hint("give the links <inertial> elements with a mass"));
+        if robot.mass() == 0.0 {
+            let error = Error::new(Reason::Inconsistent("nothing that moves has mass".into())).at("robot");
+            return Err(match robot.bodies.iter().any(|body| body.mass > 0.0) {
+                true => error.hint("its root is bolted to the world; give --base floating to set it free"),
+                false => error.hint("give the links <inertial> elements with a mass"),
+            });
         }
         Ok(robot)
     }
 }
 
-/// Refuses joints of a kind that is not handled yet.
-fn refuse_unhandled(joint: &description::Joint, description: &Description) -> Result<()> {
-    let kind = match joint.kind {
-        JointKind::Fixed => return Ok(()),
-        JointKind::Planar => "planar",
-        JointKind::Floating => "floating",
-        JointKind::Spherical => "spherical",
-        _ => {
-            let leader = joint.mimic.as_ref().map(|mimic| &description.joints[mimic.joint]);
-            let Some(leader) = leader.filter(|leader| leader.mimic.is_some() || leader.kind == JointKind::Fixed) else {
-                return Ok(());
-            };
-            let reason = format!("it follows joint \"{}\", which has no coordinate of its own", leader.name);
-            let error = joint.refuse(Reason::Unsupported(reason));
-            return Err(error.hint("remove <mimic> to let the joint move freely, or make it fixed"));
-        }
-    };
-    let error = joint.refuse(Reason::Unsupported(format!("{kind} joints are not handled yet")));
-    Err(error.hint("make it fixed, or replace it by revolute and prismatic joints"))
-}
-
-/// A link's frame in its body's frame, in three dimensions and with the root's axes.
-#[derive(Clone)]
-struct Place {
-    body: usize,
-    rotation: Matrix,
-    offset: [f64; 3],
-}
-
-impl Place {
-    /// The vector of the body's frame to the origin of `pose`.
-    fn point(&self, pose: &Pose) -> [f64; 3] {
-        let [x, y, z] = apply(&self.rotation, pose.xyz);
-        [self.offset[0] + x, self.offset[1] + y, self.offset[2] + z]
-    }
-}
-
-/// Bodies and joints, still without inertia, and the places of all links.
-struct Tree {
-    bodies: Vec<Body>,
-    joints: Vec<Joint>,
-    followers: Vec<Follower>,
-    places: Vec<Place>,
-    left_out: Vec<LeftOut>,
-}
-
-impl Tree {
-    /// Walks from the root down, so that parents come first, and along each branch before the next.
-    fn place(description: &Description) -> Result<Self> {
-        let Description { links, joints, root, .. } = description;
-        let mut hanging = vec![Vec::new(); links.len()];
-        // Backward, since a stack is emptied from its end.
-        for (index, joint) in joints.iter().enumerate().rev() {
-            hanging[joint.parent].push(index);
-        }
-        // The coordinate of each moving joint.
-        let mut moving = 0;
-        let coordinates = joints.iter().map(|joint| {
-            (joint.kind != JointKind::Fixed && joint.mimic.is_none()).then(|| {
-                moving += 1;
-                moving - 1
-            })
-        });
-        let coordinates: Vec<Option<usize>> = coordinates.collect();
-
-        let at_root = Place { body: 0, rotation: Pose::default().rotation(), offset: [0.0; 3] };
-        let mut places = vec![at_root; links.len()];
-        let mut bodies = vec![Body::of(&links[*root].name, None)];
-        let mut reduced: Vec<(usize, Joint)> = Vec::with_capacity(moving);
-        let mut followers: Vec<(usize, Follower)> = Vec::new();
-        let mut welds: Vec<(usize, LeftOut)> = Vec::new();
-        let mut waiting = hanging[*root].clone();
-        while let Some(index) = waiting.pop() {
-            let joint = &joints[index];
-            let parent = &places[joint.parent];
-            let (body, origin) = (parent.body, parent.point(&joint.origin));
-            let rotation = product(&parent.rotation, &joint.origin.rotation());
-            places[joint.child] = match (coordinates[index], &joint.mimic) {
-                (None, None) => {
-                    welds.push((index, weld(joint, &bodies[body].name)));
-                    Place { body, rotation, offset: origin }
-                }
-                (coordinate, mimic) => {
-                    let (axis, note) = planar_axis(joint, &rotation)?;
-                    welds.extend(note.map(|note| (index, note)));
-                    let (name, child) = (joint.name.clone(), bodies.len());
-                    let (parent, origin) = (body, in_plane(origin));
-                    let leader = mimic.as_ref().and_then(|mimic| Some((coordinates[mimic.joint]?, mimic)));
-                    // The follower's place among the others is known once all are.
-                    let mover = coordinate.map_or(Mover::Follower(index), Mover::Joint);
-                    bodies.push(Body::of(&links[joint.child].name, Some(mover)));
-                    if let Some(coordinate) = coordinate {
-                        reduced.push((coordinate, Joint { name, parent, child, origin, axis }));
-                    } else if let Some((leader, &Mimic { multiplier, offset, .. })) = leader {
-                        let follower = Follower { name, leader, multiplier, offset, parent, child, origin, axis };
-                        followers.push((index, follower));
-                    }
-                    Place { body: child, rotation, offset: [0.0; 3] }
-                }
-            };
-            waiting.extend(&hanging[joint.child]);
-        }
-
-        reduced.sort_by_key(|(coordinate, _)| *coordinate);
-        followers.sort_by_key(|(index, _)| *index);
-        for (place, (_, follower)) in followers.iter().enumerate() {
-            bodies[follower.child].joint = Some(Mover::Follower(place));
-        }
-        welds.sort_by_key(|(index, _)| *index);
-        Ok(Self {
-            bodies,
-            joints: reduced.into_iter().map(|(_, joint)| joint).collect(),
-            followers: followers.into_iter().map(|(_, follower)| follower).collect(),
-            places,
-            left_out: welds.into_iter().map(|(_, weld)| weld).collect(),
-        })
-    }
-}
-
-impl Body {
-    /// A body that still weighs nothing.
-    fn of(link: &str, joint: Option<Mover>) -> Self {
-        Self { name: link.into(), joint, mass: 0.0, com: [0.0; 2], moment: 0.0 }
-    }
-}
-
-/// Forward and up of a vector in the root's axes.
-fn in_plane([x, _, z]: [f64; 3]) -> Vector<f64> {
-    [x, z]
-}
-
-fn weld(joint: &description::Joint, body: &str) -> LeftOut {
-    LeftOut { what: description::joint_place(&joint.name), why: format!("fixed: welded into {body}") }
-}
-
-/// The joint's motion in the plane, and a word if its axis had to be brought into line.
-fn planar_axis(joint: &description::Joint, rotation: &Matrix) -> Result<(Axis, Option<LeftOut>)> {
-    let [x, y, z] = unit(apply(rotation, unit(joint.axis)));
-    let (along_plane, along_normal) = (libm::hypot(x, z), y.abs());
-    let slides = joint.kind == JointKind::Prismatic;
-    let (angle, wanted) = match slides {
-        false => (libm::atan2(along_plane, along_normal), "the plane's normal (y)"),
-        true => (libm::atan2(along_normal, along_plane), "the plane (x-z)"),
-    };
-    if angle > PARALLEL {
-        let reason = format!("its axis is {:.2} degrees off {wanted}: not handled yet", angle.to_degrees());
-        // What a file without the element means is seldom meant.
-        let hint = match joint.axis == [1.0, 0.0, 0.0] {
-            true => "a joint without <axis> has URDF's default, 1 0 0: add <axis>, or make it fixed to hold it at zero",
-            false => "make it fixed to hold it at zero",
-        };
-        return Err(joint.refuse(Reason::Unsupported(reason)).hint(hint));
-    }
-    let axis = if slides {
-        Axis::Slide { direction: in_plane(unit([x, 0.0, z])) }
-    } else {
-        Axis::Turn { sign: if y < 0.0 { -1.0 } else { 1.0 } }
-    };
-    let note = (angle > ROUNDING).then(|| LeftOut {
-        what: description::joint_place(&joint.name),
-        why: format!("its axis is {:.1e} rad off {wanted}: taken as exactly on it", angle),
+/// The plane that is `asked` for, or that all hinges lie along, or the usual one.
+fn find_plane(description: &Description, posture: &Posture, asked: Option<Plane>) -> (Plane, PlaneReason) {
+    let hinges = (0..description.joints.len()).filter(|&joint| {
+        let kind = description.joints[joint].kind;
+        matches!(kind, JointKind::Revolute | JointKind::Continuous) && posture.held[joint].is_none()
     });
-    Ok((axis, note))
+    match (asked, Plane::normal_to(hinges.map(|joint| posture.axes[joint]))) {
+        (Some(plane), _) => (plane, PlaneReason::Asked),
+        (None, Some(plane)) => (plane, PlaneReason::CommonAxis),
+        (None, None) => (Plane::default(), PlaneReason::Usual),
+    }
 }
 
-/// `vector` at length one; one that has it keeps its digits, and zero stays zero.
-fn unit(vector: [f64; 3]) -> [f64; 3] {
-    // A power of two first, so that no square overflows or vanishes; it costs no digit.
-    let largest = vector.into_iter().map(f64::abs).fold(0.0, f64::max);
-    if largest == 0.0 {
-        return vector;
+/// The plane in which most joints move, if that is more than in `plane`.
+fn better_plane(description: &Description, posture: &Posture, plane: Plane) -> Option<(Plane, usize)> {
+    let moving = |plane| {
+        let roles = roles(description, posture, plane);
+        roles.iter().filter(|role| matches!(role, Role::Moves { .. })).count()
+    };
+    let others = Plane::ALL.into_iter().filter(|&other| other != plane).map(|other| (other, moving(other)));
+    // Of equally good ones the first.
+    others.rev().max_by_key(|&(_, moving)| moving).filter(|&(_, most)| most > moving(plane))
+}
+
+/// The joints without a coordinate, in the file's order.
+fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgement) -> Vec<HeldJoint> {
+    let body = |link: usize| tree.places[link].as_ref().map(|place| tree.bodies[place.body].name.clone());
+    let joints = description.joints.iter().zip(roles).enumerate();
+    let held = joints.filter_map(|(index, (joint, role))| {
+        let name = joint.name.clone();
+        let root = || description.links[found.root].name.clone();
+        match role {
+            _ if found.chain.contains(&index) => Some(HeldJoint { name, still: Still::Base, body: root() }),
+            // A weld among links of the base says nothing about the robot.
+            Role::Held(still) => {
+                Some(HeldJoint { name, still: still.clone(), body: body(joint.child).unwrap_or_else(root) })
+            }
+            Role::Moves { .. } | Role::Free => None,
+        }
+    });
+    held.collect()
+}
+
+/// What is left out of joints, in the file's order, and of links that are not part of the robot.
+fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, reading: &Reading) -> Vec<LeftOut> {
+    let mut held = reading.held.iter().peekable();
+    let mut all = Vec::new();
+    for (index, joint) in description.joints.iter().enumerate() {
+        if let Some(held) = held.next_if(|held| held.name == joint.name) {
+            all.push(left_out::held(held));
+        } else if let Role::Moves { tilt, .. } = roles[index]
+            && tilt > 0.0
+            && tree.places[joint.parent].is_some()
+        {
+            all.push(left_out::tilted(joint, tilt));
+        }
     }
-    let [x, y, z] = vector.map(|component| libm::scalbn(component, -libm::ilogb(largest)));
-    let length = (x * x + y * y + z * z).sqrt();
-    [x / length, y / length, z / length]
+    all.extend(left_out::outside(reading));
+    all
 }
 
 /// The inertia of `link` in its body's frame.
 fn reduce_inertial(link: &description::Link, inertial: &Inertial, place: &Place) -> Result<Part> {
-    let rotation = product(&place.rotation, &inertial.origin.rotation());
-    let com = in_plane(place.point(&inertial.origin));
-    let part = Part::projected(inertial.mass, com, inertial.inertia.as_ref(), &rotation);
+    let frame = place.frame(&inertial.origin);
+    let part = Part::projected(inertial.mass, frame.in_plane(), inertial.inertia.as_ref(), &frame.rotation);
     part.map_err(|reason| link.refuse(reason))
-}
-
-fn point_mass(link: &description::Link) -> LeftOut {
-    LeftOut {
-        what: description::link_place(&link.name),
-        why: "its <inertial> has no <inertia>: taken as a point mass".into(),
-    }
 }
 
 /// `link` with its collision shapes, in its body's frame.
@@ -274,38 +184,13 @@ fn reduce_link(link: &description::Link, place: &Place, left_out: &mut Vec<LeftO
     });
     let mut shapes = Vec::with_capacity(link.collisions.len());
     for collision in &link.collisions {
-        let rotation = product(&place.rotation, &collision.origin.rotation());
-        match outline(&collision.geometry, &rotation, in_plane(place.point(&collision.origin)), PARALLEL) {
+        let frame = place.frame(&collision.origin);
+        match outline(&collision.geometry, &frame.rotation, frame.in_plane(), PARALLEL) {
             Ok(shape) => shapes.push(shape),
-            Err(why) => left_out.push(LeftOut { what: skipped(link, collision), why }),
+            Err(why) => left_out.push(left_out::skipped(link, collision, why)),
         }
     }
     Link { name: link.name.clone(), body: place.body, pose, shapes, has_inertial: link.inertial.is_some() }
-}
-
-/// A collision shape as [`LeftOut`] names it.
-fn skipped(link: &description::Link, collision: &Collision) -> String {
-    let shape = match &collision.geometry {
-        Geometry::Box { .. } => "box".into(),
-        Geometry::Cylinder { .. } => "cylinder".into(),
-        Geometry::Capsule { .. } => "capsule".into(),
-        Geometry::Sphere { .. } => "sphere".into(),
-        Geometry::Mesh { file, .. } => format!("mesh \"{file}\""),
-        Geometry::Unknown { tag } => format!("<{tag}>"),
-    };
-    format!("collision {shape} of {}", description::link_place(&link.name))
-}
-
-/// Elements that the description passed over, as [`LeftOut`] names them.
-fn passed_over(ignored: &Ignored) -> LeftOut {
-    let Ignored { parent, tag, count } = ignored;
-    let why = match (*parent, tag.as_str()) {
-        ("joint", "limit") => "joint limits do not enter an impact",
-        ("joint", "dynamics") => "damping and dry friction of a joint do not enter an impact",
-        _ => "no part of the robot's mechanics",
-    };
-    let times = if *count == 1 { String::new() } else { format!("{count} ") };
-    LeftOut { what: format!("{times}<{tag}> in <{parent}>"), why: why.into() }
 }
 
 /// Refuses a robot whose sums have left the range of f64.

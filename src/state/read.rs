@@ -301,9 +301,9 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
             let reason = format!("{what} has no coordinate: it follows joint \"{leader}\"");
             return node.refuse_name(name, Reason::Inconsistent(reason)).hint(format!("name {leader} instead"));
         }
-        match robot.left_out.iter().find(|left| left.what == what) {
-            Some(left) => {
-                node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", left.why)))
+        match robot.held(name) {
+            Some(held) => {
+                node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", held.why())))
             }
             None => unknown_name(node, "joint", name, known()),
         }

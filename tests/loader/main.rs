@@ -3,7 +3,7 @@
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
 use heelstrike::description::Description;
-use heelstrike::robot::{Axis, Base, FootShape, LeftOut, Mover, Robot};
+use heelstrike::robot::{Axis, Base, FootShape, LeftOut, Mover, Reduction, Robot};
 use serde::Deserialize;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -243,7 +243,7 @@ fn an_axis_is_turned_by_all_origins_before_it() {
 #[test]
 fn an_axis_slightly_off_is_brought_into_line_and_told() {
     let robot = load(&two_links("revolute", "<axis xyz=\"0 1 5e-4\"/>"));
-    let why = "its axis is 5.0e-4 rad off the plane's normal (y): taken as exactly on it";
+    let why = "its axis is 5.0e-4 rad off the plane's normal: taken as exactly on it";
     assert_eq!(robot.left_out, [left_out("joint \"j\"", why)]);
 }
 
@@ -411,11 +411,12 @@ fn a_long_chain_is_reduced_without_recursion() {
 #[test]
 fn a_fixed_base_leaves_the_joints_alone() {
     let description = Description::from_urdf(&two_links("revolute", "<axis xyz=\"0 1 0\"/>")).expect("a description");
-    let robot = Robot::reduce(&description, Some(Base::Fixed)).expect("a robot");
+    let bolted = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
+    let robot = Robot::reduce(&description, &bolted).expect("a robot");
     assert_eq!((robot.base, robot.dofs()), (Base::Fixed, 1));
-    assert_eq!(Robot::reduce(&description, None).expect("a robot").base, Base::Floating);
+    assert_eq!(Robot::reduce(&description, &Reduction::default()).expect("a robot").base, Base::Floating);
 
     let still = Description::from_urdf(&two_links("fixed", "")).expect("a description");
-    let refused = Robot::reduce(&still, Some(Base::Fixed)).expect_err("nothing moves");
+    let refused = Robot::reduce(&still, &bolted).expect_err("nothing moves");
     assert_eq!(refused.to_string(), "robot: nothing that moves has mass");
 }

@@ -1,0 +1,176 @@
+//! How the root is held, judged after fixed and held joints are welded.
+//!
+//! ```text
+//!     root still massless over a whole chain of x, z and pitch joints, or a planar or floating joint
+//!                                      -> that is the floating base itself: the robot begins behind it
+//!     root still massless over one joint or an incomplete chain (a rail), or named `world` otherwise
+//!                                      -> bolted to the world
+//!     root with mass, or massless over several joints
+//!                                      -> floats
+//! ```
+
+use super::plane::PARALLEL;
+use super::role::Role;
+use super::{Axis, Base, Still};
+use crate::description::{Description, JointKind};
+
+/// The share of the robot's mass up to which a link looks as if it only had to be given one.
+const LIGHT: f64 = 1e-2;
+
+/// How the root is held.
+pub(super) struct Judgement {
+    pub(super) base: Base,
+    /// Where the robot begins: a link of the file.
+    pub(super) root: usize,
+    /// Why, as it follows the root's name.
+    pub(super) because: String,
+    /// The joints that are the floating base itself, from the root on.
+    pub(super) chain: Vec<usize>,
+    /// What makes the choice doubtful.
+    pub(super) caution: Option<String>,
+}
+
+/// Judges the base, unless it is `asked` for. Planar and floating joints that are not the base become held ones.
+pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option<Base>) -> Judgement {
+    let root = description.root;
+    let welded = Welded::new(description, roles);
+    let free = welded
+        .single_exit(root)
+        .filter(|&joint| asked != Some(Base::Fixed) && roles[joint] == Role::Free && welded.is_massless(root, 0.0));
+    if let Some(joint) = free {
+        let joints = &description.joints;
+        hold_free(description, roles, Some(joint));
+        let because = format!("{} joint \"{}\" is the base itself", joints[joint].kind.name(), joints[joint].name);
+        let root = joints[joint].child;
+        return Judgement { base: Base::Floating, root, because, chain: vec![joint], caution: None };
+    }
+    hold_free(description, roles, None);
+
+    let welded = Welded::new(description, roles);
+    let at_root = |base, because: String| Judgement { base, root, because, chain: Vec::new(), caution: None };
+    if asked == Some(Base::Fixed) {
+        return at_root(Base::Fixed, "as asked".into());
+    }
+    if let Some(chain) = welded.chain(description, roles, 0.0) {
+        let names = chain.map(|joint| format!("\"{}\"", description.joints[joint].name)).join(", ");
+        let because = format!("the file's own chain of joints {names} is the base itself");
+        let root = description.joints[chain[2]].child;
+        return Judgement { base: Base::Floating, root, because, chain: chain.into(), caution: None };
+    }
+    if asked == Some(Base::Floating) {
+        return at_root(Base::Floating, "as asked".into());
+    }
+    if welded.mass(root) == 0.0
+        && let Some(joint) = welded.single_exit(root)
+    {
+        let name = &description.joints[joint].name;
+        return at_root(Base::Fixed, format!("the root is massless and joint \"{name}\" alone carries the robot"));
+    }
+    if description.links[root].name == "world" {
+        return at_root(Base::Fixed, "the root is named world".into());
+    }
+    if welded.mass(root) == 0.0 {
+        return at_root(Base::Floating, "the root is massless, but several joints carry the robot".into());
+    }
+    let caution = welded.chain(description, roles, LIGHT * welded.total).map(|chain| {
+        let names = chain.map(|joint| format!("\"{}\"", description.joints[joint].name)).join(", ");
+        format!(
+            "the root floats because it has mass, over a chain of its own ({names}) whose links weigh next to nothing: set \
+             their mass to 0 to take the chain as the base, or give --base fixed"
+        )
+    });
+    Judgement { caution, ..at_root(Base::Floating, "the root has mass".into()) }
+}
+
+/// Holds the planar and floating joints but `base`.
+fn hold_free(description: &Description, roles: &mut [Role], base: Option<usize>) {
+    for (index, role) in roles.iter_mut().enumerate() {
+        if *role == Role::Free && Some(index) != base {
+            *role = Role::Held(Still::Kind(description.joints[index].kind));
+        }
+    }
+}
+
+/// The links of the file in groups that no moving joint separates.
+struct Welded {
+    group: Vec<usize>,
+    masses: Vec<f64>,
+    /// The moving joints that hang on each group.
+    exits: Vec<Vec<usize>>,
+    world: Option<usize>,
+    total: f64,
+}
+
+impl Welded {
+    fn new(description: &Description, roles: &[Role]) -> Self {
+        let Description { links, root, .. } = description;
+        let mass = |link: usize| links[link].inertial.as_ref().map_or(0.0, |inertial| inertial.mass);
+        let mut group = vec![0; links.len()];
+        let (mut masses, mut exits) = (vec![mass(*root)], vec![Vec::new()]);
+        for index in description.outward() {
+            let joint = &description.joints[index];
+            let parent = group[joint.parent];
+            if let Role::Held(_) = roles[index] {
+                group[joint.child] = parent;
+                masses[parent] += mass(joint.child);
+            } else {
+                exits[parent].push(index);
+                group[joint.child] = masses.len();
+                masses.push(mass(joint.child));
+                exits.push(Vec::new());
+            }
+        }
+        let total = masses.iter().sum();
+        let world = (links[*root].name == "world").then_some(*root);
+        Self { group, masses, exits, world, total }
+    }
+
+    fn mass(&self, link: usize) -> f64 {
+        self.masses[self.group[link]]
+    }
+
+    /// Whether the group of `link` weighs at most `light`; what the world weighs does not count.
+    fn is_massless(&self, link: usize, light: f64) -> bool {
+        self.mass(link) <= light || self.world.is_some_and(|world| self.group[world] == self.group[link])
+    }
+
+    fn single_exit(&self, link: usize) -> Option<usize> {
+        match self.exits[self.group[link]][..] {
+            [joint] => Some(joint),
+            _ => None,
+        }
+    }
+
+    /// The three joints, from the root on, that let what hangs on them move freely in the plane, if all that they move
+    /// before weighs at most `light`.
+    fn chain(&self, description: &Description, roles: &[Role], light: f64) -> Option<[usize; 3]> {
+        let mut link = description.root;
+        let mut chain = [0; 3];
+        let (mut slides, mut turns) = (Vec::new(), 0);
+        for joint in &mut chain {
+            *joint = self.single_exit(link).filter(|_| self.is_massless(link, light))?;
+            match &roles[*joint] {
+                Role::Moves { axis: Axis::Turn { .. }, leader: None, .. } => turns += 1,
+                Role::Moves { axis: Axis::Slide { direction }, leader: None, .. } => slides.push(*direction),
+                _ => return None,
+            }
+            let follows =
+                |role: &Role| matches!(role, Role::Moves { leader: Some(leader), .. } if leader.joint == *joint);
+            if roles.iter().any(follows) {
+                return None;
+            }
+            link = description.joints[*joint].child;
+        }
+        match slides[..] {
+            [[ax, az], [bx, bz]] if turns == 1 && (ax * bz - az * bx).abs() > PARALLEL => Some(chain),
+            _ => None,
+        }
+    }
+}
+
+impl JointKind {
+    /// Whether the joint, if it cannot be the base, hides motion that the plane would allow.
+    pub(super) fn moves_in_every_plane(self) -> bool {
+        matches!(self, Self::Planar | Self::Floating | Self::Spherical)
+    }
+}

@@ -1,0 +1,73 @@
+//! What of a file does not enter the analysis, in words.
+
+use super::LeftOut;
+use super::reading::{HeldJoint, Reading};
+use crate::description::{self, Collision, Description, Geometry, Ignored, joint_place, link_place};
+
+/// A joint without a coordinate.
+pub(super) fn held(joint: &HeldJoint) -> LeftOut {
+    LeftOut { what: joint_place(&joint.name), why: joint.why() }
+}
+
+/// A joint whose axis was `tilt` \[rad\] off and is taken as exactly in line.
+pub(super) fn tilted(joint: &description::Joint, tilt: f64) -> LeftOut {
+    let wanted = match joint.kind {
+        description::JointKind::Prismatic => "the plane",
+        _ => "the plane's normal",
+    };
+    LeftOut {
+        what: joint_place(&joint.name),
+        why: format!("its axis is {tilt:.1e} rad off {wanted}: taken as exactly on it"),
+    }
+}
+
+/// Links that are part of the base.
+pub(super) fn outside(reading: &Reading) -> impl Iterator<Item = LeftOut> {
+    let why = "not part of the robot: it belongs to the world or to the base";
+    reading.outside.iter().map(move |name| LeftOut { what: link_place(name), why: why.into() })
+}
+
+/// A link whose inertia is only half given or impossible.
+pub(super) fn doubtful_inertia(link: &description::Link) -> Option<LeftOut> {
+    let inertial = link.inertial.as_ref()?;
+    let why = match &inertial.inertia {
+        None => "its <inertial> has no <inertia>: taken as a point mass",
+        Some(inertia) if !super::composite::is_physical(inertia) => {
+            "no body can have its inertia: the moment about the plane's normal is taken as it is, the rest left out"
+        }
+        Some(_) => return None,
+    };
+    Some(LeftOut { what: link_place(&link.name), why: why.into() })
+}
+
+/// The shapes of a link that is bolted to the world.
+pub(super) fn bolted_shapes(link: &description::Link) -> LeftOut {
+    let why = "bolted to the world: it cannot strike the ground";
+    LeftOut { what: format!("collision shapes of {}", link_place(&link.name)), why: why.into() }
+}
+
+/// A collision shape without a foot.
+pub(super) fn skipped(link: &description::Link, collision: &Collision, why: String) -> LeftOut {
+    let shape = match &collision.geometry {
+        Geometry::Box { .. } => "box".into(),
+        Geometry::Cylinder { .. } => "cylinder".into(),
+        Geometry::Capsule { .. } => "capsule".into(),
+        Geometry::Sphere { .. } => "sphere".into(),
+        Geometry::Mesh { file, .. } => format!("mesh \"{file}\""),
+        Geometry::Unknown { tag } => format!("<{tag}>"),
+    };
+    LeftOut { what: format!("collision {shape} of {}", link_place(&link.name)), why }
+}
+
+/// Elements that the description passed over.
+pub(super) fn passed_over(description: &Description) -> impl Iterator<Item = LeftOut> {
+    description.ignored.iter().map(|Ignored { parent, tag, count }| {
+        let why = match (*parent, tag.as_str()) {
+            ("joint", "limit") => "joint limits do not enter an impact",
+            ("joint", "dynamics") => "damping and dry friction of a joint do not enter an impact",
+            _ => "no part of the robot's mechanics",
+        };
+        let times = if *count == 1 { String::new() } else { format!("{count} ") };
+        LeftOut { what: format!("{times}<{tag}> in <{parent}>"), why: why.into() }
+    })
+}

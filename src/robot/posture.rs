@@ -1,0 +1,88 @@
+//! The posture in which axes are judged: held joints at their values, all others at zero.
+//!
+//! ```text
+//!     R_child = R_parent R_origin turn(a, q)          axis in the root's axes = R_parent R_origin a
+//! ```
+
+use crate::description::{Description, Joint, JointKind, Matrix, Mimic, Pose, apply, product, turn, unit};
+use crate::error::{Reason, Result};
+
+/// Every joint's axis, and where held joints are.
+pub(super) struct Posture {
+    /// The value at which a joint is to be held \[rad or m\], by the joint's index; those that follow it are held too.
+    pub(super) held: Vec<Option<f64>>,
+    /// The joint that a joint follows in the end, by its index.
+    pub(super) leaders: Vec<Option<Mimic>>,
+    /// Each joint's axis, of length one, in the root link's axes.
+    pub(super) axes: Vec<[f64; 3]>,
+    /// Each link's axes, as columns, in those of the root link.
+    pub(super) rotations: Vec<Matrix>,
+}
+
+impl Posture {
+    /// The posture with these joints held at these values.
+    ///
+    /// # Errors
+    /// [`Reason::Inconsistent`] for a joint without a coordinate of its own, [`Reason::Duplicate`] for one that is named
+    /// twice, [`Reason::NotFinite`].
+    pub(super) fn new(description: &Description, hold: &[(usize, f64)]) -> Result<Self> {
+        let joints = &description.joints;
+        let mut held = vec![None; joints.len()];
+        for &(index, value) in hold {
+            let joint = &joints[index];
+            refuse_no_coordinate(joint, joints)?;
+            if held[index].replace(value).is_some() {
+                return Err(joint.refuse(Reason::Duplicate { what: "held joint", name: joint.name.clone() }));
+            }
+            if !value.is_finite() {
+                return Err(joint.refuse(Reason::NotFinite { what: "the value at which it is held".into(), value }));
+            }
+        }
+        let leaders = description.leaders()?;
+        for (index, leader) in leaders.iter().enumerate() {
+            if let Some(&Mimic { joint, multiplier, offset }) = leader.as_ref() {
+                held[index] = held[joint].map(|value| multiplier * value + offset);
+            }
+        }
+        let mut axes = vec![[0.0; 3]; joints.len()];
+        let mut rotations = vec![Pose::default().rotation(); description.links.len()];
+        for index in description.outward() {
+            let joint = &joints[index];
+            let origin = product(&rotations[joint.parent], &joint.origin.rotation());
+            axes[index] = unit(apply(&origin, unit(joint.axis)));
+            rotations[joint.child] = held[index].map_or(origin, |value| product(&origin, &held_turn(joint, value)));
+        }
+        Ok(Self { held, leaders, axes, rotations })
+    }
+}
+
+/// How a joint that is held at `value` turns its child.
+pub(super) fn held_turn(joint: &Joint, value: f64) -> Matrix {
+    match joint.kind {
+        JointKind::Revolute | JointKind::Continuous => turn(unit(joint.axis), value),
+        _ => Pose::default().rotation(),
+    }
+}
+
+/// How a joint that is held at `value` shifts its child, in the joint's frame \[m\].
+pub(super) fn held_shift(joint: &Joint, value: f64) -> [f64; 3] {
+    match joint.kind {
+        JointKind::Prismatic => unit(joint.axis).map(|component| component * value),
+        _ => [0.0; 3],
+    }
+}
+
+fn refuse_no_coordinate(joint: &Joint, joints: &[Joint]) -> Result<()> {
+    let refuse = |reason: String| joint.refuse(Reason::Inconsistent(reason));
+    match (joint.kind, &joint.mimic) {
+        (_, Some(mimic)) => {
+            let leader = &joints[mimic.joint].name;
+            let reason = format!("it cannot be held by itself: it follows joint \"{leader}\"");
+            Err(refuse(reason).hint(format!("hold {leader}")))
+        }
+        (JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic, None) => Ok(()),
+        (kind, None) => {
+            Err(refuse(format!("it cannot be held at a value: it is {}", kind.name())).hint("leave it out of --hold"))
+        }
+    }
+}

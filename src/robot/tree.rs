@@ -1,0 +1,136 @@
+//! Roles of joints -> bodies and the places of all links: the tree placed at zero, projected, and welded.
+//!
+//! A link's frame stands in its body's frame at
+//!
+//! ```text
+//!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 behind a moving joint
+//! ```
+//!
+//! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is held at a value
+//! shifts and turns its child by that once more. What lies beside the plane counts as if it lay in it. Linear in links;
+//! nothing recurses.
+
+use super::posture::{Posture, held_shift, held_turn};
+use super::role::Role;
+use super::{Body, Follower, Joint, Mover};
+use crate::description::{Description, Matrix, Mimic, Pose, apply, product};
+use crate::planar::Vector;
+
+/// A link's frame in its body's frame, in three dimensions and with the plane's axes: forward, normal, up.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    pub(super) body: usize,
+    pub(super) rotation: Matrix,
+    pub(super) offset: [f64; 3],
+}
+
+impl Place {
+    /// A point of the link's frame in the body's frame.
+    pub(super) fn point(&self, point: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = apply(&self.rotation, point);
+        [self.offset[0] + x, self.offset[1] + y, self.offset[2] + z]
+    }
+
+    /// A frame in the link's frame, in the body's frame.
+    pub(super) fn frame(&self, pose: &Pose) -> Self {
+        let rotation = product(&self.rotation, &pose.rotation());
+        Self { body: self.body, rotation, offset: self.point(pose.xyz) }
+    }
+
+    /// Forward and up of the origin.
+    pub(super) fn in_plane(&self) -> Vector<f64> {
+        let [x, _, z] = self.offset;
+        [x, z]
+    }
+}
+
+/// Bodies and joints, still without inertia, and the places of all links.
+pub(super) struct Tree {
+    pub(super) bodies: Vec<Body>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) followers: Vec<Follower>,
+    /// The place of each link; none for those that do not hang on the root.
+    pub(super) places: Vec<Option<Place>>,
+}
+
+impl Tree {
+    /// Walks from `root`, whose axes are the columns of `rotation`, so that parents come first, and along each branch
+    /// before the next.
+    pub(super) fn grow(
+        description: &Description,
+        posture: &Posture,
+        roles: &[Role],
+        root: usize,
+        rotation: Matrix,
+    ) -> Self {
+        let links = &description.links;
+        let outward = description.outward_from(root);
+        // What each joint of the file moves with: coordinates and followers are numbered in its order.
+        let mut movers = vec![None; roles.len()];
+        let (mut coordinates, mut followers) = (0, 0);
+        let mut in_the_tree = outward.clone();
+        in_the_tree.sort_unstable();
+        for index in in_the_tree {
+            match roles[index] {
+                Role::Moves { leader: None, .. } => movers[index] = Some(Mover::Joint(next(&mut coordinates))),
+                Role::Moves { leader: Some(_), .. } => movers[index] = Some(Mover::Follower(next(&mut followers))),
+                Role::Held(_) | Role::Free => {}
+            }
+        }
+
+        let mut places = vec![None; links.len()];
+        places[root] = Some(Place { body: 0, rotation, offset: [0.0; 3] });
+        let mut bodies = vec![Body::of(&links[root].name, None)];
+        let (mut joints, mut following) = (Vec::with_capacity(coordinates), Vec::with_capacity(followers));
+        for index in outward {
+            let joint = &description.joints[index];
+            // Outward: the parent's place is known.
+            let Some(parent) = &places[joint.parent] else { continue };
+            let at = parent.frame(&joint.origin);
+            let child = match (&roles[index], movers[index]) {
+                (&Role::Moves { axis, ref leader, .. }, Some(mover)) => {
+                    let (name, parent, child, origin) = (joint.name.clone(), at.body, bodies.len(), at.in_plane());
+                    bodies.push(Body::of(&links[joint.child].name, Some(mover)));
+                    let led = leader.as_ref().map(|leader| (movers[leader.joint], leader));
+                    if let Some((Some(Mover::Joint(leader)), &Mimic { multiplier, offset, .. })) = led {
+                        following.push(Follower { name, leader, multiplier, offset, parent, child, origin, axis });
+                    } else {
+                        joints.push(Joint { name, parent, child, origin, axis });
+                    }
+                    Place { body: child, offset: [0.0; 3], ..at }
+                }
+                _ => match posture.held[index] {
+                    Some(value) => {
+                        let offset = at.point(held_shift(joint, value));
+                        Place { rotation: product(&at.rotation, &held_turn(joint, value)), offset, ..at }
+                    }
+                    None => at,
+                },
+            };
+            places[joint.child] = Some(child);
+        }
+        joints.sort_by_key(|joint| bodies[joint.child].joint.map(order));
+        following.sort_by_key(|follower| bodies[follower.child].joint.map(order));
+        Self { bodies, joints, followers: following, places }
+    }
+}
+
+/// Counts one on.
+fn next(count: &mut usize) -> usize {
+    *count += 1;
+    *count - 1
+}
+
+/// The place of a mover among those of its kind.
+fn order(mover: Mover) -> usize {
+    match mover {
+        Mover::Joint(index) | Mover::Follower(index) => index,
+    }
+}
+
+impl Body {
+    /// A body that still weighs nothing.
+    fn of(link: &str, joint: Option<Mover>) -> Self {
+        Self { name: link.into(), joint, mass: 0.0, com: [0.0; 2], moment: 0.0 }
+    }
+}
