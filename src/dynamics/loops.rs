@@ -82,11 +82,11 @@ impl<T: Real> Loop<T> {
     }
 
     /// A row of K (nv); of one end alone its row of J.
-    fn row(&self, plan: &Plan<T>, axis: usize, ends: &[usize], still: &[T], workspace: &Workspace<T>) -> Vec<T> {
-        let arms = self.arms(workspace);
+    fn row(&self, plan: &Plan<T>, axis: usize, ends: &[usize], workspace: &Workspace<T>) -> Vec<T> {
+        let (arms, still) = (self.arms(workspace), still(plan));
         let mut row = vec![T::zero(); plan.columns()];
         for &end in ends {
-            walk(plan, self.bodies[end], arms[end], still, workspace, |column, unit| {
+            walk(plan, self.bodies[end], arms[end], &still, workspace, |column, unit| {
                 row[column] = if end == 0 { row[column] + unit[axis] } else { row[column] - unit[axis] };
             });
         }
@@ -99,10 +99,9 @@ impl<T: Real> Loop<T> {
 ///
 /// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column counts by the
 /// greatest motion that it gives to an end of a loop, which makes the choice free of units.
-pub fn independent_rows(plan: &Plan, loops: &[Loop], dofs: usize, tolerance: f64, workspace: &Workspace) -> Vec<usize> {
-    let still = vec![0.0; dofs];
+pub fn independent_rows(plan: &Plan, loops: &[Loop], tolerance: f64, workspace: &Workspace) -> Vec<usize> {
     let rows = |ends: &[usize]| -> Vec<Vec<f64>> {
-        (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, &still, workspace)).collect()
+        (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, workspace)).collect()
     };
     let [a, b] = [rows(&[0]), rows(&[1])];
     let mut greatest = vec![0.0_f64; plan.columns()];
@@ -141,7 +140,6 @@ pub fn orthogonalize<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
     (rows, foot): (&[usize], Option<ContactPoint<T>>),
-    still: &[T],
     workspace: &mut Workspace<T>,
 ) {
     let mut constraints = std::mem::take(&mut workspace.loops);
@@ -149,13 +147,12 @@ pub fn orthogonalize<T: Real>(
     let nv = plan.columns();
     order.clear();
     order.extend_from_slice(rows);
-    let mut all: Vec<Vec<T>> =
-        rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], still, workspace)).collect();
+    let mut all: Vec<Vec<T>> = rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], workspace)).collect();
     all.extend(foot.into_iter().flat_map(|foot| {
-        let (arm, workspace) = (foot.arm(workspace), &*workspace);
+        let (arm, still, workspace) = (foot.arm(workspace), still(plan), &*workspace);
         foot.axes().map(|axis| {
             let mut row = vec![T::zero(); nv];
-            walk(plan, foot.body, arm, still, workspace, |column, unit| plan.bring(&mut row[column], dot(axis, unit)));
+            walk(plan, foot.body, arm, &still, workspace, |column, unit| plan.bring(&mut row[column], dot(axis, unit)));
             row
         })
     }));
@@ -207,6 +204,10 @@ pub fn close<T: Real>(
     let (nv, all) = (plan.columns(), squares.len());
     let openings: Vec<Vector<T>> = loops.iter().map(|own| own.opening(plan, velocity, workspace)).collect();
     let used = if rest { all } else { rows.len() };
+    if used == 0 {
+        // Nothing is to be closed, and of a robot without loops there need be no factor.
+        return Vec::new();
+    }
     let mut along: Vec<T> = Vec::with_capacity(used);
     for i in 0..used {
         let own = rows.get(i).map_or(T::zero(), |row| openings[row / 2][row % 2]);
@@ -242,6 +243,11 @@ pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspa
 pub fn spent_energy(amplitudes: &[f64], workspace: &Workspace) -> f64 {
     let terms = amplitudes.iter().zip(&workspace.loops.squares);
     0.5 * terms.map(|(amplitude, square)| amplitude * amplitude * square).sum::<f64>()
+}
+
+/// No velocity at all, where a walk tells motions alone.
+fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
+    vec![T::zero(); plan.places]
 }
 
 /// D^-1 y.

@@ -87,9 +87,8 @@ impl Strike<'_> {
         }
         let loops: Vec<Loop<T>> = scene.loops.iter().map(|own| own.points(robot)).collect();
         if !loops.is_empty() {
-            let still = vec![T::zero(); velocity.len()];
             let foot = self.foot.map(point);
-            orthogonalize(&plan, &loops, (self.loop_rows, foot), &still, &mut workspace);
+            orthogonalize(&plan, &loops, (self.loop_rows, foot), &mut workspace);
             close(&plan, &loops, foot.is_some(), &mut velocity, &workspace);
         }
         contact_jacobian(&plan, &contacts, &velocity, self.stance, &mut workspace);
