@@ -4,7 +4,10 @@
 
 use divan::{Bencher, black_box};
 use heelstrike::Robot;
-use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
+use heelstrike::dynamics::{
+    ContactPoint, Workspace, add_articulated_impulse, articulated_inertias, contact_jacobian, delassus, factorize,
+    kinematics, mass_matrix,
+};
 use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{Asked, ContactProblem, Friction, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
@@ -70,6 +73,27 @@ fn dynamics(bencher: Bencher) {
     });
 }
 
+/// The velocities of base and joints after impulses at both feet.
+#[divan::bench]
+fn velocity_after(bencher: Bencher) {
+    let robot = ramone();
+    let state = state(&robot);
+    let points = points(&robot, &state);
+    let (plan, mut posture, mut workspace) = (Plan::new(&robot, &[], &[]), Posture::default(), Workspace::default());
+    posture.set(&plan, &state.position);
+    kinematics(&plan, &posture, &mut workspace);
+    let (mut rates, mut motions) = (Vec::new(), Vec::new());
+    bencher.bench_local(move || {
+        let mut after = black_box(&state.velocity).clone();
+        articulated_inertias(&plan, &mut workspace);
+        for point in &points {
+            let at = (point.body, point.arm(&workspace));
+            add_articulated_impulse(&plan, &workspace, at, [0.1, 0.2], (&mut rates, &mut motions), &mut after);
+        }
+        after
+    });
+}
+
 /// The numbers of all 16 combinations.
 #[divan::bench]
 fn enumeration(bencher: Bencher) {
@@ -124,4 +148,23 @@ fn whole_state_from_json(bencher: Bencher) {
         let state = State::from_json(black_box(STATE), &robot, &Defaults::default())?;
         pipeline.impact(&state)
     });
+}
+
+/// A body with 24 boxes, two of which stand on the ground, to its contacts and outcomes.
+#[divan::bench]
+fn many_shapes(bencher: Bencher) {
+    let shape = |at: usize| {
+        let (x, z) = if at < 2 { (0.4 * at as f64 - 0.2, 0.0) } else { (0.0, 0.1 * at as f64) };
+        format!("<collision><origin xyz=\"{x} 0 {z}\"/><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision>")
+    };
+    let shapes: String = (0..24).map(shape).collect();
+    let inertial = "<inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>";
+    let urdf = format!("<robot name=\"r\"><link name=\"body\">{inertial}{shapes}</link></robot>");
+    let robot = Robot::from_urdf(&urdf).expect("a good robot");
+    let state = r#"{"position": {"base": {"z": 0.05, "pitch": 1e-3}}, "velocity": {"base": {"z": -1}}, "friction": 1}"#;
+    let state = State::from_json(state, &robot, &Defaults::default()).expect("a good state");
+    let options = Options { contact_tolerance: Some(1e-3), ..Options::default() };
+    let mut pipeline = Pipeline::new(&robot, options);
+    assert!(!pipeline.impact(&state).expect("an answer").contacts.is_empty());
+    bencher.bench_local(|| pipeline.impact(black_box(&state)));
 }

@@ -1,5 +1,7 @@
 //! The robot and the options that shape it.
 
+use super::complaint::note;
+use super::meshes::Meshes;
 use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::description::Description;
@@ -29,6 +31,9 @@ pub(super) struct RobotOptions {
     /// Whether the root link moves freely or is bolted to the world [default: as the file's masses and joints say]
     #[arg(long, value_enum, help_heading = "Robot")]
     pub base: Option<Base>,
+    /// A folder that holds packages, or is one, for meshes named by package:// [repeatable]
+    #[arg(long, value_name = "DIR", help_heading = "Robot")]
+    pub package_path: Vec<PathBuf>,
     /// Add a foot: a point of a link, or a circle about it [repeatable]
     #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", allow_hyphen_values = true, help_heading = "Robot")]
     pub contact: Vec<Foot>,
@@ -132,11 +137,25 @@ fn finite(text: &str) -> Result<f64, String> {
 impl RobotOptions {
     /// The robot of this file, with nothing added.
     pub fn of_file(robot: &Path) -> Self {
-        Self { robot: robot.to_owned(), plane: Plane::Auto, hold: Vec::new(), base: None, contact: Vec::new() }
+        Self {
+            robot: robot.to_owned(),
+            plane: Plane::Auto,
+            hold: Vec::new(),
+            base: None,
+            package_path: Vec::new(),
+            contact: Vec::new(),
+        }
+    }
+
+    /// Reads the robot, and tells what a user must know before trusting it.
+    pub fn load(&self) -> Result<Robot, Failure> {
+        let robot = self.read()?;
+        robot.reading.cautions.iter().for_each(|caution| note(caution));
+        Ok(robot)
     }
 
     /// Reads the robot.
-    pub fn load(&self) -> Result<Robot, Failure> {
+    pub fn read(&self) -> Result<Robot, Failure> {
         let name = input::name(&self.robot);
         let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
         let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
@@ -144,7 +163,9 @@ impl RobotOptions {
             let excerpt = error.location().and_then(|place| Excerpt::around(text.as_bytes(), 1, place));
             Failure::RefusedAt(error.in_file(&name), excerpt)
         };
-        let description = Description::from_urdf(text).map_err(refuse)?;
+        let mut description = Description::from_urdf(text).map_err(refuse)?;
+        let meshes = Meshes::of(&self.robot, &self.package_path);
+        description.read_meshes(|name| meshes.fetch(name)).map_err(refuse)?;
         let reduction =
             Reduction { plane: self.plane.into(), hold: self.held(&description)?, base: self.base.map(Into::into) };
         Robot::reduce(&description, &reduction).map_err(refuse)
@@ -167,7 +188,7 @@ impl RobotOptions {
     pub fn feet(&self, robot: &Robot) -> Result<Vec<NamedContact>, Failure> {
         let foot = |foot: &Foot| {
             let link = robot.link(&foot.link).ok_or_else(|| {
-                let reason = Reason::UnknownName { what: "link", name: foot.link.clone() };
+                let reason = robot.no_link(&foot.link);
                 let known = robot.links.iter().map(|link| link.name.as_str());
                 Failure::Usage(Error::new(reason).at("--contact").did_you_mean(&foot.link, known))
             })?;

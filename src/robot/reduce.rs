@@ -7,7 +7,7 @@ use super::posture::Posture;
 use super::reading::{HeldJoint, PlaneReason, Reading, Still};
 use super::role::{Role, roles};
 use super::tree::{Place, Tree};
-use super::{Base, FootShape, LeftOut, Link, Robot, base, caution, left_out};
+use super::{Base, LeftOut, Link, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, product};
 use crate::error::{Error, Reason, Result};
 
@@ -54,16 +54,19 @@ impl Robot {
         };
 
         let held = held(description, &roles, &tree, &found);
-        let mut cautions: Vec<String> = found.caution.into_iter().collect();
-        cautions.extend(caution::about_held(&held, tree.joints.len() + tree.followers.len()));
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
+        let outside: Vec<String> = outside.map(|(link, _)| link.name.clone()).collect();
+        let seen = caution::Seen { description, posture: &posture, plane };
+        let mut cautions = caution::about_held(&seen, &held, tree.joints.len() + tree.followers.len());
+        cautions.extend(found.caution);
+        cautions.extend(caution::about_outside(description, &outside));
         let reading = Reading {
             plane,
             plane_because,
             better_plane: better_plane(description, &posture, plane),
             base_because: found.because,
             held,
-            outside: outside.map(|(link, _)| link.name.clone()).collect(),
+            outside,
             cautions,
         };
         let mut robot = Self {
@@ -212,11 +215,8 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;
         for shape in &link.shapes {
-            let points = match shape {
-                FootShape::Disc { centre, .. } => centre.as_slice(),
-                FootShape::Polygon { corners, .. } => corners.as_flattened(),
-            };
-            refuse("the place of a collision shape", points, description::link_place(&link.name))?;
+            let corners = shape.corners().as_flattened();
+            refuse("the place of a collision shape", corners, description::link_place(&link.name))?;
         }
     }
     refuse("the mass", &[robot.mass()], "robot".into())
