@@ -1,4 +1,4 @@
-//! What surrounds the robot: ground, friction, restitution, held joints, applied impulses.
+//! What surrounds the robot: ground, friction, restitution, held joints, loops, applied impulses.
 
 mod ground;
 
@@ -25,6 +25,8 @@ pub struct Scene {
     pub rotor_inertia: Vec<f64>,
     /// Contacts named by hand; none where they are detected.
     pub contacts: Option<Vec<NamedContact>>,
+    /// Pairs of points that stay together.
+    pub loops: Vec<NamedLoop>,
     /// Impulses applied at the instant of the impact.
     pub impulses: Vec<AppliedImpulse>,
 }
@@ -47,6 +49,24 @@ pub struct NamedContact {
     pub offset: [f64; 3],
     /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
     pub radius: f64,
+}
+
+/// Two points of links that stay together, as the pin does that a URDF, being a tree, cannot hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedLoop {
+    /// The point on which the loop's impulse acts.
+    pub a: LinkPoint,
+    /// The point on which the opposite impulse acts.
+    pub b: LinkPoint,
+}
+
+/// A point of a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkPoint {
+    /// The link.
+    pub link: usize,
+    /// The point in the link's 3-D frame \[m\].
+    pub offset: [f64; 3],
 }
 
 /// An impulse that acts on the robot while it strikes the ground.

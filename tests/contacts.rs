@@ -22,7 +22,7 @@ fn flat_box() -> Robot {
 }
 
 fn try_impact(robot: &Robot, options: Options, state: &str) -> Result<Impact, Error> {
-    let defaults = Defaults { friction: Some(Friction::Finite(0.5)) };
+    let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
     Pipeline::new(robot, options).impact(&State::from_json(state, robot, &defaults)?)
 }
 

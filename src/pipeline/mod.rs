@@ -1,12 +1,14 @@
 //! One state end to end: the only place where all stages meet.
 //!
 //! ```text
-//!     State --> posture --> kinematics --> stance, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
+//!     State --> posture --> kinematics --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
 //! ```
 
+mod loops;
 mod strike;
 mod uncertain;
 
+use self::loops::Loops;
 use self::strike::Strike;
 use crate::contact::{self, Contact, Feet, Placement, Surface};
 use crate::dynamics::{
@@ -56,6 +58,8 @@ pub struct Impact {
     pub analysis: Result<Analysis>,
     /// v after each outcome of the analysis, in the order of q \[m/s, rad/s\].
     pub velocity_after: Vec<Vec<f64>>,
+    /// Impulse on point a of each loop, in the world's axes, for each outcome of the analysis \[N s\]; on b the opposite acts.
+    pub loop_impulse: Vec<Vec<Vector<f64>>>,
     /// Whether the outcomes are the same on the box of the state's uncertainty; none where it has none.
     pub holds: Option<Holds>,
     /// The matrices, if asked for.
@@ -131,6 +135,7 @@ impl<'r> Pipeline<'r> {
     ///
     /// # Errors
     /// [`Reason::Singular`] for a coordinate without inertia, [`Reason::Penetration`] for a foot deep in the ground,
+    /// [`Reason::Inconsistent`] for a loop that the pose or the velocity leaves open,
     /// [`Reason::Missing`] for a contact without friction or a stance without a foot, [`Reason::MatricesTooLarge`] for
     /// hundreds of contacts, [`Reason::NotFinite`] for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
@@ -149,11 +154,15 @@ impl<'r> Pipeline<'r> {
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         mass_matrix(&self.plan, &mut self.workspace);
         factorize(&self.plan, &mut self.workspace);
-        self.check_inertia()?;
+        self.check_inertia(!scene.loops.is_empty())?;
 
         let mut notes = Vec::new();
         let surface = Surface::new(&scene.ground);
-        let (base, velocity, foot) = self.stand(state, &surface)?;
+        let (base, mut velocity, foot) = self.stand(state, &surface)?;
+        let loops = match scene.loops.is_empty() {
+            true => Loops::default(),
+            false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
+        };
         let contacts = self.contacts(scene, base, &surface, &mut notes)?;
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
@@ -162,16 +171,19 @@ impl<'r> Pipeline<'r> {
         contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
         let resting = self.snap(&contacts, &mut notes);
         delassus(&self.plan, &mut self.workspace);
+        self.eliminate_loops(&loops);
         let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
-        if !scene.impulses.is_empty() {
+        if !scene.impulses.is_empty() || (!scene.loops.is_empty() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;
             self.bounds.velocity.fill([f64::INFINITY; 2]);
         }
 
-        let change = self.applied(scene);
+        let mut change = self.applied(scene);
+        let applied = change.clone();
+        self.answer_of_loops(&loops, &mut change);
         let problem = self.problem(scene, &contacts, &change)?;
         let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
         for &entry in &free {
@@ -186,6 +198,7 @@ impl<'r> Pipeline<'r> {
             stance,
             contacts: &contacts,
             resting: &resting,
+            loop_rows: &loops.rows,
             friction: problem.friction(),
             restitution: problem.restitution(),
             errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
@@ -197,12 +210,23 @@ impl<'r> Pipeline<'r> {
         if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.plan, &mut self.workspace);
         }
-        let velocity_after = outcomes.iter().map(|outcome| self.struck(&free, &outcome.impulse)).collect();
+        let (velocity_after, loop_impulse) = outcomes
+            .iter()
+            .map(|outcome| match scene.loops.is_empty() {
+                true => (self.struck(&free, &outcome.impulse), Vec::new()),
+                false => {
+                    let mut change = self.struck(&applied, &outcome.impulse);
+                    let impulse = self.answer_of_loops(&loops, &mut change);
+                    (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
+                }
+            })
+            .unzip();
         notes.extend(analysis.as_ref().ok().and_then(Analysis::energy_note));
         let impact = Impact {
             velocity_before: problem.velocity_before().to_vec(),
             kinetic_energy,
             velocity_after,
+            loop_impulse,
             matrices: self.options.matrices.then(|| self.matrices()),
             holds: None,
             analysis,
@@ -240,7 +264,7 @@ impl<'r> Pipeline<'r> {
         kinematics(&self.plan, posture, &mut self.workspace);
         mass_matrix(&self.plan, &mut self.workspace);
         factorize(&self.plan, &mut self.workspace);
-        self.check_inertia()?;
+        self.check_inertia(false)?;
         self.points.clear();
         self.points.extend(contacts.iter().map(|contact| {
             let link = &self.robot.links[contact.link];
@@ -267,7 +291,7 @@ impl<'r> Pipeline<'r> {
     }
 
     /// Refuses a coordinate whose inertia, once all that hangs on it may move, is zero to rounding.
-    fn check_inertia(&self) -> Result<()> {
+    fn check_inertia(&self, has_loops: bool) -> Result<()> {
         let nv = self.plan.columns();
         for column in (0..nv).rev() {
             let (whole, rest) =
@@ -279,7 +303,13 @@ impl<'r> Pipeline<'r> {
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
                 let joint = coordinate >= self.robot.base_dofs();
                 let (what, remedy) = if joint {
-                    (format!("joint \"{name}\""), "name the joint in `held`, or give it a `rotor_inertia`")
+                    let remedy = if has_loops {
+                        "it needs inertia of its own, whatever the loops hold: give its links a mass or it a `rotor_inertia`, \
+                         however small, or name it in `held`"
+                    } else {
+                        "name the joint in `held`, or give it a `rotor_inertia`"
+                    };
+                    (format!("joint \"{name}\""), remedy)
                 } else {
                     let remedy = "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of \
                                   them, or give it a `rotor_inertia`";

@@ -21,7 +21,8 @@ impl Pipeline<'_> {
         if links.is_empty() {
             return Holds::Everywhere;
         }
-        if links.len() > CONTACT_LIMIT || !self.robot.followers.is_empty() {
+        let tied = !self.robot.followers.is_empty() || !state.scene.loops.is_empty();
+        if links.len() > CONTACT_LIMIT || tied {
             return Holds::Unknown;
         }
         let whole = Cell::new(self.robot, state, uncertainty, &links);
@@ -134,6 +135,7 @@ impl Model for Kept<'_, '_> {
             stance: *stance,
             contacts: &impact.contacts,
             resting,
+            loop_rows: &[],
             friction: &self.friction,
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,

@@ -5,7 +5,7 @@ use super::{Defaults, State};
 use crate::impact::Friction;
 use crate::json::Node;
 use crate::robot::Base;
-use crate::scene::{AppliedImpulse, ByLink, Ground, NamedContact, Profile};
+use crate::scene::{AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, NamedLoop, Profile};
 use crate::{Error, Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
 
@@ -29,11 +29,15 @@ const FIELDS: [&str; 13] = [
 /// The entries of a floating base in the order of q.
 const BASE: [&str; 3] = ["x", "z", "pitch"];
 
+/// The most loops of a state: each costs as much as a contact, and no robot has a tenth of these.
+const LOOP_LIMIT: usize = 256;
+
 /// Reads a whole state.
 pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
     let dofs = robot.dofs();
     let mut state = State { position: vec![0.0; dofs], velocity: vec![0.0; dofs], ..State::default() };
     let scene = &mut state.scene;
+    let mut own_loops = None;
 
     for field in root.fields("field")? {
         match field.key() {
@@ -48,7 +52,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
             "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
             "contacts" => scene.contacts = Some(contacts(field, robot)?),
             "impulse" => scene.impulses = impulses(field, robot)?,
-            "loops" => return Err(not_yet(field, "loops are")),
+            "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
             _ => return Err(field.unknown_field(&FIELDS)),
         }
@@ -57,6 +61,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
         refuse_a_placed_base(root)?;
     }
     scene.friction.default = scene.friction.default.or(defaults.friction);
+    scene.loops = own_loops.unwrap_or_else(|| defaults.loops.clone());
     Ok(state)
 }
 
@@ -238,6 +243,43 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
     Ok(contacts)
 }
 
+/// A list of `{"a": {"link", "offset"}, "b": {"link", "offset"}}`.
+pub(super) fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
+    let mut loops = Vec::new();
+    let entries = field.entries()?;
+    if entries.len() > LOOP_LIMIT {
+        return Err(field.refuse(Reason::TooMany { what: "loops", limit: LOOP_LIMIT }));
+    }
+    for entry in entries {
+        let (mut a, mut b) = (None, None);
+        for part in entry.fields("field")? {
+            match part.key() {
+                "a" => a = Some(link_point(part, robot)?),
+                "b" => b = Some(link_point(part, robot)?),
+                _ => return Err(part.unknown_field(&["a", "b"])),
+            }
+        }
+        let a = a.ok_or_else(|| missing(entry, "a"))?;
+        let b = b.ok_or_else(|| missing(entry, "b"))?;
+        loops.push(NamedLoop { a, b });
+    }
+    Ok(loops)
+}
+
+/// `{"link", "offset"}`.
+fn link_point(field: Node, robot: &Robot) -> Result<LinkPoint> {
+    let (mut named, mut offset) = (None, [0.0; 3]);
+    for part in field.fields("field")? {
+        match part.key() {
+            "link" => named = Some(link(part, part.text()?, robot)?),
+            "offset" => offset = part.numbers("a list of 3 numbers")?,
+            _ => return Err(part.unknown_field(&["link", "offset"])),
+        }
+    }
+    let link = named.ok_or_else(|| missing(field, "link"))?;
+    Ok(LinkPoint { link, offset })
+}
+
 /// A list of `{"link", "offset", "vector"}`.
 fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
     let mut impulses = Vec::new();
@@ -295,8 +337,4 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
 
 fn missing(node: Node, what: &str) -> Error {
     node.refuse(Reason::Missing(format!("\"{what}\"")))
-}
-
-fn not_yet(node: Node, what: &str) -> Error {
-    node.refuse(Reason::Unsupported(format!("{what} not supported by this version"))).hint("leave it out")
 }

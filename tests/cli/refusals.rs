@@ -82,7 +82,6 @@ const REFUSED_STATES: &[(&str, &str, &str, &str)] = &[
         "the ground has either a slope or a profile",
         "leave one of them out: a profile of two points is a slope, too",
     ),
-    (r#"{"loops": []}"#, "loops", "loops are not supported by this version", "leave it out"),
     (r#"{"uncertainty": {"frict": 0.1}}"#, "uncertainty.frict", "unknown field \"frict\"", "did you mean friction?"),
     (r#"{"uncertainty": 0.1}"#, "uncertainty", "expected an object, found a number", ""),
     (r#"{"uncertainty": {"position": -0.1}}"#, "uncertainty.position", "a half-width must be 0 or more, not -0.1", ""),
