@@ -1,13 +1,17 @@
-//! What surrounds the robot: ground, friction, restitution, held joints, applied impulses.
+//! What surrounds the robot: ground, friction, restitution, held joints, loops, applied impulses.
+
+mod ground;
+
+pub use ground::{Ground, Profile};
 
 use crate::impact::Friction;
-use crate::planar::{Rotation, Vector};
+use crate::planar::Vector;
 
 /// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).
 #[derive(Debug, Clone, Default)]
 pub struct Scene {
-    /// Slope of the ground line through the world's origin \[rad\], uphill toward +x.
-    pub slope: f64,
+    /// What the robot strikes.
+    pub ground: Ground,
     /// Friction of each contact's link; none where the state leaves it to the command line.
     pub friction: ByLink<Friction>,
     /// Newton restitution of each contact's link, 0 to 1; 0 where none is given.
@@ -21,6 +25,8 @@ pub struct Scene {
     pub rotor_inertia: Vec<f64>,
     /// Contacts named by hand; none where they are detected.
     pub contacts: Option<Vec<NamedContact>>,
+    /// Pairs of points that stay together.
+    pub loops: Vec<NamedLoop>,
     /// Impulses applied at the instant of the impact.
     pub impulses: Vec<AppliedImpulse>,
 }
@@ -43,6 +49,24 @@ pub struct NamedContact {
     pub offset: [f64; 3],
     /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
     pub radius: f64,
+}
+
+/// Two points of links that stay together, as the pin does that a URDF, being a tree, cannot hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedLoop {
+    /// The point on which the loop's impulse acts.
+    pub a: LinkPoint,
+    /// The point on which the opposite impulse acts.
+    pub b: LinkPoint,
+}
+
+/// A point of a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkPoint {
+    /// The link.
+    pub link: usize,
+    /// The point in the link's 3-D frame \[m\].
+    pub offset: [f64; 3],
 }
 
 /// An impulse that acts on the robot while it strikes the ground.
@@ -71,12 +95,5 @@ impl<T: Copy> ByLink<T> {
     /// The value of a link.
     pub fn of(&self, link: usize) -> Option<T> {
         self.links.iter().find(|(named, _)| *named == link).map(|&(_, value)| value).or(self.default)
-    }
-}
-
-impl Scene {
-    /// The turn that takes the level ground's axes to the sloped ground's (tangent, normal); uphill is a negative pitch.
-    pub fn ground(&self) -> Rotation<f64> {
-        Rotation::by(-self.slope)
     }
 }

@@ -6,7 +6,7 @@ mod uncertainty;
 pub use uncertainty::Uncertainty;
 
 use crate::impact::Friction;
-use crate::scene::Scene;
+use crate::scene::{NamedLoop, Scene};
 use crate::{Result, Robot, json};
 
 /// A state just before the impact; every name in it is resolved to an index of its robot.
@@ -25,10 +25,21 @@ pub struct State {
 }
 
 /// What a state takes from elsewhere where it is silent.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Defaults {
     /// Friction of every link to which the state gives none.
     pub friction: Option<Friction>,
+    /// Loops of every state that gives none of its own.
+    pub loops: Vec<NamedLoop>,
+}
+
+/// Reads loops of `robot` from a JSON list, as a state's field `loops` has it.
+///
+/// # Errors
+/// Whatever is no such list; the error tells place, line and column in `text`.
+pub fn loops_from_json(text: &str, robot: &Robot) -> Result<Vec<NamedLoop>> {
+    let tree = json::Value::parse(text)?;
+    read::loops(json::Node::root(&tree, text), robot)
 }
 
 impl State {

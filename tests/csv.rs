@@ -36,7 +36,8 @@ fn states(table: &[u8], robot: &Robot) -> Vec<Result<State, Error>> {
     let mut states = Vec::new();
     for (line, record) in (2..).zip(lines) {
         match rows.row(record, line) {
-            Ok(Some(row)) => states.push(row.state(robot, &Defaults { friction: Some(Friction::Finite(0.25)) })),
+            Ok(Some(row)) => states
+                .push(row.state(robot, &Defaults { friction: Some(Friction::Finite(0.25)), ..Defaults::default() })),
             Ok(None) => {}
             Err(error) => states.push(Err(error)),
         }

@@ -26,7 +26,7 @@ fn robot(links_and_joints: &str) -> Robot {
 }
 
 fn impact_with(robot: &Robot, options: Options, state: &str) -> Result<Impact, Error> {
-    let defaults = Defaults { friction: Some(mu(0.5)) };
+    let defaults = Defaults { friction: Some(mu(0.5)), ..Defaults::default() };
     Pipeline::new(robot, options).impact(&State::from_json(state, robot, &defaults)?)
 }
 

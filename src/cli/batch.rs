@@ -2,7 +2,7 @@
 
 use super::complaint::note;
 use super::delivery::Delivery;
-use super::options::{ContactOptions, DetailOptions, SceneOptions, from_zero, pipeline_options};
+use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, from_zero, pipeline_options};
 use super::output::{named, spare};
 use super::progress::Progress;
 use super::robot::RobotOptions;
@@ -12,6 +12,7 @@ use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recordi
 use heelstrike::error::Location;
 use heelstrike::excerpt::Excerpt;
 use heelstrike::scene::NamedContact;
+use heelstrike::state::Defaults;
 use heelstrike::table::{Columns, Header, Rates};
 use heelstrike::touchdown::{self, At, Difference, Dropped, Thresholds, Touching};
 use heelstrike::{Error, Reason, Robot, report};
@@ -42,6 +43,8 @@ pub struct Args {
     input_format: Option<Form>,
     #[command(flatten)]
     scene: SceneOptions,
+    #[command(flatten)]
+    loops: LoopOptions,
     #[command(flatten)]
     contacts: ContactOptions,
     #[command(flatten)]
@@ -162,7 +165,8 @@ impl RecordingOptions {
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
-    let inputs = [args.robot.robot.as_path(), &args.states];
+    let inputs = [Some(&args.robot.robot), Some(&args.states), args.loops.loops.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     spare(args.output.as_deref(), &inputs)?;
     args.summary.as_deref().map_or(Ok(()), |summary| spare(Some(summary), &inputs))?;
     if args.summary.as_deref() == Some(Path::new("-")) {
@@ -206,7 +210,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     let question = Question {
         robot: &robot,
         options: pipeline_options(&args.contacts, feet, args.detail),
-        defaults: args.scene.defaults(),
+        defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
         detail,
         header: header.as_ref(),
         columns: columns.as_ref(),

@@ -1,6 +1,6 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
-use super::options::{ContactOptions, DetailOptions, SceneOptions, pipeline_options};
+use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Format, OutputOptions};
 use super::robot::RobotOptions;
 use super::stream::{Answers, SUMMED_UP, answer_all};
@@ -27,6 +27,8 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
+    loops: LoopOptions,
+    #[command(flatten)]
     contacts: ContactOptions,
     #[command(flatten)]
     detail: DetailOptions,
@@ -46,10 +48,11 @@ pub(super) fn run(args: &Args) -> Outcome {
     let mut impacts = Impacts {
         robot: &robot,
         pipeline: Pipeline::new(&robot, options),
-        defaults: args.scene.defaults(),
+        defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
         detail: args.detail.detail(),
     };
-    args.output.spare(&[&args.robot.robot, &args.state])?;
+    let inputs = [Some(&args.robot.robot), Some(&args.state), args.loops.loops.as_ref()];
+    args.output.spare(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     answer_all(&mut impacts, &args.state, format, &args.output)
 }
 

@@ -1,10 +1,15 @@
 //! Options of the analysis.
 
+use super::{Failure, input};
+use heelstrike::Robot;
+use heelstrike::documents::utf8;
+use heelstrike::excerpt::Excerpt;
 use heelstrike::impact::Friction;
 use heelstrike::pipeline;
 use heelstrike::report::Detail;
-use heelstrike::scene::NamedContact;
-use heelstrike::state::Defaults;
+use heelstrike::scene::{NamedContact, NamedLoop};
+use heelstrike::state::{Defaults, loops_from_json};
+use std::path::PathBuf;
 
 /// What a state may leave open.
 #[derive(Debug, clap::Args)]
@@ -17,7 +22,33 @@ pub(super) struct SceneOptions {
 
 impl SceneOptions {
     pub fn defaults(&self) -> Defaults {
-        Defaults { friction: self.friction }
+        Defaults { friction: self.friction, ..Defaults::default() }
+    }
+}
+
+/// Points that are tied together.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Scene")]
+pub(super) struct LoopOptions {
+    /// Loops of the robot, which its URDF has to cut open: a JSON list like the states' "loops", for states without their own
+    #[arg(long, value_name = "LOOPS.json")]
+    pub loops: Option<PathBuf>,
+}
+
+impl LoopOptions {
+    /// The largest file that is read \[bytes\].
+    const LARGEST: u64 = 1 << 20;
+
+    /// Reads the loops of `robot`.
+    pub fn load(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
+        let Some(path) = &self.loops else { return Ok(Vec::new()) };
+        let name = input::name(path);
+        let bytes = input::bytes_up_to(path, Self::LARGEST)?;
+        let loops = utf8(&bytes).and_then(|text| loops_from_json(text, robot));
+        loops.map_err(|error| {
+            let excerpt = error.location().and_then(|place| Excerpt::around(&bytes, 1, place));
+            Failure::RefusedAt(error.in_file(name), excerpt)
+        })
     }
 }
 

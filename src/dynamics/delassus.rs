@@ -19,27 +19,44 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let Workspace { factor, contact_jacobian, contact_velocity, half, half_by_d, delassus, .. } = workspace;
     half.clear();
     half.extend_from_slice(contact_jacobian);
-    half_by_d.clear();
     for y in half.chunks_exact_mut(nv.max(1)) {
         half_solve(plan, factor, y);
-        half_by_d.extend(y.iter().enumerate().map(|(i, &entry)| entry / factor[i * nv + i]));
     }
     // Not from the Jacobian's length: where every joint is held it has no columns.
-    let rows = 2 * contact_velocity.len();
+    from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
+}
+
+/// G = Y^T D^-1 Y, and D^-1 Y on the way.
+pub(super) fn from_half<T: Real>(
+    nv: usize,
+    rows: usize,
+    factor: &[T],
+    (half, half_by_d): (&[T], &mut Vec<T>),
+    delassus: &mut Vec<T>,
+) {
+    half_by_d.clear();
+    for y in half.chunks_exact(nv.max(1)) {
+        half_by_d.extend(y.iter().enumerate().map(|(i, &entry)| entry / factor[i * nv + i]));
+    }
     delassus.clear();
     delassus.resize(rows * rows, T::zero());
     for row in 0..rows {
         for column in 0..=row {
             let (y, z) = (&half[row * nv..(row + 1) * nv], &half_by_d[column * nv..(column + 1) * nv]);
-            let entry = y.iter().zip(z).fold(T::zero(), |sum, (&y, &z)| sum + y * z);
+            let entry = products(y, z);
             delassus[row * rows + column] = entry;
             delassus[column * rows + row] = entry;
         }
     }
 }
 
+/// The inner product of two columns.
+pub(super) fn products<T: Real>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
+}
+
 /// y := L^-T y.
-fn half_solve<T: Real>(plan: &Plan<T>, factor: &[T], y: &mut [T]) {
+pub(super) fn half_solve<T: Real>(plan: &Plan<T>, factor: &[T], y: &mut [T]) {
     let nv = plan.columns();
     for i in (0..nv).rev() {
         let mut ancestor = plan.parents[i];
@@ -51,7 +68,7 @@ fn half_solve<T: Real>(plan: &Plan<T>, factor: &[T], y: &mut [T]) {
 }
 
 /// x := L^-1 x.
-fn other_half_solve<T: Real>(plan: &Plan<T>, factor: &[T], x: &mut [T]) {
+pub(super) fn other_half_solve<T: Real>(plan: &Plan<T>, factor: &[T], x: &mut [T]) {
     let nv = plan.columns();
     for i in 0..nv {
         let mut ancestor = plan.parents[i];

@@ -1,6 +1,7 @@
 //! Memory of the dynamics, reused from state to state.
 
 use super::articulated::Articulated;
+use super::loops::LoopRows;
 use crate::planar::{Inertia, Rotation, Vector};
 
 /// Everything that the dynamics of one state computes; nb bodies, nv columns of the plan, n contacts.
@@ -36,12 +37,16 @@ pub struct Workspace<T = f64> {
     /// Contact velocities c = J v, held joints' rates included \[m/s\]. n
     pub contact_velocity: Vec<Vector<T>>,
 
+    // Computed by `orthogonalize`.
+    /// Constraints of the loops.
+    pub loops: LoopRows<T>,
+
     // Computed by `delassus` or `articulated_delassus`.
     /// Y = L^-T J^T by columns, so that G = Y^T D^-1 Y. 2n x nv
     pub half: Vec<T>,
     /// D^-1 Y by columns. 2n x nv
     pub half_by_d: Vec<T>,
-    /// G by rows \[1/kg\]. 2n x 2n
+    /// G by rows \[1/kg\], after `eliminate_loops` without what the loops do not let move. 2n x 2n
     pub delassus: Vec<T>,
 }
 
@@ -58,6 +63,7 @@ impl<T> Default for Workspace<T> {
             pivots: Vec::new(),
             contact_jacobian: Vec::new(),
             contact_velocity: Vec::new(),
+            loops: LoopRows::default(),
             half: Vec::new(),
             half_by_d: Vec::new(),
             delassus: Vec::new(),

@@ -1,14 +1,16 @@
 //! One state end to end: the only place where all stages meet.
 //!
 //! ```text
-//!     State --> posture --> kinematics --> stance, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
+//!     State --> posture --> kinematics --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
 //! ```
 
+mod loops;
 mod strike;
 mod uncertain;
 
+use self::loops::Loops;
 use self::strike::Strike;
-use crate::contact::{self, Contact, Feet, Placement};
+use crate::contact::{self, Contact, Feet, Placement, Surface};
 use crate::dynamics::{
     Arm, Bounds, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias, contact_jacobian,
     delassus, factorize, kinematics, kinetic_energy, mass_matrix, point_velocity,
@@ -17,9 +19,9 @@ use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{Analysis, Asked, ContactProblem, Errors, Friction, Scratch};
 use crate::plan::{Plan, Posture};
-use crate::planar::{Vector, dot, scaled, sum};
+use crate::planar::{Rotation, Vector, dot, scaled, sum};
 use crate::robot::Robot;
-use crate::scene::{NamedContact, Scene};
+use crate::scene::{Ground, NamedContact, Scene};
 use crate::state::State;
 use crate::uncertain::Holds;
 
@@ -56,6 +58,8 @@ pub struct Impact {
     pub analysis: Result<Analysis>,
     /// v after each outcome of the analysis, in the order of q \[m/s, rad/s\].
     pub velocity_after: Vec<Vec<f64>>,
+    /// Impulse on point a of each loop, in the world's axes, for each outcome of the analysis \[N s\]; on b the opposite acts.
+    pub loop_impulse: Vec<Vec<Vector<f64>>>,
     /// Whether the outcomes are the same on the box of the state's uncertainty; none where it has none.
     pub holds: Option<Holds>,
     /// The matrices, if asked for.
@@ -131,6 +135,7 @@ impl<'r> Pipeline<'r> {
     ///
     /// # Errors
     /// [`Reason::Singular`] for a coordinate without inertia, [`Reason::Penetration`] for a foot deep in the ground,
+    /// [`Reason::Inconsistent`] for a loop that the pose or the velocity leaves open,
     /// [`Reason::Missing`] for a contact without friction or a stance without a foot, [`Reason::MatricesTooLarge`] for
     /// hundreds of contacts, [`Reason::NotFinite`] for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
@@ -149,28 +154,36 @@ impl<'r> Pipeline<'r> {
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         mass_matrix(&self.plan, &mut self.workspace);
         factorize(&self.plan, &mut self.workspace);
-        self.check_inertia()?;
+        self.check_inertia(!scene.loops.is_empty())?;
 
         let mut notes = Vec::new();
-        let (base, velocity, foot) = self.stand(state)?;
-        let contacts = self.contacts(scene, base, &mut notes)?;
+        let surface = Surface::new(&scene.ground);
+        let (base, mut velocity, foot) = self.stand(state, &surface)?;
+        let loops = match scene.loops.is_empty() {
+            true => Loops::default(),
+            false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
+        };
+        let contacts = self.contacts(scene, base, &surface, &mut notes)?;
         check_matrix_size(contacts.len())?;
-        let stance = foot.as_ref().and_then(|foot| contacts.iter().position(|contact| same_point(contact, foot)));
+        let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
         self.points.clear();
-        self.points.extend(contacts.iter().map(|contact| contact.point_of(scene.ground())));
+        self.points.extend(contacts.iter().map(Contact::point_of));
         contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
         let resting = self.snap(&contacts, &mut notes);
         delassus(&self.plan, &mut self.workspace);
+        self.eliminate_loops(&loops);
         let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
-        if !scene.impulses.is_empty() {
+        if !scene.impulses.is_empty() || (!scene.loops.is_empty() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;
             self.bounds.velocity.fill([f64::INFINITY; 2]);
         }
 
-        let change = self.applied(scene);
+        let mut change = self.applied(scene);
+        let applied = change.clone();
+        self.answer_of_loops(&loops, &mut change);
         let problem = self.problem(scene, &contacts, &change)?;
         let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
         for &entry in &free {
@@ -185,6 +198,7 @@ impl<'r> Pipeline<'r> {
             stance,
             contacts: &contacts,
             resting: &resting,
+            loop_rows: &loops.rows,
             friction: problem.friction(),
             restitution: problem.restitution(),
             errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
@@ -196,12 +210,23 @@ impl<'r> Pipeline<'r> {
         if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.plan, &mut self.workspace);
         }
-        let velocity_after = outcomes.iter().map(|outcome| self.struck(&free, &outcome.impulse)).collect();
+        let (velocity_after, loop_impulse) = outcomes
+            .iter()
+            .map(|outcome| match scene.loops.is_empty() {
+                true => (self.struck(&free, &outcome.impulse), Vec::new()),
+                false => {
+                    let mut change = self.struck(&applied, &outcome.impulse);
+                    let impulse = self.answer_of_loops(&loops, &mut change);
+                    (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
+                }
+            })
+            .unzip();
         notes.extend(analysis.as_ref().ok().and_then(Analysis::energy_note));
         let impact = Impact {
             velocity_before: problem.velocity_before().to_vec(),
             kinetic_energy,
             velocity_after,
+            loop_impulse,
             matrices: self.options.matrices.then(|| self.matrices()),
             holds: None,
             analysis,
@@ -239,7 +264,7 @@ impl<'r> Pipeline<'r> {
         kinematics(&self.plan, posture, &mut self.workspace);
         mass_matrix(&self.plan, &mut self.workspace);
         factorize(&self.plan, &mut self.workspace);
-        self.check_inertia()?;
+        self.check_inertia(false)?;
         self.points.clear();
         self.points.extend(contacts.iter().map(|contact| {
             let link = &self.robot.links[contact.link];
@@ -247,7 +272,7 @@ impl<'r> Pipeline<'r> {
                 body: link.body,
                 centre: link.point(contact.offset),
                 radius: contact.radius,
-                ground: Scene::default().ground(),
+                ground: Rotation::identity(),
             }
         }));
         contact_jacobian(&self.plan, &self.points, velocity, None, &mut self.workspace);
@@ -266,7 +291,7 @@ impl<'r> Pipeline<'r> {
     }
 
     /// Refuses a coordinate whose inertia, once all that hangs on it may move, is zero to rounding.
-    fn check_inertia(&self) -> Result<()> {
+    fn check_inertia(&self, has_loops: bool) -> Result<()> {
         let nv = self.plan.columns();
         for column in (0..nv).rev() {
             let (whole, rest) =
@@ -278,7 +303,13 @@ impl<'r> Pipeline<'r> {
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
                 let joint = coordinate >= self.robot.base_dofs();
                 let (what, remedy) = if joint {
-                    (format!("joint \"{name}\""), "name the joint in `held`, or give it a `rotor_inertia`")
+                    let remedy = if has_loops {
+                        "it needs inertia of its own, whatever the loops hold: give its links a mass or it a `rotor_inertia`, \
+                         however small, or name it in `held`"
+                    } else {
+                        "name the joint in `held`, or give it a `rotor_inertia`"
+                    };
+                    (format!("joint \"{name}\""), remedy)
                 } else {
                     let remedy = "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of \
                                   them, or give it a `rotor_inertia`";
@@ -318,7 +349,7 @@ impl<'r> Pipeline<'r> {
     }
 
     /// The root's origin and the velocity by coordinate; with a stance both are such that its foot stands, and the foot.
-    fn stand(&self, state: &State) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
+    fn stand(&self, state: &State, surface: &Surface) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
         let mut velocity = state.velocity.clone();
         if !self.plan.floating {
             return Ok(([0.0; 2], velocity, None));
@@ -326,33 +357,49 @@ impl<'r> Pipeline<'r> {
         let Some(link) = state.scene.stance else {
             return Ok(([state.position[0], state.position[1]], velocity, None));
         };
-        let ground = state.scene.ground();
-        let at_zero = Placement::new(&self.plan, &self.workspace, [0.0; 2], ground);
+        let at_zero = Placement::new(&self.plan, &self.workspace, [0.0; 2]);
         let named = state.scene.contacts.as_deref();
         // A side is flat by the rounding of its corners, whatever the contact tolerance is.
         let flat = CONTACT_TOLERANCE * self.feet.size();
-        let foot = contact::stance_foot(self.robot, &self.feet, named, link, &at_zero, flat)?;
+        let stance = contact::stance(self.robot, &self.feet, named, link, (&at_zero, surface), flat)?;
         velocity[..2].fill(0.0);
-        let arm = foot.point_of(ground).arm(&self.workspace);
-        let moving = point_velocity(&self.plan, foot.body, arm, &velocity, &self.workspace);
+        let arm = stance.foot.point_of().arm(&self.workspace);
+        let moving = point_velocity(&self.plan, stance.foot.body, arm, &velocity, &self.workspace);
         velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
-        Ok((contact::place(&foot), velocity, Some(foot)))
+        Ok((stance.base, velocity, Some(stance.foot)))
     }
 
-    fn contacts(&self, scene: &Scene, base: Vector<f64>, notes: &mut Vec<String>) -> Result<Vec<Contact>> {
-        let placement = Placement::new(&self.plan, &self.workspace, base, scene.ground());
-        let named = scene.contacts.as_deref();
-        let contacts = contact::detect(self.robot, &self.feet, named, &placement, self.tolerance())?;
+    fn contacts(
+        &self,
+        scene: &Scene,
+        base: Vector<f64>,
+        surface: &Surface,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<Contact>> {
+        let placement = Placement::new(&self.plan, &self.workspace, base);
+        let (named, tolerance) = (scene.contacts.as_deref(), self.tolerance());
+        let contacts = contact::detect(self.robot, &self.feet, named, (&placement, surface), tolerance)?;
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;
         }
         if contacts.is_empty() && named.is_none() {
-            notes.push(match contact::nearest(self.robot, &self.feet, &placement) {
-                Some((link, height)) => {
+            notes.push(match (contact::nearest(self.robot, &self.feet, &placement, surface), &scene.ground) {
+                (Some((link, height)), Ground::Slope(_)) => {
                     format!("nothing touches the ground: the lowest foot, {link}, is {height:?} m above it")
                 }
-                None => "the robot has no feet: name contact points by `contacts` in the state or by --contact".into(),
+                (Some((link, distance)), Ground::Profile(_)) => {
+                    format!("nothing touches the ground: the nearest foot, {link}, is {distance:?} m away from it")
+                }
+                (None, _) => {
+                    "the robot has no feet: name contact points by `contacts` in the state or by --contact".into()
+                }
             });
+        }
+        if named.is_none() {
+            let ends = contact::left_behind(self.robot, &self.feet, &placement, surface, tolerance);
+            notes.extend(ends.into_iter().map(|(link, end)| {
+                format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
+            }));
         }
         Ok(contacts)
     }
@@ -485,7 +532,13 @@ impl<'r> Pipeline<'r> {
 /// straight legs and extreme mass ratios. No bound; it serves where none is asked for.
 const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Whether two contacts are the same material point.
-fn same_point(a: &Contact, b: &Contact) -> bool {
-    (a.link, a.body, a.centre, a.radius) == (b.link, b.body, b.centre, b.radius)
+/// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
+fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {
+    let same = |other: &Contact| {
+        (foot.link, foot.body, foot.centre, foot.radius) == (other.link, other.body, other.centre, other.radius)
+    };
+    let at = |exactly: bool| {
+        contacts.iter().position(|other| same(other) && (other.ground == foot.ground || !exactly && foot.radius == 0.0))
+    };
+    at(true).or_else(|| at(false))
 }

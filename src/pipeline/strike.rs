@@ -2,12 +2,13 @@
 
 use crate::contact::Contact;
 use crate::dynamics::{
-    ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_delassus, articulated_inertias,
-    contact_jacobian, delassus, factorize, kinematics, mass_matrix, point_velocity,
+    ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus, articulated_inertias,
+    close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix, orthogonalize,
+    point_velocity,
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
 use crate::plan::{Plan, Posture};
-use crate::planar::{Rotation, Vector, dot, sum};
+use crate::planar::{Vector, dot, sum};
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Trigonometry};
 use crate::scene::Scene;
@@ -27,6 +28,8 @@ pub struct Strike<'a> {
     pub contacts: &'a [Contact],
     /// Contacts that are taken as exactly at rest.
     pub resting: &'a [bool],
+    /// The rows of the loops that count.
+    pub loop_rows: &'a [usize],
     pub friction: &'a [Friction],
     pub restitution: &'a [f64],
     pub errors: Errors<'a>,
@@ -64,7 +67,9 @@ impl Strike<'_> {
         let Inputs { posture, mut velocity, plan } = inputs;
         let mut workspace = Workspace::default();
         kinematics(&plan, &posture, &mut workspace);
-        if plan.tied {
+        // Articulated bodies hold neither ties nor loops.
+        let by_mass = plan.tied || !scene.loops.is_empty();
+        if by_mass {
             mass_matrix(&plan, &mut workspace);
             factorize(&plan, &mut workspace);
         } else {
@@ -72,19 +77,27 @@ impl Strike<'_> {
             articulated_inertias(&plan, &mut workspace);
         }
 
-        let [cos, sin] = T::cos_sin(-scene.slope);
-        let point = |contact: &Contact| contact.exact_point(robot, Rotation { cos, sin });
+        let point = |contact: &Contact| contact.exact_point(robot, scene.ground.axes(contact.ground));
         let contacts: Vec<ContactPoint<T>> = self.contacts.iter().map(point).collect();
         if let Some(foot) = self.foot.map(point) {
             velocity[..2].fill(T::zero());
             let moving = point_velocity(&plan, foot.body, foot.arm(&workspace), &velocity, &workspace);
             velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
         }
+        let loops: Vec<Loop<T>> = scene.loops.iter().map(|own| own.points(robot)).collect();
+        if !loops.is_empty() {
+            let foot = self.foot.map(point);
+            orthogonalize(&plan, &loops, (self.loop_rows, foot), &mut workspace);
+            close(&plan, &loops, foot.is_some(), &mut velocity, &workspace);
+        }
         contact_jacobian(&plan, &contacts, &velocity, self.stance, &mut workspace);
-        if plan.tied {
+        if by_mass {
             delassus(&plan, &mut workspace);
         } else {
             articulated_delassus(&plan, &contacts, &mut workspace);
+        }
+        if !loops.is_empty() {
+            eliminate_loops(&plan, &mut workspace);
         }
         for (speed, _) in workspace.contact_velocity.iter_mut().zip(self.resting).filter(|(_, rests)| **rests) {
             *speed = [T::zero(); 2];
@@ -98,13 +111,14 @@ impl Strike<'_> {
                 let arm = workspace.rotation[link.body].apply(link.point(applied.offset));
                 let vector = applied.vector.map(T::from_f64);
                 let (point, column) = ((link.body, arm), &mut Vec::new());
-                if plan.tied {
+                if by_mass {
                     add_impulse(&plan, &workspace, point, vector, column, &mut change);
                 } else {
                     let scratch = (column, &mut Vec::new());
                     add_articulated_impulse(&plan, &workspace, point, vector, scratch, &mut change);
                 }
             }
+            close(&plan, &loops, false, &mut change, &workspace);
             for (point, speed) in contacts.iter().zip(&mut free) {
                 let more = point_velocity(&plan, point.body, point.arm(&workspace), &change, &workspace);
                 *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));

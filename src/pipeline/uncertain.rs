@@ -21,7 +21,8 @@ impl Pipeline<'_> {
         if links.is_empty() {
             return Holds::Everywhere;
         }
-        if links.len() > CONTACT_LIMIT || !self.robot.followers.is_empty() {
+        let tied = !self.robot.followers.is_empty() || !state.scene.loops.is_empty();
+        if links.len() > CONTACT_LIMIT || tied {
             return Holds::Unknown;
         }
         let whole = Cell::new(self.robot, state, uncertainty, &links);
@@ -93,7 +94,10 @@ impl Kept<'_, '_> {
             }
             (one, other) => one.is_none() == other.is_none(),
         };
-        (same_foot && stance == self.answer.stance && resting == self.answer.resting)
+        // Elsewhere on a profile a named contact may have another normal.
+        let mut contacts = impact.contacts.iter().zip(&self.answer.impact.contacts);
+        let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
+        (same_foot && same_axes && stance == self.answer.stance && resting == self.answer.resting)
             .then_some((state, impact.analysis.ok()?))
     }
 
@@ -131,6 +135,7 @@ impl Model for Kept<'_, '_> {
             stance: *stance,
             contacts: &impact.contacts,
             resting,
+            loop_rows: &[],
             friction: &self.friction,
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,

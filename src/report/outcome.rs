@@ -23,6 +23,9 @@ pub struct Outcome<'a> {
     /// Rates of the joints after the impact, held ones too; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_velocity_after: Option<NamedVelocities<'a>>,
+    /// Impulse on point a of each loop, [x, z] in the world \[N s\]; the opposite acts on b. Of a state with loops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loop_impulse: Option<&'a [Vector<f64>]>,
     /// Kinetic energy that the contacts took \[J\].
     pub energy_loss: f64,
     /// False where other impulses give the same velocities.
@@ -116,6 +119,7 @@ impl<'a> Outcome<'a> {
             velocity_after: &outcome.velocity_after,
             base_velocity_after: None,
             joint_velocity_after: None,
+            loop_impulse: None,
             energy_loss: outcome.energy_loss,
             impulse_unique: outcome.impulse_unique,
             impulse_range: outcome.impulse_range.as_deref(),

@@ -87,7 +87,7 @@ pub struct Report<'a> {
     /// J, rows tangential and normal per contact, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_jacobian: Option<&'a [Vec<f64>]>,
-    /// G = J M^-1 J^T, if asked for.
+    /// G = J M^-1 J^T, without what the loops do not let move; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delassus: Option<Cow<'a, [Vec<f64>]>>,
     /// Fields of the table that the state comes from and that mean nothing here, as they stand there.
@@ -269,6 +269,9 @@ impl<'a> Report<'a> {
         for (outcome, velocity) in report.outcomes.iter_mut().flatten().zip(&impact.velocity_after) {
             outcome.set_velocity_after(robot, velocity);
         }
+        for (outcome, impulse) in report.outcomes.iter_mut().flatten().zip(&impact.loop_impulse) {
+            outcome.loop_impulse = (!impulse.is_empty()).then_some(impulse);
+        }
         if let Some(Matrices { coordinates, mass_matrix, contact_jacobian, delassus }) = &impact.matrices {
             report.coordinates = Some(coordinates);
             report.mass_matrix = Some(mass_matrix);
@@ -358,7 +361,7 @@ impl<'a> Contact<'a> {
             link: robot.links.get(contact.link).map(|link| link.name.as_str()),
             name: &contact.name,
             point: Some(contact.point),
-            normal: Some(contact.normal),
+            normal: Some(contact.normal()),
             gap: Some(contact.gap),
             velocity_before,
         }

@@ -5,7 +5,7 @@ use super::{Defaults, State};
 use crate::impact::Friction;
 use crate::json::Node;
 use crate::robot::Base;
-use crate::scene::{AppliedImpulse, ByLink, NamedContact};
+use crate::scene::{AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, NamedLoop, Profile};
 use crate::{Error, Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
 
@@ -29,11 +29,15 @@ const FIELDS: [&str; 13] = [
 /// The entries of a floating base in the order of q.
 const BASE: [&str; 3] = ["x", "z", "pitch"];
 
+/// The most loops of a state: each costs as much as a contact, and no robot has a tenth of these.
+const LOOP_LIMIT: usize = 256;
+
 /// Reads a whole state.
 pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
     let dofs = robot.dofs();
     let mut state = State { position: vec![0.0; dofs], velocity: vec![0.0; dofs], ..State::default() };
     let scene = &mut state.scene;
+    let mut own_loops = None;
 
     for field in root.fields("field")? {
         match field.key() {
@@ -42,13 +46,13 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
             "velocity" => coordinates(field, robot, &mut state.velocity, number)?,
             "friction" => scene.friction = by_link(field, robot, friction)?,
             "restitution" => scene.restitution = by_link(field, robot, restitution)?,
-            "ground" => scene.slope = slope(field)?,
+            "ground" => scene.ground = ground(field)?,
             "stance" => scene.stance = Some(stance(field, robot)?),
             "held" => scene.held = held(field, robot)?,
             "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
             "contacts" => scene.contacts = Some(contacts(field, robot)?),
             "impulse" => scene.impulses = impulses(field, robot)?,
-            "loops" => return Err(not_yet(field, "loops are")),
+            "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
             _ => return Err(field.unknown_field(&FIELDS)),
         }
@@ -57,6 +61,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
         refuse_a_placed_base(root)?;
     }
     scene.friction.default = scene.friction.default.or(defaults.friction);
+    scene.loops = own_loops.unwrap_or_else(|| defaults.loops.clone());
     Ok(state)
 }
 
@@ -159,21 +164,36 @@ pub(crate) fn restitution(node: Node) -> Result<f64> {
     Err(node.refuse(Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
 }
 
-/// `{"slope": radians}`.
-fn slope(field: Node) -> Result<f64> {
-    let mut slope = 0.0;
+/// `{"slope": radians}` or `{"profile": [[x, z], ...]}`.
+fn ground(field: Node) -> Result<Ground> {
+    let mut ground = None;
     for entry in field.fields("field")? {
-        match entry.key() {
-            "slope" => slope = entry.number()?,
-            "profile" => return Err(not_yet(entry, "a ground profile is")),
+        let read = match entry.key() {
+            "slope" => Ground::Slope(slope(entry)?),
+            "profile" => Ground::Profile(profile(entry)?),
             _ => return Err(entry.unknown_field(&["slope", "profile"])),
-        }
-        if slope.abs() >= FRAC_PI_2 {
-            let what = "slope".into();
-            return Err(entry.refuse(Reason::OutOfRange { what, allowed: "between -pi/2 and pi/2", value: slope }));
+        };
+        if ground.replace(read).is_some() {
+            let reason = Reason::Inconsistent("the ground has either a slope or a profile".into());
+            return Err(entry.refuse(reason).hint("leave one of them out: a profile of two points is a slope, too"));
         }
     }
-    Ok(slope)
+    Ok(ground.unwrap_or_default())
+}
+
+fn slope(entry: Node) -> Result<f64> {
+    let value = entry.number()?;
+    if value.abs() >= FRAC_PI_2 {
+        let what = "slope".into();
+        return Err(entry.refuse(Reason::OutOfRange { what, allowed: "between -pi/2 and pi/2", value }));
+    }
+    Ok(value)
+}
+
+/// A list of `[x, z]`.
+fn profile(entry: Node) -> Result<Profile> {
+    let points = entry.entries()?.map(|point| point.numbers("a list of 2 numbers, [x, z]"));
+    Profile::new(points.collect::<Result<_>>()?).map_err(|error| entry.refuse_inside(error))
 }
 
 /// A list of different joints.
@@ -221,6 +241,43 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
         contacts.push(NamedContact { link, offset, radius });
     }
     Ok(contacts)
+}
+
+/// A list of `{"a": {"link", "offset"}, "b": {"link", "offset"}}`.
+pub(super) fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
+    let mut loops = Vec::new();
+    let entries = field.entries()?;
+    if entries.len() > LOOP_LIMIT {
+        return Err(field.refuse(Reason::TooMany { what: "loops", limit: LOOP_LIMIT }));
+    }
+    for entry in entries {
+        let (mut a, mut b) = (None, None);
+        for part in entry.fields("field")? {
+            match part.key() {
+                "a" => a = Some(link_point(part, robot)?),
+                "b" => b = Some(link_point(part, robot)?),
+                _ => return Err(part.unknown_field(&["a", "b"])),
+            }
+        }
+        let a = a.ok_or_else(|| missing(entry, "a"))?;
+        let b = b.ok_or_else(|| missing(entry, "b"))?;
+        loops.push(NamedLoop { a, b });
+    }
+    Ok(loops)
+}
+
+/// `{"link", "offset"}`.
+fn link_point(field: Node, robot: &Robot) -> Result<LinkPoint> {
+    let (mut named, mut offset) = (None, [0.0; 3]);
+    for part in field.fields("field")? {
+        match part.key() {
+            "link" => named = Some(link(part, part.text()?, robot)?),
+            "offset" => offset = part.numbers("a list of 3 numbers")?,
+            _ => return Err(part.unknown_field(&["link", "offset"])),
+        }
+    }
+    let link = named.ok_or_else(|| missing(field, "link"))?;
+    Ok(LinkPoint { link, offset })
 }
 
 /// A list of `{"link", "offset", "vector"}`.
@@ -280,8 +337,4 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
 
 fn missing(node: Node, what: &str) -> Error {
     node.refuse(Reason::Missing(format!("\"{what}\"")))
-}
-
-fn not_yet(node: Node, what: &str) -> Error {
-    node.refuse(Reason::Unsupported(format!("{what} not supported by this version"))).hint("leave it out")
 }

@@ -152,7 +152,7 @@ impl Row<'_> {
             id: self.id(),
             position: vec![0.0; robot.dofs()],
             velocity: vec![0.0; robot.dofs()],
-            scene: Scene { stance, ..Scene::default() },
+            scene: Scene { stance, loops: defaults.loops.clone(), ..Scene::default() },
             uncertainty: None,
         };
         let mut friction = None;

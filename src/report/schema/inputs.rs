@@ -32,6 +32,8 @@ pub(super) struct State {
     rotor_inertia: Option<BTreeMap<String, NotNegative>>,
     /// Contacts named by hand instead of detected.
     contacts: Option<Vec<Contact>>,
+    /// Points that stay together, in place of those of --loops.
+    loops: Option<Vec<Loop>>,
     /// How far the numbers may be off: the result then tells whether the verdict holds.
     uncertainty: Option<Uncertainty>,
     /// Impulses that act on the robot at the impact.
@@ -148,12 +150,16 @@ struct Restitution(#[schemars(range(min = 0.0, max = 1.0))] f64);
 #[schemars(inline)]
 struct NotNegative(#[schemars(range(min = 0.0))] f64);
 
-/// The ground.
+/// The ground: level, a slope, or a profile.
 #[derive(JsonSchema)]
+#[schemars(extend("not" = {"required": ["slope", "profile"]}))]
 struct Ground {
     /// Its slope, uphill toward +x [rad].
     #[schemars(extend("exclusiveMinimum" = -FRAC_PI_2, "exclusiveMaximum" = FRAC_PI_2))]
     slope: Option<f64>,
+    /// Points [x, z] of rising x that segments join, solid below, and no ground beyond the ends [m].
+    #[schemars(length(min = 2))]
+    profile: Option<Vec<[f64; 2]>>,
 }
 
 /// A contact named by hand.
@@ -165,6 +171,24 @@ struct Contact {
     offset: Option<[f64; 3]>,
     /// The radius of the circle about the point [m].
     radius: Option<NotNegative>,
+}
+
+/// Two points that stay together.
+#[derive(JsonSchema)]
+struct Loop {
+    /// The point on which the loop's impulse acts.
+    a: LinkPoint,
+    /// The point on which the opposite impulse acts.
+    b: LinkPoint,
+}
+
+/// A point of a link.
+#[derive(JsonSchema)]
+struct LinkPoint {
+    /// The link.
+    link: String,
+    /// The point in the link's frame [m].
+    offset: Option<[f64; 3]>,
 }
 
 /// An applied impulse.

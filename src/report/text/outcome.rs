@@ -30,6 +30,7 @@ impl Writer<'_> {
             table = table.numbers("friction needed", 1.0, outcome.friction_needed.iter().copied());
         }
         table.write(&mut self.out);
+        self.loops(outcome);
         self.energy(outcome)?;
         if !outcome.impulse_unique {
             self.out.push_str("  other impulses give the same velocities; these are the least\n");
@@ -52,6 +53,20 @@ impl Writer<'_> {
             several => writeln!(self.out, "; beyond it {}", several.join("; or "))?,
         }
         Ok(())
+    }
+
+    /// What every loop gives to its point a.
+    fn loops(&mut self, outcome: &Outcome) {
+        let impulses = outcome.loop_impulse.unwrap_or_default();
+        if impulses.is_empty() {
+            return;
+        }
+        let size = scale(impulses.iter().copied().flatten());
+        Table::default()
+            .text("loop", (0..impulses.len()).map(|index| format!("loops[{index}]")))
+            .numbers("impulse on a: x [N s]", size, impulses.iter().map(|impulse| impulse[0]))
+            .numbers("z [N s]", size, impulses.iter().map(|impulse| impulse[1]))
+            .write(&mut self.out);
     }
 
     fn energy(&mut self, outcome: &Outcome) -> std::fmt::Result {

@@ -1,0 +1,264 @@
+//! Loops: pairs of points that stay together, eliminated before the contact problem.
+//!
+//! ```text
+//!     K v = 0,   K = J_a - J_b            M (v+ - v-) = J^T L + K^T l            W = K M^-1 K^T
+//!     l = -W^-1 K M^-1 J^T L              G' = G - X^T W^-1 X,  X = K M^-1 J^T
+//! ```
+//!
+//! W is never formed. In the inner product a.b = a^T D^-1 b of the columns Y = L^-T J^T (see [`delassus`](super::delassus))
+//! the rows of K are made orthogonal to each other one by one (modified Gram-Schmidt), K = C Z with C unit lower triangular,
+//! and every contact row loses its part along Z. So G' = Y'^T D^-1 Y' is semidefinite by construction, and no difference of
+//! large matrices is taken. Rows that follow from others are found by pivoting, in f64 alone: every other number takes the
+//! same rows in the same order. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT
+//! form). Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
+
+use super::delassus::{half_solve, other_half_solve, products};
+use super::jacobian::{ContactPoint, point_velocity, walk};
+use super::workspace::Workspace;
+use crate::plan::Plan;
+use crate::planar::{Vector, difference, dot, sum};
+use crate::scalar::Real;
+
+/// Two material points that stay together; impulses act on `a` and, reversed, on `b`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loop<T = f64> {
+    /// The bodies of a and b.
+    pub bodies: [usize; 2],
+    /// The points in their bodies' frames \[m\].
+    pub points: [Vector<T>; 2],
+}
+
+/// The constraints of all loops, two rows (x and z in the world's axes) per loop, as `orthogonalize` leaves them.
+#[derive(Debug, Clone)]
+pub struct LoopRows<T = f64> {
+    /// Rows of K in the order of their elimination: 2 loop + axis; none that follows from others.
+    rows: Vec<usize>,
+    /// Z by columns, those of a foot at rest behind those of the loops. nv each
+    basis: Vec<T>,
+    /// D^-1 Z by columns.
+    basis_by_d: Vec<T>,
+    /// Z^T D^-1 Z, which is diagonal.
+    squares: Vec<T>,
+    /// C below its unit diagonal, by rows of the full square.
+    coupling: Vec<T>,
+}
+
+impl<T> Default for LoopRows<T> {
+    fn default() -> Self {
+        Self { rows: Vec::new(), basis: Vec::new(), basis_by_d: Vec::new(), squares: Vec::new(), coupling: Vec::new() }
+    }
+}
+
+impl<T: Real> Loop<T> {
+    /// Both points from their bodies' origins, in the world's axes \[m\].
+    fn arms(&self, workspace: &Workspace<T>) -> [Vector<T>; 2] {
+        [0, 1].map(|end| workspace.rotation[self.bodies[end]].apply(self.points[end]))
+    }
+
+    /// From b to a: how far the pose leaves the loop open \[m\].
+    pub fn gap(&self, plan: &Plan<T>, workspace: &Workspace<T>) -> Vector<T> {
+        let arms = self.arms(workspace);
+        let [a, b] = [0, 1].map(|end| {
+            let (mut place, mut at) = (arms[end], self.bodies[end]);
+            while let Some(parent) = plan.bodies[at].parent {
+                place = sum(place, workspace.arm[at]);
+                at = parent;
+            }
+            place
+        });
+        difference(a, b)
+    }
+
+    /// The velocities of a and b, held joints' rates included \[m/s\].
+    pub fn velocities(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> [Vector<T>; 2] {
+        let arms = self.arms(workspace);
+        [0, 1].map(|end| point_velocity(plan, self.bodies[end], arms[end], velocity, workspace))
+    }
+
+    /// The velocity of a against b, that is K v \[m/s\].
+    pub fn opening(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> Vector<T> {
+        let [a, b] = self.velocities(plan, velocity, workspace);
+        difference(a, b)
+    }
+
+    /// A row of K (nv); of one end alone its row of J.
+    fn row(&self, plan: &Plan<T>, axis: usize, ends: &[usize], workspace: &Workspace<T>) -> Vec<T> {
+        let (arms, still) = (self.arms(workspace), still(plan));
+        let mut row = vec![T::zero(); plan.columns()];
+        for &end in ends {
+            walk(plan, self.bodies[end], arms[end], &still, workspace, |column, unit| {
+                row[column] = if end == 0 { row[column] + unit[axis] } else { row[column] - unit[axis] };
+            });
+        }
+        row
+    }
+}
+
+/// Chooses the rows of K that do not follow from others, the most independent first: of each more than `tolerance` is left,
+/// as a part of the squared motions of its two points, after its part along those before it is taken away.
+///
+/// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column counts by the
+/// greatest motion that it gives to an end of a loop, which makes the choice free of units.
+pub fn independent_rows(plan: &Plan, loops: &[Loop], tolerance: f64, workspace: &Workspace) -> Vec<usize> {
+    let rows = |ends: &[usize]| -> Vec<Vec<f64>> {
+        (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, workspace)).collect()
+    };
+    let [a, b] = [rows(&[0]), rows(&[1])];
+    let mut greatest = vec![0.0_f64; plan.columns()];
+    for (most, entry) in a.iter().chain(&b).flat_map(|row| row.iter().enumerate()) {
+        greatest[most] = greatest[most].max(entry.abs());
+    }
+    let scaled = |row: &[f64]| -> Vec<f64> {
+        row.iter().zip(&greatest).map(|(entry, &most)| if most > 0.0 { entry / most } else { 0.0 }).collect()
+    };
+    let square = |row: &[f64]| products(row, row);
+    let mut rest: Vec<(usize, f64, Vec<f64>)> = rows(&[0, 1])
+        .iter()
+        .enumerate()
+        .map(|(row, both)| (row, square(&scaled(&a[row])) + square(&scaled(&b[row])), scaled(both)))
+        .collect();
+    let mut chosen = Vec::new();
+    loop {
+        // Of equals the first, so that the choice does not hang on how a maximum is sought.
+        let share = |motion: f64, left: &[f64]| if motion > 0.0 { square(left) / motion } else { 0.0 };
+        let shares = rest.iter().enumerate().map(|(place, (_, motion, left))| (share(*motion, left), place));
+        let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
+        let Some((_, place)) = best.filter(|(share, _)| *share > tolerance) else { return chosen };
+        let (row, _, own) = rest.remove(place);
+        let own_square = square(&own);
+        for (_, _, left) in &mut rest {
+            let along = products(left, &own) / own_square;
+            subtract(left, &own, along);
+        }
+        chosen.push(row);
+    }
+}
+
+/// Makes these `rows` of K orthogonal, and behind them those of a `foot` that is to stay at rest where velocities are closed,
+/// from the factorized mass matrix.
+pub fn orthogonalize<T: Real>(
+    plan: &Plan<T>,
+    loops: &[Loop<T>],
+    (rows, foot): (&[usize], Option<ContactPoint<T>>),
+    workspace: &mut Workspace<T>,
+) {
+    let mut constraints = std::mem::take(&mut workspace.loops);
+    let LoopRows { rows: order, basis, basis_by_d, squares, coupling } = &mut constraints;
+    let nv = plan.columns();
+    order.clear();
+    order.extend_from_slice(rows);
+    let mut all: Vec<Vec<T>> = rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], workspace)).collect();
+    all.extend(foot.into_iter().flat_map(|foot| {
+        let (arm, still, workspace) = (foot.arm(workspace), still(plan), &*workspace);
+        foot.axes().map(|axis| {
+            let mut row = vec![T::zero(); nv];
+            walk(plan, foot.body, arm, &still, workspace, |column, unit| plan.bring(&mut row[column], dot(axis, unit)));
+            row
+        })
+    }));
+    let count = all.len();
+    for list in [&mut *basis, &mut *basis_by_d, &mut *squares] {
+        list.clear();
+    }
+    coupling.clear();
+    coupling.resize(count * count, T::zero());
+    for (i, mut y) in all.into_iter().enumerate() {
+        half_solve(plan, &workspace.factor, &mut y);
+        for k in 0..i {
+            let along = products(&y, &basis_by_d[k * nv..(k + 1) * nv]) / squares[k];
+            subtract(&mut y, &basis[k * nv..(k + 1) * nv], along);
+            coupling[i * count + k] = along;
+        }
+        let y_by_d = by_d(plan, workspace, &y);
+        squares.push(products(&y, &y_by_d));
+        basis.extend(y);
+        basis_by_d.extend(y_by_d);
+    }
+    workspace.loops = constraints;
+}
+
+/// Takes from Y, D^-1 Y and G what the loops do not let move: G becomes G'.
+pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
+    let nv = plan.columns();
+    let Workspace { factor, half, half_by_d, delassus, loops, contact_velocity, .. } = workspace;
+    for y in half.chunks_exact_mut(nv.max(1)) {
+        for k in 0..loops.rows.len() {
+            let along = products(y, &loops.basis_by_d[k * nv..(k + 1) * nv]) / loops.squares[k];
+            subtract(y, &loops.basis[k * nv..(k + 1) * nv], along);
+        }
+    }
+    super::delassus::from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
+}
+
+/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. With `rest`
+/// a foot that rests before it rests after it, too. Gives the amplitude of each constraint for [`loop_impulse`] and
+/// [`spent_energy`].
+pub fn close<T: Real>(
+    plan: &Plan<T>,
+    loops: &[Loop<T>],
+    rest: bool,
+    velocity: &mut [T],
+    workspace: &Workspace<T>,
+) -> Vec<T> {
+    let LoopRows { rows, basis_by_d, squares, coupling, .. } = &workspace.loops;
+    let (nv, all) = (plan.columns(), squares.len());
+    let openings: Vec<Vector<T>> = loops.iter().map(|own| own.opening(plan, velocity, workspace)).collect();
+    let used = if rest { all } else { rows.len() };
+    if used == 0 {
+        // Nothing is to be closed, and of a robot without loops there need be no factor.
+        return Vec::new();
+    }
+    let mut along: Vec<T> = Vec::with_capacity(used);
+    for i in 0..used {
+        let own = rows.get(i).map_or(T::zero(), |row| openings[row / 2][row % 2]);
+        along.push((0..i).fold(own, |left, k| left - coupling[i * all + k] * along[k]));
+    }
+    let amplitudes: Vec<T> = along.iter().zip(squares).map(|(&along, &square)| along / square).collect();
+    let mut change = vec![T::zero(); nv];
+    for (k, &amplitude) in amplitudes.iter().enumerate() {
+        subtract(&mut change, &basis_by_d[k * nv..(k + 1) * nv], amplitude);
+    }
+    other_half_solve(plan, &workspace.factor, &mut change);
+    for (&coordinate, &change) in plan.coordinates.iter().zip(&change) {
+        velocity[coordinate] = velocity[coordinate] + change;
+    }
+    amplitudes
+}
+
+/// The impulse \[N s\] on a of each loop, in the world's axes, that [`close`] gave; zero along rows that were left out.
+pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspace<T>) -> Vec<Vector<T>> {
+    let LoopRows { rows, squares, coupling, .. } = &workspace.loops;
+    let mut impulse = vec![[T::zero(); 2]; loops];
+    // K^T l = -Z a with K = C Z, from the last row back.
+    let mut solved = vec![T::zero(); rows.len()];
+    for k in (0..rows.len()).rev() {
+        let later = (k + 1..rows.len()).fold(T::zero(), |sum, i| sum + coupling[i * squares.len() + k] * solved[i]);
+        solved[k] = -amplitudes[k] - later;
+        impulse[rows[k] / 2][rows[k] % 2] = solved[k];
+    }
+    impulse
+}
+
+/// The kinetic energy \[J\] of the part of the velocity that [`close`] took away.
+pub fn spent_energy(amplitudes: &[f64], workspace: &Workspace) -> f64 {
+    let terms = amplitudes.iter().zip(&workspace.loops.squares);
+    0.5 * terms.map(|(amplitude, square)| amplitude * amplitude * square).sum::<f64>()
+}
+
+/// No velocity at all, where a walk tells motions alone.
+fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
+    vec![T::zero(); plan.places]
+}
+
+/// D^-1 y.
+fn by_d<T: Real>(plan: &Plan<T>, workspace: &Workspace<T>, y: &[T]) -> Vec<T> {
+    let nv = plan.columns();
+    y.iter().enumerate().map(|(i, &entry)| entry / workspace.factor[i * nv + i]).collect()
+}
+
+/// y := y - factor z.
+fn subtract<T: Real>(y: &mut [T], z: &[T], factor: T) {
+    for (y, &z) in y.iter_mut().zip(z) {
+        *y = *y - factor * z;
+    }
+}

@@ -1,0 +1,185 @@
+//! The loops of a state: whether they close, which of their rows count, and the velocity that keeps them closed.
+
+use super::Pipeline;
+use crate::contact::Contact;
+use crate::dynamics::{
+    ContactPoint, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse, orthogonalize,
+    point_velocity, spent_energy,
+};
+use crate::error::{Error, Reason, Result};
+use crate::planar::{Vector, difference, dot};
+use crate::robot::Robot;
+use crate::scalar::Real;
+use crate::scene::NamedLoop;
+use crate::state::State;
+
+/// How far apart the points of a loop may lie, as part of the robot's size: recorded poses are rounded, and simulators keep
+/// their loops closed by springs.
+const OPEN: f64 = 1e-4;
+/// The greatest part of the kinetic energy that may lie in a motion that opens the loops: a hundredth of the speed.
+const OPENING: f64 = 1e-4;
+/// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
+const ROUNDING: f64 = 1e-20;
+/// A row of K of which less is left than this part of its points' squared motions follows from others, but for rounding.
+const DEPENDENT: f64 = 1e-22;
+/// A pose that leaves a loop open tells directions no better than some multiple of the gap.
+const PER_GAP: f64 = 16.0;
+
+/// The loops of one state in f64.
+#[derive(Debug, Clone, Default)]
+pub struct Loops {
+    /// Their points.
+    pub points: Vec<Loop>,
+    /// The rows of their constraints that count, in the order in which every number eliminates them.
+    pub rows: Vec<usize>,
+}
+
+impl NamedLoop {
+    /// The loop for the dynamics, in numbers of any kind.
+    pub(super) fn points<T: Real>(&self, robot: &Robot) -> Loop<T> {
+        let ends = [self.a, self.b];
+        Loop {
+            bodies: ends.map(|end| robot.links[end.link].body),
+            points: ends.map(|end| robot.links[end.link].point(end.offset)),
+        }
+    }
+
+    /// As messages name it, with its number in the list.
+    fn name(&self, index: usize, robot: &Robot) -> String {
+        let [a, b] = [self.a, self.b].map(|end| &robot.links[end.link].name);
+        format!("loops[{index}] ({a} - {b})")
+    }
+}
+
+impl Loops {
+    /// Whether both rows of a loop count.
+    fn is_whole(&self, index: usize) -> bool {
+        [2 * index, 2 * index + 1].iter().all(|row| self.rows.contains(row))
+    }
+
+    /// What follows from others, in words.
+    fn tell_left_out(&self, named: &[NamedLoop], robot: &Robot, notes: &mut Vec<String>) {
+        for (index, own) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
+            let left = [(2 * index, "x"), (2 * index + 1, "z")].into_iter().filter(|(row, _)| !self.rows.contains(row));
+            let left: Vec<&str> = left.map(|(_, axis)| axis).collect();
+            notes.push(format!(
+                "{} is already closed along {} by what else holds its points: that is left out, its impulse is 0",
+                own.name(index, robot),
+                left.join(" and ")
+            ));
+        }
+    }
+}
+
+impl Pipeline<'_> {
+    /// Finds which rows of the loops count, and closes them in `velocity`; a `foot` that rests keeps resting.
+    ///
+    /// # Errors
+    /// [`Reason::Inconsistent`] for a loop that the pose or the velocity leaves open, with the gap.
+    pub(super) fn close_loops(
+        &mut self,
+        state: &State,
+        foot: Option<&Contact>,
+        velocity: &mut [f64],
+        notes: &mut Vec<String>,
+    ) -> Result<Loops> {
+        let (robot, named) = (self.robot, &state.scene.loops);
+        let points: Vec<Loop> = named.iter().map(|own| own.points(robot)).collect();
+        let tolerance = self.refuse_gaps(&points, named)?;
+        let rows = independent_rows(&self.plan, &points, tolerance, &self.workspace);
+        let loops = Loops { points, rows };
+        loops.tell_left_out(named, robot, notes);
+        let foot = foot.map(Contact::point_of);
+        notes.extend(self.close_velocity(&loops, named, foot, velocity)?);
+        Ok(loops)
+    }
+
+    /// Closes the loops in `velocity`, and tells if that is more than rounding.
+    fn close_velocity(
+        &mut self,
+        loops: &Loops,
+        named: &[NamedLoop],
+        foot: Option<ContactPoint>,
+        velocity: &mut [f64],
+    ) -> Result<Option<String>> {
+        let Self { robot, plan, workspace, .. } = self;
+        let Loops { points, rows } = loops;
+        let energy = kinetic_energy(plan, velocity, workspace);
+        let openings = points.iter().map(|own| speed(own.opening(plan, velocity, workspace)));
+        let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
+        let Some((worst, (opening, own))) = widest else { return Ok(None) };
+        orthogonalize(plan, points, (rows, foot), workspace);
+        let amplitudes = close(plan, points, foot.is_some(), velocity, workspace);
+        if let Some(foot) = foot {
+            let moving = point_velocity(plan, foot.body, foot.arm(workspace), velocity, workspace);
+            for (own, moving) in velocity.iter_mut().zip(moving) {
+                *own -= moving;
+            }
+        }
+        let spent = spent_energy(&amplitudes, workspace);
+        if spent > OPENING * energy {
+            return Err(moves_apart(own, worst, opening, robot));
+        }
+        // What was left out must hold all the same.
+        for (index, own) in points.iter().enumerate().filter(|(index, _)| !loops.is_whole(*index)) {
+            let [a, b] = own.velocities(plan, velocity, workspace);
+            let left = speed(difference(a, b));
+            if left * left > OPENING * (dot(a, a) + dot(b, b)) {
+                return Err(moves_apart(&named[index], index, left, robot));
+            }
+        }
+        Ok((spent > ROUNDING * energy).then(|| {
+            format!(
+                "{} opens at {opening:.1e} m/s before the impact: the velocities are taken as the nearest ones, by kinetic \
+                 energy, that keep every loop closed",
+                own.name(worst, robot)
+            )
+        }))
+    }
+
+    /// Refuses a loop whose points are apart; tells how large a row must be to count.
+    fn refuse_gaps(&self, points: &[Loop], named: &[NamedLoop]) -> Result<f64> {
+        let size = self.feet.size();
+        let mut widest = 0.0_f64;
+        for (index, (own, named)) in points.iter().zip(named).enumerate() {
+            let gap = speed(own.gap(&self.plan, &self.workspace));
+            if gap.is_nan() || gap > OPEN * size {
+                let name = named.name(index, self.robot);
+                let reason = format!("the pose leaves {name} open: its points are {gap:.6} m apart");
+                let hint =
+                    format!("the position must close every loop to {OPEN} of the robot's size ({:.1e} m)", OPEN * size);
+                return Err(Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(hint));
+            }
+            widest = widest.max(gap);
+        }
+        let known = PER_GAP * widest / size;
+        Ok(if widest > 0.0 { DEPENDENT.max(known * known) } else { DEPENDENT })
+    }
+
+    /// G without what the loops do not let move.
+    pub(super) fn eliminate_loops(&mut self, loops: &Loops) {
+        if !loops.points.is_empty() {
+            eliminate_loops(&self.plan, &mut self.workspace);
+        }
+    }
+
+    /// Adds to a `change` of velocity by impulses what the loops answer; gives their impulses, per loop on its point a.
+    pub(super) fn answer_of_loops(&self, loops: &Loops, change: &mut [f64]) -> Vec<Vector<f64>> {
+        if loops.points.is_empty() {
+            return Vec::new();
+        }
+        let amplitudes = close(&self.plan, &loops.points, false, change, &self.workspace);
+        loop_impulse(loops.points.len(), &amplitudes, &self.workspace)
+    }
+}
+
+fn speed([x, z]: Vector<f64>) -> f64 {
+    libm::hypot(x, z)
+}
+
+fn moves_apart(own: &NamedLoop, index: usize, opening: f64, robot: &Robot) -> Error {
+    let reason = format!("the velocities open {} at {opening:.3e} m/s", own.name(index, robot));
+    Error::new(Reason::Inconsistent(reason))
+        .at(format!("loops[{index}]"))
+        .hint("give rates of all joints of the loop, such that both points move alike")
+}
