@@ -103,6 +103,23 @@ fn an_impulse_within_needle_thin_cones_keeps_its_digits() {
     assert_eq!(analysis.outcomes[0].impulse, [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]]);
 }
 
+/// Where contacts move a body 1e30 times less than others, 256 bits settled the signs and left 3e-9 of the impulse to rounding.
+#[test]
+fn an_impulse_of_a_contact_that_hardly_moves_anything_keeps_its_digits() {
+    let jacobian = [[-3.0, -1.0], [1.5777218104420236e-30, 4.733165431326071e-30], [-2.0, -2.0], [-2.0, -2.0]];
+    let rows = jacobian.as_flattened();
+    let delassus: Vec<f64> = rows.iter().flat_map(|a| rows.iter().map(move |b| a * b)).collect();
+    let analysis = solve(&delassus, jacobian.map(|row| row.map(|entry| -3.0 * entry)), [mu(1.6e-5); 4], [0.0; 4]);
+    // Contact 1 alone pushes forward, and its impulse is the shortest on the edge of its cone: J L = 3.
+    let [tangential, normal] = jacobian[1];
+    let expected = 3.0 / (normal + 1.6e-5 * tangential);
+    let found = analysis.outcomes[0].impulse[1];
+    assert!(
+        (found[1] / expected - 1.0).abs() < 1e-12 && (found[0] / (1.6e-5 * expected) - 1.0).abs() < 1e-12,
+        "{found:?}"
+    );
+}
+
 #[test]
 fn contacts_that_can_squeeze_each_other_at_rest_are_on_no_border() {
     // L = s (1, 2) is admissible for every s: the normal impulse is not forced to zero.
