@@ -93,7 +93,7 @@ fn analysis(bencher: Bencher) {
     let problem = problem(&robot, &state(&robot));
     let mut scratch = Scratch::default();
     bencher.bench_local(move || {
-        scratch.analyse(black_box(&problem), black_box(&problem), Asked { explain: false, prove: true })
+        scratch.analyse(black_box(&problem), black_box(&problem), Asked::default())
     });
 }
 

@@ -79,6 +79,7 @@ pub mod error;
 pub mod excerpt;
 pub mod scalar;
 pub mod planar;
+pub mod reductions;
 pub mod description;
 pub mod robot;
 pub mod scene;

@@ -44,7 +44,7 @@ pub(crate) struct PlanBody<T> {
     /// Origin of the joint in the parent's frame \[m\].
     pub origin: Vector<T>,
     pub motion: Motion<T>,
-    /// The joint's coordinate, or its leader's; of no meaning for the root.
+    /// The joint's coordinate, or its leader's; of no meaning for the root and for welds.
     pub coordinate: usize,
     /// Where a [`Posture`] has the joint's angle or displacement.
     pub place: usize,
@@ -64,6 +64,8 @@ pub(crate) enum Motion<T> {
     Root,
     Turn { sign: T, rate: T },
     Slide { direction: Vector<T>, rate: Vector<T> },
+    /// None: it is rigid on its parent.
+    Weld,
 }
 
 /// A follower's coordinate: multiplier q + offset of its leader's.
@@ -105,6 +107,7 @@ impl<T: Trigonometry> Posture<T> {
             let (place, value) = (body.place, position.get(body.coordinate).copied().unwrap_or(0.0));
             let turn = match (body.motion, body.tie) {
                 (Motion::Root, _) if !plan.floating => continue,
+                (Motion::Weld, _) => continue,
                 (Motion::Root | Motion::Turn { .. }, None) => {
                     let [cos, sin] = T::cos_sin(value);
                     Rotation { cos, sin }
@@ -171,21 +174,23 @@ impl<T: Real> Plan<T> {
             let mass = number(body.mass);
             let inertia =
                 Inertia { mass, first: scaled(mass, com), second: number(body.moment) + mass * dot(com, com) };
+            let still = PlanBody {
+                parent: None,
+                origin: [T::zero(); 2],
+                motion: Motion::Root,
+                coordinate: 2,
+                place: 2,
+                tie: None,
+                column: floating.then_some(2),
+                inertia,
+                rotor: T::zero(),
+            };
             let Some(mover) = body.joint else {
                 greatest.push(floating.then_some(2));
-                plan.bodies.push(PlanBody {
-                    parent: None,
-                    origin: [T::zero(); 2],
-                    motion: Motion::Root,
-                    coordinate: 2,
-                    place: 2,
-                    tie: None,
-                    column: floating.then_some(2),
-                    inertia,
-                    rotor: T::zero(),
-                });
+                plan.bodies.push(still);
                 continue;
             };
+            let (parent, origin, axis) = robot.hinge(mover);
             // The joint whose coordinate moves the body, the body's own place in lists per joint and follower, and its tie.
             let (index, own, tie) = match mover {
                 Mover::Joint(index) => (index, index, None),
@@ -193,8 +198,13 @@ impl<T: Real> Plan<T> {
                     let Follower { leader, multiplier, offset, .. } = robot.followers[index];
                     (leader, robot.joints.len() + index, Some(Tie { multiplier, offset }))
                 }
+                Mover::Weld { .. } => {
+                    greatest.push(greatest[parent]);
+                    let (parent, origin) = (Some(parent), origin.map(number));
+                    plan.bodies.push(PlanBody { parent, origin, motion: Motion::Weld, column: None, ..still });
+                    continue;
+                }
             };
-            let (parent, origin, axis) = robot.hinge(mover);
             let column = (!held.contains(&index)).then(|| plan.column(&mut columns[index], base + index));
             greatest.push(match column {
                 Some(column) => plan.join_branch(column, parent, greatest[parent]),
@@ -206,9 +216,10 @@ impl<T: Real> Plan<T> {
                 parent: Some(parent),
                 origin: origin.map(number),
                 motion: match axis {
+                    None => Motion::Weld,
                     // Exactly: the sign is one or minus one.
-                    Axis::Turn { sign } => Motion::Turn { sign: number(sign), rate: number(sign * multiplier) },
-                    Axis::Slide { direction } => {
+                    Some(Axis::Turn { sign }) => Motion::Turn { sign: number(sign), rate: number(sign * multiplier) },
+                    Some(Axis::Slide { direction }) => {
                         let direction = direction.map(number);
                         let rate = if tie.is_some() { scaled(number(multiplier), direction) } else { direction };
                         Motion::Slide { direction, rate }

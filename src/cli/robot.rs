@@ -1,5 +1,6 @@
 //! The robot and the options that shape it.
 
+use super::options::ReductionOptions;
 use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::description::Description;
@@ -32,6 +33,8 @@ pub(super) struct RobotOptions {
     /// Add a foot: a point of a link, or a circle about it [repeatable]
     #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", allow_hyphen_values = true, help_heading = "Robot")]
     pub contact: Vec<Foot>,
+    #[command(flatten)]
+    pub reductions: ReductionOptions,
 }
 
 /// The plane that the robot moves in.
@@ -132,7 +135,14 @@ fn finite(text: &str) -> Result<f64, String> {
 impl RobotOptions {
     /// The robot of this file, with nothing added.
     pub fn of_file(robot: &Path) -> Self {
-        Self { robot: robot.to_owned(), plane: Plane::Auto, hold: Vec::new(), base: None, contact: Vec::new() }
+        Self {
+            robot: robot.to_owned(),
+            plane: Plane::Auto,
+            hold: Vec::new(),
+            base: None,
+            contact: Vec::new(),
+            reductions: ReductionOptions::default(),
+        }
     }
 
     /// Reads the robot.
@@ -145,8 +155,12 @@ impl RobotOptions {
             Failure::RefusedAt(error.in_file(&name), excerpt)
         };
         let description = Description::from_urdf(text).map_err(refuse)?;
-        let reduction =
-            Reduction { plane: self.plane.into(), hold: self.held(&description)?, base: self.base.map(Into::into) };
+        let reduction = Reduction {
+            plane: self.plane.into(),
+            hold: self.held(&description)?,
+            base: self.base.map(Into::into),
+            reductions: self.reductions.reductions(),
+        };
         Robot::reduce(&description, &reduction).map_err(refuse)
     }
 

@@ -62,7 +62,8 @@ fn size(robot: &Robot, feet: &[Foot]) -> f64 {
         let [x, z] = sum(origins[body], point);
         libm::hypot(x, z)
     };
-    let centres = robot.bodies.iter().enumerate().map(|(index, body)| distance(index, body.com));
+    let centres = robot.centres().into_iter().enumerate();
+    let centres = centres.filter_map(|(index, centre)| Some(distance(index, centre?)));
     let soles = feet.iter().map(|foot| match &foot.outline {
         FootShape::Disc { centre, radius } => distance(foot.body, *centre) + radius,
         FootShape::Polygon { corners, .. } => {

@@ -21,6 +21,7 @@ use super::redundant::{Judged, Member};
 use super::region::explanation;
 use super::sign::{Scale, SlackKind};
 use crate::error::{Error, Reason, Result};
+use crate::reductions::Reductions;
 use crate::scalar::{Ordered, Real, Sign};
 use nalgebra::DMatrix;
 
@@ -34,6 +35,14 @@ pub struct Asked {
     pub explain: bool,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
+    /// What of the enumeration is left out where a problem does not need it.
+    pub reductions: Reductions,
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Self { explain: false, prove: true, reductions: Reductions::ALL }
+    }
 }
 
 /// Memory that is reused from problem to problem.
@@ -51,7 +60,7 @@ pub struct Scratch {
 /// # Errors
 /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
 pub fn analyse(problem: &ContactProblem, explain: bool) -> Result<Analysis> {
-    Scratch::default().analyse(problem, problem, Asked { explain, prove: true })
+    Scratch::default().analyse(problem, problem, Asked { explain, ..Asked::default() })
 }
 
 impl Scratch {
@@ -68,6 +77,7 @@ impl Scratch {
         let asked = Asked { prove: asked.prove && source.is_exact(), ..asked };
         let errors = source.errors();
         self.scale.measure(problem, errors);
+        self.tableau.share_frictionless(asked.reductions.frictionless);
         self.tableau.load(problem);
         self.bounds.load(&self.tableau, &self.scale, errors.delassus, self.scale.noise);
         let mut first = FirstLook {
@@ -151,7 +161,7 @@ impl Visitor<f64> for FirstLook<'_> {
         self.regular |= bound.impulse_error().is_finite()
             && leaf.modes.iter().all(|&mode| mode == Mode::Stick)
             && !self.problem.friction().iter().any(|friction| friction.is_zero());
-        self.labels.start(leaf.modes, self.problem.friction());
+        self.labels.start(leaf.modes, self.problem.friction(), self.found.asked.reductions.frictionless);
         while let Some(modes) = self.labels.next() {
             let reading = read_f64(leaf, modes, self.problem, self.scale, bound, self.found.asked.explain);
             match reading.sign {
@@ -352,7 +362,7 @@ struct Found {
 
 impl Default for Found {
     fn default() -> Self {
-        let asked = Asked { explain: false, prove: true };
+        let asked = Asked::default();
         Self { asked, outcomes: Vec::new(), rejected: Vec::new(), effort: Effort::default(), total: 0 }
     }
 }

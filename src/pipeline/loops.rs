@@ -3,7 +3,7 @@
 use super::Pipeline;
 use crate::contact::Contact;
 use crate::dynamics::{
-    Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse, orthogonalize, point_velocity,
+    Closed, Constraints, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse, orthogonalize, point_velocity,
     spent_energy,
 };
 use crate::error::{Error, Reason, Result};
@@ -67,7 +67,7 @@ impl Pipeline<'_> {
         let points: Vec<Loop> = named.iter().map(|own| own.points(robot)).collect();
         let tolerance = self.refuse_gaps(&points, named)?;
         let Self { plan, workspace, .. } = self;
-        let rows = independent_rows(plan, &points, velocity.len(), tolerance, workspace);
+        let rows = independent_rows(plan, &points, (&self.kept, velocity.len()), tolerance, workspace);
         notes.extend(named.iter().enumerate().filter_map(|(index, own)| {
             let left: Vec<&str> =
                 [0, 1].into_iter().filter(|axis| !rows.contains(&(2 * index + axis))).map(|axis| ["x", "z"][axis]).collect();
@@ -80,10 +80,10 @@ impl Pipeline<'_> {
 
         let foot = foot.map(|foot| foot.point_of(state.scene.ground()));
         let still = vec![0.0; velocity.len()];
-        orthogonalize(plan, &points, (&rows, foot), &still, workspace);
+        orthogonalize(plan, &points, (Constraints { kept: &self.kept, rows: &rows }, foot), &still, workspace);
         let energy = kinetic_energy(plan, velocity, workspace);
         let openings: Vec<f64> = points.iter().map(|own| speed(own.opening(plan, velocity, workspace))).collect();
-        let amplitudes = close(plan, &points, foot.is_some(), velocity, workspace);
+        let amplitudes = close(plan, &points, Closed::Velocity, velocity, workspace);
         if let Some(foot) = foot {
             let moving = point_velocity(plan, foot.body, foot.arm(workspace), velocity, workspace);
             for (own, moving) in velocity.iter_mut().zip(moving) {
@@ -137,19 +137,34 @@ impl Pipeline<'_> {
         Ok(if widest > 0.0 { DEPENDENT.max(known * known) } else { DEPENDENT })
     }
 
-    /// G without what the loops do not let move.
+    /// Prepares the constraints of a state without loops: the joints that keep their rates although they have columns.
+    pub(super) fn keep_rates(&mut self) {
+        if self.kept.is_empty() {
+            return;
+        }
+        let Self { plan, workspace, .. } = self;
+        let still = vec![0.0; self.robot.dofs()];
+        orthogonalize(plan, &[], (Constraints { kept: &self.kept, rows: &[] }, None), &still, workspace);
+    }
+
+    /// Whether something beside the contacts gives impulses.
+    pub(super) fn is_constrained(&self, loops: &Loops) -> bool {
+        !(loops.points.is_empty() && self.kept.is_empty())
+    }
+
+    /// G without what the loops and the joints that keep their rates do not let move.
     pub(super) fn eliminate_loops(&mut self, loops: &Loops) {
-        if !loops.points.is_empty() {
+        if self.is_constrained(loops) {
             eliminate_loops(&self.plan, &mut self.workspace);
         }
     }
 
     /// Adds to a `change` of velocity by impulses what the loops answer; gives their impulses, per loop on its point a.
     pub(super) fn answer_of_loops(&self, loops: &Loops, change: &mut [f64]) -> Vec<Vector<f64>> {
-        if loops.points.is_empty() {
+        if !self.is_constrained(loops) {
             return Vec::new();
         }
-        let amplitudes = close(&self.plan, &loops.points, false, change, &self.workspace);
+        let amplitudes = close(&self.plan, &loops.points, Closed::Change, change, &self.workspace);
         loop_impulse(loops.points.len(), &amplitudes, &self.workspace)
     }
 }

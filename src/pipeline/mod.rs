@@ -4,15 +4,17 @@
 //!     State --> posture --> kinematics --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
 //! ```
 
+mod left_out;
 mod loops;
 mod strike;
 mod uncertain;
 
 use self::loops::Loops;
 use self::strike::Strike;
+pub use self::left_out::LeftOut;
 use crate::contact::{self, Contact, Feet, Placement};
 use crate::dynamics::{
-    Arm, Bounds, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics,
+    Arm, Bounds, Constraints, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics,
     kinetic_energy, mass_matrix, point_velocity,
 };
 use crate::error::{Error, Reason, Result, finite};
@@ -20,6 +22,7 @@ use crate::impact::problem::check_matrix_size;
 use crate::impact::{Analysis, Asked, ContactProblem, Errors, Friction, Scratch};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Vector, dot, scaled, sum};
+use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::scene::{NamedContact, Scene};
 use crate::state::State;
@@ -40,6 +43,8 @@ pub struct Options {
     pub matrices: bool,
     /// Do without bounds of the rounding in M, J and c: faster, and nothing is proven.
     pub no_proof: bool,
+    /// What of the computation is left out where a scene does not need it.
+    pub reductions: Reductions,
 }
 
 /// The default contact tolerance, as part of the robot's size (see [`Feet::size`]).
@@ -64,6 +69,8 @@ pub struct Impact {
     pub holds: Option<Holds>,
     /// The matrices, if asked for.
     pub matrices: Option<Matrices>,
+    /// What of the scene does not enter the analysis.
+    pub left_out: Vec<LeftOut>,
     /// What a reader should know, in whole sentences.
     pub notes: Vec<String>,
 }
@@ -102,6 +109,8 @@ pub struct Pipeline<'r> {
     plan: Plan,
     held: Vec<usize>,
     rotor_inertia: Vec<f64>,
+    /// Coordinates of held joints that have a column all the same.
+    kept: Vec<usize>,
     posture: Posture,
     workspace: Workspace,
     bounds: Bounds,
@@ -120,6 +129,7 @@ impl<'r> Pipeline<'r> {
             plan: Plan::new(robot, &[], &[]),
             held: Vec::new(),
             rotor_inertia: Vec::new(),
+            kept: Vec::new(),
             posture: Posture::default(),
             workspace: Workspace::default(),
             bounds: Bounds::default(),
@@ -157,7 +167,10 @@ impl<'r> Pipeline<'r> {
         let mut notes = Vec::new();
         let (base, mut velocity, foot) = self.stand(state)?;
         let loops = match scene.loops.is_empty() {
-            true => Loops::default(),
+            true => {
+                self.keep_rates();
+                Loops::default()
+            }
             false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
         };
         let contacts = self.contacts(scene, base, &mut notes)?;
@@ -172,7 +185,7 @@ impl<'r> Pipeline<'r> {
         let kinetic_energy = self.energy_in_range(&velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
-        if !scene.impulses.is_empty() || (!scene.loops.is_empty() && !self.options.no_proof) {
+        if !scene.impulses.is_empty() || (self.is_constrained(&loops) && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;
             self.bounds.velocity.fill([f64::INFINITY; 2]);
@@ -186,6 +199,7 @@ impl<'r> Pipeline<'r> {
         for &entry in &free {
             finite(entry, || "a velocity after the applied impulses".into())?;
         }
+        let kept = self.kept.clone();
         let source = Strike {
             robot: self.robot,
             scene,
@@ -195,18 +209,19 @@ impl<'r> Pipeline<'r> {
             stance,
             contacts: &contacts,
             resting: &resting,
-            loop_rows: &loops.rows,
+            constraints: Constraints { kept: &kept, rows: &loops.rows },
             friction: problem.friction(),
             restitution: problem.restitution(),
             errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
         };
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
-        let asked = Asked { explain, prove: !self.options.no_proof };
+        let Options { no_proof, reductions, .. } = self.options;
+        let asked = Asked { explain, prove: !no_proof, reductions };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
         let (velocity_after, loop_impulse) = outcomes
             .iter()
-            .map(|outcome| match scene.loops.is_empty() {
+            .map(|outcome| match !self.is_constrained(&loops) {
                 true => (self.struck(&free, &outcome.impulse), Vec::new()),
                 false => {
                     let mut change = self.struck(&applied, &outcome.impulse);
@@ -223,6 +238,7 @@ impl<'r> Pipeline<'r> {
             loop_impulse,
             matrices: self.options.matrices.then(|| self.matrices()),
             holds: None,
+            left_out: self.left_out(scene, &contacts, problem.friction(), 0),
             analysis,
             contacts,
             notes,
@@ -278,7 +294,13 @@ impl<'r> Pipeline<'r> {
     /// Compiles the plan, unless the last one was for the same held joints and rotors.
     fn compile(&mut self, scene: &Scene) {
         if self.held != scene.held || self.rotor_inertia != scene.rotor_inertia {
-            self.plan = Plan::new(self.robot, &scene.held, &scene.rotor_inertia);
+            let (without, kept) = match self.options.reductions.held {
+                true => (&scene.held[..], &[][..]),
+                false => (&[][..], &scene.held[..]),
+            };
+            self.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
+            self.kept.clear();
+            self.kept.extend(kept.iter().map(|joint| self.robot.base_dofs() + joint));
             self.held.clone_from(&scene.held);
             self.rotor_inertia.clone_from(&scene.rotor_inertia);
         }

@@ -43,6 +43,8 @@ pub struct HeldJoint {
     pub still: Still,
     /// The body that its child is welded into; for a joint of the base the robot's root link.
     pub body: String,
+    /// False where its child is kept apart as a body of its own, `body`.
+    pub welded: bool,
 }
 
 /// Why a joint has no coordinate.
@@ -77,16 +79,17 @@ impl HeldJoint {
     /// Why it has no coordinate, in words.
     pub fn why(&self) -> String {
         let Self { body, still, .. } = self;
+        let kept = if self.welded { "welded into" } else { "without a coordinate, but moves a body of its own," };
         match still {
-            Still::Fixed => format!("fixed: welded into {body}"),
-            Still::Asked { value } => format!("held at {value} as asked: welded into {body}"),
+            Still::Fixed => format!("fixed: {kept} {body}"),
+            Still::Asked { value } => format!("held at {value} as asked: {kept} {body}"),
             Still::OffPlane { angle, slides } => {
                 let wanted = if *slides { "the plane" } else { "the plane's normal" };
                 let angle = angle.to_degrees();
-                format!("held at zero, its axis is {angle:.2} degrees off {wanted}: welded into {body}")
+                format!("held at zero, its axis is {angle:.2} degrees off {wanted}: {kept} {body}")
             }
-            Still::Follows { leader } => format!("held like {leader}, which it follows: welded into {body}"),
-            Still::Kind(kind) => format!("held at zero, being {}: welded into {body}", kind.name()),
+            Still::Follows { leader } => format!("held like {leader}, which it follows: {kept} {body}"),
+            Still::Kind(kind) => format!("held at zero, being {}: {kept} {body}", kind.name()),
             Still::Base => format!("part of the floating base: x, z and pitch of {body} take its place"),
         }
     }

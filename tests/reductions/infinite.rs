@@ -1,0 +1,32 @@
+//! Infinite friction has no cone to test: the pair (a, b) = (1, 0) of a L_n >= b |L_t| asks for pressure alone. No unreduced
+//! computation would be another; a huge finite coefficient must lead to the same modes.
+
+use heelstrike::description::Description;
+use heelstrike::reductions::Reductions;
+use heelstrike::robot::Base;
+use proptest::prelude::*;
+use serde_json::json;
+
+use super::comparison::{answer, robot};
+use super::trees::case;
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 128, ..ProptestConfig::default() })]
+
+    #[test]
+    fn huge_friction_leads_to_the_modes_of_infinite_friction(case in case()) {
+        let description = Description::from_urdf(&case.mechanism.urdf(0)).expect("a good file");
+        let robot = robot(&description, Some(Base::Floating), Reductions::ALL);
+        let outcomes = |friction| {
+            let mut state = case.state(0);
+            // Two contacts of one link may be pressed together without bound, which no finite friction allows.
+            state["contacts"].as_array_mut().expect("a list").truncate(1);
+            state["friction"] = friction;
+            let analysis = answer(&robot, &state, Reductions::ALL).expect("an answer").analysis.expect("outcomes");
+            let mut modes: Vec<_> = analysis.outcomes.iter().map(|outcome| outcome.modes.clone()).collect();
+            modes.sort();
+            modes
+        };
+        prop_assert_eq!(outcomes(json!("infinite")), outcomes(json!(1e12)));
+    }
+}
