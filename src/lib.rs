@@ -26,6 +26,7 @@
 //!
 //! ```text
 //!     M (v+ - v-) = J^T L          c = J v          c+ = c- + G L        (an applied impulse p adds J_p^T p on the right)
+//!     with loops:  K v = 0,  M (v+ - v-) = J^T L + K^T l,  G = J (M^-1 - M^-1 K^T W^-1 K M^-1) J^T,  W = K M^-1 K^T
 //! ```
 //!
 //! | symbol | JSON | meaning | unit |
@@ -37,6 +38,8 @@
 //! | G | `delassus` | inverse inertia seen by the contacts | 1/kg |
 //! | c | `velocity_before`, `velocity_after` | contact velocity, [tangential, normal] | m/s |
 //! | L | `impulse` | contact impulse, [tangential, normal] | N s |
+//! | K | `loops` | velocity of a loop's point a against its point b | |
+//! | l | `loop_impulse` | impulse on a, opposite on b, in the world's axes | N s |
 //! | mu | `friction` | Coulomb coefficient, 0 to infinite | |
 //! | e | `restitution` | Newton's coefficient, 0 to 1 | |
 //!

@@ -123,8 +123,11 @@ impl<T: Real> Loop<T> {
     }
 }
 
-/// Chooses the rows of K that do not follow from others, the most independent first: each is longer than `tolerance` (a
-/// square, relative to the mobilities of its two points) after its part along those before it is taken away.
+/// Chooses the rows of K that do not follow from others, the most independent first: of each more than `tolerance` is left,
+/// as a part of the squared motions of its two points, after its part along those before it is taken away.
+///
+/// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column counts by the
+/// greatest motion that it gives to an end of a loop, which makes the choice free of units; one that is `kept` counts nothing.
 pub fn independent_rows(
     plan: &Plan,
     loops: &[Loop],
@@ -133,38 +136,40 @@ pub fn independent_rows(
     workspace: &Workspace,
 ) -> Vec<usize> {
     let still = vec![0.0; dofs];
-    let square = |y: &[f64]| products(y, &by_d(plan, workspace, y));
-    let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(kept.len());
-    let free = |mut y: Vec<f64>, basis: &[(Vec<f64>, Vec<f64>)]| {
-        half_solve(plan, &workspace.factor, &mut y);
-        for (z, z_by_d) in basis {
-            let along = products(&y, z_by_d) / products(z, z_by_d);
-            subtract(&mut y, z, along);
-        }
-        y
+    let rows = |ends: &[usize]| -> Vec<Vec<f64>> {
+        (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, &still, workspace)).collect()
     };
-    for &coordinate in kept {
-        let z = free(unit_row(plan, coordinate), &basis);
-        let z_by_d = by_d(plan, workspace, &z);
-        basis.push((z, z_by_d));
+    let [a, b] = [rows(&[0]), rows(&[1])];
+    let mut greatest = vec![0.0_f64; plan.columns()];
+    for (most, entry) in a.iter().chain(&b).flat_map(|row| row.iter().enumerate()) {
+        greatest[most] = greatest[most].max(entry.abs());
     }
-    let half = |row: usize, ends: &[usize]| free(loops[row / 2].row(plan, row % 2, ends, &still, workspace), &basis);
-    let mut rest: Vec<(usize, f64, Vec<f64>)> = (0..2 * loops.len())
-        .map(|row| (row, square(&half(row, &[0])) + square(&half(row, &[1])), half(row, &[0, 1])))
+    for (most, coordinate) in greatest.iter_mut().zip(&plan.coordinates) {
+        if kept.contains(coordinate) {
+            *most = 0.0;
+        }
+    }
+    let scaled = |row: &[f64]| -> Vec<f64> {
+        row.iter().zip(&greatest).map(|(entry, &most)| if most > 0.0 { entry / most } else { 0.0 }).collect()
+    };
+    let square = |row: &[f64]| products(row, row);
+    let mut rest: Vec<(usize, f64, Vec<f64>)> = rows(&[0, 1])
+        .iter()
+        .enumerate()
+        .map(|(row, both)| (row, square(&scaled(&a[row])) + square(&scaled(&b[row])), scaled(both)))
         .collect();
     let mut chosen = Vec::new();
     loop {
-        let share = |(_, mobility, y): &(usize, f64, Vec<f64>)| square(y) / mobility;
         // Of equals the first, so that the choice does not hang on how a maximum is sought.
-        let best = rest.iter().enumerate().map(|(place, candidate)| (share(candidate), place));
-        let best = best.reduce(|best, next| if next.0 > best.0 { next } else { best });
+        let share = |motion: f64, left: &[f64]| if motion > 0.0 { square(left) / motion } else { 0.0 };
+        let shares = rest.iter().enumerate().map(|(place, (_, motion, left))| (share(*motion, left), place));
+        let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
         let Some((_, place)) = best.filter(|(share, _)| *share > tolerance) else { return chosen };
-        let (row, _, z) = rest.remove(place);
-        let z_by_d = by_d(plan, workspace, &z);
-        let square = products(&z, &z_by_d);
-        for (_, _, y) in &mut rest {
-            let along = products(y, &z_by_d) / square;
-            subtract(y, &z, along);
+        let (row, _, own) = rest.remove(place);
+        let own_square = square(&own);
+        for (_, _, left) in &mut rest {
+            let along = products(left, &own) / own_square;
+            subtract(left, &own, along);
         }
         chosen.push(row);
     }

@@ -40,7 +40,8 @@ mod tests {
     use super::*;
     use crate::plan::{Plan, Posture};
     use crate::planar::{Rotation, Vector, dot};
-    use crate::robot::{Axis, Base, Body, Joint, Mover, Robot};
+    use crate::robot::{Axis, Base, Body, Follower, Joint, Mover, Robot};
+    use crate::scalar::{Ball, DoubleDouble, Ordered, Real};
     use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
@@ -88,13 +89,40 @@ mod tests {
         }
     }
 
-    /// A tree, a configuration and two velocities, all of order one.
-    fn case() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>)> {
-        tree().prop_flat_map(|robot| {
+    type Follows = (prop::sample::Index, f64, f64);
+
+    /// The tree with some of its joints, never the first, following others.
+    fn tied(mut robot: Robot, follows: &[Option<Follows>]) -> Robot {
+        let follows = |joint: usize| follows[joint].filter(|_| joint > 0);
+        let leaders = (0..robot.joints.len()).filter(|&joint| follows(joint).is_none()).count();
+        for (joint, own) in std::mem::take(&mut robot.joints).into_iter().enumerate() {
+            let Joint { name, parent, child, origin, axis } = own;
+            robot.bodies[child].joint = Some(if let Some((leader, multiplier, offset)) = follows(joint) {
+                let leader = leader.index(leaders);
+                robot.followers.push(Follower { name, leader, multiplier, offset, parent, child, origin, axis });
+                Mover::Follower(robot.followers.len() - 1)
+            } else {
+                robot.joints.push(Joint { name, parent, child, origin, axis });
+                Mover::Joint(robot.joints.len() - 1)
+            });
+        }
+        robot
+    }
+
+    /// A robot, a configuration and two velocities, all of order one.
+    fn of(robot: impl Strategy<Value = Robot>) -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>)> {
+        robot.prop_flat_map(|robot| {
             let dofs = robot.dofs();
             let numbers = || prop::collection::vec(-3.0..3.0f64, dofs);
             (Just(robot), numbers(), numbers())
         })
+    }
+
+    /// A tree in which some joints follow others.
+    fn case() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>)> {
+        let follows = (any::<prop::sample::Index>(), -2.0..2.0f64, -1.0..1.0f64);
+        let follows = prop::collection::vec(prop::option::weighted(0.25, follows), 7);
+        of((tree(), follows).prop_map(|(robot, follows)| tied(robot, &follows)))
     }
 
     fn computed(robot: &Robot, q: &[f64], held: &[usize], rotors: &[f64]) -> (Plan, Workspace) {
@@ -190,7 +218,7 @@ mod tests {
 
         #[test]
         fn articulated_bodies_give_the_delassus_matrix_without_the_mass_matrix(
-            (robot, q, v) in case(),
+            (robot, q, v) in of(tree()),
             centres in prop::collection::vec((any::<prop::sample::Index>(), prop::array::uniform2(-1.0..1.0f64)), 1..4),
             held in prop::option::weighted(0.3, any::<prop::sample::Index>()),
             rotor in prop_oneof![Just(0.0), 0.01..1.0f64],
@@ -230,6 +258,58 @@ mod tests {
             let scratch = (&mut Vec::new(), &mut Vec::new());
             add_articulated_impulse(&plan, &workspace, point, impulse, scratch, &mut found);
             prop_assert!(near(&expected, &found), "{expected:?} {found:?}");
+        }
+
+        #[test]
+        fn no_f64_number_is_farther_from_the_exact_one_than_its_bound(
+            (robot, q, v) in case(),
+            centres in prop::collection::vec((any::<prop::sample::Index>(), prop::array::uniform2(-1.0..1.0f64)), 1..4),
+        ) {
+            type Exact = Ball<DoubleDouble>;
+            let place = |index: &prop::sample::Index| index.index(robot.bodies.len());
+            let (plan, mut workspace) = computed(&robot, &q, &[], &[]);
+            let ground = Rotation { cos: 1.0, sin: 0.0 };
+            let contacts: Vec<ContactPoint> = centres
+                .iter()
+                .map(|(body, centre)| ContactPoint { body: place(body), centre: *centre, radius: 0.0, ground })
+                .collect();
+            contact_jacobian(&plan, &contacts, &v, None, &mut workspace);
+            delassus(&plan, &mut workspace);
+            let (mut bounds, mut posture) = (Bounds::default(), Posture::default());
+            posture.set(&plan, &q);
+            let arm = |(body, [x, z]): &(prop::sample::Index, Vector<f64>)| Arm { body: place(body), length: x.abs() + z.abs() };
+            bounds.stretch(&plan, &posture, centres.iter().map(arm));
+            bounds.velocities(&plan, &v, None, |_| false);
+            bounds.delassus(&plan, &workspace);
+            prop_assume!(bounds.delassus.is_finite());
+
+            let plan = Plan::<Exact>::new(&robot, &[], &[]);
+            let (mut posture, mut exact) = (Posture::default(), Workspace::default());
+            posture.set(&plan, &q);
+            kinematics(&plan, &posture, &mut exact);
+            mass_matrix(&plan, &mut exact);
+            factorize(&plan, &mut exact);
+            let ground = Rotation::identity();
+            let number = |entry: f64| Exact::from_f64(entry);
+            let contacts: Vec<ContactPoint<Exact>> = contacts
+                .iter()
+                .map(|own| ContactPoint { body: own.body, centre: own.centre.map(number), radius: number(0.0), ground })
+                .collect();
+            let rates: Vec<Exact> = v.iter().map(|&entry| number(entry)).collect();
+            contact_jacobian(&plan, &contacts, &rates, None, &mut exact);
+            delassus(&plan, &mut exact);
+            let rows = 2 * contacts.len();
+            // How far the f64 may be from the exact number, and at least is.
+            let off = |found: f64, exact: Exact| ((exact - number(found)).to_f64()).abs() - exact.error();
+            for i in 0..rows {
+                for j in 0..rows {
+                    let [own, one, other] = [(i, j), (i, i), (j, j)].map(|(i, j)| workspace.delassus[i * rows + j]);
+                    let allowed = bounds.delassus * (one * other).sqrt();
+                    prop_assert!(off(own, exact.delassus[i * rows + j]) <= allowed, "G[{i}][{j}]: {allowed:e}");
+                }
+                let (found, exact) = (workspace.contact_velocity[i / 2][i % 2], exact.contact_velocity[i / 2][i % 2]);
+                prop_assert!(off(found, exact) <= bounds.velocity[i / 2][i % 2]);
+            }
         }
 
         #[test]

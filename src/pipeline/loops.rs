@@ -20,8 +20,8 @@ const OPEN: f64 = 1e-4;
 const OPENING: f64 = 1e-4;
 /// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
 const ROUNDING: f64 = 1e-20;
-/// A row of K whose square is a smaller part of its points' mobility than this follows from others, but for rounding.
-const DEPENDENT: f64 = 1e-12;
+/// A row of K of which less is left than this part of its points' squared motions follows from others, but for rounding.
+const DEPENDENT: f64 = 1e-22;
 /// A pose that leaves a loop open tells directions no better than some multiple of the gap.
 const PER_GAP: f64 = 16.0;
 

@@ -29,6 +29,9 @@ const FIELDS: [&str; 13] = [
 /// The entries of a floating base in the order of q.
 const BASE: [&str; 3] = ["x", "z", "pitch"];
 
+/// The most loops of a state: each costs as much as a contact, and no robot has a tenth of these.
+const LOOP_LIMIT: usize = 256;
+
 /// Reads a whole state.
 pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
     let dofs = robot.dofs();
@@ -228,7 +231,11 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
 /// A list of `{"a": {"link", "offset"}, "b": {"link", "offset"}}`.
 pub(super) fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
     let mut loops = Vec::new();
-    for entry in field.entries()? {
+    let entries = field.entries()?;
+    if entries.len() > LOOP_LIMIT {
+        return Err(field.refuse(Reason::TooMany { what: "loops", limit: LOOP_LIMIT }));
+    }
+    for entry in entries {
         let (mut a, mut b) = (None, None);
         for part in entry.fields("field")? {
             match part.key() {

@@ -171,6 +171,12 @@ impl Writer<'_, '_, '_> {
         if self.choices.once_in(6) {
             fields.push(format!("\"impulse\": [{}]", self.contact("vector")));
         }
+        if self.choices.once_in(8) {
+            // A point is always at itself; other points meet where the legs lie on each other.
+            let a = self.link();
+            let b = if self.choices.once_in(2) { a.clone() } else { self.link() };
+            fields.push(format!("\"loops\": [{{\"a\": {{\"link\": {a}}}, \"b\": {{\"link\": {b}}}}}]"));
+        }
         if self.choices.once_in(16) {
             let field = self.choices.pick(&WORDS);
             let value = self.choices.pick(&["null", "[]", "{}", "true", "\"\"", "[[[]]]", "{\"a\": {}}", "1e999"]);

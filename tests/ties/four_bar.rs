@@ -14,7 +14,7 @@
 use crate::mechanism::{Joint, Mechanism, Part, impact, part, point};
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
-use heelstrike::robot::{Base, Robot};
+use heelstrike::robot::{Base, Reduction, Robot};
 use serde_json::{Value, json};
 
 pub const L: f64 = 0.5;
@@ -34,7 +34,7 @@ pub fn parallelogram(cranks: &[(&'static str, f64)]) -> Mechanism {
 
 pub fn bolted(mechanism: &Mechanism) -> Robot {
     let description = heelstrike::description::Description::from_urdf(&mechanism.urdf()).expect("a description");
-    Robot::reduce(&description, Some(Base::Fixed)).expect("a robot")
+    Robot::reduce(&description, &Reduction { base: Some(Base::Fixed), ..Reduction::default() }).expect("a robot")
 }
 
 /// All cranks at q and q', the coupler level; a foot below the coupler's middle.

@@ -1,6 +1,6 @@
 //! Loop rows that follow from others: told, left out, and without effect on anything but their own impulse.
 
-use crate::four_bar::{WIDTH, assert_stops, bolted, parallelogram, pin, state};
+use crate::four_bar::{L, M, M_COUPLER, WIDTH, assert_stops, bolted, parallelogram, pin, state};
 use crate::mechanism::{impact, point, try_impact};
 use serde_json::json;
 
@@ -51,6 +51,21 @@ fn a_rounded_pose_does_not_lock_redundant_loops() {
     let exact = impact(&robot, &state(&mechanism, Q, RATE, json!([pin("middle", 0.5 * WIDTH), pin("rear", WIDTH)])));
     let expected = exact.matrices.expect("asked for").delassus[1][1];
     assert!((moving - expected).abs() < 1e-5 * expected, "{moving} {expected}");
+}
+
+/// A rear crank of a millionth of a milligram guides the coupler as a heavy one does, although nearly all that its pin gives way
+/// is its own.
+#[test]
+fn a_light_link_hides_no_loop() {
+    let mut mechanism = parallelogram(&[("front", 0.0), ("rear", WIDTH)]);
+    mechanism.parts[1].mass *= 1e-12;
+    mechanism.parts[1].moment *= 1e-12;
+    let found = impact(&bolted(&mechanism), &state(&mechanism, Q, RATE, json!([pin("rear", WIDTH)])));
+    assert_eq!(found.notes, [""; 0]);
+    let mass = (M / 3.0 + M_COUPLER) * L * L;
+    let delassus = found.matrices.expect("asked for").delassus[1][1];
+    // What the loop takes along the crank is a millionth of what it takes across: that much of the digits is lost.
+    assert!((delassus * mass / (L * Q.sin()).powi(2) - 1.0).abs() < 1e6 * 64.0 * f64::EPSILON, "{delassus}");
 }
 
 /// A brace from the coupler to the ground leaves nothing free.

@@ -35,6 +35,10 @@ fn names_and_shapes() {
         |state| state["loops"][0]["b"]["offset"] = json!([0, 0]),
         ["loops[0].b.offset", "expected a list of 3 numbers, found 2 entries", ""],
     );
+    assert_refused(
+        |state| state["loops"] = vec![state["loops"][0].clone(); 257].into(),
+        ["loops", "more than 256 loops are not accepted", ""],
+    );
     assert_refused(|state| state["loops"] = json!({}), ["loops", "expected a list, found an object", ""]);
 }
 
