@@ -92,9 +92,7 @@ fn analysis(bencher: Bencher) {
     let robot = ramone();
     let problem = problem(&robot, &state(&robot));
     let mut scratch = Scratch::default();
-    bencher.bench_local(move || {
-        scratch.analyse(black_box(&problem), black_box(&problem), Asked::default())
-    });
+    bencher.bench_local(move || scratch.analyse(black_box(&problem), black_box(&problem), Asked::default()));
 }
 
 /// A state as numbers to its whole answer.
@@ -124,4 +122,23 @@ fn whole_state_from_json(bencher: Bencher) {
         let state = State::from_json(black_box(STATE), &robot, &Defaults::default())?;
         pipeline.impact(&state)
     });
+}
+
+/// A body with 24 boxes, two of which stand on the ground, to its contacts and outcomes.
+#[divan::bench]
+fn many_shapes(bencher: Bencher) {
+    let shape = |at: usize| {
+        let (x, z) = if at < 2 { (0.4 * at as f64 - 0.2, 0.0) } else { (0.0, 0.1 * at as f64) };
+        format!("<collision><origin xyz=\"{x} 0 {z}\"/><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision>")
+    };
+    let shapes: String = (0..24).map(shape).collect();
+    let inertial = "<inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>";
+    let urdf = format!("<robot name=\"r\"><link name=\"body\">{inertial}{shapes}</link></robot>");
+    let robot = Robot::from_urdf(&urdf).expect("a good robot");
+    let state = r#"{"position": {"base": {"z": 0.05, "pitch": 1e-3}}, "velocity": {"base": {"z": -1}}, "friction": 1}"#;
+    let state = State::from_json(state, &robot, &Defaults::default()).expect("a good state");
+    let options = Options { contact_tolerance: Some(1e-3), ..Options::default() };
+    let mut pipeline = Pipeline::new(&robot, options);
+    assert!(!pipeline.impact(&state).expect("an answer").contacts.is_empty());
+    bencher.bench_local(|| pipeline.impact(black_box(&state)));
 }

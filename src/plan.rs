@@ -62,8 +62,14 @@ pub(crate) struct PlanBody<T> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Motion<T> {
     Root,
-    Turn { sign: T, rate: T },
-    Slide { direction: Vector<T>, rate: Vector<T> },
+    Turn {
+        sign: T,
+        rate: T,
+    },
+    Slide {
+        direction: Vector<T>,
+        rate: Vector<T>,
+    },
     /// None: it is rigid on its parent.
     Weld,
 }

@@ -2,6 +2,7 @@
 
 use heelstrike::impact::{Friction, Verdict};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::robot::{FootShape, Rim};
 use heelstrike::state::{Defaults, State};
 use heelstrike::{Error, Reason, Robot};
 
@@ -98,6 +99,87 @@ fn a_disc_touches_below_its_centre_along_the_normal() {
     let (rx, rz) = (0.5 + 0.2 * sin, -0.2 * cos);
     let (vx, vz) = (2.0 * rz, -2.0 * rx);
     assert!(close(found.velocity_before[0], [vx * cos + vz * sin, vz * cos - vx * sin]));
+}
+
+#[test]
+fn a_lying_capsule_touches_below_both_ends_and_a_tilted_one_below_the_lower() {
+    // Its centre line, 0.4 m long, lies along x.
+    let capsule = r#"<origin rpy="0 1.5707963267948966 0"/><geometry><capsule radius="0.1" length="0.4"/></geometry>"#;
+    let found = impact(&body(capsule), r#"{"position": {"base": {"z": 0.1}}, "velocity": {"base": {"z": -1}}}"#);
+    assert_eq!(names(&found), ["body/0", "body/1"]);
+    assert!(close(found.contacts[0].point, [-0.2, 0.0]) && close(found.contacts[1].point, [0.2, 0.0]));
+    assert_eq!([found.contacts[0].radius, found.contacts[1].radius], [0.1; 2]);
+
+    // Nose down by 0.1 rad about its centre, whose height is then 0.2 sin + 0.1.
+    let (sin, cos) = 0.1_f64.sin_cos();
+    let state = format!(r#"{{"position": {{"base": {{"z": {:?}, "pitch": 0.1}}}}}}"#, 0.2 * sin + 0.1);
+    let found = impact(&body(capsule), &state);
+    assert_eq!(names(&found), ["body"]);
+    assert!(close(found.contacts[0].point, [0.2 * cos, 0.0]));
+}
+
+#[test]
+fn a_rounded_box_touches_below_the_centres_of_its_rounding() {
+    let mut robot = flat_box();
+    let corners = robot.links[0].shapes[0].corners().to_vec();
+    robot.links[0].shapes = vec![FootShape::swept(corners, Rim::Circle { radius: 0.05 }).expect("convex")];
+    let slope = 0.3_f64;
+    let (sin, cos) = slope.sin_cos();
+    let state = format!(
+        r#"{{"position": {{"base": {{"x": {:?}, "z": {:?}, "pitch": -0.3}}}}, "ground": {{"slope": 0.3}}}}"#,
+        -0.15 * sin,
+        0.15 * cos
+    );
+    let found = impact(&robot, &state);
+    assert_eq!(names(&found), ["body/0", "body/1"]);
+    assert!(close(found.contacts[0].point, [-0.2 * cos, -0.2 * sin]));
+    assert!(close(found.contacts[1].point, [0.2 * cos, 0.2 * sin]));
+}
+
+#[test]
+fn an_oblique_cylinder_touches_with_the_lowest_point_of_its_rim() {
+    // Its axis rises at 45 degrees out of the plane, h = 0.2 and R = 0.1: seen from the side its rims are ellipses, 0.1
+    // wide and 0.1 sin 45 high to each side, at heights of +-0.2 cos 45.
+    let upright = r#"<origin rpy="0.7853981633974483 0 0"/><geometry><cylinder radius="0.1" length="0.4"/></geometry>"#;
+    let height = 0.3 * 0.5_f64.sqrt();
+    let drop = |z: f64, pitch: f64| {
+        format!(
+            r#"{{"position": {{"base": {{"z": {z:?}, "pitch": {pitch:?}}}}}, "velocity": {{"base": {{"z": -1}}}}}}"#
+        )
+    };
+    let found = impact(&body(upright), &drop(height, 0.0));
+    assert_eq!(names(&found), ["body"]);
+    assert!(close(found.contacts[0].point, [0.0, 0.0]) && found.contacts[0].radius == 0.0);
+    // Straight below the CoG: all 2 kg m/s stop.
+    assert!(close(found.analysis.unwrap().outcomes[0].impulse[0], [0.0, 2.0]));
+
+    // Pitched by p, d = (sin p, -cos p) is straight down as the body sees it, and its lowest point is
+    // (R^2 sin p, -(R^2 / 2) cos p) / k below the rim's centre, k = R sqrt(sin^2 + cos^2 / 2).
+    let (sin, cos) = 0.4_f64.sin_cos();
+    let k = 0.1 * (sin * sin + 0.5 * cos * cos).sqrt();
+    let (x, z) = (0.01 * sin / k, -0.2 * 0.5_f64.sqrt() - 0.005 * cos / k);
+    let found = impact(&body(upright), &drop(-(cos * z - sin * x), 0.4));
+    assert_eq!(names(&found), ["body"]);
+    assert!(close(found.contacts[0].centre, [x, z]), "{:?}", found.contacts[0]);
+    assert!(found.contacts[0].gap.abs() < 1e-15);
+
+    // Lying, its axis 45 degrees off the plane: a line of its side touches, seen at its length times cos 45.
+    let lying = r#"<origin rpy="0 1.5707963267948966 0.7853981633974483"/>
+        <geometry><cylinder radius="0.1" length="0.4"/></geometry>"#;
+    let found = impact(&body(lying), &drop(0.1, 0.0));
+    assert_eq!(names(&found), ["body/0", "body/1"]);
+    let end = 0.2 * 0.5_f64.sqrt();
+    assert!(close(found.contacts[0].point, [-end, 0.0]) && close(found.contacts[1].point, [end, 0.0]));
+}
+
+#[test]
+fn every_shape_of_a_link_can_touch() {
+    let two = r#"<origin xyz="-0.3 0 0"/><geometry><sphere radius="0.1"/></geometry></collision>
+        <collision><origin xyz="0.3 0 -0.05"/><geometry><box size="0.2 0.1 0.1"/></geometry>"#;
+    let found = impact(&body(two), r#"{"position": {"base": {"z": 0.1}}}"#);
+    assert_eq!(names(&found), ["body/0", "body/1", "body/2"]);
+    let places: Vec<f64> = found.contacts.iter().map(|contact| contact.point[0]).collect();
+    assert_eq!(places, [-0.3, 0.3 - 0.1, 0.3 + 0.1]);
 }
 
 #[test]

@@ -89,9 +89,8 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
             row[3] *= length;
         }
         for shape in &mut link.shapes {
-            if let FootShape::Disc { centre, radius } = shape {
-                *centre = scaled(length, *centre);
-                *radius *= length;
+            if let Some(resized) = shape.resized(length) {
+                *shape = resized;
             }
         }
     }
@@ -125,7 +124,7 @@ fn point_foot(name: String, body: usize, centre: [f64; 2]) -> Link {
         name,
         body,
         pose: [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
-        shapes: vec![FootShape::Disc { centre, radius: 0.0 }],
+        shapes: vec![FootShape::disc(centre, 0.0)],
         has_inertial: true,
     }
 }

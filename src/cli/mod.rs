@@ -12,6 +12,7 @@ mod impact;
 mod input;
 mod inspect;
 mod man;
+mod meshes;
 mod options;
 mod output;
 mod picture;

@@ -1,6 +1,7 @@
 //! Options of the analysis.
 
 use super::{Failure, input};
+use clap::ValueEnum;
 use heelstrike::Robot;
 use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
@@ -10,7 +11,6 @@ use heelstrike::reductions::Reductions;
 use heelstrike::report::Detail;
 use heelstrike::scene::{NamedContact, NamedLoop};
 use heelstrike::state::{Defaults, loops_from_json};
-use clap::ValueEnum;
 use std::path::PathBuf;
 
 /// What a state may leave open.

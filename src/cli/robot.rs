@@ -1,5 +1,6 @@
 //! The robot and the options that shape it.
 
+use super::meshes::Meshes;
 use super::options::ReductionOptions;
 use super::{Failure, input};
 use clap::ValueEnum;
@@ -30,6 +31,9 @@ pub(super) struct RobotOptions {
     /// Whether the root link moves freely or is bolted to the world [default: as the file's masses and joints say]
     #[arg(long, value_enum, help_heading = "Robot")]
     pub base: Option<Base>,
+    /// A folder that holds packages, or is one, for meshes named by package:// [repeatable]
+    #[arg(long, value_name = "DIR", help_heading = "Robot")]
+    pub package_path: Vec<PathBuf>,
     /// Add a foot: a point of a link, or a circle about it [repeatable]
     #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", allow_hyphen_values = true, help_heading = "Robot")]
     pub contact: Vec<Foot>,
@@ -140,6 +144,7 @@ impl RobotOptions {
             plane: Plane::Auto,
             hold: Vec::new(),
             base: None,
+            package_path: Vec::new(),
             contact: Vec::new(),
             reductions: ReductionOptions::default(),
         }
@@ -154,7 +159,9 @@ impl RobotOptions {
             let excerpt = error.location().and_then(|place| Excerpt::around(text.as_bytes(), 1, place));
             Failure::RefusedAt(error.in_file(&name), excerpt)
         };
-        let description = Description::from_urdf(text).map_err(refuse)?;
+        let mut description = Description::from_urdf(text).map_err(refuse)?;
+        let meshes = Meshes::of(&self.robot, &self.package_path);
+        description.read_meshes(|name| meshes.fetch(name)).map_err(refuse)?;
         let reduction = Reduction {
             plane: self.plane.into(),
             hold: self.held(&description)?,

@@ -1,20 +1,18 @@
 //! Feet against the ground line: which points touch, and where the base must be for a foot to stand.
 //!
-//! parry's contact manifolds (ground as half space first, the order in which they are right) say which corners of a shape
-//! are within the tolerance; the corner itself, its gap and its velocity are those of the exact material point.
+//! [`super::shape`] says which points of a foot are near; here they become contacts, each checked, named and in its order.
 
 use super::Contact;
-use super::feet::{Feet, Foot};
+use super::feet::Feet;
+use super::shape::{is_out_of_reach, points, touching};
 use crate::dynamics::{ContactPoint, Workspace};
 use crate::error::{Error, Reason, Result};
 use crate::plan::Plan;
 use crate::planar::{Rotation, Vector, difference, dot, scaled, sum};
-use crate::robot::{FootShape, Robot};
+use crate::robot::{Rim, Robot};
 use crate::scalar::Real;
 use crate::scene::NamedContact;
 use parry2d::math::{Pose, Vector as ParryVector};
-use parry2d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
-use parry2d::shape::{Ball, HalfSpace, Shape};
 
 /// Where the bodies and the ground are.
 #[derive(Debug, Clone)]
@@ -42,23 +40,53 @@ impl Placement {
         self.ground.apply([1.0, 0.0])
     }
 
-    fn normal(&self) -> Vector<f64> {
+    pub(super) fn normal(&self) -> Vector<f64> {
         self.ground.apply([0.0, 1.0])
     }
 
-    /// The world's point of a circle (or, with radius 0, a point) of a body that is lowest along the normal.
-    pub(crate) fn lowest(&self, point: Point) -> Vector<f64> {
-        let centre = sum(self.origins[point.body], self.turns[point.body].apply(point.centre));
-        difference(centre, scaled(point.radius, self.normal()))
+    /// Centre, in the body's frame, and radius of the circle that touches where `point` does: of an ellipse, with radius 0,
+    /// the material point that is lowest along the normal now.
+    pub(crate) fn circle(&self, point: Point) -> (Vector<f64>, f64) {
+        match point.rim {
+            Rim::Circle { radius } => (point.centre, radius),
+            Rim::Ellipse { .. } => (sum(point.centre, point.rim.support(self.downward(point.body))), 0.0),
+        }
     }
 
-    fn height(&self, point: Point) -> f64 {
+    /// The world's point of a rim about a corner that is lowest along the normal.
+    pub(crate) fn lowest(&self, point: Point) -> Vector<f64> {
+        let (centre, radius) = self.circle(point);
+        difference(self.world(point.body, centre), scaled(radius, self.normal()))
+    }
+
+    pub(super) fn height(&self, point: Point) -> f64 {
         dot(self.normal(), self.lowest(point))
     }
 
-    fn pose(&self, body: usize, local: Vector<f64>) -> Pose {
+    /// How far a rim of a body reaches toward the ground \[m\].
+    pub(super) fn reach(&self, body: usize, rim: &Rim) -> f64 {
+        rim.reach(self.downward(body))
+    }
+
+    /// The height of the lowest point of a circle of a body, given by centre and radius.
+    pub(super) fn height_of_circle(&self, body: usize, (centre, radius): (Vector<f64>, f64)) -> f64 {
+        dot(self.normal(), self.world(body, centre)) - radius
+    }
+
+    fn world(&self, body: usize, point: Vector<f64>) -> Vector<f64> {
+        sum(self.origins[body], self.turns[body].apply(point))
+    }
+
+    /// The direction into the ground in the body's frame.
+    fn downward(&self, body: usize) -> Vector<f64> {
         let Rotation { cos, sin } = self.turns[body];
-        let [x, z] = sum(self.origins[body], self.turns[body].apply(local));
+        Rotation { cos, sin: -sin }.apply(scaled(-1.0, self.normal()))
+    }
+
+    /// The body's frame for parry.
+    pub(super) fn pose(&self, body: usize) -> Pose {
+        let Rotation { cos, sin } = self.turns[body];
+        let [x, z] = self.origins[body];
         // parry turns counter-clockwise, a positive pitch clockwise.
         Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
     }
@@ -72,13 +100,14 @@ impl Placement {
     }
 
     fn contact(&self, link: usize, point: Point) -> Contact {
+        let (centre, radius) = self.circle(point);
         Contact {
             link,
             name: String::new(),
             body: point.body,
-            centre: point.centre,
+            centre,
             offset: point.offset,
-            radius: point.radius,
+            radius,
             point: self.lowest(point),
             normal: self.normal(),
             gap: self.height(point),
@@ -86,21 +115,21 @@ impl Placement {
     }
 }
 
-/// A circle, or with radius 0 a point, rigid on a body.
+/// A corner and the rim about it, rigid on a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     pub body: usize,
     pub centre: Vector<f64>,
     /// In the link's own frame, where it was named so.
     pub offset: Option<[f64; 3]>,
-    pub radius: f64,
+    pub rim: Rim,
 }
 
 impl Point {
     fn named(robot: &Robot, contact: &NamedContact) -> Self {
         let link = &robot.links[contact.link];
         let (centre, offset) = (link.point(contact.offset), Some(contact.offset));
-        Self { body: link.body, centre, offset, radius: contact.radius }
+        Self { body: link.body, centre, offset, rim: Rim::Circle { radius: contact.radius } }
     }
 }
 
@@ -130,15 +159,6 @@ impl Contact {
             }
             None => self.centre[0].abs() + self.centre[1].abs(),
         }
-    }
-}
-
-/// The points of a foot that can touch.
-pub(crate) fn points(foot: &Foot) -> Vec<Point> {
-    let point = |centre, radius| Point { body: foot.body, centre, offset: foot.offset, radius };
-    match &foot.outline {
-        FootShape::Disc { centre, radius } => vec![point(*centre, *radius)],
-        FootShape::Polygon { corners, .. } => corners.iter().map(|&corner| point(corner, 0.0)).collect(),
     }
 }
 
@@ -239,46 +259,15 @@ fn detected(robot: &Robot, feet: &Feet, placement: &Placement, tolerance: f64) -
     Ok(contacts)
 }
 
-/// The points of a foot that parry finds within `tolerance` of the ground or below it.
-///
-/// # Errors
-/// [`Reason::Unsupported`] for a pair of shapes that parry does not serve; none of ours is.
-fn touching(foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Point>> {
-    let [x, z] = placement.normal();
-    let ground = HalfSpace::new(ParryVector::new(x, z));
-    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
-    let mut collide = |pose: Pose, shape: &dyn Shape| {
-        DefaultQueryDispatcher.contact_manifolds(&pose, &ground, shape, tolerance, &mut manifolds, &mut None).map_err(
-            |unsupported| Error::new(Reason::Unsupported(format!("a foot against the ground: {unsupported}"))),
-        )?;
-        let points = manifolds.iter().flat_map(|manifold| &manifold.points);
-        Ok::<Vec<_>, Error>(points.map(|point| (point.local_p2, point.dist)).collect())
-    };
-    match &foot.outline {
-        FootShape::Disc { centre, radius } => {
-            let found = collide(placement.pose(foot.body, *centre), &Ball::new(*radius))?;
-            let near = found.iter().any(|&(_, distance)| distance <= tolerance);
-            let point = Point { body: foot.body, centre: *centre, offset: foot.offset, radius: *radius };
-            Ok(near.then_some(point).into_iter().collect())
-        }
-        FootShape::Polygon { corners, shape } => {
-            let found = collide(placement.pose(foot.body, [0.0; 2]), &*shape.0)?;
-            let mut points: Vec<Point> = Vec::new();
-            for (at, _) in found.into_iter().filter(|&(_, distance)| distance <= tolerance) {
-                let far = |corner: &Vector<f64>| libm::hypot(corner[0] - at.x, corner[1] - at.y);
-                let nearest = corners.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-                let point = nearest.map(|&centre| Point { body: foot.body, centre, offset: None, radius: 0.0 });
-                points.extend(point.filter(|point| !points.contains(point)));
-            }
-            Ok(points)
-        }
-    }
+/// How many feet are too high for [`detect`] to look at them with this `tolerance` \[m\].
+pub fn out_of_reach(feet: &Feet, placement: &Placement, tolerance: f64) -> usize {
+    let tolerance = tolerance + placement.rounding(feet.size());
+    feet.iter().filter(|foot| is_out_of_reach(foot, placement, tolerance)).count()
 }
 
 /// The foot nearest to the ground, and its height above it \[m\]; none where the robot has no feet.
 pub fn nearest(robot: &Robot, feet: &Feet, placement: &Placement) -> Option<(String, f64)> {
-    let heights =
-        feet.iter().flat_map(|foot| points(foot).into_iter().map(|point| (foot.link, placement.height(point))));
+    let heights = feet.iter().flat_map(|foot| points(foot).map(|point| (foot.link, placement.height(point))));
     let (link, height) = heights.min_by(|a, b| a.1.total_cmp(&b.1))?;
     Some((robot.links[link].name.clone(), height))
 }

@@ -15,6 +15,8 @@ pub struct Foot {
     pub outline: FootShape,
     /// The centre of a foot that was named, in the link's own 3-D frame \[m\].
     pub offset: Option<[f64; 3]>,
+    /// Centre and radius of a circle about its outline, in the body's frame \[m\].
+    pub bounding_circle: (Vector<f64>, f64),
 }
 
 /// All shapes that may touch, in the order of the robot's links, and the robot's size.
@@ -31,13 +33,24 @@ impl Feet {
         for (index, link) in robot.links.iter().enumerate() {
             let own =
                 named.iter().filter(|contact| contact.link == index).map(|&NamedContact { offset, radius, .. }| {
-                    (FootShape::Disc { centre: link.point(offset), radius }, Some(offset))
+                    (FootShape::disc(link.point(offset), radius), Some(offset))
                 });
             let outlines = link.shapes.iter().map(|shape| (shape.clone(), None)).chain(own);
-            feet.extend(outlines.map(|(outline, offset)| Foot { link: index, body: link.body, outline, offset }));
+            feet.extend(outlines.map(|(outline, offset)| {
+                let bounding_circle = outline.bounding_circle();
+                Foot { link: index, body: link.body, outline, offset, bounding_circle }
+            }));
         }
         let size = size(robot, &feet);
         Self { feet, size }
+    }
+
+    /// The same feet, each of which reaches everywhere: none is passed over for its height.
+    pub fn reaching_everywhere(mut self) -> Self {
+        for foot in &mut self.feet {
+            foot.bounding_circle.1 = f64::INFINITY;
+        }
+        self
     }
 
     /// The shapes.
@@ -64,11 +77,9 @@ fn size(robot: &Robot, feet: &[Foot]) -> f64 {
     };
     let centres = robot.centres().into_iter().enumerate();
     let centres = centres.filter_map(|(index, centre)| Some(distance(index, centre?)));
-    let soles = feet.iter().map(|foot| match &foot.outline {
-        FootShape::Disc { centre, radius } => distance(foot.body, *centre) + radius,
-        FootShape::Polygon { corners, .. } => {
-            corners.iter().map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max)
-        }
+    let soles = feet.iter().map(|foot| {
+        let corners = foot.outline.corners().iter();
+        corners.map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max) + foot.outline.rim().bound()
     });
     centres.chain(soles).fold(0.0, f64::max)
 }

@@ -6,10 +6,12 @@
 
 mod detect;
 mod feet;
+mod shape;
 
-pub use detect::{Placement, detect, nearest, place, stance_foot};
-pub(crate) use detect::{Point, points};
+pub(crate) use detect::Point;
+pub use detect::{Placement, detect, nearest, out_of_reach, place, stance_foot};
 pub use feet::{Feet, Foot};
+pub(crate) use shape::points;
 
 use crate::planar::Vector;
 

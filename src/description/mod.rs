@@ -11,6 +11,7 @@
 //! file or starts a process, nothing recurses, and time and memory grow linearly with the text.
 
 mod draft;
+mod mesh;
 mod mimic;
 mod pose;
 mod strict;
@@ -18,6 +19,7 @@ mod tree;
 mod values;
 mod xml;
 
+pub use mesh::{Fetched, Mesh};
 pub use pose::{Matrix, Pose, apply, product, turn, unit};
 
 use crate::error::{Error, Location, Result};
@@ -101,12 +103,14 @@ pub enum Geometry {
         /// Radius \[m\].
         radius: f64,
     },
-    /// A mesh, which is not read here.
+    /// A mesh.
     Mesh {
         /// The file's name as given.
         file: String,
         /// Factors along x, y and z; a negative one mirrors.
         scale: [f64; 3],
+        /// What was read of the file, before the factors.
+        mesh: Mesh,
     },
     /// A shape that URDF does not know.
     Unknown {
@@ -325,7 +329,7 @@ mod tests {
             &Geometry::Cylinder { radius: 0.5, length: 2.0 },
             &Geometry::Capsule { radius: 0.5, length: 2.0 },
             &Geometry::Sphere { radius: 0.0 },
-            &Geometry::Mesh { file: "a & b.stl".into(), scale: [1.0, -1.0, 1.0] },
+            &Geometry::Mesh { file: "a & b.stl".into(), scale: [1.0, -1.0, 1.0], mesh: Mesh::Unread },
             &Geometry::Unknown { tag: "plane".into() },
         ];
         assert_eq!(shapes, expected);

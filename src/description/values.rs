@@ -1,7 +1,7 @@
 //! The values of the strict copy, read by urdf-rs, joined with what the draft knows.
 
 use super::draft::{self, Draft, Shape, Stated};
-use super::{Collision, Description, Geometry, Inertial, Joint, Link, Mimic, Pose};
+use super::{Collision, Description, Geometry, Inertial, Joint, Link, Mesh, Mimic, Pose};
 use crate::error::{Reason, Result};
 
 /// The description, its root still to be found.
@@ -79,6 +79,7 @@ fn geometry(shape: Shape, values: &urdf_rs::Geometry) -> Geometry {
         Values::Mesh { ref filename, scale } => Geometry::Mesh {
             file: if let Shape::Mesh(file) = shape { file } else { filename.clone() },
             scale: scale.map_or([1.0; 3], |scale| scale.0),
+            mesh: Mesh::Unread,
         },
     }
 }

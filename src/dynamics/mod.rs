@@ -28,7 +28,8 @@ pub use energy::kinetic_energy;
 pub use jacobian::{ContactPoint, contact_jacobian, point_velocity};
 pub use kinematics::kinematics;
 pub use loops::{
-    Closed, Constraints, Loop, LoopRows, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize, spent_energy,
+    Closed, Constraints, Loop, LoopRows, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize,
+    spent_energy,
 };
 pub use ltl::factorize;
 pub use workspace::Workspace;

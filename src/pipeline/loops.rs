@@ -3,8 +3,8 @@
 use super::Pipeline;
 use crate::contact::Contact;
 use crate::dynamics::{
-    Closed, Constraints, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse, orthogonalize, point_velocity,
-    spent_energy,
+    Closed, Constraints, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse, orthogonalize,
+    point_velocity, spent_energy,
 };
 use crate::error::{Error, Reason, Result};
 use crate::planar::{Vector, difference, dot};

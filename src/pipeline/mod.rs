@@ -9,9 +9,9 @@ mod loops;
 mod strike;
 mod uncertain;
 
+pub use self::left_out::LeftOut;
 use self::loops::Loops;
 use self::strike::Strike;
-pub use self::left_out::LeftOut;
 use crate::contact::{self, Contact, Feet, Placement};
 use crate::dynamics::{
     Arm, Bounds, Constraints, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics,
@@ -122,9 +122,10 @@ pub struct Pipeline<'r> {
 impl<'r> Pipeline<'r> {
     /// A pipeline for states of `robot`.
     pub fn new(robot: &'r Robot, options: Options) -> Self {
+        let feet = Feet::new(robot, &options.feet);
         Self {
             robot,
-            feet: Feet::new(robot, &options.feet),
+            feet: if options.reductions.reach { feet } else { feet.reaching_everywhere() },
             options,
             plan: Plan::new(robot, &[], &[]),
             held: Vec::new(),
@@ -173,7 +174,7 @@ impl<'r> Pipeline<'r> {
             }
             false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
         };
-        let contacts = self.contacts(scene, base, &mut notes)?;
+        let (contacts, out_of_reach) = self.contacts(scene, base, &mut notes)?;
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| contacts.iter().position(|contact| same_point(contact, foot)));
         self.points.clear();
@@ -238,7 +239,7 @@ impl<'r> Pipeline<'r> {
             loop_impulse,
             matrices: self.options.matrices.then(|| self.matrices()),
             holds: None,
-            left_out: self.left_out(scene, &contacts, problem.friction(), 0),
+            left_out: self.left_out(scene, &contacts, problem.friction(), out_of_reach),
             analysis,
             contacts,
             notes,
@@ -374,7 +375,8 @@ impl<'r> Pipeline<'r> {
         Ok((contact::place(&foot), velocity, Some(foot)))
     }
 
-    fn contacts(&self, scene: &Scene, base: Vector<f64>, notes: &mut Vec<String>) -> Result<Vec<Contact>> {
+    /// The closed contacts, and how many shapes were too high to be asked.
+    fn contacts(&self, scene: &Scene, base: Vector<f64>, notes: &mut Vec<String>) -> Result<(Vec<Contact>, usize)> {
         let placement = Placement::new(&self.plan, &self.workspace, base, scene.ground());
         let named = scene.contacts.as_deref();
         let contacts = contact::detect(self.robot, &self.feet, named, &placement, self.tolerance())?;
@@ -389,7 +391,11 @@ impl<'r> Pipeline<'r> {
                 None => "the robot has no feet: name contact points by `contacts` in the state or by --contact".into(),
             });
         }
-        Ok(contacts)
+        let out_of_reach = match named {
+            Some(_) => 0,
+            None => contact::out_of_reach(&self.feet, &placement, self.tolerance()),
+        };
+        Ok((contacts, out_of_reach))
     }
 
     /// Takes slow contacts as resting where asked to, and tells which.

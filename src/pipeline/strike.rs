@@ -2,9 +2,9 @@
 
 use crate::contact::Contact;
 use crate::dynamics::{
-    Closed, Constraints, ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus, articulated_inertias,
-    close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix, orthogonalize,
-    point_velocity,
+    Closed, Constraints, ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus,
+    articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix,
+    orthogonalize, point_velocity,
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
 use crate::plan::{Plan, Posture};

@@ -5,7 +5,7 @@ use super::table::{Table, number, scale};
 use super::text::Palette;
 use crate::Robot;
 use crate::planar::Vector;
-use crate::robot::{self, Axis, Base, FootShape};
+use crate::robot::{self, Axis, Base, FootShape, Rim};
 use crate::scene::NamedContact;
 use serde::Serialize;
 use std::fmt::Write;
@@ -95,12 +95,18 @@ pub struct Foot<'a> {
     /// Of a disc \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre: Option<Vector<f64>>,
-    /// Of a disc \[m\]; 0 for a point.
+    /// Of a disc, 0 for a point, and of the circle that sweeps a polygon \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
     /// Of a polygon \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corners: Option<&'a [Vector<f64>]>,
+    /// Of a polygon swept by an ellipse (a cylinder oblique to the plane): two of its conjugate half diameters \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub half_diameters: Option<[Vector<f64>; 2]>,
+    /// The file of the mesh whose hull it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<&'a str>,
 }
 
 impl<'a> Inspection<'a> {
@@ -212,36 +218,60 @@ impl<'a> Inspection<'a> {
         if self.feet.is_empty() {
             return "none: name them by --contact, or in each state by \"contacts\"".to_owned();
         }
-        let foot = |foot: &Foot| {
-            let shape = match (foot.radius, foot.corners) {
-                (Some(0.0), _) => "point".to_owned(),
-                (Some(radius), _) => format!("circle of radius {radius} m"),
-                (_, corners) => format!("polygon of {} corners", corners.map_or(0, <[_]>::len)),
-            };
-            format!("{} ({shape})", foot.link)
-        };
+        let foot = |foot: &Foot| format!("{} ({})", foot.link, foot.in_words());
         self.feet.iter().map(foot).collect::<Vec<_>>().join(", ")
     }
 }
 
 impl<'a> Foot<'a> {
+    fn in_words(&self) -> String {
+        let corners = self.corners.map_or(1, <[_]>::len);
+        let shape = match (corners, self.radius, self.half_diameters) {
+            (_, _, Some(_)) => "oblique cylinder".to_owned(),
+            (1, Some(radius), _) if radius > 0.0 => format!("circle of radius {radius} m"),
+            (1, ..) => "point".to_owned(),
+            (2, Some(radius), _) => format!("capsule of radius {radius} m"),
+            (2, ..) => "line".to_owned(),
+            (_, Some(radius), _) => format!("polygon of {corners} corners rounded by {radius} m"),
+            _ => format!("polygon of {corners} corners"),
+        };
+        self.mesh.map_or(shape.clone(), |mesh| format!("{shape} from {mesh}"))
+    }
+
     fn new(robot: &'a Robot, link: &'a robot::Link, shape: &'a FootShape) -> Self {
-        match shape {
-            FootShape::Disc { centre, radius } => Self::disc(robot, link, *centre, *radius),
-            FootShape::Polygon { corners, .. } => Self {
+        let (radius, half_diameters) = match shape.rim() {
+            Rim::Circle { radius } => (radius, None),
+            Rim::Ellipse { half_diameters } => (0.0, Some(half_diameters)),
+        };
+        match shape.corners() {
+            &[centre] if half_diameters.is_none() => {
+                Self { mesh: shape.mesh(), ..Self::disc(robot, link, centre, radius) }
+            }
+            corners => Self {
                 link: &link.name,
                 body: &robot.bodies[link.body].name,
                 shape: "polygon",
                 centre: None,
-                radius: None,
+                radius: (radius > 0.0).then_some(radius),
                 corners: Some(corners),
+                half_diameters,
+                mesh: shape.mesh(),
             },
         }
     }
 
     fn disc(robot: &'a Robot, link: &'a robot::Link, centre: Vector<f64>, radius: f64) -> Self {
         let body = &robot.bodies[link.body].name;
-        Self { link: &link.name, body, shape: "disc", centre: Some(centre), radius: Some(radius), corners: None }
+        Self {
+            link: &link.name,
+            body,
+            shape: "disc",
+            centre: Some(centre),
+            radius: Some(radius),
+            corners: None,
+            half_diameters: None,
+            mesh: None,
+        }
     }
 }
 

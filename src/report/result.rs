@@ -147,9 +147,7 @@ impl<'a> LeftOut<'a> {
                 }
                 pipeline::LeftOut::OutOfReach(count) => (shapes(*count), "too high to reach the ground"),
                 pipeline::LeftOut::NotAsked(count) => (shapes(*count), "contacts are named by hand"),
-                pipeline::LeftOut::Tangential(of) => {
-                    (format!("tangential impulse of {}", contacts(of)), "friction 0")
-                }
+                pipeline::LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
                 pipeline::LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
             };
             Self { what: Cow::Owned(what), why }

@@ -25,16 +25,17 @@ mod posture;
 mod reading;
 mod reduce;
 mod role;
+mod shape;
 mod tree;
 mod weld;
 
 pub use plane::Plane;
 pub use reading::{HeldJoint, PlaneReason, Reading, Still};
 pub use reduce::Reduction;
+pub use shape::{FootShape, Rim};
 
 use crate::planar::Vector;
 use crate::scalar::Real;
-use parry2d::shape::SharedShape;
 
 /// How the root body is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,25 +164,6 @@ pub struct Link {
     pub shapes: Vec<FootShape>,
     /// True where the file gives the link an `<inertial>`.
     pub has_inertial: bool,
-}
-
-/// A collision shape in the plane, rigid in its body's frame.
-#[derive(Debug, Clone)]
-pub enum FootShape {
-    /// A disc: it touches at centre - radius * normal.
-    Disc {
-        /// Centre in the body's frame \[m\].
-        centre: Vector<f64>,
-        /// Radius \[m\], 0 for a point.
-        radius: f64,
-    },
-    /// A convex polygon with its corners in the body's frame \[m\]; a flat shape is a line and has two.
-    Polygon {
-        /// The corners, counter-clockwise seen with forward to the right and up upward.
-        corners: Vec<Vector<f64>>,
-        /// The same polygon (of two corners: the segment) for parry.
-        shape: SharedShape,
-    },
 }
 
 /// Something of the file that does not enter the analysis.

@@ -7,7 +7,7 @@ use super::posture::Posture;
 use super::reading::{HeldJoint, PlaneReason, Reading, Still};
 use super::role::{Role, roles};
 use super::tree::{Place, Tree};
-use super::{Base, FootShape, LeftOut, Link, Robot, base, caution, left_out};
+use super::{Base, LeftOut, Link, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, product};
 use crate::error::{Error, Reason, Result};
 use crate::reductions::Reductions;
@@ -144,7 +144,9 @@ fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Ju
         let name = joint.name.clone();
         let root = || description.links[found.root].name.clone();
         match role {
-            _ if found.chain.contains(&index) => Some(HeldJoint { name, still: Still::Base, body: root(), welded: true }),
+            _ if found.chain.contains(&index) => {
+                Some(HeldJoint { name, still: Still::Base, body: root(), welded: true })
+            }
             // A weld among links of the base says nothing about the robot.
             Role::Held(still) => {
                 let welded = welded(joint.child);
@@ -217,11 +219,8 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;
         for shape in &link.shapes {
-            let points = match shape {
-                FootShape::Disc { centre, .. } => centre.as_slice(),
-                FootShape::Polygon { corners, .. } => corners.as_flattened(),
-            };
-            refuse("the place of a collision shape", points, description::link_place(&link.name))?;
+            let corners = shape.corners().as_flattened();
+            refuse("the place of a collision shape", corners, description::link_place(&link.name))?;
         }
     }
     refuse("the mass", &[robot.mass()], "robot".into())

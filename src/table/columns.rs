@@ -4,7 +4,6 @@ use super::header::{Header, prefixed};
 use super::rows::Carried;
 use crate::contact::Feet;
 use crate::report::{Outcome, Refused, Report, Touchdown};
-use crate::robot::FootShape;
 use crate::scene::NamedContact;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
@@ -187,11 +186,8 @@ impl Columns {
 fn contacts(robot: &Robot, feet: &[NamedContact], every_corner: bool) -> Vec<String> {
     let mut counts = vec![0; robot.links.len()];
     for foot in Feet::new(robot, feet).iter() {
-        counts[foot.link] += match &foot.outline {
-            FootShape::Disc { .. } => 1,
-            FootShape::Polygon { corners, .. } if every_corner => corners.len(),
-            FootShape::Polygon { corners, .. } => corners.len().min(2),
-        };
+        let corners = foot.outline.corners().len();
+        counts[foot.link] += if every_corner { corners } else { corners.min(2) };
     }
     let mut names = Vec::new();
     for (link, count) in robot.links.iter().zip(counts).filter(|&(_, count)| count > 0) {

@@ -40,17 +40,22 @@ impl<'r> Points<'r> {
 
     /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
     pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
+        let placement = self.placement(position);
+        self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
+    }
+
+    fn placement(&mut self, position: &[f64]) -> Placement {
         self.posture.set(&self.plan, position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
-        let placement = Placement::new(&self.plan, &self.workspace, base, Scene::default().ground());
-        self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
+        Placement::new(&self.plan, &self.workspace, base, Scene::default().ground())
     }
 
     /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
     /// (`also`) among them; gives the shift \[m\] and the striking one's name.
     pub fn touch(&mut self, state: &mut State, striking: usize, also: &[usize], touching: Touching) -> (f64, String) {
-        let places = self.at(&state.position);
+        let placement = self.placement(&state.position);
+        let places: Vec<_> = self.points.iter().map(|&(_, point)| placement.lowest(point)).collect();
         let above = |point: usize| (places[point][1] - places[striking][1]).abs();
         let mut closed = vec![striking];
         closed.extend(also);
@@ -58,7 +63,7 @@ impl<'r> Points<'r> {
             Touching::Strike => {}
             Touching::Slow { speed, height } => {
                 let mut feet = self.lowest_of_other_links(&closed, &places);
-                feet.retain(|&point| above(point) <= height && self.speed(point, &state.velocity) < speed);
+                feet.retain(|&point| above(point) <= height && self.speed(point, &placement, &state.velocity) < speed);
                 closed.append(&mut feet);
             }
             Touching::Near { height } => {
@@ -69,7 +74,7 @@ impl<'r> Points<'r> {
         // As detected contacts: in the order of the links, within a link along x.
         let link = |point: usize| self.points[point].0;
         closed.sort_by(|&a, &b| link(a).cmp(&link(b)).then(places[a][0].total_cmp(&places[b][0])));
-        state.scene.contacts = Some(closed.iter().map(|&point| self.named(point)).collect());
+        state.scene.contacts = Some(closed.iter().map(|&point| self.named(point, &placement)).collect());
 
         let name = self.robot.links[link(striking)].name.clone();
         let mut of_link = closed.iter().filter(|&&point| link(point) == link(striking));
@@ -103,15 +108,17 @@ impl<'r> Points<'r> {
     }
 
     /// Speed of a point after `at` \[m/s\].
-    fn speed(&self, point: usize, velocity: &[f64]) -> f64 {
-        let Point { body, centre, radius, .. } = self.points[point].1;
+    fn speed(&self, point: usize, placement: &Placement, velocity: &[f64]) -> f64 {
+        let point = self.points[point].1;
+        let (body, (centre, radius)) = (point.body, placement.circle(point));
         let arm = ContactPoint { body, centre, radius, ground: Scene::default().ground() }.arm(&self.workspace);
         let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
         libm::hypot(x, z)
     }
 
-    fn named(&self, point: usize) -> NamedContact {
-        let (link, Point { centre, radius, .. }) = self.points[point];
+    fn named(&self, point: usize, placement: &Placement) -> NamedContact {
+        let (link, point) = self.points[point];
+        let (centre, radius) = placement.circle(point);
         NamedContact { link, offset: offset(&self.robot.links[link], centre), radius }
     }
 }

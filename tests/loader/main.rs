@@ -3,7 +3,7 @@
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
 use heelstrike::description::Description;
-use heelstrike::robot::{Axis, Base, FootShape, LeftOut, Mover, Reduction, Robot};
+use heelstrike::robot::{Axis, Base, LeftOut, Link, Mover, Reduction, Rim, Robot};
 use serde::Deserialize;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -16,6 +16,15 @@ fn model(name: &str) -> Robot {
 
 fn load(text: &str) -> Robot {
     Robot::from_urdf(text).expect("a robot")
+}
+
+/// Centre and radius of the disc that is a link's only shape.
+fn disc(link: &Link) -> ([f64; 2], f64) {
+    let [shape] = &link.shapes[..] else { panic!("one shape") };
+    match (shape.corners(), shape.rim()) {
+        (&[centre], Rim::Circle { radius }) => (centre, radius),
+        other => panic!("{other:?} is no disc"),
+    }
 }
 
 /// A robot of these elements, on the line after its first tag.
@@ -73,7 +82,7 @@ fn ramone_keeps_the_digits_of_table_1() {
         for foot in ["left_foot", "right_foot"] {
             let foot = &ramone.links[ramone.link(foot).expect("a foot")];
             assert!(!foot.has_inertial);
-            let [FootShape::Disc { centre, radius }] = foot.shapes[..] else { panic!("one disc") };
+            let (centre, radius) = disc(foot);
             assert_eq!((centre, radius), ([0.0, -0.2385], 0.02815));
             assert_eq!(foot.point::<f64>([0.001, 0.5, 0.0]), [0.001, -0.2385]);
         }
@@ -97,7 +106,7 @@ fn walkers_hang_from_the_hip_with_point_feet() {
         }
         assert_eq!((walker.joints[0].origin, walker.joints[0].axis), ([0.0, 0.0], Axis::Turn { sign: -1.0 }));
         for link in &walker.links {
-            let [FootShape::Disc { centre, radius }] = link.shapes[..] else { panic!("one point") };
+            let (centre, radius) = disc(link);
             assert_eq!((centre, radius), ([0.0, -1.0], 0.0));
         }
         assert_eq!(walker.left_out, []);
@@ -109,7 +118,7 @@ fn block_is_one_body_on_one_point() {
     let block = model("block");
     assert_eq!((block.bodies.len(), block.dofs()), (1, 3));
     assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, [-1.0, 1.0], 1.0));
-    let [FootShape::Disc { centre, radius }] = block.links[0].shapes[..] else { panic!("one point") };
+    let (centre, radius) = disc(&block.links[0]);
     assert_eq!((centre, radius), ([0.0, 0.0], 0.0));
 }
 
@@ -207,14 +216,13 @@ fn close(value: f64, reference: f64) {
 fn wheels_of_upkie_are_discs_and_meshes_of_solo_are_told() {
     let upkie = load(include_str!("../data/robots/upkie/upkie.urdf"));
     let tire = &upkie.links[upkie.link("left_wheel_tire").expect("a tire")];
-    let [FootShape::Disc { radius, .. }] = tire.shapes[..] else { panic!("one disc") };
-    assert_eq!(radius, 0.05);
+    assert_eq!(disc(tire).1, 0.05);
 
     let solo = load(include_str!("../data/robots/solo8/solo.urdf"));
     assert!(solo.links.iter().all(|link| link.shapes.is_empty()));
     let foot = "collision mesh \"package://example-robot-data/robots/solo_description/meshes/obj/with_foot/solo_foot.obj\" \
                 of link \"FL_FOOT\"";
-    assert!(solo.left_out.contains(&left_out(foot, "meshes are not handled yet")), "{:?}", solo.left_out);
+    assert!(solo.left_out.contains(&left_out(foot, "its file was not read")), "{:?}", solo.left_out);
     assert!(solo.left_out.contains(&left_out("12 <limit> in <joint>", "joint limits do not enter an impact")));
 }
 
@@ -324,7 +332,7 @@ fn fixed_links_are_welded_with_their_turned_inertia() {
     // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
     let [x, z] = robot.links[1].point::<f64>([1.0, 2.0, 3.0]);
     assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15);
-    let [FootShape::Disc { centre, radius }] = robot.links[1].shapes[..] else { panic!("one disc") };
+    let (centre, radius) = disc(&robot.links[1]);
     assert_eq!((centre, radius, robot.links[1].body), ([2.0, 0.0], 0.1, 0));
     // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
     let [x, z] = robot.joints[0].origin;
@@ -341,9 +349,9 @@ fn a_box_foot_keeps_its_exact_corners_through_a_weld() {
         inertial(1.0, "0 0 0", 1.0)
     ));
     let robot = load(&text);
-    let [FootShape::Polygon { corners, .. }] = &robot.links[1].shapes[..] else { panic!("one polygon") };
+    let [polygon] = &robot.links[1].shapes[..] else { panic!("one polygon") };
     let (rear, front, low, high) = (0.05 - 0.1, 0.05 + 0.1, -0.3 - 0.02, -0.3 + 0.02);
-    assert_eq!(corners, &[[rear, low], [front, low], [front, high], [rear, high]]);
+    assert_eq!(polygon.corners(), [[rear, low], [front, low], [front, high], [rear, high]]);
 }
 
 #[test]
@@ -368,21 +376,15 @@ fn skipped_shapes_are_told_one_by_one() {
     let text = robot(&format!(
         "<link name=\"a\">{}{}{}{}</link>",
         inertial(1.0, "0 0 0", 1.0),
-        shape("<capsule radius=\"1\" length=\"1\"/>"),
+        shape("<mesh filename=\"foot.stl\"/>"),
         shape("<plane/>"),
-        format_args!(
-            "<collision><origin rpy=\"{FRAC_PI_4} 0 0\"/><geometry><cylinder radius=\"1\" length=\"1\"/></geometry></collision>"
-        )
+        shape("<sphere radius=\"1\"/>"),
     ));
     let robot = load(&text);
-    assert!(robot.links[0].shapes.is_empty());
+    assert_eq!(robot.links[0].shapes.len(), 1);
     let expected = [
-        left_out("collision capsule of link \"a\"", "capsules are not handled yet"),
+        left_out("collision mesh \"foot.stl\" of link \"a\"", "its file was not read"),
         left_out("collision <plane> of link \"a\"", "no shape of URDF"),
-        left_out(
-            "collision cylinder of link \"a\"",
-            "its axis is 45.0 degrees off the plane's normal: not handled yet",
-        ),
     ];
     assert_eq!(robot.left_out, expected);
 }

@@ -1,12 +1,12 @@
 //! Two answers to one question.
 
+use heelstrike::Robot;
 use heelstrike::description::Description;
 use heelstrike::impact::{Analysis, Outcome};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::{Defaults, State};
-use heelstrike::Robot;
 
 /// Of scale.
 const TOLERANCE: f64 = 1e-12;

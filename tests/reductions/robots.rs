@@ -35,7 +35,11 @@ fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
         let entries = variant.coordinates.iter().zip(values).map(|(name, &value)| (name.clone(), json!(value)));
         let (base, joints): (Vec<_>, Vec<_>) = entries.enumerate().partition(|(index, _)| *index < base);
         let [base, joints] = [base, joints].map(|part| Value::Object(part.into_iter().map(|(_, own)| own).collect()));
-        if base.as_object().is_some_and(|base| base.is_empty()) { json!({"joints": joints}) } else { json!({"base": base, "joints": joints}) }
+        if base.as_object().is_some_and(|base| base.is_empty()) {
+            json!({"joints": joints})
+        } else {
+            json!({"base": base, "joints": joints})
+        }
     };
     let held: Vec<&String> = joints.iter().step_by(2).collect();
     let mut states = Vec::new();

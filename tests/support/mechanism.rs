@@ -169,11 +169,8 @@ impl Mechanism {
                     ("continuous", [x, 0.0, z])
                 }
             };
-            let limit = if kind == "prismatic" {
-                "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>"
-            } else {
-                ""
-            };
+            let limit =
+                if kind == "prismatic" { "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>" } else { "" };
             writeln!(
                 out,
                 "<joint name=\"joint{index}\" type=\"{kind}\"><parent link=\"link{parent}\"/><child link=\"link{child}\"/>\
@@ -196,10 +193,8 @@ impl Mechanism {
         // The frame's pitch counts, so that the matter has turned by less.
         let pitch = pitch - root.turn;
         let arm = turned(root.anchor, pitch);
-        let mut poses = Poses {
-            pitch: vec![[pitch, rate]],
-            origin: vec![[minus([x, z], arm), minus([dx, dz], swept(arm, rate))]],
-        };
+        let mut poses =
+            Poses { pitch: vec![[pitch, rate]], origin: vec![[minus([x, z], arm), minus([dx, dz], swept(arm, rate))]] };
         for (index, joint) in self.joints.iter().enumerate() {
             let [pitch, rate] = poses.pitch[joint.parent];
             let [place, speed] = poses.point(joint.parent, joint.place);

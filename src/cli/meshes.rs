@@ -1,0 +1,142 @@
+//! Names of mesh files in a URDF -> files.
+//!
+//! ```text
+//!     package://NAME/rest    rest in the folder of package NAME, which is the first that is there of
+//!                              DIR/NAME, or DIR itself if it is the package    for each --package-path DIR,
+//!                              the same for each folder of ROS_PACKAGE_PATH,
+//!                              PREFIX/share/NAME                               for each of AMENT_PREFIX_PATH,
+//!                              the same as for DIR                             for each folder above the URDF file
+//!     file:///path, /path    that path
+//!     path                   from the folder of the URDF file
+//! ```
+//!
+//! A folder is a package if it is named so, or if its package.xml does. `model://` (Gazebo) means the same as `package://`,
+//! backslashes the same as slashes, and `%20` a space where no file is named with the percent sign itself. Only regular
+//! files are opened. A path that leaves its package is refused.
+
+use super::input;
+use heelstrike::description::Fetched;
+use heelstrike::{Error, Reason, Result};
+use percent_encoding::percent_decode_str;
+use std::path::{Component, Path, PathBuf};
+
+/// The largest mesh file that is read \[bytes\].
+const LARGEST: u64 = 64 << 20;
+/// The largest package.xml that is looked into \[bytes\].
+const LARGEST_MANIFEST: u64 = 1 << 20;
+
+/// Where meshes are looked for.
+pub(super) struct Meshes {
+    /// The URDF file's folder.
+    folder: PathBuf,
+    /// Folders that are packages or hold them, in the order of the search.
+    roots: Vec<PathBuf>,
+}
+
+impl Meshes {
+    /// Those of the URDF file `robot`; packages are first looked for in `package_path`.
+    pub fn of(robot: &Path, package_path: &[PathBuf]) -> Self {
+        let folder = robot.parent().unwrap_or(Path::new("")).to_owned();
+        let mut roots = package_path.to_vec();
+        roots.extend(listed("ROS_PACKAGE_PATH"));
+        roots.extend(listed("AMENT_PREFIX_PATH").into_iter().map(|prefix| prefix.join("share")));
+        let whole = Path::new(".").join(&folder).canonicalize().unwrap_or_default();
+        roots.extend(whole.ancestors().map(Path::to_owned));
+        Self { folder, roots }
+    }
+
+    /// The file that a URDF calls `name`.
+    ///
+    /// # Errors
+    /// [`Reason::Unsupported`] for a path that leaves its package.
+    pub fn fetch(&self, name: &str) -> Result<Fetched> {
+        let as_written = name.replace('\\', "/");
+        let decoded = percent_decode_str(&as_written).decode_utf8_lossy().into_owned();
+        for name in [&as_written, &decoded] {
+            refuse_leaving(name)?;
+        }
+        let found = [&as_written, &decoded].into_iter().find_map(|name| self.find(name));
+        let Some(path) = found else { return Ok(Fetched::Nothing { why: self.missing(&decoded) }) };
+        Ok(match input::bytes_up_to(&path, LARGEST) {
+            Ok(bytes) => Fetched::Bytes(bytes),
+            Err(error) => Fetched::Nothing { why: error.reason().to_string() },
+        })
+    }
+
+    fn find(&self, name: &str) -> Option<PathBuf> {
+        let path = match package_and_path(name) {
+            Some((package, path)) => {
+                return self.packages(package).map(|folder| folder.join(path)).find(|path| path.is_file());
+            }
+            None => self.folder.join(name.strip_prefix("file://").unwrap_or(name)),
+        };
+        path.is_file().then_some(path)
+    }
+
+    /// The folders of a package.
+    fn packages<'a>(&'a self, name: &'a str) -> impl Iterator<Item = PathBuf> + 'a {
+        let inside = move |root: &PathBuf| {
+            let below = root.join(name);
+            if below.is_dir() { Some(below) } else { is_package(root, name).then(|| root.clone()) }
+        };
+        self.roots.iter().filter_map(inside)
+    }
+
+    fn missing(&self, name: &str) -> String {
+        match package_and_path(name) {
+            Some((package, _)) if self.packages(package).next().is_none() => {
+                format!("package {package} is not here: name the folder that holds it by --package-path")
+            }
+            Some((package, _)) => format!("no such file in package {package}"),
+            None if name.contains("://") && !name.starts_with("file://") => "no file of this machine".to_owned(),
+            None => "no such file".to_owned(),
+        }
+    }
+}
+
+/// The folders that an environment variable lists.
+fn listed(variable: &str) -> Vec<PathBuf> {
+    let all = std::env::var_os(variable).unwrap_or_default();
+    std::env::split_paths(&all).filter(|folder| !folder.as_os_str().is_empty()).collect()
+}
+
+/// Package and path of a name like `package://NAME/path`.
+fn package_and_path(name: &str) -> Option<(&str, &str)> {
+    let rest = name.strip_prefix("package://").or_else(|| name.strip_prefix("model://"))?;
+    let (package, path) = rest.split_once('/').unwrap_or((rest, ""));
+    Some((package, path.trim_start_matches('/')))
+}
+
+/// Refuses a path that leads out of its package on the way.
+fn refuse_leaving(name: &str) -> Result<()> {
+    let Some((package, path)) = package_and_path(name) else { return Ok(()) };
+    let mut depth = Some(0_usize);
+    for component in Path::new(path).components() {
+        depth = match component {
+            Component::Normal(_) => depth.map(|depth| depth + 1),
+            Component::CurDir => depth,
+            Component::ParentDir => depth.and_then(|depth| depth.checked_sub(1)),
+            Component::RootDir | Component::Prefix(_) => None,
+        };
+    }
+    if depth.is_some() && !matches!(package, "" | "." | "..") {
+        return Ok(());
+    }
+    let error = Error::new(Reason::Unsupported(format!("the mesh \"{name}\" leaves its package")));
+    Err(error.hint("name a file inside the package, as in package://NAME/meshes/foot.stl"))
+}
+
+/// Whether `folder` is the package of that name.
+fn is_package(folder: &Path, name: &str) -> bool {
+    if folder.file_name().is_some_and(|own| own == name) {
+        return true;
+    }
+    let manifest = folder.join("package.xml");
+    if !manifest.is_file() {
+        return false;
+    }
+    let bytes = input::bytes_up_to(&manifest, LARGEST_MANIFEST).unwrap_or_default();
+    let text = String::from_utf8_lossy(&bytes);
+    let own = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
+    own.is_some_and(|(own, _)| own.trim() == name)
+}

@@ -1,0 +1,235 @@
+//! COLLADA (DAE) -> vertices.
+//!
+//! ```text
+//!     p = axes (unit (T_1 ... T_k p_mesh))         T_1 ... T_k: the transformations of the nodes from the scene inward
+//! ```
+//!
+//! Only what places vertices is read (COLLADA 1.4.1, chapters 5 and 6): asset, visual scene, nodes and the positions of
+//! geometries, those of skins in their bind shape. A file without a visual scene has its geometries as they are. An up axis
+//! that the file states is turned to z up; where it states none, z is up, as in the URDF (every tool of ROS does so,
+//! although COLLADA's own default is y). Nothing recurses, and node instances are counted: a file of a few lines could ask for
+//! 2^100 of them.
+
+use super::super::xml;
+use roxmltree::{Document, Node, NodeId};
+use std::collections::HashMap;
+
+/// The most elements of the scene, each instance counted.
+const MOST_INSTANCES: usize = 2_000_000;
+/// The most vertices, each instance counted.
+const MOST_VERTICES: usize = 4_000_000;
+/// The most digits of a number.
+const LONGEST_NUMBER: usize = 400;
+/// The deepest nesting of nodes, instances followed.
+const DEEPEST: usize = 200;
+
+/// The upper three rows of a homogeneous transformation.
+type Transform = [[f64; 4]; 3];
+
+const IDENTITY: Transform = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+/// The positions of all geometries that the scene shows \[m\]. Or why there are none.
+pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
+    let text = std::str::from_utf8(bytes).map_err(|_| "the text is not UTF-8".to_owned())?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let document = xml::parse(text).map_err(|error| error.to_string())?;
+    let root = document.root_element();
+    if root.tag_name().name() != "COLLADA" {
+        return Err(format!("the outermost element is <{}> and not <COLLADA>", root.tag_name().name()));
+    }
+    Scene::new(&document).vertices(&axes(root)?)
+}
+
+/// The turn of the file's axes to z up and the scale of its unit to metres.
+fn axes(root: Node<'_, '_>) -> Result<Transform, String> {
+    let asset = child(root, "asset");
+    let unit = asset.and_then(|asset| child(asset, "unit")).and_then(|unit| unit.attribute("meter"));
+    let unit = unit.map_or(Ok(1.0), number)?;
+    let up = asset.and_then(|asset| child(asset, "up_axis")).and_then(|up| up.text()).map(str::trim);
+    let turn = match up {
+        Some("X_UP") => [[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
+        Some("Y_UP") => [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
+        Some("Z_UP") | None => IDENTITY,
+        Some(other) => return Err(format!("unknown <up_axis> \"{other}\"")),
+    };
+    Ok(turn.map(|row| row.map(|entry| unit * entry)))
+}
+
+/// A document, its elements by id, and what was read of its geometries.
+struct Scene<'a, 'input> {
+    document: &'a Document<'input>,
+    by_id: HashMap<&'a str, Node<'a, 'input>>,
+    positions: HashMap<NodeId, Vec<[f64; 3]>>,
+    vertices: Vec<[f64; 3]>,
+}
+
+impl<'a, 'input: 'a> Scene<'a, 'input> {
+    fn new(document: &'a Document<'input>) -> Self {
+        let by_id = document.descendants().filter_map(|node| Some((node.attribute("id")?, node))).collect();
+        Self { document, by_id, positions: HashMap::new(), vertices: Vec::new() }
+    }
+
+    fn elements(&self, tag: &'static str) -> impl Iterator<Item = Node<'a, 'input>> {
+        self.document.descendants().filter(move |node| is(*node, tag))
+    }
+
+    /// The element that an attribute names by `#id`.
+    fn target(&self, node: Node<'_, '_>, attribute: &str) -> Result<Node<'a, 'input>, String> {
+        let url = node.attribute(attribute).unwrap_or_default();
+        let found = url.strip_prefix('#').and_then(|id| self.by_id.get(id));
+        found.copied().ok_or_else(|| format!("<{}> names \"{url}\", which is not there", node.tag_name().name()))
+    }
+
+    fn vertices(mut self, axes: &Transform) -> Result<Vec<[f64; 3]>, String> {
+        let scene = match self.elements("instance_visual_scene").next() {
+            Some(instance) => Some(self.target(instance, "url")?),
+            None => self.elements("visual_scene").next(),
+        };
+        let Some(scene) = scene else {
+            for geometry in self.elements("geometry").collect::<Vec<_>>() {
+                self.show(geometry, axes)?;
+            }
+            return Ok(self.vertices);
+        };
+        let mut waiting: Vec<(Node<'a, 'input>, Transform, usize)> = vec![(scene, *axes, 0)];
+        let mut instances = 0;
+        while let Some((parent, outer, depth)) = waiting.pop() {
+            let placed = product(&outer, &transformation(parent)?);
+            for node in parent.children() {
+                instances += 1;
+                if instances > MOST_INSTANCES || depth > DEEPEST {
+                    return Err("its nodes are too many, or name each other in a circle".into());
+                }
+                match node.tag_name().name() {
+                    "node" => waiting.push((node, placed, depth + 1)),
+                    "instance_node" => waiting.push((self.target(node, "url")?, placed, depth + 1)),
+                    "instance_geometry" => self.show(self.target(node, "url")?, &placed)?,
+                    "instance_controller" => {
+                        let controller = self.target(node, "url")?;
+                        let skin = child(controller, "skin").ok_or("only skins are read of its controllers")?;
+                        let shape = child(skin, "bind_shape_matrix").map_or(Ok(IDENTITY), matrix)?;
+                        self.show(self.target(skin, "source")?, &product(&placed, &shape))?;
+                    }
+                    _ => {}
+                }
+            }
+        }
+        Ok(self.vertices)
+    }
+
+    /// Adds the vertices of `geometry`, transformed.
+    fn show(&mut self, geometry: Node<'a, 'input>, placed: &Transform) -> Result<(), String> {
+        if !self.positions.contains_key(&geometry.id()) {
+            let positions = self.positions(geometry)?;
+            self.positions.insert(geometry.id(), positions);
+        }
+        let positions = self.positions.get(&geometry.id()).map_or(&[][..], Vec::as_slice);
+        if self.vertices.len() + positions.len() > MOST_VERTICES {
+            return Err(format!("more than {MOST_VERTICES} vertices"));
+        }
+        self.vertices.extend(positions.iter().map(|&point| apply(placed, point)));
+        Ok(())
+    }
+
+    /// The positions of `geometry` in its own frame.
+    fn positions(&self, geometry: Node<'a, 'input>) -> Result<Vec<[f64; 3]>, String> {
+        let mut positions = Vec::new();
+        for vertices in geometry.descendants().filter(|node| is(*node, "vertices")) {
+            let position = |node: &Node<'_, '_>| is(*node, "input") && node.attribute("semantic") == Some("POSITION");
+            let Some(input) = vertices.children().find(position) else { continue };
+            let source = self.target(input, "source")?;
+            let values = child(source, "float_array").and_then(|array| array.text()).unwrap_or_default();
+            let values: Vec<f64> = values.split_whitespace().map(number).collect::<Result<_, _>>()?;
+            let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
+            let count = |name, default| {
+                let value = accessor.and_then(|accessor| accessor.attribute(name));
+                value.map_or(Ok(default), |value| value.trim().parse().map_err(|_| format!("{name} \"{value}\"")))
+            };
+            let (offset, stride): (usize, usize) = (count("offset", 0)?, count("stride", 3)?);
+            let points = values.get(offset..).unwrap_or_default().chunks(stride.max(3));
+            positions.extend(points.filter_map(|point| point.first_chunk::<3>()));
+            if positions.len() > MOST_VERTICES {
+                return Err(format!("more than {MOST_VERTICES} vertices"));
+            }
+        }
+        Ok(positions)
+    }
+}
+
+/// The product of the transformations that stand in `node`, in their order.
+fn transformation(node: Node<'_, '_>) -> Result<Transform, String> {
+    let mut placed = IDENTITY;
+    for element in node.children() {
+        let step = match element.tag_name().name() {
+            "matrix" => matrix(element)?,
+            "translate" => {
+                let [x, y, z] = numbers(element)?;
+                [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]]
+            }
+            "scale" => {
+                let [x, y, z] = numbers(element)?;
+                [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]]
+            }
+            "rotate" => rotation(numbers(element)?),
+            tag @ ("lookat" | "skew") => return Err(format!("<{tag}> is not read")),
+            _ => continue,
+        };
+        placed = product(&placed, &step);
+    }
+    Ok(placed)
+}
+
+/// The turn about an axis \[x, y, z\] by an angle \[degrees\] (Rodrigues).
+fn rotation([x, y, z, degrees]: [f64; 4]) -> Transform {
+    let length = libm::hypot(libm::hypot(x, y), z);
+    if length == 0.0 {
+        return IDENTITY;
+    }
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let [x, y, z] = [x / length, y / length, z / length];
+    let (a, b, c) = (x * (1.0 - cos), y * (1.0 - cos), z * (1.0 - cos));
+    [
+        [cos + a * x, a * y - sin * z, a * z + sin * y, 0.0],
+        [b * x + sin * z, cos + b * y, b * z - sin * x, 0.0],
+        [c * x - sin * y, c * y + sin * x, cos + c * z, 0.0],
+    ]
+}
+
+/// The sixteen numbers of an element, row by row.
+fn matrix(element: Node<'_, '_>) -> Result<Transform, String> {
+    let [a, b, c, d, e, f, g, h, i, j, k, l, ..] = numbers::<16>(element)?;
+    Ok([[a, b, c, d], [e, f, g, h], [i, j, k, l]])
+}
+
+fn product(a: &Transform, b: &Transform) -> Transform {
+    a.map(|row| {
+        let entry = |k: usize| row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k];
+        [entry(0), entry(1), entry(2), entry(3) + row[3]]
+    })
+}
+
+fn apply(placed: &Transform, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    placed.map(|row| row[0] * x + row[1] * y + row[2] * z + row[3])
+}
+
+fn numbers<const N: usize>(element: Node<'_, '_>) -> Result<[f64; N], String> {
+    let values: Vec<f64> =
+        element.text().unwrap_or_default().split_whitespace().take(N + 1).map(number).collect::<Result<_, _>>()?;
+    values.try_into().map_err(|_| format!("<{}> needs {N} numbers", element.tag_name().name()))
+}
+
+fn number(word: &str) -> Result<f64, String> {
+    let word = word.trim();
+    let refused = || format!("\"{}\" is no number", word.chars().take(20).collect::<String>());
+    if word.len() > LONGEST_NUMBER { Err(refused()) } else { word.parse().map_err(|_| refused()) }
+}
+
+/// The first child of `node` with a tag.
+fn child<'a, 'input>(node: Node<'a, 'input>, tag: &str) -> Option<Node<'a, 'input>> {
+    node.children().find(|child| is(*child, tag))
+}
+
+/// Whether an element has a tag, in whichever namespace: each version of COLLADA has its own.
+fn is(node: Node<'_, '_>, tag: &str) -> bool {
+    node.is_element() && node.tag_name().name() == tag
+}

@@ -1,0 +1,112 @@
+//! Mesh files -> the vertices of collision meshes.
+//!
+//! ```text
+//!     file name --fetch, the caller's--> bytes --by the name's ending--> stl | obj | collada --> vertices
+//! ```
+//!
+//! The library opens no file: who calls it says what a name means and hands over the bytes. A mesh that is not there or
+//! cannot be read costs its link that shape, and the reason is kept for the user; a robot often comes without all of its
+//! meshes. Each file is asked for once, however often it is named. Time and memory grow no faster than n log n with the
+//! bytes, and the bytes are limited.
+
+mod collada;
+mod obj;
+mod stl;
+
+use super::{Description, Geometry};
+use crate::error::Result;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The most bytes of all meshes of a robot that are read.
+const MOST_BYTES: usize = 256 << 20;
+/// How a file begins that stands for one which was not fetched.
+const LFS_POINTER: &[u8] = b"version https://git-lfs";
+
+/// What is known of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mesh {
+    /// Nothing: [`Description::read_meshes`] was not called.
+    Unread,
+    /// It could not be read.
+    LeftOut {
+        /// Why, as in `no such file`.
+        why: String,
+    },
+    /// Its vertices in the mesh's own frame, before any factor of the URDF \[m\]; all are finite, there is at least one.
+    Vertices(Arc<[[f64; 3]]>),
+}
+
+/// What was found under the name of a mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Fetched {
+    /// The file's bytes.
+    Bytes(Vec<u8>),
+    /// Nothing that could be read.
+    Nothing {
+        /// Why, as in `no such file`.
+        why: String,
+    },
+}
+
+impl Description {
+    /// Reads the collision meshes from what `fetch` finds under their names: STL, OBJ and COLLADA (DAE), told apart by the
+    /// ending of the name.
+    ///
+    /// Of COLLADA the visual scene counts, with the transformations of its nodes, the unit, and an up axis that is
+    /// stated. Vertices of STL are rounded to f32, as the format has them; the other two keep all digits. A mesh that
+    /// cannot be read is kept as [`Mesh::LeftOut`], and [`Robot::left_out`](crate::Robot::left_out) tells why.
+    ///
+    /// # Errors
+    /// Those of `fetch`, at the link that names the mesh.
+    pub fn read_meshes(&mut self, mut fetch: impl FnMut(&str) -> Result<Fetched>) -> Result<()> {
+        let mut known: HashMap<String, Mesh> = HashMap::new();
+        let mut bytes = 0;
+        for link in &mut self.links {
+            let (name, location) = (&link.name, link.location);
+            for collision in &mut link.collisions {
+                let Geometry::Mesh { file, mesh, .. } = &mut collision.geometry else { continue };
+                if let Some(known) = known.get(file) {
+                    mesh.clone_from(known);
+                    continue;
+                }
+                let fetched = fetch(file)
+                    .map_err(|error| error.at(super::link_place(name)).on(location.line, location.column))?;
+                *mesh = read(file, &fetched, &mut bytes).unwrap_or_else(|why| Mesh::LeftOut { why });
+                known.insert(file.clone(), mesh.clone());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The mesh of what was fetched, whose bytes are added to the sum of `all`. Or why it cannot be read.
+fn read(file: &str, fetched: &Fetched, all: &mut usize) -> std::result::Result<Mesh, String> {
+    let bytes = match fetched {
+        Fetched::Bytes(bytes) => bytes,
+        Fetched::Nothing { why } => return Err(why.clone()),
+    };
+    *all = all.saturating_add(bytes.len());
+    if *all > MOST_BYTES {
+        return Err(format!("the meshes together have more than {} MiB", MOST_BYTES >> 20));
+    }
+    if bytes.starts_with(LFS_POINTER) {
+        return Err("only a pointer to the file is there: fetch it by git lfs pull".into());
+    }
+    let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    let vertices = match ending.as_deref() {
+        Some("stl") => stl::vertices(bytes),
+        Some("obj") => obj::vertices(bytes),
+        Some("dae") => collada::vertices(bytes),
+        _ => return Err("not a mesh of a kind that is read: STL, OBJ or DAE".into()),
+    }
+    .map_err(|why| format!("cannot be read: {why}"))?;
+    match vertices.iter().flatten().find(|coordinate| !coordinate.is_finite()) {
+        Some(coordinate) => Err(format!("one of its vertices has the coordinate {coordinate}")),
+        None if vertices.is_empty() => Err("it has no vertices".into()),
+        None => Ok(Mesh::Vertices(vertices.into())),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,246 @@
+//! Readers of mesh files, against shapes written by hand.
+
+use super::*;
+use crate::error::{Error, Reason};
+
+/// A square pyramid: four corners on the ground and a tip.
+const PYRAMID: [[f64; 3]; 5] =
+    [[0.25, 0.5, 0.0], [-0.25, 0.5, 0.0], [-0.25, -0.5, 0.0], [0.25, -0.5, 0.0], [0.125, 0.0, 0.75]];
+const TRIANGLES: [[usize; 3]; 6] = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 2, 1], [0, 3, 2]];
+
+fn ascii_stl() -> String {
+    let facet = |triangle: &[usize; 3]| {
+        let vertices = triangle.map(|at| PYRAMID[at].map(|number| format!(" {number:e}")).concat());
+        format!(
+            "facet normal 0 0 0\n outer loop\n  vertex{}\n  vertex{}\n  vertex{}\n endloop\nendfacet\n",
+            vertices[0], vertices[1], vertices[2]
+        )
+    };
+    format!("solid foot\n{}endsolid foot\n", TRIANGLES.iter().map(facet).collect::<String>())
+}
+
+fn binary_stl(header: &[u8]) -> Vec<u8> {
+    let mut bytes = header.to_vec();
+    bytes.resize(80, 0);
+    bytes.extend((TRIANGLES.len() as u32).to_le_bytes());
+    for triangle in TRIANGLES {
+        bytes.extend([0; 12]);
+        bytes.extend(triangle.iter().flat_map(|&at| PYRAMID[at]).flat_map(|number| (number as f32).to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+fn obj() -> String {
+    let vertices = PYRAMID.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+    // Some faces count back from the last vertex, the bottom is one face of four, and a vertex belongs to none.
+    format!(
+        "# caf\u{e9}\nmtllib foot.mtl\no foot\n{vertices}v 9 9 9\nvn 0 0 1\nf 1 2 5\nf 2//1 3//1 5//1\nf -4 -3 -2\nf 4 1 5\nf 4 3 2 1\n"
+    )
+}
+
+/// A COLLADA text of `asset` and `scene` around the pyramid.
+fn dae(asset: &str, scene: &str, points: &[[f64; 3]]) -> String {
+    let numbers: String = points.iter().flatten().map(|number| format!("{number} ")).collect();
+    format!(
+        r##"<?xml version="1.0" encoding="utf-8"?>
+        <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>{asset}</asset>
+        <library_geometries><geometry id="foot"><mesh>
+          <source id="normals"><float_array id="n" count="3">7 7 7</float_array></source>
+          <source id="positions"><float_array id="p" count="{}">{numbers}</float_array><technique_common>
+            <accessor source="#p" count="{}" stride="3"/></technique_common></source>
+          <vertices id="v"><input semantic="NORMAL" source="#normals"/><input semantic="POSITION" source="#positions"/></vertices>
+          <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+        </mesh></geometry></library_geometries>{scene}</COLLADA>"##,
+        3 * points.len(),
+        points.len()
+    )
+}
+
+fn scene(nodes: &str) -> String {
+    format!(
+        r##"<library_visual_scenes><visual_scene id="unused"/><visual_scene id="s">{nodes}</visual_scene>
+        </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene>"##
+    )
+}
+
+const SHOWN: &str = r##"<instance_geometry url="#foot"/>"##;
+
+fn mesh(file: &str, bytes: impl Into<Vec<u8>>) -> std::result::Result<Mesh, String> {
+    read(file, &Fetched::Bytes(bytes.into()), &mut 0)
+}
+
+/// The vertices in order, each once.
+#[track_caller]
+fn vertices(file: &str, bytes: impl Into<Vec<u8>>) -> Vec<[f64; 3]> {
+    match mesh(file, bytes).unwrap_or_else(|why| panic!("{file}: {why}")) {
+        Mesh::Vertices(vertices) => sorted(&vertices),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn sorted(vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    // Adding 0 makes -0 the 0 that it equals.
+    let mut vertices: Vec<_> = vertices.iter().map(|vertex| vertex.map(|number| number + 0.0)).collect();
+    vertices.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    vertices.dedup();
+    vertices
+}
+
+#[track_caller]
+fn assert_near(found: &[[f64; 3]], expected: &[[f64; 3]]) {
+    let far = found.iter().flatten().zip(expected.iter().flatten()).any(|(a, b)| (a - b).abs() > 1e-15);
+    assert!(found.len() == expected.len() && !far, "{found:?} is not {expected:?}");
+}
+
+#[test]
+fn every_format_gives_the_same_vertices() {
+    let expected = sorted(&PYRAMID);
+    assert_eq!(vertices("foot.stl", ascii_stl()), expected);
+    assert_eq!(vertices("foot.STL", binary_stl(b"by hand")), expected);
+    // Many programs begin a binary file as if it were a text.
+    assert_eq!(vertices("foot.stl", binary_stl(b"solid foot")), expected);
+    assert_eq!(vertices("foot.obj", obj()), expected);
+    let shown = scene(&format!("<node>{SHOWN}</node>"));
+    assert_eq!(vertices("foot.dae", dae("<up_axis>Z_UP</up_axis>", &shown, &PYRAMID)), expected);
+    assert_eq!(vertices("foot.dae", dae("", "", &PYRAMID)), expected);
+    assert_eq!(vertices("a.b/foot.Dae", format!("\u{feff}{}", dae("", &shown, &PYRAMID))), expected);
+}
+
+#[test]
+fn texts_keep_their_digits() {
+    assert_eq!(vertices("a.obj", "v 0.1 0.2 -0.3\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")[1], [0.1, 0.2, -0.3]);
+    assert_eq!(vertices("a.dae", dae("", "", &[[0.1, 0.2, -0.3]])), [[0.1, 0.2, -0.3]]);
+}
+
+#[test]
+fn collada_is_turned_to_z_up_and_metres() {
+    let shown = scene(&format!("<node>{SHOWN}</node>"));
+    let millimetres = PYRAMID.map(|vertex| vertex.map(|number| 1000.0 * number));
+    let found = vertices("a.dae", dae("<unit name=\"mm\" meter=\"0.001\"/>", &shown, &millimetres));
+    assert_near(&found, &sorted(&PYRAMID));
+    // Y up: x stays, z up is the file's y, and what points to the viewer there is -y here. X up: right is -y of the file.
+    let y_up = PYRAMID.map(|[x, y, z]| [x, z, -y]);
+    assert_eq!(vertices("a.dae", dae("<up_axis>Y_UP</up_axis>", &shown, &y_up)), sorted(&PYRAMID));
+    let x_up = PYRAMID.map(|[x, y, z]| [z, -x, -y]);
+    assert_eq!(vertices("a.dae", dae("<up_axis> X_UP </up_axis>", &shown, &x_up)), sorted(&PYRAMID));
+}
+
+#[test]
+fn collada_nodes_place_their_geometries() {
+    let placed = |nodes: &str| vertices("a.dae", dae("", &scene(nodes), &[[1.0, 2.0, 3.0]]));
+    // Turned by 90 degrees about z, then moved: (1, 2, 3) -> (-2, 1, 3) -> (8, 1, 3).
+    let turned = "<translate>10 0 0</translate><rotate>0 0 1 90</rotate>";
+    assert_near(&placed(&format!("<node>{turned}{SHOWN}</node>")), &[[8.0, 1.0, 3.0]]);
+    // The outer node scales what the inner one has moved.
+    let nested = format!("<node><scale>2 2 2</scale><node>{turned}{SHOWN}</node></node>");
+    assert_near(&placed(&nested), &[[16.0, 2.0, 6.0]]);
+    let matrix = "<matrix>0 -1 0 10 1 0 0 0 0 0 1 0 0 0 0 1</matrix>";
+    assert_near(&placed(&format!("<node>{matrix}{SHOWN}</node>")), &[[8.0, 1.0, 3.0]]);
+    // One geometry shown twice, once through a node instance.
+    let twice = format!(
+        r##"<node id="n"><translate>1 0 0</translate>{SHOWN}</node>
+            <node><translate>0 5 0</translate><instance_node url="#n"/></node>"##
+    );
+    assert_near(&placed(&twice), &[[2.0, 2.0, 3.0], [2.0, 7.0, 3.0]]);
+}
+
+#[test]
+fn what_cannot_be_read_is_told() {
+    let why = |file: &str, bytes: &[u8]| mesh(file, bytes).expect_err(file);
+    assert_eq!(why("foot.ply", b"ply"), "not a mesh of a kind that is read: STL, OBJ or DAE");
+    assert_eq!(
+        why("foot.stl", b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n"),
+        "only a pointer to the file is there: fetch it by git lfs pull"
+    );
+    assert_eq!(why("a.obj", b"o nothing\nv 0 0 0\n"), "it has no vertices");
+    assert_eq!(why("a.obj", b"v 0 0 nan\nf 1 1 1\n"), "one of its vertices has the coordinate NaN");
+    assert_eq!(why("a.obj", b"v 0 0 1e999\nf 1 1 1\n"), "one of its vertices has the coordinate inf");
+    let mut bytes = binary_stl(b"");
+    bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert_eq!(why("a.stl", &bytes), "one of its vertices has the coordinate NaN");
+    let unread = |file: &str, bytes: &[u8]| assert!(why(file, bytes).starts_with("cannot be read: "), "{file}");
+    unread("a.stl", b"");
+    unread("a.stl", &binary_stl(b"")[..200]);
+    unread("a.stl", b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2");
+    unread("a.obj", b"v 0 0 0\nf 1 2 3\n");
+    unread("a.dae", b"<COLLADA>");
+    unread("a.dae", b"<robot/>");
+    unread("a.dae", dae("<unit meter=\"x\"/>", "", &PYRAMID).as_bytes());
+    unread("a.dae", dae("", &scene("<node><instance_geometry url=\"#hand\"/></node>"), &PYRAMID).as_bytes());
+    unread("a.dae", dae("", &scene("<node><rotate>1 2 3</rotate></node>"), &PYRAMID).as_bytes());
+}
+
+#[test]
+fn nodes_that_name_each_other_end() {
+    let circle = r##"<node id="a"><instance_node url="#b"/></node><node id="b"><instance_node url="#a"/></node>"##;
+    let told = "cannot be read: its nodes are too many, or name each other in a circle";
+    assert_eq!(mesh("a.dae", dae("", &scene(circle), &PYRAMID)), Err(told.into()));
+    // Sixty nodes, each shown twice by the next: 2^60 in all.
+    let doubled = |k: usize| {
+        let twice = format!("<instance_node url=\"#n{}\"/>", k + 1).repeat(2);
+        format!("<node id=\"n{k}\">{twice}</node>")
+    };
+    let laughs = format!("{}<node id=\"n60\"/>", (0..60).map(doubled).collect::<String>());
+    assert_eq!(mesh("a.dae", dae("", &scene(&laughs), &PYRAMID)), Err(told.into()));
+}
+
+#[test]
+fn mutilated_files_never_panic() {
+    let shown = scene(&format!("<node><translate>1 0 0</translate>{SHOWN}</node>"));
+    let files: [(&str, Vec<u8>); 4] = [
+        ("a.stl", binary_stl(b"")),
+        ("a.stl", ascii_stl().into()),
+        ("a.obj", obj().into()),
+        ("a.dae", dae("<up_axis>Y_UP</up_axis>", &shown, &PYRAMID).into()),
+    ];
+    let mut seed = 1_u64;
+    let mut next = |below: usize| {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % below
+    };
+    let mut read = 0;
+    for round in 0..20_000 {
+        let (file, mut bytes) = files[round % files.len()].clone();
+        match next(4) {
+            0 => bytes.truncate(next(bytes.len())),
+            1 => bytes = (0..next(300)).map(|_| next(256) as u8).collect(),
+            _ => {
+                for _ in 0..1 + next(4) {
+                    let at = next(bytes.len());
+                    bytes[at] = if next(2) == 0 { next(256) as u8 } else { b"0 -9/#<>e.\n"[next(11)] };
+                }
+            }
+        }
+        read += usize::from(mesh(file, bytes).is_ok());
+    }
+    assert!(read > 1000, "{read} were read");
+}
+
+#[test]
+fn each_file_is_asked_for_once_and_refusals_name_the_link() {
+    let collision = |file: &str| format!("<collision><geometry><mesh filename=\"{file}\"/></geometry></collision>");
+    let urdf = format!(
+        "<robot name=\"r\">\n<link name=\"a\">{}{}{}</link></robot>",
+        collision("x.obj"),
+        collision("y.obj"),
+        collision("x.obj")
+    );
+    let mut description = Description::from_urdf(&urdf).expect("a description");
+    let mut asked = Vec::new();
+    let fetch = |file: &str| {
+        asked.push(file.to_owned());
+        Ok(if file == "x.obj" { Fetched::Bytes(obj().into()) } else { Fetched::Nothing { why: "gone".into() } })
+    };
+    description.read_meshes(fetch).expect("read");
+    assert_eq!(asked, ["x.obj", "y.obj"]);
+    let read = |at: usize| match &description.links[0].collisions[at].geometry {
+        Geometry::Mesh { mesh, .. } => mesh.clone(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((read(0), read(1)), (read(2), Mesh::LeftOut { why: "gone".into() }));
+    assert_ne!(read(0), Mesh::Unread);
+
+    let refused = description.read_meshes(|_| Err(Error::new(Reason::Unsupported("no".into())))).expect_err("refused");
+    assert_eq!(refused.to_string(), "2:1: link \"a\": no");
+}

@@ -1,0 +1,179 @@
+//! The corners of a cloud of points: the vertices of its convex hull, without those that no contact can tell from a straight
+//! side.
+//!
+//! ```text
+//!     points --parry, scaled to size one--> convex hull --drop what bulges less than 1e-6 of the size--> corners
+//! ```
+//!
+//! A real sole is meshed with dozens of vertices along one side, which rounding (f32, or six decimals of a text) leaves a
+//! little off the line. The chain of hull vertices between two kept ones is replaced by its chord where none of it is
+//! farther off than [`FLAT`] (Douglas and Peucker, 1973); corners are dropped, never moved, so a side loses at most that
+//! much, and what is kept are points of the file. In n points with h on the hull: n log h as a rule.
+
+use crate::planar::{Vector, difference};
+use parry2d::math::Vector as ParryVector;
+use parry2d::transformation::convex_hull_idx;
+use std::cmp::Ordering;
+
+/// What a chain may bulge and still be a straight side, as part of the hull's size: as much as the default contact tolerance
+/// is of the robot's size.
+const FLAT: f64 = 1e-6;
+
+/// Coordinates that differ by less than this part of the largest one are the same point.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The corners of the convex hull of `points`, counter-clockwise from the lowest (of several the rearmost); two if the points lie on a line, one if they coincide. Or
+/// why there are none.
+pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String> {
+    let Some(&first) = points.first() else { return Err("it has no vertices".into()) };
+    let largest = points.iter().flatten().fold(0.0, |largest: f64, coordinate| largest.max(coordinate.abs()));
+    let size = points.iter().fold(0.0, |size: f64, &point| {
+        let [x, z] = difference(point, first);
+        size.max(x.abs()).max(z.abs())
+    });
+    // Not finite either where only the distance of two points leaves the range.
+    if points.iter().flatten().any(|coordinate| !coordinate.is_finite()) || !size.is_finite() {
+        return Err("its vertices leave the range of f64".into());
+    }
+    if size <= ROUNDING * largest {
+        return Ok(vec![first]);
+    }
+    // parry compares with fixed tolerances: it is given points of size one, exactly scaled, about the origin.
+    let unit = |length: f64| libm::scalbn(length, -libm::ilogb(size));
+    let about: Vec<Vector<f64>> = points.iter().map(|&point| difference(point, first).map(unit)).collect();
+    let cloud: Vec<ParryVector> = about.iter().map(|&[x, z]| ParryVector::new(x, z)).collect();
+    let hull = convex_hull_idx(&cloud);
+    let chain: Vec<Vector<f64>> = hull.iter().map(|&index| about[index]).collect();
+    let mut corners: Vec<Vector<f64>> = straightened(&chain).into_iter().map(|at| points[hull[at]]).collect();
+    let height = |at: &usize| (corners[*at][1], corners[*at][0]);
+    let lowest = (0..corners.len()).min_by(|a, b| height(a).partial_cmp(&height(b)).unwrap_or(Ordering::Equal));
+    corners.rotate_left(lowest.unwrap_or(0));
+    Ok(corners)
+}
+
+/// The indices of the points of a closed convex chain that are kept.
+fn straightened(chain: &[Vector<f64>]) -> Vec<usize> {
+    // A farthest point from anywhere is no point within a side.
+    let farthest = |from: Vector<f64>| {
+        let far = |&at: &usize| {
+            let [x, z] = difference(chain[at], from);
+            libm::hypot(x, z)
+        };
+        (0..chain.len()).max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
+    };
+    let start = farthest(chain[0]);
+    let opposite = (farthest(chain[start]) + chain.len() - start) % chain.len();
+    let at = |step: usize| (start + step) % chain.len();
+
+    let mut kept = vec![start];
+    // Pieces of the chain still to be looked at, the next one last.
+    let mut pieces = vec![(opposite, chain.len()), (0, opposite)];
+    while let Some((from, to)) = pieces.pop() {
+        let (a, b) = (chain[at(from)], chain[at(to)]);
+        let off = |&step: &usize| bulge(a, b, chain[at(step)]);
+        match (from + 1..to).max_by(|x, y| off(x).total_cmp(&off(y))) {
+            Some(middle) if off(&middle) > FLAT => pieces.extend([(middle, to), (from, middle)]),
+            _ if to < chain.len() => kept.push(at(to)),
+            _ => {}
+        }
+    }
+    kept
+}
+
+/// How far `point` is from the segment between `a` and `b`.
+fn bulge(a: Vector<f64>, b: Vector<f64>, point: Vector<f64>) -> f64 {
+    let (side, arm) = (difference(b, a), difference(point, a));
+    let length = libm::hypot(side[0], side[1]);
+    if length == 0.0 {
+        return libm::hypot(arm[0], arm[1]);
+    }
+    (side[0] * arm[1] - side[1] * arm[0]).abs() / length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers from -1 to 1 that are the same in every run.
+    fn numbers(mut seed: u64) -> impl FnMut() -> f64 {
+        move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    /// The area to the left of a, b, c, twice.
+    fn turn(a: Vector<f64>, b: Vector<f64>, c: Vector<f64>) -> f64 {
+        let (side, arm) = (difference(b, a), difference(c, a));
+        side[0] * arm[1] - side[1] * arm[0]
+    }
+
+    /// All points lie inside the corners, off by `beyond` at most; corners are points, and turn left.
+    fn assert_hull(points: &[Vector<f64>], corners: &[Vector<f64>], beyond: f64) {
+        assert!(corners.iter().all(|corner| points.contains(corner)));
+        for (at, &a) in corners.iter().enumerate() {
+            let (b, c) = (corners[(at + 1) % corners.len()], corners[(at + 2) % corners.len()]);
+            if corners.len() > 2 {
+                assert!(turn(a, b, c) > 0.0, "{a:?} {b:?} {c:?}");
+            }
+            let side = libm::hypot(b[0] - a[0], b[1] - a[1]);
+            let outside = points.iter().map(|&point| -turn(a, b, point) / side).fold(0.0, f64::max);
+            assert!(outside <= beyond, "{outside} outside {a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn a_sole_meshed_with_fifty_vertices_a_side_has_four_corners() {
+        // Tilted, so that rounding to f32 and to six decimals leaves every vertex off the line.
+        let (sin, cos) = 0.3_f64.sin_cos();
+        let sole = |round: fn(f64) -> f64| -> Vec<Vector<f64>> {
+            let along = (0..=50).map(|step| f64::from(step) / 250.0 - 0.1);
+            let both = along.flat_map(|x| [[x, -0.02], [x, 0.02]]);
+            both.map(|[x, z]| [cos * x + sin * z, cos * z - sin * x].map(round)).collect()
+        };
+        for round in [|x| x, |x| f64::from(x as f32), |x: f64| (x * 1e7).round() / 1e7] {
+            let points = sole(round);
+            let found = corners(&points).expect("a hull");
+            assert_eq!(found.len(), 4);
+            assert_hull(&points, &found, 1e-6 * 0.2);
+        }
+    }
+
+    #[test]
+    fn clouds_of_any_size_keep_their_hulls() {
+        for (seed, scale) in [(1, 1.0), (2, 1e-9), (3, 1e12), (4, 1e-100)] {
+            let mut next = numbers(seed);
+            for count in [3, 4, 10, 300] {
+                let points: Vec<Vector<f64>> = (0..count).map(|_| [next() * scale, next() * scale]).collect();
+                let found = corners(&points).expect("a hull");
+                assert_hull(&points, &found, 4e-6 * scale);
+            }
+        }
+    }
+
+    #[test]
+    fn a_fine_round_mesh_of_a_hundred_thousand_vertices_keeps_its_shape() {
+        let turn = |step: u32| (f64::from(step % 50_000) * std::f64::consts::TAU / 5e4).sin_cos();
+        let points: Vec<Vector<f64>> = (0..100_000).map(turn).map(|(sin, cos)| [0.3 * cos, 0.3 * sin]).collect();
+        let found = corners(&points).expect("a hull");
+        // A chord over the angle a bulges by r (1 - cos(a / 2)).
+        assert!((500..5_000).contains(&found.len()), "{}", found.len());
+        assert_hull(&points[..50_000], &found, 1e-6);
+    }
+
+    #[test]
+    fn points_lines_and_copies_have_their_ends_alone() {
+        assert_eq!(corners(&[[0.3, 0.1]; 5]), Ok(vec![[0.3, 0.1]]));
+        // Apart by the rounding of where they are.
+        assert_eq!(corners(&[[1e9, 1e9], [1e9 + 1e-7, 1e9]]), Ok(vec![[1e9, 1e9]]));
+        let line: Vec<Vector<f64>> = (0..100).map(|step| f64::from(step % 34)).map(|t| [0.1 * t, -0.3 * t]).collect();
+        let mut ends = corners(&line).expect("a line");
+        ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(ends, [line[0], line[33]]);
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let copies: Vec<Vector<f64>> = square.into_iter().cycle().take(40).collect();
+        assert_eq!(corners(&copies).expect("a square").len(), 4);
+        assert_eq!(corners(&[]), Err("it has no vertices".into()));
+        assert_eq!(corners(&[[0.0; 2], [f64::INFINITY, 0.0]]), Err("its vertices leave the range of f64".into()));
+    }
+}

@@ -1,0 +1,62 @@
+//! The projection of a box: `{c + sum of s_i g_i, |s_i| <= 1}` with the projected half axes g_i, a polygon with parallel
+//! sides (a zonogon).
+//!
+//! Walking along the half sides in the order of their angles gives the corners, so those of a shape that is not turned come
+//! from its centre and half sizes by one sum each.
+
+use crate::planar::{Vector, difference, dot, sum};
+
+/// Half sides shorter than this part of the longest, or as nearly parallel, are rounding (a quarter turn, whose cosine is
+/// 6e-17 in f64, leaves them) and would tear one corner into two.
+const ROUNDING: f64 = 1e-12;
+
+/// The corners about `centre` with these half sides, counter-clockwise from the lowest: one if all vanish, two if all are
+/// parallel.
+pub(super) fn corners(centre: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
+    let sides = distinct(half_sides);
+    // From the lowest corner up along all sides, and back down along them.
+    let count = sides.len();
+    let corner = |step: usize| {
+        sides.iter().enumerate().fold([0.0; 2], |corner, (index, &side)| {
+            let forward = index < step && step <= index + count;
+            if forward { sum(corner, side) } else { difference(corner, side) }
+        })
+    };
+    (0..(2 * count).max(1)).map(|step| sum(centre, corner(step))).collect()
+}
+
+/// The half sides that remain when rounding is dropped and parallel ones are joined, all pointing up (or level and
+/// forward), by rising angle from level.
+fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
+    let longest = half_sides.iter().map(|&side| length(side)).fold(0.0, f64::max);
+    let mut sides: Vec<Vector<f64>> = Vec::with_capacity(half_sides.len());
+    for &side in half_sides {
+        if length(side) <= ROUNDING * longest {
+            continue;
+        }
+        let parallel = sides.iter_mut().find(|known| sine(**known, side).abs() <= ROUNDING);
+        match parallel {
+            Some(known) if dot(*known, side) > 0.0 => *known = sum(*known, side),
+            Some(known) => *known = difference(*known, side),
+            None => sides.push(side),
+        }
+    }
+    for side in &mut sides {
+        if side[1] < 0.0 || (side[1] == 0.0 && side[0] < 0.0) {
+            *side = side.map(|component| 0.0 - component);
+        }
+    }
+    sides.sort_by(|&a, &b| 0.0_f64.total_cmp(&sine(a, b)));
+    sides
+}
+
+fn length([x, z]: Vector<f64>) -> f64 {
+    libm::hypot(x, z)
+}
+
+/// Sine of the angle from `a` to `b`; positive where `b` points to the left of `a`, seen with forward to the right and up
+/// upward.
+fn sine(a: Vector<f64>, b: Vector<f64>) -> f64 {
+    let (la, lb) = (length(a), length(b));
+    (a[0] / la) * (b[1] / lb) - (a[1] / la) * (b[0] / lb)
+}

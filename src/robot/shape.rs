@@ -1,0 +1,150 @@
+//! The outline of a collision shape in the plane.
+//!
+//! ```text
+//!     outline = convex polygon of corners + rim          (every point of the one added to every point of the other)
+//!
+//!     corners  rim      shape                            corners  rim      shape
+//!     one      point    point                            three +  point    box, convex hull of a mesh
+//!     one      circle   sphere, cylinder along n         three +  circle   rounded box
+//!     two      point    flat plate, upright              two      ellipse  cylinder oblique to the plane
+//!     two      circle   capsule
+//! ```
+//!
+//! Along a direction d the outline reaches as far as its farthest corner does, plus the rim's own reach: so it touches a
+//! line with one corner's rim, or with those of both ends of a flat side.
+
+use crate::planar::{Vector, difference, dot, scaled, sum};
+use parry2d::math::Vector as ParryVector;
+use parry2d::shape::SharedShape;
+
+/// A collision shape in the plane, rigid in its body's frame: a convex polygon of corners swept by a rim.
+#[derive(Debug, Clone)]
+pub struct FootShape {
+    corners: Vec<Vector<f64>>,
+    rim: Rim,
+    mesh: Option<String>,
+    polygon: Option<SharedShape>,
+}
+
+/// What stands about each corner of a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rim {
+    /// A circle; of radius 0, the corner itself.
+    Circle {
+        /// Radius \[m\].
+        radius: f64,
+    },
+    /// The projection of a circle in space: `cos(s) a + sin(s) b` for all s.
+    Ellipse {
+        /// Two conjugate half diameters a, b in the body's frame \[m\].
+        half_diameters: [Vector<f64>; 2],
+    },
+}
+
+impl Rim {
+    /// The rim's point that lies farthest along the unit vector `direction`, seen from its centre \[m\].
+    ///
+    /// Of an ellipse: `(a (a.d) + b (b.d)) / |(a.d, b.d)|`, the gradient of its support function |(a.d, b.d)|.
+    pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {
+        match *self {
+            Self::Circle { radius } => scaled(radius, direction),
+            Self::Ellipse { half_diameters: [a, b] } => {
+                let along = [dot(a, direction), dot(b, direction)];
+                let reach = libm::hypot(along[0], along[1]);
+                if reach == 0.0 { [0.0; 2] } else { sum(scaled(along[0] / reach, a), scaled(along[1] / reach, b)) }
+            }
+        }
+    }
+
+    /// How far it reaches along the unit vector `direction` \[m\].
+    pub fn reach(&self, direction: Vector<f64>) -> f64 {
+        match *self {
+            Self::Circle { radius } => radius,
+            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(dot(a, direction), dot(b, direction)),
+        }
+    }
+
+    /// No point of it is farther from its centre \[m\].
+    pub fn bound(&self) -> f64 {
+        match *self {
+            Self::Circle { radius } => radius,
+            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1])),
+        }
+    }
+}
+
+impl FootShape {
+    /// A disc; of radius 0, a point. `centre` in the body's frame, both in metres.
+    pub fn disc(centre: Vector<f64>, radius: f64) -> Self {
+        Self { corners: vec![centre], rim: Rim::Circle { radius }, mesh: None, polygon: None }
+    }
+
+    /// The polygon of `corners` \[m\] in the body's frame, convex and counter-clockwise seen with forward to the right and
+    /// up upward, with `rim` about each; two corners are a line, one is a point. None for no corner, or for neighbours
+    /// that coincide.
+    pub fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Option<Self> {
+        let points: Vec<ParryVector> = corners.iter().map(|&[x, z]| ParryVector::new(x, z)).collect();
+        let polygon = match points[..] {
+            [] => return None,
+            [_] => None,
+            [a, b] if a == b => return None,
+            [a, b] => Some(SharedShape::segment(a, b)),
+            _ => Some(SharedShape::convex_polyline_unmodified(points)?),
+        };
+        Some(Self { corners, rim, mesh: None, polygon })
+    }
+
+    /// The same shape, told to come from a mesh file of this name.
+    pub(super) fn of_mesh(self, file: &str) -> Self {
+        Self { mesh: Some(file.to_owned()), ..self }
+    }
+
+    /// The polygon's corners in the body's frame \[m\]; at least one.
+    pub fn corners(&self) -> &[Vector<f64>] {
+        &self.corners
+    }
+
+    /// What stands about each corner.
+    pub fn rim(&self) -> Rim {
+        self.rim
+    }
+
+    /// The file of the mesh whose hull it is.
+    pub fn mesh(&self) -> Option<&str> {
+        self.mesh.as_deref()
+    }
+
+    /// The polygon without its rim, for parry: a convex polygon, or a segment; none of one corner.
+    pub(crate) fn polygon(&self) -> Option<&SharedShape> {
+        self.polygon.as_ref()
+    }
+
+    /// Centre and radius of a circle about the whole shape, in the body's frame \[m\].
+    pub fn bounding_circle(&self) -> (Vector<f64>, f64) {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in &self.corners {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(corner[axis]);
+                high[axis] = high[axis].max(corner[axis]);
+            }
+        }
+        let centre = [0, 1].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
+        let farthest = self.corners.iter().map(|&corner| {
+            let [x, z] = difference(corner, centre);
+            libm::hypot(x, z)
+        });
+        (centre, farthest.fold(0.0, f64::max) + self.rim.bound())
+    }
+
+    /// The shape with all lengths times `factor`, which is positive.
+    pub fn resized(&self, factor: f64) -> Option<Self> {
+        let rim = match self.rim {
+            Rim::Circle { radius } => Rim::Circle { radius: radius * factor },
+            Rim::Ellipse { half_diameters } => {
+                Rim::Ellipse { half_diameters: half_diameters.map(|half| scaled(factor, half)) }
+            }
+        };
+        let resized = Self::swept(self.corners.iter().map(|&corner| scaled(factor, corner)).collect(), rim)?;
+        Some(Self { mesh: self.mesh.clone(), ..resized })
+    }
+}

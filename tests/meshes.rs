@@ -1,0 +1,214 @@
+//! Mesh files as a user meets them: how the command finds them by name, what it says of those that are missing, broken or
+//! hostile, and the feet that they give. Readers and hulls are tested beside their code.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A new folder of a test.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("meshes").join(test);
+    // What an earlier run has left.
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn write(path: &Path, text: impl AsRef<[u8]>) {
+    fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+    fs::write(path, text).expect("a file");
+}
+
+/// A robot of one link with this element inside `<collision>`.
+fn robot(collision: &str) -> String {
+    format!(
+        "<robot name=\"r\">\n<link name=\"foot\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"0.5\" izz=\"1\"/>\
+         </inertial>\n<collision>{collision}</collision></link></robot>"
+    )
+}
+
+fn mesh(name: &str) -> String {
+    robot(&format!("<geometry><mesh filename=\"{name}\"/></geometry>"))
+}
+
+fn heelstrike(subcommand: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.env_remove("ROS_PACKAGE_PATH").env_remove("AMENT_PREFIX_PATH").env_remove("NO_COLOR");
+    command.arg(subcommand);
+    command
+}
+
+/// What `inspect` tells of `urdf` as JSON.
+#[track_caller]
+fn inspect(command: &mut Command, urdf: &Path) -> Value {
+    let output = command.args(["--format", "json"]).arg(urdf).output().expect("the command runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// Whether the robot has its one foot; else why not.
+#[track_caller]
+fn foot(command: &mut Command, urdf: &Path) -> Result<Value, String> {
+    let inspection = inspect(command, urdf);
+    match inspection["feet"].as_array().expect("feet").as_slice() {
+        [] => Err(inspection["left_out"][0]["why"].as_str().expect("a reason").to_owned()),
+        [foot] => Ok(foot["corners"].clone()),
+        _ => panic!("{inspection}"),
+    }
+}
+
+/// A box of half sizes 0.1, 0.05, 0.02 as OBJ.
+fn sole() -> String {
+    let sign = |at: usize, bit: usize| if at >> bit & 1 == 0 { "-" } else { "" };
+    let vertex = |at: usize| format!("v {}0.1 {}0.05 {}0.02\n", sign(at, 0), sign(at, 1), sign(at, 2));
+    let vertices: String = (0..8).map(vertex).collect();
+    format!("{vertices}f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\n")
+}
+
+#[test]
+fn a_mesh_of_a_box_strikes_as_the_box_does() {
+    let folder = folder("box");
+    write(&folder.join("sole.obj"), sole());
+    write(&folder.join("mesh.urdf"), mesh("sole.obj"));
+    write(&folder.join("box.urdf"), robot("<geometry><box size=\"0.2 0.1 0.04\"/></geometry>"));
+    let state = br#"{"position": {"base": {"z": 0.02}}, "velocity": {"base": {"x": 0.3, "z": -1, "pitch": 0.5}}, "friction": 0.6}"#;
+    let [of_mesh, of_box] = ["mesh.urdf", "box.urdf"].map(|name| {
+        let output = heelstrike("impact")
+            .args(["--format", "json"])
+            .arg(folder.join(name))
+            .arg("-")
+            .write_stdin(state)
+            .output()
+            .expect("the command runs");
+        String::from_utf8(output.stdout).expect("UTF-8")
+    });
+    assert!(of_box.contains("\"verdict\":\"unique\"") && of_box.contains("foot/1"), "{of_box}");
+    assert_eq!(of_mesh, of_box);
+}
+
+#[test]
+fn packages_are_found_by_option_environment_and_the_folders_above() {
+    let folder = folder("packages");
+    let urdf = folder.join("robots/deep/r.urdf");
+    write(&urdf, mesh("package://a_description/meshes/sole.obj"));
+    let missing = "package a_description is not here: name the folder that holds it by --package-path";
+    assert_eq!(foot(&mut heelstrike("inspect"), &urdf), Err(missing.to_owned()));
+
+    let elsewhere = folder.join("elsewhere");
+    write(&elsewhere.join("share/a_description/meshes/sole.obj"), sole());
+    let found = |command: &mut Command| assert!(foot(command, &urdf).is_ok());
+    found(heelstrike("inspect").arg("--package-path").arg(elsewhere.join("share")));
+    found(heelstrike("inspect").arg("--package-path").arg(&folder).arg("--package-path").arg(elsewhere.join("share")));
+    found(heelstrike("inspect").arg("--package-path").arg(elsewhere.join("share/a_description")));
+    found(heelstrike("inspect").env("ROS_PACKAGE_PATH", elsewhere.join("share")));
+    found(heelstrike("inspect").env("AMENT_PREFIX_PATH", &elsewhere));
+
+    // A package there, but without the file; then the file. The folder above is named otherwise, but its manifest says so.
+    fs::create_dir(folder.join("robots/a_description")).expect("a folder");
+    assert_eq!(foot(&mut heelstrike("inspect"), &urdf), Err("no such file in package a_description".to_owned()));
+    write(&folder.join("robots/package.xml"), "<package><name> a_description </name></package>");
+    fs::remove_dir(folder.join("robots/a_description")).expect("removed");
+    write(&folder.join("robots/meshes/sole.obj"), sole());
+    found(&mut heelstrike("inspect"));
+}
+
+#[test]
+fn names_of_every_kind_lead_to_the_file() {
+    let folder = folder("names");
+    write(&folder.join("pack/meshes/my sole.obj"), sole());
+    write(&folder.join("pack/meshes/100%20.OBJ"), sole());
+    let urdf = folder.join("pack/urdf/r.urdf");
+    let absolute = folder.join("pack/meshes/my sole.obj");
+    let absolute = absolute.to_str().expect("UTF-8");
+    for name in [
+        "../meshes/my sole.obj",
+        "..\\meshes\\my sole.obj",
+        "../meshes/my%20sole.obj",
+        "../meshes/100%20.OBJ",
+        "package://pack/meshes/my%20sole.obj",
+        "package://pack//meshes/../meshes/my sole.obj",
+        "model://pack/meshes/my sole.obj",
+        absolute,
+        &format!("file://{absolute}"),
+        &format!("file://{}", absolute.replace(' ', "%20")),
+    ] {
+        write(&urdf, mesh(name));
+        let corners = foot(&mut heelstrike("inspect"), &urdf).unwrap_or_else(|why| panic!("{name}: {why}"));
+        assert_eq!(corners, serde_json::json!([[-0.1, -0.02], [0.1, -0.02], [0.1, 0.02], [-0.1, 0.02]]), "{name}");
+    }
+    for (name, why) in [
+        ("../meshes/sole.obj", "no such file"),
+        ("https://example.org/sole.obj", "no file of this machine"),
+        ("../meshes", "no such file"),
+        ("/dev/zero", "no such file"),
+        ("package://pack/", "no such file in package pack"),
+    ] {
+        write(&urdf, mesh(name));
+        assert_eq!(foot(&mut heelstrike("inspect"), &urdf), Err(why.to_owned()), "{name}");
+    }
+}
+
+#[test]
+fn a_path_that_leaves_its_package_is_refused() {
+    let folder = folder("leaving");
+    let urdf = folder.join("r.urdf");
+    for name in [
+        "package://x/../../etc/passwd",
+        "package://x/meshes/../../y.stl",
+        "package://x\\..\\y.stl",
+        "package://x/%2e%2E/y.stl",
+        "package://../etc/y.stl",
+        "package:///etc/y.stl",
+    ] {
+        write(&urdf, mesh(name));
+        let output = heelstrike("inspect").arg(&urdf).output().expect("the command runs");
+        let told = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(1), "{name}: {told}");
+        assert!(told.contains("link \"foot\"") && told.contains("leaves its package"), "{name}: {told}");
+        assert!(told.contains(":2:1") && told.contains("hint: name a file inside the package"), "{name}: {told}");
+    }
+}
+
+#[test]
+fn meshes_that_cannot_be_read_are_told_and_the_rest_is_answered() {
+    let folder = folder("broken");
+    let urdf = folder.join("r.urdf");
+    let refused = |name: &str, bytes: &[u8], why: &str| {
+        write(&folder.join(name), bytes);
+        write(&urdf, mesh(name));
+        let told = foot(&mut heelstrike("inspect"), &urdf).expect_err(name);
+        assert!(told.contains(why), "{name}: {told}");
+    };
+    refused("nan.obj", b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "has the coordinate NaN");
+    refused("huge.obj", b"v 0 0 1e308\nv 1e308 0 0\nv -1e308 1 0\nf 1 2 3\n", "told apart in f64");
+    refused("short.stl", &[b' '; 100], "cannot be read");
+    refused("empty.dae", b"", "cannot be read");
+    refused("what.bin", b"what", "STL, OBJ or DAE");
+    refused("big.obj", &vec![b'\n'; (16 << 20) + 1], "more than 16 MiB of OBJ text");
+    refused("bigger.stl", &vec![0; (64 << 20) + 1], "more than 64 MiB");
+}
+
+#[test]
+fn the_foot_of_solo_is_found_and_told() {
+    let inspection = inspect(
+        heelstrike("inspect").args(["--package-path", "tests/data/robots/solo8/packages"]),
+        Path::new("tests/data/robots/solo8/solo.urdf"),
+    );
+    let feet = inspection["feet"].as_array().expect("feet");
+    let links: Vec<&str> = feet.iter().filter_map(|foot| foot["link"].as_str()).collect();
+    assert_eq!(links, ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"]);
+    for foot in feet {
+        // A drum of 16 mm about (0, -0.16), 106 sides: within their bulge of 16 mm (1 - cos(pi / 106)).
+        assert_eq!(foot["mesh"], "solo_foot.obj");
+        let corners = foot["corners"].as_array().expect("corners");
+        assert_eq!(corners.len(), 106);
+        for corner in corners {
+            let [x, z] = [0, 1].map(|axis| corner[axis].as_f64().expect("a number"));
+            assert!((x.hypot(z + 0.16) - 0.016).abs() < 1e-6, "{corner}");
+        }
+    }
+    let missing = inspection["left_out"].as_array().expect("a list").iter();
+    let missing = missing.filter(|left| left["why"] == "no such file in package example-robot-data").count();
+    assert_eq!(missing, 9);
+}
