@@ -23,14 +23,18 @@ pub struct Reductions {
     /// The modes of a closed contact without friction, which differ in the sign of its velocity alone, share one elimination.
     /// Else each is solved by itself.
     pub frictionless: bool,
+    /// The condition of a lone contact's Delassus matrix is taken in closed form. Else by the eigenvalues of any number of
+    /// contacts.
+    pub lone: bool,
 }
 
 impl Reductions {
     /// Every reduction.
-    pub const ALL: Self = Self { weld: true, massless: true, held: true, reach: true, frictionless: true };
+    pub const ALL: Self = Self { weld: true, massless: true, held: true, reach: true, frictionless: true, lone: true };
 
     /// None: everything is computed as if the scene needed it.
-    pub const NONE: Self = Self { weld: false, massless: false, held: false, reach: false, frictionless: false };
+    pub const NONE: Self =
+        Self { weld: false, massless: false, held: false, reach: false, frictionless: false, lone: false };
 }
 
 impl Default for Reductions {

@@ -111,6 +111,8 @@ enum Part {
     Reach,
     /// The modes of a contact without friction share one elimination
     Frictionless,
+    /// The condition of a lone contact is taken in closed form
+    Lone,
 }
 
 impl ReductionOptions {
@@ -128,6 +130,7 @@ impl ReductionOptions {
                 Part::Held => &mut reductions.held,
                 Part::Reach => &mut reductions.reach,
                 Part::Frictionless => &mut reductions.frictionless,
+                Part::Lone => &mut reductions.lone,
             } = false;
         }
         reductions

@@ -13,6 +13,7 @@ use super::certify::{Inverse, Layer, Question, Settled, combination, settle};
 use super::enumerate::{Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
 use super::labels::Labels;
+use super::lone;
 use super::mode::Mode;
 use super::outcome::{Analysis, Because, Effort, Motion, Outcome, Rejection, Verdict};
 use super::problem::{ContactProblem, Source};
@@ -109,7 +110,7 @@ impl Scratch {
             settle(source, Layer::DoubleDouble, &mut Coarse { problem, scale, coarse, found: &mut found });
         }
         found.join_families(scale);
-        let (rank, condition) = rank_and_condition(problem, source, scale, regular);
+        let (rank, condition) = rank_and_condition(problem, source, scale, regular, asked.reductions);
         let Found { mut outcomes, mut rejected, mut effort, total, .. } = found;
         if was_open || refined {
             outcomes.sort_by_key(|own| own.number);
@@ -288,15 +289,21 @@ fn rank_and_condition<S: Source>(
     source: &S,
     scale: &Scale,
     regular: bool,
+    reductions: Reductions,
 ) -> (usize, Option<f64>) {
     let rows = 2 * problem.contacts();
     if rows == 0 {
         return (0, None);
     }
     let mobility = &scale.mobility;
-    let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
-    let values = scaled.symmetric_eigenvalues();
-    let (least, greatest) = (values.min(), values.max());
+    let [least, greatest] = match problem.contacts() {
+        1 if reductions.lone => lone::eigenvalues(problem, mobility),
+        _ => {
+            let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
+            let values = scaled.symmetric_eigenvalues();
+            [values.min(), values.max()]
+        }
+    };
     if regular && greatest < F64_CONDITION_LIMIT * least {
         return (rows, Some(greatest / least));
     }

@@ -20,7 +20,7 @@ fn state(friction: Value) -> Value {
     json!({
         "position": {"base": {"pitch": 0.05}, "joints": {"left_hip": 1.2, "left_knee": -1.5, "right_hip": 0.3}},
         "velocity": {"base": {"pitch": 0.5}, "joints": {"right_hip": 1.0}},
-        "stance": "left_foot", "held": ["left_knee"], "friction": friction,
+        "stance": "right_foot", "held": ["left_knee"], "friction": friction,
     })
 }
 
@@ -36,9 +36,9 @@ fn a_result_tells_what_its_scene_did_not_need() {
     let held = ["joint \"left_knee\"", "held: it keeps its rate and has no column"];
     let high = ["1 shape", "too high to reach the ground"];
     for (friction, more) in [
-        (json!(0.0), Some(["tangential impulse of left_foot", "friction 0"])),
+        (json!(0.0), Some(["tangential impulse of right_foot", "friction 0"])),
         (json!(0.8), None),
-        (json!("infinite"), Some(["friction cone of left_foot", "infinite friction"])),
+        (json!("infinite"), Some(["friction cone of right_foot", "infinite friction"])),
     ] {
         let result = run(&["impact", RAMONE, "-", "--format", "json"], &state(friction));
         let expected: Vec<_> = [held, high].into_iter().chain(more).collect();

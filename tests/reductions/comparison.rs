@@ -5,25 +5,33 @@ use heelstrike::description::Description;
 use heelstrike::impact::{Analysis, Outcome};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::reductions::Reductions;
-use heelstrike::robot::{Base, Reduction};
+use heelstrike::robot::{Base, Plane, Reduction};
 use heelstrike::state::{Defaults, State};
 
 /// Of scale.
 const TOLERANCE: f64 = 1e-12;
 
 /// Without any reduction, and without each alone.
-pub const FEWER: [Reductions; 6] = [
+pub const FEWER: [Reductions; 7] = [
     Reductions::NONE,
     Reductions { weld: false, ..Reductions::ALL },
     Reductions { massless: false, ..Reductions::ALL },
     Reductions { held: false, ..Reductions::ALL },
     Reductions { reach: false, ..Reductions::ALL },
     Reductions { frictionless: false, ..Reductions::ALL },
+    Reductions { lone: false, ..Reductions::ALL },
 ];
 
 /// A description as a robot.
-pub fn robot(description: &Description, base: Option<Base>, reductions: Reductions) -> Robot {
-    Robot::reduce(description, &Reduction { base, reductions, ..Reduction::default() }).expect("a good robot")
+pub fn robot(description: &Description, reductions: Reductions) -> Robot {
+    Robot::reduce(description, &Reduction { reductions, ..Reduction::default() }).expect("a good robot")
+}
+
+/// A mechanism's URDF as a robot that floats in the x-z plane, whatever its joints suggest.
+pub fn floating(urdf: &str, reductions: Reductions) -> Robot {
+    let description = Description::from_urdf(urdf).expect("a good file");
+    let (plane, base) = (Some(Plane::XZ), Some(Base::Floating));
+    Robot::reduce(&description, &Reduction { plane, base, reductions, ..Reduction::default() }).expect("a good robot")
 }
 
 /// The answer to a state of a robot, with its matrices.
@@ -34,8 +42,8 @@ pub fn answer(robot: &Robot, state: &serde_json::Value, reductions: Reductions) 
 }
 
 /// What differs between two answers: contacts, verdict, modes, or numbers beyond 1e-12 of scale. Velocities by coordinate
-/// are compared where the coordinates are the `same`.
-pub fn difference(one: &Impact, other: &Impact, same_coordinates: bool) -> Result<(), String> {
+/// are compared where both have the same coordinates: `rate` is the largest of them before the impact.
+pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(), String> {
     let names = |impact: &Impact| impact.contacts.iter().map(|contact| contact.name.clone()).collect::<Vec<_>>();
     if names(one) != names(other) {
         return Err(format!("contacts {:?} and {:?}", names(one), names(other)));
@@ -47,6 +55,10 @@ pub fn difference(one: &Impact, other: &Impact, same_coordinates: bool) -> Resul
     if a.verdict != b.verdict || (a.rank, a.index_sum) != (b.rank, b.index_sum) {
         return Err(format!("{} and {}", words(a), words(b)));
     }
+    if let (Some(one), Some(other)) = (a.condition, b.condition) {
+        // It tells how many digits of itself are lost.
+        near("conditions", &[one.recip()], &[other.recip()], 1.0)?;
+    }
     let [a, b] = [one, other].map(sorted);
     let modes = |outcomes: &[(usize, &Outcome)]| outcomes.iter().map(|own| own.1.modes.clone()).collect::<Vec<_>>();
     if modes(&a) != modes(&b) {
@@ -54,8 +66,11 @@ pub fn difference(one: &Impact, other: &Impact, same_coordinates: bool) -> Resul
     }
     let delassus = &one.matrices.as_ref().expect("asked for").delassus;
     let mobility: Vec<f64> = (0..delassus.len()).map(|row| delassus[row][row].max(0.0).sqrt()).collect();
+    let largest = mobility.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    // A row that nothing moves has no size of its own.
+    let mobility: Vec<f64> = mobility.into_iter().map(|own| if own > 0.0 { own } else { largest }).collect();
     // sqrt J, as margins are measured.
-    let speeds = one.velocity_before.iter().flatten().zip(&mobility).filter(|(_, mobility)| **mobility > 0.0);
+    let speeds = one.velocity_before.iter().flatten().zip(&mobility);
     let speed = speeds.map(|(c, mobility)| c.abs() / mobility).fold(f64::MIN_POSITIVE, f64::max);
     for ((at, a), (bt, b)) in a.into_iter().zip(b) {
         let scaled = |rows: &[[f64; 2]], power: i32| -> Vec<f64> {
@@ -63,12 +78,21 @@ pub fn difference(one: &Impact, other: &Impact, same_coordinates: bool) -> Resul
         };
         near("impulses", &scaled(&a.impulse, 1), &scaled(&b.impulse, 1), 1.0)?;
         near("contact velocities", &scaled(&a.velocity_after, -1), &scaled(&b.velocity_after, -1), 1.0)?;
-        if same_coordinates {
-            near("velocities", &one.velocity_after[at], &other.velocity_after[bt], f64::MIN_POSITIVE)?;
+        if let Some(rate) = rate {
+            near("velocities", &one.velocity_after[at], &other.velocity_after[bt], rate)?;
         }
         near("energies", &[a.energy_loss / speed / speed], &[b.energy_loss / speed / speed], 1.0)?;
     }
     Ok(())
+}
+
+/// The largest of a state's rates.
+pub fn largest_rate(state: &serde_json::Value) -> f64 {
+    let parts = ["base", "joints"].into_iter().filter_map(|part| state["velocity"][part].as_object());
+    parts
+        .flat_map(|part| part.values())
+        .filter_map(serde_json::Value::as_f64)
+        .fold(0.0, |most, rate| most.max(rate.abs()))
 }
 
 fn near(what: &str, a: &[f64], b: &[f64], least: f64) -> Result<(), String> {

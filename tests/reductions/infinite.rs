@@ -1,13 +1,11 @@
 //! Infinite friction has no cone to test: the pair (a, b) = (1, 0) of a L_n >= b |L_t| asks for pressure alone. No unreduced
 //! computation would be another; a huge finite coefficient must lead to the same modes.
 
-use heelstrike::description::Description;
 use heelstrike::reductions::Reductions;
-use heelstrike::robot::Base;
 use proptest::prelude::*;
 use serde_json::json;
 
-use super::comparison::{answer, robot};
+use super::comparison::{answer, floating};
 use super::trees::case;
 
 proptest! {
@@ -15,8 +13,7 @@ proptest! {
 
     #[test]
     fn huge_friction_leads_to_the_modes_of_infinite_friction(case in case()) {
-        let description = Description::from_urdf(&case.mechanism.urdf(0)).expect("a good file");
-        let robot = robot(&description, Some(Base::Floating), Reductions::ALL);
+        let robot = floating(&case.mechanism.urdf(0), Reductions::ALL);
         let outcomes = |friction| {
             let mut state = case.state(0);
             // Two contacts of one link may be pressed together without bound, which no finite friction allows.

@@ -5,10 +5,10 @@ use std::fs;
 
 use heelstrike::description::Description;
 use heelstrike::reductions::Reductions;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::comparison::{FEWER, answer, difference, robot};
+use super::comparison::{FEWER, answer, difference, largest_rate, robot};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -19,8 +19,15 @@ struct Reference {
 #[derive(Deserialize)]
 struct Variant {
     coordinates: Vec<String>,
-    contacts: Vec<Value>,
+    contacts: Vec<Contact>,
     configs: Vec<Config>,
+}
+
+#[derive(Deserialize, Serialize)]
+struct Contact {
+    link: String,
+    offset: [f64; 3],
+    radius: f64,
 }
 
 #[derive(Deserialize)]
@@ -44,7 +51,7 @@ fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
     let held: Vec<&String> = joints.iter().step_by(2).collect();
     let mut states = Vec::new();
     for config in &variant.configs {
-        for contacts in [&variant.contacts[..1], &variant.contacts[..variant.contacts.len().min(4)]] {
+        for contacts in [1, 4].map(|most| &variant.contacts[..variant.contacts.len().min(most)]) {
             for friction in [json!(0.0), json!(0.8), json!("infinite")] {
                 for held in [&[][..], &held[..]] {
                     states.push(json!({
@@ -65,7 +72,7 @@ fn compare(name: &str, variant: &str) {
     let variant: Variant = serde_json::from_value(variants.remove(variant).expect("the variant")).expect("readable");
     let urdf = fs::read_to_string(format!("{folder}/{urdf}")).expect("the robot");
     let description = Description::from_urdf(&urdf).expect("a good file");
-    let reduced = robot(&description, None, Reductions::ALL);
+    let reduced = robot(&description, Reductions::ALL);
     let joints: Vec<String> = reduced.joints.iter().map(|joint| joint.name.clone()).collect();
     let mut states = states(&variant, reduced.base_dofs(), &joints);
     // Feet that are found: each link with shapes stands once.
@@ -83,12 +90,12 @@ fn compare(name: &str, variant: &str) {
     }
     let (mut compared, mut differences) = (0, Vec::new());
     for (fewer, reductions) in FEWER.into_iter().enumerate() {
-        let unreduced = robot(&description, None, reductions);
+        let unreduced = robot(&description, reductions);
         for state in &states {
             match (answer(&reduced, state, Reductions::ALL), answer(&unreduced, state, reductions)) {
                 (Ok(one), Ok(other)) => {
                     compared += 1;
-                    let difference = difference(&one, &other, true);
+                    let difference = difference(&one, &other, Some(largest_rate(state)));
                     differences.extend(difference.err().map(|what| format!("{fewer}: {what}\n  {state}")));
                 }
                 // A foot that stands while another is in the ground; a joint that moves nothing.
