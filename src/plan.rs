@@ -256,7 +256,7 @@ impl<T: Real> Plan<T> {
     /// without the body's own `column`; `greatest` of them is on the body's parent. Gives the greatest of all.
     fn join_branch(&mut self, column: usize, parent: usize, greatest: Option<usize>) -> Option<usize> {
         match greatest {
-            // Whatever comes before the greatest is its ancestor already.
+            // Whatever comes before the greatest is its ancestor already, as x and z are the pitch's.
             Some(other) if other < column => self.join(column, other),
             Some(_) => {
                 let mut at = Some(parent);
@@ -266,7 +266,6 @@ impl<T: Real> Plan<T> {
                     }
                     at = self.bodies[body].parent;
                 }
-                // A floating base has two columns more, and they are everybody's ancestors.
             }
             None => {}
         }

@@ -111,11 +111,11 @@ impl<T: Real> Loop<T> {
     }
 
     /// A row of K (nv); of one end alone its row of J.
-    fn row(&self, plan: &Plan<T>, axis: usize, ends: &[usize], still: &[T], workspace: &Workspace<T>) -> Vec<T> {
-        let arms = self.arms(workspace);
+    fn row(&self, plan: &Plan<T>, axis: usize, ends: &[usize], workspace: &Workspace<T>) -> Vec<T> {
+        let (arms, still) = (self.arms(workspace), still(plan));
         let mut row = vec![T::zero(); plan.columns()];
         for &end in ends {
-            walk(plan, self.bodies[end], arms[end], still, workspace, |column, unit| {
+            walk(plan, self.bodies[end], arms[end], &still, workspace, |column, unit| {
                 row[column] = if end == 0 { row[column] + unit[axis] } else { row[column] - unit[axis] };
             });
         }
@@ -131,13 +131,12 @@ impl<T: Real> Loop<T> {
 pub fn independent_rows(
     plan: &Plan,
     loops: &[Loop],
-    (kept, dofs): (&[usize], usize),
+    kept: &[usize],
     tolerance: f64,
     workspace: &Workspace,
 ) -> Vec<usize> {
-    let still = vec![0.0; dofs];
     let rows = |ends: &[usize]| -> Vec<Vec<f64>> {
-        (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, &still, workspace)).collect()
+        (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, workspace)).collect()
     };
     let [a, b] = [rows(&[0]), rows(&[1])];
     let mut greatest = vec![0.0_f64; plan.columns()];
@@ -181,7 +180,6 @@ pub fn orthogonalize<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
     (kept, foot): (Constraints, Option<ContactPoint<T>>),
-    still: &[T],
     workspace: &mut Workspace<T>,
 ) {
     let mut constraints = std::mem::take(&mut workspace.loops);
@@ -193,12 +191,12 @@ pub fn orthogonalize<T: Real>(
     order.clear();
     order.extend_from_slice(rows);
     let mut all: Vec<Vec<T>> = kept.iter().map(|&coordinate| unit_row(plan, coordinate)).collect();
-    all.extend(rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], still, workspace)));
+    all.extend(rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], workspace)));
     all.extend(foot.into_iter().flat_map(|foot| {
-        let (arm, workspace) = (foot.arm(workspace), &*workspace);
+        let (arm, still, workspace) = (foot.arm(workspace), still(plan), &*workspace);
         foot.axes().map(|axis| {
             let mut row = vec![T::zero(); nv];
-            walk(plan, foot.body, arm, still, workspace, |column, unit| plan.bring(&mut row[column], dot(axis, unit)));
+            walk(plan, foot.body, arm, &still, workspace, |column, unit| plan.bring(&mut row[column], dot(axis, unit)));
             row
         })
     }));
@@ -250,6 +248,10 @@ pub fn close<T: Real>(
     let openings: Vec<Vector<T>> = loops.iter().map(|own| own.opening(plan, velocity, workspace)).collect();
     // Whatever rate a kept coordinate has before the impact is what it keeps; and a foot may move in the impact.
     let used = if closed == Closed::Velocity { all } else { kept.len() + rows.len() };
+    if used == 0 {
+        // Nothing is to be closed, and of a robot without loops there need be no factor.
+        return Vec::new();
+    }
     let own = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {
         (Some(&coordinate), _) if closed == Closed::Change => velocity[coordinate],
         (None, Some(row)) => openings[row / 2][row % 2],
@@ -298,6 +300,11 @@ pub fn spent_energy(amplitudes: &[f64], workspace: &Workspace) -> f64 {
 fn unit_row<T: Real>(plan: &Plan<T>, coordinate: usize) -> Vec<T> {
     let entry = |&own: &usize| if own == coordinate { T::one() } else { T::zero() };
     plan.coordinates.iter().map(entry).collect()
+}
+
+/// No velocity at all, where a walk tells motions alone.
+fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
+    vec![T::zero(); plan.places]
 }
 
 /// D^-1 y.

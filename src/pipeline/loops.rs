@@ -3,8 +3,8 @@
 use super::Pipeline;
 use crate::contact::Contact;
 use crate::dynamics::{
-    Closed, Constraints, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse, orthogonalize,
-    point_velocity, spent_energy,
+    Closed, Constraints, ContactPoint, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse,
+    orthogonalize, point_velocity, spent_energy,
 };
 use crate::error::{Error, Reason, Result};
 use crate::planar::{Vector, difference, dot};
@@ -51,6 +51,26 @@ impl NamedLoop {
     }
 }
 
+impl Loops {
+    /// Whether both rows of a loop count.
+    fn is_whole(&self, index: usize) -> bool {
+        [2 * index, 2 * index + 1].iter().all(|row| self.rows.contains(row))
+    }
+
+    /// What follows from others, in words.
+    fn tell_left_out(&self, named: &[NamedLoop], robot: &Robot, notes: &mut Vec<String>) {
+        for (index, own) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
+            let left = [(2 * index, "x"), (2 * index + 1, "z")].into_iter().filter(|(row, _)| !self.rows.contains(row));
+            let left: Vec<&str> = left.map(|(_, axis)| axis).collect();
+            notes.push(format!(
+                "{} is already closed along {} by what else holds its points: that is left out, its impulse is 0",
+                own.name(index, robot),
+                left.join(" and ")
+            ));
+        }
+    }
+}
+
 impl Pipeline<'_> {
     /// Finds which rows of the loops count, and closes them in `velocity`; a `foot` that rests keeps resting.
     ///
@@ -66,24 +86,30 @@ impl Pipeline<'_> {
         let (robot, named) = (self.robot, &state.scene.loops);
         let points: Vec<Loop> = named.iter().map(|own| own.points(robot)).collect();
         let tolerance = self.refuse_gaps(&points, named)?;
-        let Self { plan, workspace, .. } = self;
-        let rows = independent_rows(plan, &points, (&self.kept, velocity.len()), tolerance, workspace);
-        notes.extend(named.iter().enumerate().filter_map(|(index, own)| {
-            let left: Vec<&str> =
-                [0, 1].into_iter().filter(|axis| !rows.contains(&(2 * index + axis))).map(|axis| ["x", "z"][axis]).collect();
-            let left = left.join(" and ");
-            let name = own.name(index, robot);
-            (!left.is_empty()).then(|| {
-                format!("{name} is already closed along {left} by what else holds its points: that is left out, its impulse is 0")
-            })
-        }));
-
+        let rows = independent_rows(&self.plan, &points, &self.kept, tolerance, &self.workspace);
+        let loops = Loops { points, rows };
+        loops.tell_left_out(named, robot, notes);
         let foot = foot.map(|foot| foot.point_of(state.scene.ground()));
-        let still = vec![0.0; velocity.len()];
-        orthogonalize(plan, &points, (Constraints { kept: &self.kept, rows: &rows }, foot), &still, workspace);
+        notes.extend(self.close_velocity(&loops, named, foot, velocity)?);
+        Ok(loops)
+    }
+
+    /// Closes the loops in `velocity`, and tells if that is more than rounding.
+    fn close_velocity(
+        &mut self,
+        loops: &Loops,
+        named: &[NamedLoop],
+        foot: Option<ContactPoint>,
+        velocity: &mut [f64],
+    ) -> Result<Option<String>> {
+        let Self { robot, plan, workspace, kept, .. } = self;
+        let Loops { points, rows } = loops;
         let energy = kinetic_energy(plan, velocity, workspace);
-        let openings: Vec<f64> = points.iter().map(|own| speed(own.opening(plan, velocity, workspace))).collect();
-        let amplitudes = close(plan, &points, Closed::Velocity, velocity, workspace);
+        let openings = points.iter().map(|own| speed(own.opening(plan, velocity, workspace)));
+        let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
+        let Some((worst, (opening, own))) = widest else { return Ok(None) };
+        orthogonalize(plan, points, (Constraints { kept, rows }, foot), workspace);
+        let amplitudes = close(plan, points, Closed::Velocity, velocity, workspace);
         if let Some(foot) = foot {
             let moving = point_velocity(plan, foot.body, foot.arm(workspace), velocity, workspace);
             for (own, moving) in velocity.iter_mut().zip(moving) {
@@ -91,31 +117,24 @@ impl Pipeline<'_> {
             }
         }
         let spent = spent_energy(&amplitudes, workspace);
-        let worst = (0..points.len()).reduce(|worst, next| if openings[next] > openings[worst] { next } else { worst });
-        let Some(worst) = worst else { return Ok(Loops { points, rows }) };
-        let (name, opening) = (named[worst].name(worst, robot), openings[worst]);
         if spent > OPENING * energy {
-            return Err(moves_apart(&name, opening, worst));
+            return Err(moves_apart(own, worst, opening, robot));
         }
         // What was left out must hold all the same.
-        for (index, own) in points
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| !rows.contains(&(2 * index)) || !rows.contains(&(2 * index + 1)))
-        {
+        for (index, own) in points.iter().enumerate().filter(|(index, _)| !loops.is_whole(*index)) {
             let [a, b] = own.velocities(plan, velocity, workspace);
             let left = speed(difference(a, b));
             if left * left > OPENING * (dot(a, a) + dot(b, b)) {
-                return Err(moves_apart(&named[index].name(index, robot), left, index));
+                return Err(moves_apart(&named[index], index, left, robot));
             }
         }
-        if spent > ROUNDING * energy {
-            notes.push(format!(
-                "{name} opens at {opening:.1e} m/s before the impact: the velocities are taken as the nearest ones, by kinetic \
-                 energy, that keep every loop closed"
-            ));
-        }
-        Ok(Loops { points, rows })
+        Ok((spent > ROUNDING * energy).then(|| {
+            format!(
+                "{} opens at {opening:.1e} m/s before the impact: the velocities are taken as the nearest ones, by kinetic \
+                 energy, that keep every loop closed",
+                own.name(worst, robot)
+            )
+        }))
     }
 
     /// Refuses a loop whose points are apart; tells how large a row must be to count.
@@ -142,9 +161,8 @@ impl Pipeline<'_> {
         if self.kept.is_empty() {
             return;
         }
-        let Self { plan, workspace, .. } = self;
-        let still = vec![0.0; self.robot.dofs()];
-        orthogonalize(plan, &[], (Constraints { kept: &self.kept, rows: &[] }, None), &still, workspace);
+        let Self { plan, workspace, kept, .. } = self;
+        orthogonalize(plan, &[], (Constraints { kept, rows: &[] }, None), workspace);
     }
 
     /// Whether something beside the contacts gives impulses.
@@ -173,8 +191,8 @@ fn speed([x, z]: Vector<f64>) -> f64 {
     libm::hypot(x, z)
 }
 
-fn moves_apart(name: &str, opening: f64, index: usize) -> Error {
-    let reason = format!("the velocities open {name} at {opening:.3e} m/s");
+fn moves_apart(own: &NamedLoop, index: usize, opening: f64, robot: &Robot) -> Error {
+    let reason = format!("the velocities open {} at {opening:.3e} m/s", own.name(index, robot));
     Error::new(Reason::Inconsistent(reason))
         .at(format!("loops[{index}]"))
         .hint("give rates of all joints of the loop, such that both points move alike")

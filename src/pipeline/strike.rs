@@ -89,9 +89,8 @@ impl Strike<'_> {
         }
         let loops: Vec<Loop<T>> = scene.loops.iter().map(|own| own.points(robot)).collect();
         if constrained {
-            let still = vec![T::zero(); velocity.len()];
             let foot = self.foot.filter(|_| !loops.is_empty()).map(point);
-            orthogonalize(&plan, &loops, (self.constraints, foot), &still, &mut workspace);
+            orthogonalize(&plan, &loops, (self.constraints, foot), &mut workspace);
             if !loops.is_empty() {
                 close(&plan, &loops, Closed::Velocity, &mut velocity, &workspace);
             }
