@@ -4,7 +4,10 @@
 
 use divan::{Bencher, black_box};
 use heelstrike::Robot;
-use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
+use heelstrike::dynamics::{
+    ContactPoint, Workspace, add_articulated_impulse, articulated_inertias, contact_jacobian, delassus, factorize,
+    kinematics, mass_matrix,
+};
 use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{Asked, ContactProblem, Friction, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
@@ -67,6 +70,27 @@ fn dynamics(bencher: Bencher) {
         contact_jacobian(&plan, &points, &state.velocity, None, &mut workspace);
         delassus(&plan, &mut workspace);
         workspace.delassus[0]
+    });
+}
+
+/// The velocities of base and joints after impulses at both feet.
+#[divan::bench]
+fn velocity_after(bencher: Bencher) {
+    let robot = ramone();
+    let state = state(&robot);
+    let points = points(&robot, &state);
+    let (plan, mut posture, mut workspace) = (Plan::new(&robot, &[], &[]), Posture::default(), Workspace::default());
+    posture.set(&plan, &state.position);
+    kinematics(&plan, &posture, &mut workspace);
+    let (mut rates, mut motions) = (Vec::new(), Vec::new());
+    bencher.bench_local(move || {
+        let mut after = black_box(&state.velocity).clone();
+        articulated_inertias(&plan, &mut workspace);
+        for point in &points {
+            let at = (point.body, point.arm(&workspace));
+            add_articulated_impulse(&plan, &workspace, at, [0.1, 0.2], (&mut rates, &mut motions), &mut after);
+        }
+        after
     });
 }
 

@@ -3,7 +3,7 @@
 
 use heelstrike::accuracy::compliant::{Biped, Map, NEAR};
 use heelstrike::impact::{Friction, Mode};
-use heelstrike::report::picture::{Axis, Mark, Picture, Series};
+use heelstrike::report::picture::{Axis, Entry, Mark, Panel, Picture, Series};
 use std::error::Error;
 use std::fmt::Write;
 
@@ -65,16 +65,18 @@ fn picture(map: &Map) -> Picture {
         runs.map(|(speed, ratio, _)| (speed, ratio)).collect()
     };
     let border = map.separatrix.iter().zip(&map.ratios).filter_map(|(speed, &ratio)| speed.map(|speed| (speed, ratio)));
-    let series = |name: &str, points, mark, colour| Series { name: name.into(), points, mark, colour };
-    Picture {
-        title: "Minimalistic biped at alpha = 1.4, overdamped contact".into(),
+    let drawn = [
+        ("lifts off", ends(Mode::Separate), Mark::Circle, 2),
+        ("stops", ends(Mode::Stick), Mark::Square, 1),
+        ("no rigid outcome within 1 %", none(map), Mark::Triangle, 0),
+        ("separatrix", border.collect(), Mark::Line, 6),
+    ];
+    let entry = |&(name, _, mark, colour): &(&str, _, _, _)| Entry { name: name.into(), mark, colour };
+    let legend = drawn.iter().map(entry).collect();
+    let panel = Panel {
         x: Axis { label: "approach speed of the trailing foot [m/s]".into(), logarithmic: false },
         y: Axis { label: "d_t / d_n".into(), logarithmic: true },
-        series: vec![
-            series("lifts off", ends(Mode::Separate), Mark::Circle, 2),
-            series("stops", ends(Mode::Stick), Mark::Square, 1),
-            series("no rigid outcome within 1 %", none(map), Mark::Triangle, 0),
-            series("separatrix", border.collect(), Mark::Line, 6),
-        ],
-    }
+        series: drawn.into_iter().map(|(_, points, mark, colour)| Series { points, mark, colour }).collect(),
+    };
+    Picture { title: "Minimalistic biped at alpha = 1.4, overdamped contact".into(), panels: vec![panel], legend }
 }

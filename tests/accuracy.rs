@@ -1,8 +1,12 @@
 //! The stiff and extreme suite: every case answers with its condition or refuses with its reason, and M and G keep their
 //! digits against a reference of at least 256 bits.
 
-use heelstrike::Reason;
-use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, cases, study};
+use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, Subject, cases, of_state, study};
+use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};
+use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::plan::{Plan, Posture};
+use heelstrike::state::{Defaults, State};
+use heelstrike::{Reason, Robot};
 use std::time::Duration;
 
 /// A single run of each method: errors are looked at here, never times.
@@ -17,7 +21,7 @@ fn walk(choose: impl Fn(&Case) -> bool) {
     let chosen: Vec<Case> = cases().expect("the suite's robots are read").into_iter().filter(choose).collect();
     assert!(!chosen.is_empty());
     for case in chosen {
-        let study = study(&case.name, &case.subject, ONCE);
+        let study = study(&case.name, &case.subject, &Options::default(), ONCE);
         match case.end {
             End::Singular => {
                 let refused = study.refused.unwrap_or_else(|| panic!("{} must be refused", case.name));
@@ -70,6 +74,66 @@ fn chains_of_a_thousand_links_keep_their_digits() {
 #[test]
 fn every_other_case_keeps_its_digits() {
     walk(|case| !case.name.starts_with("chain of 1000"));
+}
+
+/// The energy of all bodies after the impact, link by link, is what the contacts left of it.
+fn assert_energy(name: &str, robot: &Robot, state: &State) -> Impact {
+    let impact = Pipeline::new(robot, Options::default()).impact(state).expect("an answer");
+    let (plan, mut posture, mut workspace) = (Plan::new(robot, &[], &[]), Posture::default(), Workspace::default());
+    posture.set(&plan, &state.position);
+    kinematics(&plan, &posture, &mut workspace);
+    let outcomes = &impact.analysis.as_ref().expect("outcomes").outcomes;
+    assert!(outcomes.iter().any(|outcome| outcome.energy_loss > 0.0));
+    for (outcome, after) in outcomes.iter().zip(&impact.velocity_after) {
+        let (energy, left) = (kinetic_energy(&plan, after, &workspace), impact.kinetic_energy - outcome.energy_loss);
+        assert!((energy - left).abs() <= DIGITS * impact.kinetic_energy, "{name}: {energy} {left}");
+    }
+    impact
+}
+
+#[test]
+fn velocities_of_base_and_joints_keep_their_digits_in_chains() {
+    for case in cases().expect("read").into_iter().filter(|case| case.name.starts_with("chain of 100 links")) {
+        let Subject::State(subject) = &case.subject else { panic!("a state") };
+        let impact = assert_energy(&case.name, &subject.0, &subject.1);
+        for (outcome, after) in impact.analysis.expect("outcomes").outcomes.iter().zip(&impact.velocity_after) {
+            // The first contact is the root's own origin.
+            for (base, contact) in after.iter().zip(outcome.velocity_after[0]) {
+                assert!((base - contact).abs() <= DIGITS, "{}: {base} {contact}", case.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn joints_that_follow_others_take_their_part_of_the_impact() {
+    let link = |name: &str, z: f64| {
+        format!(
+            r#"<link name="{name}"><inertial><origin xyz="0 0 {z}"/><mass value="1"/>
+            <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>"#
+        )
+    };
+    let hinge = |name: &str, parent: &str, child: &str, z: f64, more: &str| {
+        format!(
+            r#"<joint name="{name}" type="continuous"><parent link="{parent}"/><child link="{child}"/>
+            <origin xyz="0 0 {z}"/><axis xyz="0 1 0"/>{more}</joint>"#
+        )
+    };
+    let follows = r#"<mimic joint="hip" multiplier="-2" offset="0.1"/>"#;
+    let urdf = [
+        r#"<robot name="follower">"#,
+        &[link("torso", 0.2), link("thigh", -0.2), link("shin", -0.2)].concat(),
+        &[hinge("hip", "torso", "thigh", 0.0, ""), hinge("knee", "thigh", "shin", -0.5, follows)].concat(),
+        "</robot>",
+    ];
+    let robot = Robot::from_urdf(&urdf.concat()).expect("a robot");
+    let state = r#"{"friction": 0.7, "contacts": [{"link": "shin", "offset": [0, 0, -0.5]}],
+        "position": {"joints": {"hip": 0.4}}, "velocity": {"base": {"x": 0.3, "z": -1}, "joints": {"hip": 0.5}}}"#;
+    let state = State::from_json(state, &robot, &Defaults::default()).expect("a state");
+    let impact = assert_energy("follower", &robot, &state);
+    assert!(impact.analysis.expect("outcomes").proven);
+    let refused = of_state("follower", &robot, &state, &Options::default(), ONCE).refused.expect("a refusal");
+    assert!(matches!(refused.reason(), Reason::Unsupported(_)), "{refused}");
 }
 
 #[test]

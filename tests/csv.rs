@@ -266,7 +266,8 @@ fn an_outcome_is_a_row_with_every_number_of_the_result() {
     assert_eq!([number("p_shin_t"), number("p_shin_n")], outcome.impulse[0]);
     let velocity = ["v_base_x", "v_base_z", "v_base_pitch", "v_knee"].map(number);
     assert_eq!(velocity[..], impact.velocity_after[0]);
-    assert_eq!([text("mode_body"), text("mode_body/0"), text("p_body/1_n"), text("error")], [""; 4]);
+    assert_eq!([text("mode_body"), text("mode_body/0"), text("p_body/1_n"), text("border")], [""; 4]);
+    assert_eq!([text("family"), text("error")], ["false", ""]);
 }
 
 #[test]
@@ -282,13 +283,14 @@ fn the_header_has_every_contact_that_the_feet_can_give() {
     assert_eq!(
         header(&[], false),
         "id,verdict,outcome,margin,proven,mode_body,p_body_t,p_body_n,mode_body/0,p_body/0_t,p_body/0_n,mode_body/1,\
-         p_body/1_t,p_body/1_n,mode_shin,p_shin_t,p_shin_n,v_base_x,v_base_z,v_base_pitch,v_knee,error\n"
+         p_body/1_t,p_body/1_n,mode_shin,p_shin_t,p_shin_n,v_base_x,v_base_z,v_base_pitch,v_knee,border,family,error\n"
     );
     let foot = NamedContact { link: 1, offset: [0.1, 0.0, -0.5], radius: 0.0 };
     assert_eq!(modes(&header(&[foot], false)), ["body", "body/0", "body/1", "shin", "shin/0", "shin/1"]);
     assert_eq!(modes(&header(&[], true)), ["body", "body/0", "body/1", "body/2", "body/3", "shin"]);
     assert!(header(&[], true).contains(
-        ",v_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,touchdown_at,touchdown_touching,error"
+        ",v_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,touchdown_at,touchdown_touching,border,\
+         family,error"
     ));
 }
 
@@ -332,10 +334,10 @@ fn a_contact_without_columns_is_refused_and_nothing_is_written() {
 #[test]
 fn foreign_columns_are_carried_through_also_beside_a_refusal() {
     let robot = leg();
-    let header = Header::read(b"time,id,verdict,v_knee,error,note,in_error", &robot, Rates::Columns).unwrap();
+    let header = Header::read(b"time,id,verdict,v_knee,error,note,in_error,family", &robot, Rates::Columns).unwrap();
     let columns = Columns::new(&robot, &[], Some(&header), false);
     let mut rows = header.rows();
-    let row = rows.row(b" 0.10 ,\"k,1\",mine,oops,none,\"a \"\"b\"\"\nc\",other", 7).unwrap().unwrap();
+    let row = rows.row(b" 0.10 ,\"k,1\",mine,oops,none,\"a \"\"b\"\"\nc\",other,ours", 7).unwrap().unwrap();
     assert_eq!(row.time().unwrap(), 0.1);
     let error = row.state(&robot, &Defaults::default()).map(|_| ()).unwrap_err();
     let mut out = Vec::new();
@@ -348,8 +350,33 @@ fn foreign_columns_are_carried_through_also_beside_a_refusal() {
         [cell("time"), cell("in_verdict"), cell("in_in_error"), cell("note")],
         [" 0.10 ", "mine", "none", "a \"b\"\nc"]
     );
-    assert_eq!(cell("in_error"), "other");
+    assert_eq!([cell("in_error"), cell("in_family"), cell("family")], ["other", "ours", ""]);
     assert_eq!(cell("error"), "line 7: v_knee: expected a number, found \"oops\"");
+}
+
+/// The rows of a state of the block, whose G is [[2, 1], [1, 2]].
+fn block(row: &str) -> Vec<BTreeMap<String, String>> {
+    let robot = Robot::from_urdf(include_str!("../urdf/block.urdf")).unwrap();
+    let state = states(format!("v_base_x,v_base_z,friction\n{row}\n").as_bytes(), &robot).pop().unwrap().unwrap();
+    let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
+    let report = Report::of_state(&robot, &state, &impact, Detail::default()).unwrap();
+    let columns = Columns::new(&robot, &[], None, false);
+    let mut out = Vec::new();
+    columns.append_header(&mut out);
+    columns.append_result(&report, None, &mut out).unwrap();
+    by_column(&out)
+}
+
+#[test]
+fn a_border_is_told_by_what_is_zero_and_a_family_by_its_ends() {
+    let told = |row: &str| -> Vec<[String; 2]> {
+        block(row).iter().map(|row| [&row["border"], &row["family"]].map(String::clone)).collect()
+    };
+    // Resting, it is not pressed; struck, it stops with less than all of its friction.
+    assert_eq!(told("0,0,0.5"), [["block: L_n = 0", "false"]]);
+    assert_eq!(told("-0.5,-1,0.5"), [["", "false"]]);
+    // At friction 2 sliding loads the contact by just what brakes it: it stops, goes on, or anything between.
+    assert_eq!(told("1,0,2"), [["block: |L_t| = mu L_n", "true"], ["block: L_n = 0", "true"]]);
 }
 
 #[test]

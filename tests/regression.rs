@@ -91,6 +91,18 @@ fn the_impulse_told_is_the_least() {
     }
 }
 
+/// Within cones of 1e-12 the search begins at impulses of 1e15, and pairs of f64 left 3e-6 of the impulse to rounding.
+#[test]
+fn an_impulse_within_needle_thin_cones_keeps_its_digits() {
+    let mut delassus = [0.0; 36];
+    for (row, column, entry) in [(3, 3, 1.0), (3, 4, -1.0), (3, 5, -1.0), (4, 4, 1.0), (4, 5, 1.0), (5, 5, 1.0)] {
+        (delassus[row * 6 + column], delassus[column * 6 + row]) = (entry, entry);
+    }
+    let analysis = solve(&delassus, [[0.0, 0.0], [0.0, -3.0], [3.0, 3.0]], [mu(1e-12); 3], [0.0; 3]);
+    // Only n of contact 1 presses without a cost: n_1 = 3 + t_2 + n_2 with |t_2| <= 1e-12 n_2.
+    assert_eq!(analysis.outcomes[0].impulse, [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]]);
+}
+
 #[test]
 fn contacts_that_can_squeeze_each_other_at_rest_are_on_no_border() {
     // L = s (1, 2) is admissible for every s: the normal impulse is not forced to zero.

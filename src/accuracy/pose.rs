@@ -22,6 +22,7 @@ use serde::Serialize;
 
 /// How G = J M^-1 J^T is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Factorization {
     /// M = L^T D L along the tree's branches.

@@ -7,7 +7,7 @@ use super::reference::{PRECISION, Reference, distance, relative, with_precision,
 use super::suite::Subject;
 use super::timing::{Budget, Spread, time};
 use crate::impact::enumerate::Tableau;
-use crate::impact::{Analysis, ContactProblem, Verdict, analyse};
+use crate::impact::{Analysis, Asked, ContactProblem, Scratch, Verdict};
 use crate::pipeline::{Options, Pipeline};
 use crate::planar::Vector;
 use crate::robot::Robot;
@@ -17,11 +17,14 @@ use crate::{Error, Reason};
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 
-/// Beyond so many coordinates the factorizations of M are left to f32 and f64: in other numbers they take seconds.
+/// Beyond so many coordinates the factorizations of M are left to f32 and f64.
 const LONGEST_FACTORIZED: usize = 300;
+/// Why.
+const TOO_LONG: &str = "with more than 300 coordinates it takes seconds";
 
 /// One case, looked at by every method.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Study {
     /// What the case is called.
     pub name: String,
@@ -35,6 +38,7 @@ pub struct Study {
     pub answer: Option<Answer>,
     /// Why the case was refused.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_text")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub refused: Option<Error>,
     /// How large rounding grows.
     pub condition: Condition,
@@ -44,6 +48,7 @@ pub struct Study {
 
 /// The answer in short.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Answer {
     /// The verdict.
     pub verdict: Verdict,
@@ -65,6 +70,7 @@ fn as_text<S: Serializer>(refused: &Option<Error>, serializer: S) -> Result<S::O
 
 /// Condition numbers of matrices scaled to a unit diagonal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Condition {
     /// Of M; none without a robot.
     pub mass_matrix: Option<f64>,
@@ -74,6 +80,7 @@ pub struct Condition {
 
 /// One way to G, or to the whole answer.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Method {
     /// The kind of number.
     pub number: &'static str,
@@ -86,10 +93,14 @@ pub struct Method {
     pub time: Option<Spread>,
     /// How far from the reference; none where the method failed.
     pub error: Option<Errors>,
+    /// Why the method was not tried, where it was not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<&'static str>,
 }
 
 /// What is timed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Work {
     /// From the f64 state to G.
@@ -102,6 +113,7 @@ pub enum Work {
 
 /// Largest errors, free of units (see [`Reference`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Errors {
     /// Of M; none where the method has none.
     pub mass_matrix: Option<f64>,
@@ -112,19 +124,23 @@ pub struct Errors {
 }
 
 /// Looks at a case of the suite, or at whatever else `subject` is.
-pub fn study(name: &str, subject: &Subject, budget: Budget) -> Study {
+pub fn study(name: &str, subject: &Subject, options: &Options, budget: Budget) -> Study {
     match subject {
-        Subject::State(case) => of_state(name, &case.0, &case.1, &Options::default(), budget),
-        Subject::Problem(problem) => of_problem(name, problem, budget),
+        Subject::State(case) => of_state(name, &case.0, &case.1, options, budget),
+        Subject::Problem(problem) => of_problem(name, problem, !options.no_proof, budget),
     }
 }
 
 /// Looks at a robot's state.
 pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> Study {
     let mut study = Study::of(name, Some(robot.dofs()));
-    if !robot.followers.is_empty() || !state.scene.loops.is_empty() {
-        let reason = "loops and joints that follow others are not compared: articulated bodies do not hold them";
-        return study.refuse(Reason::Unsupported(reason.into()).into());
+    if !state.scene.loops.is_empty() {
+        let reason = Reason::Unsupported("the methods compared here know no loops".into());
+        return study.refuse(Error::new(reason).hint("leave them out: the tree alone is compared"));
+    }
+    if !robot.followers.is_empty() {
+        let reason = Reason::Unsupported("the methods compared here know no joints that follow others".into());
+        return study.refuse(Error::new(reason).hint("remove <mimic> to let the joint move freely, or make it fixed"));
     }
     let mut pipeline = Pipeline::new(robot, options.clone());
     let impact = match pipeline.impact(state) {
@@ -146,8 +162,8 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
         bench.every_method();
         study.methods = bench.methods;
     });
-    let mut plain = Pipeline::new(robot, Options { no_proof: true, ..options.clone() });
-    for (number, pipeline) in [("f64", &mut plain), ("f64 with proof", &mut pipeline)] {
+    for (number, proves) in answers(!options.no_proof) {
+        let mut pipeline = Pipeline::new(robot, Options { no_proof: !proves, ..options.clone() });
         let whole = time(budget, || {
             std::hint::black_box(&pipeline.impact(state));
         });
@@ -156,29 +172,39 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
     study
 }
 
+/// The ways to the whole answer, and whether they prove it.
+fn answers(prove: bool) -> impl Iterator<Item = (&'static str, bool)> {
+    [("f64", false), ("f64 with proof", true)].into_iter().filter(move |(_, proves)| prove || !proves)
+}
+
 /// Looks at a contact problem given as matrices, which are taken as exact.
-pub fn of_problem(name: &str, problem: &ContactProblem, budget: Budget) -> Study {
+pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Budget) -> Study {
     let mut study = Study::of(name, None);
     study.contacts = problem.contacts();
-    let analysis = match analyse(problem, false) {
+    let mut scratch = Scratch::default();
+    let mut analyse = |prove| scratch.analyse(problem, problem, Asked { explain: false, prove });
+    let analysis = match analyse(prove) {
         Ok(analysis) => analysis,
         Err(error) => return study.refuse(error),
     };
     study.answered(&analysis);
-    let whole = time(budget, || {
-        std::hint::black_box(&analyse(problem, false));
-    });
     Interval::scope(PRECISION, || {
         let exact = problem.map(Interval::from_f64);
         let mut row = |number, outcome| {
             let error = Some(Errors { mass_matrix: None, delassus: None, outcome });
-            study.methods.push(Method { number, factorization: None, work: Work::Outcome, time: None, error });
+            let work = Work::Outcome;
+            study.methods.push(Method { number, factorization: None, work, time: None, error, left_out: None });
         };
         row("f32", outcome_error(&analysis, &problem.map(f32::from_f64), &exact));
         row("f64", outcome_error(&analysis, problem, &exact));
         row("double-double", outcome_error(&analysis, &problem.map(DoubleDouble::from_f64), &exact));
     });
-    study.methods.push(Method::answer("f64 with proof", whole));
+    for (number, proves) in answers(prove) {
+        let whole = time(budget, || {
+            std::hint::black_box(&analyse(proves));
+        });
+        study.methods.push(Method::answer(number, whole));
+    }
     study
 }
 
@@ -216,7 +242,7 @@ impl Study {
 
 impl Method {
     fn answer(number: &'static str, time: Spread) -> Self {
-        Self { number, factorization: None, work: Work::Answer, time: Some(time), error: None }
+        Self { number, factorization: None, work: Work::Answer, time: Some(time), error: None, left_out: None }
     }
 }
 
@@ -244,6 +270,15 @@ impl Bench<'_> {
         self.method::<f64>("f64", ArticulatedBodies);
         if self.pose.robot.dofs() <= LONGEST_FACTORIZED {
             self.method::<DoubleDouble>("double-double", SparseLtl);
+        } else {
+            self.methods.push(Method {
+                number: "double-double",
+                factorization: Some(SparseLtl),
+                work: Work::Delassus,
+                time: None,
+                error: None,
+                left_out: Some(TOO_LONG),
+            });
         }
         self.method::<DoubleDouble>("double-double", ArticulatedBodies);
         let reference = time(Budget { samples: 5, ..self.budget }, || {
@@ -257,6 +292,7 @@ impl Bench<'_> {
             work: Work::Delassus,
             time: Some(reference),
             error: Some(Errors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None }),
+            left_out: None,
         });
     }
 
@@ -284,7 +320,8 @@ impl Bench<'_> {
             return self.take("f64", Factorization::DenseCholesky, spread, &mut computation);
         }
         let (factorization, work) = (Some(Factorization::DenseCholesky), Work::Delassus);
-        self.methods.push(Method { number: "f64", factorization, work, time: Some(spread), error: None });
+        let time = Some(spread);
+        self.methods.push(Method { number: "f64", factorization, work, time, error: None, left_out: None });
     }
 
     fn take<T: Number>(
@@ -311,6 +348,7 @@ impl Bench<'_> {
             work: Work::Delassus,
             time: Some(time),
             error: Some(Errors { mass_matrix, delassus: Some(delassus), outcome }),
+            left_out: None,
         });
     }
 

@@ -20,6 +20,7 @@ impl Default for Budget {
 
 /// Seconds per run: the median of the samples, and the quartiles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Spread {
     /// A quarter of the samples is faster \[s\].
     pub lower_quartile: f64,

@@ -37,6 +37,9 @@ pub struct Args {
     /// How long each method is run for its time, in milliseconds
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 20)]
     time: u64,
+    /// Leave out the proofs and what they cost
+    #[arg(long)]
+    no_proof: bool,
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
@@ -52,7 +55,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     args.plot.check()?;
     let accuracy = match (&args.robot, &args.state) {
         (Some(robot), Some(state)) => own(args, robot, state, budget)?,
-        _ => suite(args.case.as_deref().unwrap_or_default(), budget)?,
+        _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, budget)?,
     };
     args.plot.draw(&accuracy.picture())?;
     let mut output = args.output.open()?;
@@ -90,6 +93,7 @@ fn own(args: &Args, robot: &std::path::Path, state: &std::path::Path, budget: Bu
     let options = Options {
         contact_tolerance: args.contacts.contact_tolerance,
         resting_speed: args.contacts.resting_speed,
+        no_proof: args.no_proof,
         ..Options::default()
     };
     let called = match &state.id {
@@ -110,17 +114,18 @@ const LARGEST: u64 = 64 << 20;
 /// The case whose compliant contact is shown with the suite.
 const WALKER: &str = "friction infinite, biped";
 
-fn suite(part: &str, budget: Budget) -> Result<Accuracy, Failure> {
+fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure> {
     let chosen: Vec<Case> = cases()?.into_iter().filter(|case| case.name.contains(part)).collect();
     if chosen.is_empty() {
         let reason = Reason::UnknownName { what: "case", name: part.to_owned() };
         let hint = "`heelstrike accuracy --time 0` shows the names of all cases";
         return Err(Failure::Usage(Error::new(reason).at("--case").hint(hint)));
     }
-    let studies = chosen.iter().map(|case| study(&case.name, &case.subject, budget)).collect();
+    let options = Options { no_proof, ..Options::default() };
+    let studies = chosen.iter().map(|case| study(&case.name, &case.subject, &options, budget)).collect();
     let walker = chosen.iter().find(|case| case.name == WALKER);
     let compliant = match walker.map(|case| &case.subject) {
-        Some(Subject::State(case)) => compliant(WALKER, &case.0, &case.1, &Options::default())?,
+        Some(Subject::State(case)) => compliant(WALKER, &case.0, &case.1, &options)?,
         _ => None,
     };
     Ok(Accuracy::new(studies, compliant))

@@ -17,7 +17,8 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
-    let robot = args.robot.load()?;
+    // Its cautions are part of what is told.
+    let robot = args.robot.read()?;
     let inspection = Inspection::new(&robot, &args.robot.feet(&robot)?);
     args.output.spare(&[&args.robot.robot])?;
     let mut output = args.output.open()?;

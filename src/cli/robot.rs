@@ -1,5 +1,6 @@
 //! The robot and the options that shape it.
 
+use super::complaint::note;
 use super::meshes::Meshes;
 use super::options::ReductionOptions;
 use super::{Failure, input};
@@ -150,8 +151,15 @@ impl RobotOptions {
         }
     }
 
-    /// Reads the robot.
+    /// Reads the robot, and tells what a user must know before trusting it.
     pub fn load(&self) -> Result<Robot, Failure> {
+        let robot = self.read()?;
+        robot.reading.cautions.iter().for_each(|caution| note(caution));
+        Ok(robot)
+    }
+
+    /// Reads the robot.
+    pub fn read(&self) -> Result<Robot, Failure> {
         let name = input::name(&self.robot);
         let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
         let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
@@ -188,7 +196,7 @@ impl RobotOptions {
     pub fn feet(&self, robot: &Robot) -> Result<Vec<NamedContact>, Failure> {
         let foot = |foot: &Foot| {
             let link = robot.link(&foot.link).ok_or_else(|| {
-                let reason = Reason::UnknownName { what: "link", name: foot.link.clone() };
+                let reason = robot.no_link(&foot.link);
                 let known = robot.links.iter().map(|link| link.name.as_str());
                 Failure::Usage(Error::new(reason).at("--contact").did_you_mean(&foot.link, known))
             })?;

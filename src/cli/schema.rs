@@ -5,7 +5,7 @@ use super::{Answered, Outcome};
 use heelstrike::report::schema;
 use std::io::Write;
 
-/// Write the JSON Schema of a state, a result or a problem
+/// Write the JSON Schema of a state, a result, a problem or a report on accuracy
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -26,6 +26,8 @@ enum Document {
     Result,
     /// What `solve` reads
     Problem,
+    /// What `accuracy` writes as JSON
+    Accuracy,
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
@@ -33,6 +35,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         Document::State => schema::state(),
         Document::Result => schema::result(),
         Document::Problem => schema::problem(),
+        Document::Accuracy => schema::accuracy(),
     };
     let mut output = Output::open(None)?;
     writeln!(output, "{schema:#}")?;

@@ -4,11 +4,12 @@
 //! wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
 //! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
 
+use super::mend::Mended;
 use super::strict::{Range, copy, copy_axis, copy_origin, copy_required, write_attribute};
-use super::xml::{self, Cursor, MOST_LINKS};
+use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
 use super::{Ignored, JointKind, joint_place, link_place};
 use crate::error::{Location, Reason, Result};
-use roxmltree::Node;
+use roxmltree::{Document, Node};
 use std::collections::HashMap;
 
 /// The most joints that move: a chain of n of them takes n^3 / 3 steps to factorize.
@@ -19,6 +20,8 @@ const MOST_IGNORED: usize = 1000;
 const PART: usize = 1000;
 /// The link that joints may name as their parent without its being defined.
 const WORLD: &str = "world";
+/// The remedy for a file with macros.
+pub(super) const EXPAND: &str = "expand the file first: xacro FILE > robot.urdf";
 /// How a part of the strict copy begins.
 const OPENING: &str = "<robot name=\"\">";
 /// How a part of the strict copy ends.
@@ -75,9 +78,27 @@ pub(super) struct Joint {
 
 /// Reads and checks `text`; see [`super::Description::from_urdf`] for what is refused.
 pub(super) fn read(text: &str) -> Result<Draft> {
-    let document = xml::parse(text)?;
+    let mut mended = Mended::new(text);
+    loop {
+        match xml::parse(&mended.text) {
+            Ok(document) => {
+                let draft = read_document(&document).map_err(|error| mended.refusal(error));
+                return draft.map(|draft| draft.moved(|place| mended.in_file(place)));
+            }
+            Err(Unparsed::Prefix(prefix, refused)) => {
+                let refused = mended.refusal(refused);
+                mended = mended.declaring(&prefix).ok_or(refused)?;
+            }
+            Err(Unparsed::Refused(refused)) => return Err(mended.refusal(refused)),
+        }
+    }
+}
+
+fn read_document(document: &Document<'_>) -> Result<Draft> {
+    let text = document.input_text();
     let robot = document.root_element();
     require_urdf(robot)?;
+    refuse_xacro(robot)?;
 
     let mut cursor = Cursor::new(text);
     let (mut links, mut joints) = (Named::new("link"), Named::new("joint"));
@@ -94,7 +115,7 @@ pub(super) fn read(text: &str) -> Result<Draft> {
     if links.elements.is_empty() {
         return Err(xml::refuse(robot, Reason::Missing("a <link>".into())));
     }
-    let world = undefined_world(&links, &joints)?;
+    let world = undefined_world(&links, &joints);
     links.by_name.extend(world.map(|_| (WORLD, links.elements.len())));
     refuse_many_joints(&joints)?;
 
@@ -137,16 +158,15 @@ pub(super) fn read(text: &str) -> Result<Draft> {
 }
 
 /// Where a joint names the parent link `world` that no element defines, as many files do: the world needs no description.
-fn undefined_world(links: &Named, joints: &Named) -> Result<Option<Location>> {
+fn undefined_world(links: &Named, joints: &Named) -> Option<Location> {
     if links.by_name.contains_key(WORLD) {
-        return Ok(None);
+        return None;
     }
-    for &(_, element, location) in &joints.elements {
-        if xml::child(element, "parent")?.is_some_and(|parent| parent.attribute("link") == Some(WORLD)) {
-            return Ok(Some(location));
-        }
-    }
-    Ok(None)
+    let hangs_on_it = |element: Node| {
+        let mut parents = xml::children(element).filter(|child| child.tag_name().name() == "parent");
+        parents.any(|parent| parent.attribute("link") == Some(WORLD))
+    };
+    joints.elements.iter().find(|(_, element, _)| hangs_on_it(*element)).map(|&(_, _, location)| location)
 }
 
 /// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
@@ -176,6 +196,18 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     })
 }
 
+/// Refuses macros that are still to be expanded; a file that only declares their namespace is plain URDF.
+fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
+    let is_macro = |element: &Node| element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro"));
+    match robot.descendants().find(|node| node.is_element() && is_macro(node)) {
+        Some(element) => {
+            let reason = format!("<xacro:{}> is not URDF", element.tag_name().name());
+            Err(xml::refuse(element, Reason::Unsupported(reason)).hint(EXPAND))
+        }
+        None => Ok(()),
+    }
+}
+
 /// The tag of a child of `robot`, if it is of the same namespace.
 fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
     (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
@@ -188,6 +220,19 @@ struct Named<'a, 'input> {
     by_name: HashMap<&'a str, usize>,
 }
 
+impl Draft {
+    /// The draft with all places changed.
+    fn moved(mut self, place: impl Fn(Location) -> Location) -> Self {
+        for link in &mut self.links {
+            link.location = place(link.location);
+        }
+        for joint in &mut self.joints {
+            joint.location = place(joint.location);
+        }
+        self
+    }
+}
+
 impl<'a, 'input> Named<'a, 'input> {
     fn new(what: &'static str) -> Self {
         Self { what, elements: Vec::new(), by_name: HashMap::new() }
@@ -195,6 +240,10 @@ impl<'a, 'input> Named<'a, 'input> {
 
     fn push(&mut self, element: Node<'a, 'input>, location: Location) -> Result<()> {
         let name = xml::required_attribute(element, "name")?;
+        if name.contains("${") || name.contains("$(") {
+            let reason = format!("the name \"{name}\" is a macro's");
+            return Err(xml::refuse(element, Reason::Unsupported(reason)).hint(EXPAND));
+        }
         if self.by_name.insert(name, self.elements.len()).is_some() {
             return Err(xml::refuse(element, Reason::Duplicate { what: self.what, name: name.into() }));
         }
@@ -221,11 +270,6 @@ struct Tally {
 
 impl Tally {
     fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
-        if element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro")) {
-            let reason = format!("<xacro:{}> is not URDF", element.tag_name().name());
-            return Err(xml::refuse(element, Reason::Unsupported(reason))
-                .hint("expand the file first: xacro FILE > robot.urdf"));
-        }
         let tag = element.tag_name().name();
         let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
         if kind == MOST_IGNORED {
@@ -249,8 +293,9 @@ fn read_link(
 ) -> Result<Link> {
     strict.push_str("<link name=\"\">");
     let inertial = match xml::child(element, "inertial")? {
-        Some(inertial) => read_inertial(inertial, strict)?,
-        None => Stated::Nothing,
+        // An empty one says no more than none.
+        Some(inertial) if inertial.children().any(|child| child.is_element()) => read_inertial(inertial, strict)?,
+        _ => Stated::Nothing,
     };
     let mut shapes = Vec::new();
     for child in element.children().filter(Node::is_element) {
@@ -337,11 +382,11 @@ struct JointElement<'a, 'input> {
 impl JointElement<'_, '_> {
     fn read(self, links: &Named, joints: &Named, ignored: &mut Tally, strict: &mut String) -> Result<Joint> {
         let Self { name, element, location } = self;
-        let (word, kind) = joint_kind(element)?;
+        let kind = joint_kind(element)?;
         let parent = links.find(xml::required_child(element, "parent")?, "link")?;
         let child = links.find(xml::required_child(element, "child")?, "link")?;
 
-        strict.push_str(&format!("<joint name=\"\" type=\"{word}\">"));
+        strict.push_str(&format!("<joint name=\"\" type=\"{}\">", kind.name()));
         copy_origin(element, strict)?;
         strict.push_str("<parent link=\"\"/><child link=\"\"/>");
         if let Some(axis) = xml::child(element, "axis")? {
@@ -368,9 +413,10 @@ impl JointElement<'_, '_> {
     }
 }
 
-/// The joint's type and the file's word for it.
-fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
-    const KINDS: [(&str, JointKind); 7] = [
+/// The joint's type.
+fn joint_kind(element: Node<'_, '_>) -> Result<JointKind> {
+    // Drake calls a spherical joint a ball.
+    const KINDS: [(&str, JointKind); 8] = [
         ("fixed", JointKind::Fixed),
         ("revolute", JointKind::Revolute),
         ("continuous", JointKind::Continuous),
@@ -378,10 +424,11 @@ fn joint_kind<'a>(element: Node<'a, '_>) -> Result<(&'a str, JointKind)> {
         ("planar", JointKind::Planar),
         ("floating", JointKind::Floating),
         ("spherical", JointKind::Spherical),
+        ("ball", JointKind::Spherical),
     ];
     let word = xml::required_attribute(element, "type")?;
     match KINDS.iter().find(|(known, _)| *known == word) {
-        Some(&(_, kind)) => Ok((word, kind)),
+        Some(&(_, kind)) => Ok(kind),
         None => Err(xml::refuse(element, Reason::Unsupported(format!("unknown joint type \"{word}\"")))
             .did_you_mean(word, KINDS.map(|(known, _)| known))),
     }

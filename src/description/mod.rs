@@ -2,7 +2,7 @@
 //! (the only user of urdf-rs and roxmltree).
 //!
 //! ```text
-//!     text --xml--> elements --draft--> names, places, strict copy --urdf-rs--> values --tree--> Description
+//!     text --mend, xml--> elements --draft--> names, places, strict copy --urdf-rs--> values --tree--> Description
 //! ```
 //!
 //! urdf-rs alone is too trusting and too strict: it drops what is no number out of a vector, takes a missing `<inertial>`
@@ -11,6 +11,7 @@
 //! file or starts a process, nothing recurses, and time and memory grow linearly with the text.
 
 mod draft;
+mod mend;
 mod mesh;
 mod mimic;
 mod pose;

@@ -105,7 +105,7 @@ mod tests {
         }
         // A third of a whole turn about the diagonal takes x to y, y to z and z to x.
         let diagonal = unit([2.0, 2.0, 2.0]);
-        assert_close(apply(&turn(diagonal, 4.0 * FRAC_PI_2 / 3.0), [1.0, 2.0, 3.0]), [3.0, 1.0, 2.0]);
+        assert_close(apply(&turn(diagonal, 4.0 * FRAC_PI_2 / 3.0), [0.1, 0.2, 0.3]), [0.3, 0.1, 0.2]);
     }
 
     #[test]

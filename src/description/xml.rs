@@ -18,14 +18,40 @@ const MOST_NAMESPACES: usize = 1000;
 /// The remedy for what is something else altogether.
 const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
 
+/// Why a text has no XML tree.
+pub(super) enum Unparsed {
+    /// A prefix that is not declared, and the refusal if that cannot be mended.
+    Prefix(String, Error),
+    /// Anything else.
+    Refused(Error),
+}
+
+impl Unparsed {
+    /// The refusal of a text that nobody mends.
+    pub(super) fn into_error(self) -> Error {
+        match self {
+            Self::Prefix(_, refused) | Self::Refused(refused) => refused,
+        }
+    }
+}
+
+impl From<Error> for Unparsed {
+    fn from(refused: Error) -> Self {
+        Self::Refused(refused)
+    }
+}
+
 /// The XML tree of `text`.
 ///
 /// # Errors
 /// Text that is no XML, a document type definition, too deep nesting, too many links, attributes or nodes.
-pub(super) fn parse(text: &str) -> Result<Document<'_>> {
+pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, Unparsed> {
     refuse_many(text)?;
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options).map_err(|error| refusal(text, &error))?;
+    let document = Document::parse_with_options(text, options).map_err(|error| match &error {
+        roxmltree::Error::UnknownNamespace(prefix, _) => Unparsed::Prefix(prefix.clone(), refusal(text, &error)),
+        _ => refusal(text, &error).into(),
+    })?;
     refuse_deep_nesting(&document)?;
     Ok(document)
 }

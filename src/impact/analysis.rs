@@ -218,7 +218,7 @@ impl Question for Open<'_> {
             match T::freeing(|| combination(&mut tableau, exact, problem, scale, modes)) {
                 Ok(settled) if found.asked.explain && layer != Layer::Precise && settled.is_vague() => true,
                 Ok(settled) => {
-                    if settled.error().is_some_and(|error| error > DIGITS && layer == Layer::Ball) {
+                    if settled.error().is_some_and(|error| error > DIGITS && layer != Layer::Precise) {
                         coarse.push((*number, modes.clone()));
                     }
                     found.take(*number, modes, problem, settled);

@@ -14,8 +14,8 @@ use self::loops::Loops;
 use self::strike::Strike;
 use crate::contact::{self, Contact, Feet, Placement};
 use crate::dynamics::{
-    Arm, Bounds, Constraints, ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics,
-    kinetic_energy, mass_matrix, point_velocity,
+    Arm, Bounds, Constraints, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias,
+    contact_jacobian, delassus, factorize, kinematics, kinetic_energy, mass_matrix, point_velocity,
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
@@ -117,6 +117,7 @@ pub struct Pipeline<'r> {
     scratch: Scratch,
     points: Vec<ContactPoint>,
     column: Vec<f64>,
+    motions: Vec<(f64, Vector<f64>)>,
 }
 
 impl<'r> Pipeline<'r> {
@@ -137,6 +138,7 @@ impl<'r> Pipeline<'r> {
             scratch: Scratch::default(),
             points: Vec::new(),
             column: Vec::new(),
+            motions: Vec::new(),
         }
     }
 
@@ -183,7 +185,7 @@ impl<'r> Pipeline<'r> {
         let resting = self.snap(&contacts, &mut notes);
         delassus(&self.plan, &mut self.workspace);
         self.eliminate_loops(&loops);
-        let kinetic_energy = self.energy_in_range(&velocity)?;
+        let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
         if !scene.impulses.is_empty() || (self.is_constrained(&loops) && !self.options.no_proof) {
@@ -220,12 +222,17 @@ impl<'r> Pipeline<'r> {
         let asked = Asked { explain, prove: !no_proof, reductions };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
+        // Articulated bodies hold neither ties nor constraints.
+        let by_mass = self.plan.tied || self.is_constrained(&loops);
+        if !by_mass && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+            articulated_inertias(&self.plan, &mut self.workspace);
+        }
         let (velocity_after, loop_impulse) = outcomes
             .iter()
-            .map(|outcome| match !self.is_constrained(&loops) {
-                true => (self.struck(&free, &outcome.impulse), Vec::new()),
-                false => {
-                    let mut change = self.struck(&applied, &outcome.impulse);
+            .map(|outcome| match self.is_constrained(&loops) {
+                false => (self.struck(by_mass, &free, &outcome.impulse), Vec::new()),
+                true => {
+                    let mut change = self.struck(by_mass, &applied, &outcome.impulse);
                     let impulse = self.answer_of_loops(&loops, &mut change);
                     (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
                 }
@@ -338,15 +345,27 @@ impl<'r> Pipeline<'r> {
         Ok(())
     }
 
-    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything.
-    fn energy_in_range(&self, velocity: &[f64]) -> Result<f64> {
+    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything. The refusal names the
+    /// greatest of the velocities that were `given`.
+    fn energy_in_range(&self, given: &[f64], velocity: &[f64]) -> Result<f64> {
         let too_large =
             |error: Error| error.hint("positions and velocities are too large for f64: are they in SI units?");
         for &entry in &self.workspace.delassus {
             finite(entry, || "an entry of the Delassus matrix".into()).map_err(too_large)?;
         }
         let energy = kinetic_energy(&self.plan, velocity, &self.workspace);
-        finite(energy, || "the kinetic energy".into()).map_err(too_large)
+        let greatest = || {
+            let named = self.robot.coordinates().zip(given).enumerate();
+            let greatest = named.max_by(|(_, (_, a)), (_, (_, b))| a.abs().total_cmp(&b.abs()));
+            greatest.map(|(at, (name, _))| {
+                let part = if at < self.robot.base_dofs() { "base" } else { "joints" };
+                format!("velocity.{part}.{name}")
+            })
+        };
+        finite(energy, || "the kinetic energy".into()).map_err(|error| match greatest() {
+            Some(place) => too_large(error).at(place),
+            None => too_large(error),
+        })
     }
 
     fn tolerance(&self) -> f64 {
@@ -461,14 +480,20 @@ impl<'r> Pipeline<'r> {
         change
     }
 
-    /// The velocity by coordinate after contact impulses, from the one without them.
-    fn struck(&mut self, free: &[f64], impulse: &[Vector<f64>]) -> Vec<f64> {
+    /// The velocity by coordinate after contact impulses, from the one without them: by articulated bodies, which keep
+    /// thirteen digits and more in chains where M = L^T D L leaves eight, or `by_mass`.
+    fn struck(&mut self, by_mass: bool, free: &[f64], impulse: &[Vector<f64>]) -> Vec<f64> {
         let mut after = free.to_vec();
-        let Self { plan, workspace, points, column, .. } = self;
+        let Self { plan, workspace, points, column, motions, .. } = self;
         for (point, &[tangential, normal]) in points.iter().zip(impulse) {
             let axes = point.axes();
             let vector = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
-            add_impulse(plan, workspace, (point.body, point.arm(workspace)), vector, column, &mut after);
+            let at = (point.body, point.arm(workspace));
+            if by_mass {
+                add_impulse(plan, workspace, at, vector, column, &mut after);
+            } else {
+                add_articulated_impulse(plan, workspace, at, vector, (&mut *column, &mut *motions), &mut after);
+            }
         }
         after
     }

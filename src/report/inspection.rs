@@ -1,14 +1,14 @@
 //! What was read of a robot: the reduced planar robot with every digit as JSON, or as text.
 
+mod text;
+
 use super::result::LeftOut;
-use super::table::{Table, number, scale};
 use super::text::Palette;
 use crate::Robot;
 use crate::planar::Vector;
-use crate::robot::{self, Axis, Base, FootShape, Rim};
+use crate::robot::{self, Axis, Base, FootShape, Rim, Still};
 use crate::scene::NamedContact;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// The reduced robot as it is written; what is proven refers to these numbers.
 #[derive(Debug, Clone, Serialize)]
@@ -17,8 +17,14 @@ pub struct Inspection<'a> {
     pub name: &'a str,
     /// Forward and up in the file's root frame.
     pub plane: &'static str,
+    /// Why this plane.
+    pub plane_because: String,
     /// `floating` or `fixed`.
     pub base: &'static str,
+    /// Why it is.
+    pub base_because: &'a str,
+    /// What a user must know before trusting the rest, with the remedy.
+    pub cautions: &'a [String],
     /// Total mass \[kg\].
     pub mass: f64,
     /// Names of the coordinates in the order of q.
@@ -27,6 +33,10 @@ pub struct Inspection<'a> {
     pub bodies: Vec<Body<'a>>,
     /// Moving joints in the file's order.
     pub joints: Vec<Joint<'a>>,
+    /// Joints that follow these, in the file's order; they have no coordinate of their own.
+    pub followers: Vec<Follower<'a>>,
+    /// Joints of the file that have no coordinate, in its order.
+    pub held: Vec<Held<'a>>,
     /// Links in the file's order.
     pub links: Vec<Link<'a>>,
     /// Shapes that can touch the ground, in the links' order.
@@ -70,6 +80,33 @@ pub struct Joint<'a> {
     /// Of a slide: the unit vector of its motion in the parent body's frame.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<Vector<f64>>,
+}
+
+/// A joint that follows another (mimic): q = multiplier q_leader + offset.
+#[derive(Debug, Clone, Serialize)]
+pub struct Follower<'a> {
+    /// What it is as a joint.
+    #[serde(flatten)]
+    pub joint: Joint<'a>,
+    /// The joint that it follows.
+    pub leader: &'a str,
+    /// How much it moves for a unit of its leader.
+    pub multiplier: f64,
+    /// Its coordinate where the leader's is zero \[rad, m\].
+    pub offset: f64,
+}
+
+/// A joint of the file that has no coordinate.
+#[derive(Debug, Clone, Serialize)]
+pub struct Held<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The body that its child is welded into.
+    pub body: &'a str,
+    /// Why it has none.
+    pub why: String,
+    #[serde(skip)]
+    still: &'a Still,
 }
 
 /// A link of the file.
@@ -120,14 +157,24 @@ impl<'a> Inspection<'a> {
             com: body.com,
             moment: body.moment,
         });
-        let joints = robot.joints.iter().map(|joint| {
-            let (kind, sign, direction) = match joint.axis {
+        let joint = |name: &'a str, parent, child, origin, axis| {
+            let (kind, sign, direction) = match axis {
                 Axis::Turn { sign } => ("turn", Some(sign), None),
                 Axis::Slide { direction } => ("slide", None, Some(direction)),
             };
-            let (parent, child) = (body_name(joint.parent), body_name(joint.child));
-            Joint { name: &joint.name, kind, parent, child, origin: joint.origin, sign, direction }
+            Joint { name, kind, parent: body_name(parent), child: body_name(child), origin, sign, direction }
+        };
+        let joints = robot
+            .joints
+            .iter()
+            .map(|&robot::Joint { ref name, parent, child, origin, axis }| joint(name, parent, child, origin, axis));
+        let followers = robot.followers.iter().map(|follower| {
+            let &robot::Follower { ref name, leader, multiplier, offset, parent, child, origin, axis } = follower;
+            let leader = &robot.joints[leader].name;
+            Follower { joint: joint(name, parent, child, origin, axis), leader, multiplier, offset }
         });
+        let reading = &robot.reading;
+        let held = reading.held.iter();
         let feet = robot.links.iter().enumerate().flat_map(|(at, link)| {
             let given = feet.iter().filter(move |foot| foot.link == at);
             let given = given.map(|foot| Foot::disc(robot, link, link.point(foot.offset), foot.radius));
@@ -136,15 +183,27 @@ impl<'a> Inspection<'a> {
         let links = robot.links.iter();
         Self {
             name: &robot.name,
-            plane: robot.reading.plane.name(),
+            plane: reading.plane.name(),
+            plane_because: reading.plane_in_words(),
             base: match robot.base {
                 Base::Floating => "floating",
                 Base::Fixed => "fixed",
             },
+            base_because: &reading.base_because,
+            cautions: &reading.cautions,
             mass: robot.mass(),
             coordinates: robot.coordinates().collect(),
             bodies: bodies.collect(),
             joints: joints.collect(),
+            followers: followers.collect(),
+            held: held
+                .map(|held| Held {
+                    name: &held.name,
+                    body: &held.body,
+                    why: held.still.to_string(),
+                    still: &held.still,
+                })
+                .collect(),
             links: links
                 .map(|link| Link { name: &link.name, body: body_name(link.body), has_inertial: link.has_inertial })
                 .collect(),
@@ -155,71 +214,7 @@ impl<'a> Inspection<'a> {
 
     /// The same as text, with a line break at its end.
     pub fn text(&self, palette: &Palette) -> String {
-        let mut out = String::new();
-        // Writing into a string cannot fail.
-        let _ = self.write_text(palette, &mut out);
-        out
-    }
-
-    fn write_text(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
-        let Palette { strong, plain, .. } = *palette;
-        writeln!(out, "{strong}{}{plain}", self.name)?;
-        writeln!(out, "  plane        x-z: x forward, z up, pitch about +y (nose down)")?;
-        writeln!(out, "  mass         {} kg", number(self.mass))?;
-        let base = match self.base {
-            "floating" => "floating: x, z, pitch of the root link",
-            _ => "fixed: bolted to the world",
-        };
-        writeln!(out, "  base         {base} {}", self.bodies.first().map_or("", |body| body.name))?;
-        writeln!(out, "  coordinates  {}: {}", self.coordinates.len(), self.coordinates.join(", "))?;
-        writeln!(out, "  feet         {}", self.feet_in_words())?;
-
-        writeln!(out, "\n{strong}bodies{plain}")?;
-        let (bodies, joints) = (&self.bodies, &self.joints);
-        let points = bodies.iter().map(|body| body.com).chain(joints.iter().map(|joint| joint.origin));
-        let lengths = scale(points.flatten());
-        let moments = scale(bodies.iter().map(|body| body.moment));
-        Table::default()
-            .text("body", bodies.iter().map(|body| body.name))
-            .numbers("mass [kg]", self.mass, bodies.iter().map(|body| body.mass))
-            .numbers("CoG x [m]", lengths, bodies.iter().map(|body| body.com[0]))
-            .numbers("z [m]", lengths, bodies.iter().map(|body| body.com[1]))
-            .numbers("moment [kg m^2]", moments, bodies.iter().map(|body| body.moment))
-            .text("links", bodies.iter().map(|body| body.links.join(", ")))
-            .write(out);
-
-        if !joints.is_empty() {
-            writeln!(out, "\n{strong}joints{plain}")?;
-            Table::default()
-                .text("joint", joints.iter().map(|joint| joint.name))
-                .text("motion", joints.iter().map(Joint::in_words))
-                .text("from", joints.iter().map(|joint| joint.parent))
-                .text("to", joints.iter().map(|joint| joint.child))
-                .numbers("origin x [m]", lengths, joints.iter().map(|joint| joint.origin[0]))
-                .numbers("z [m]", lengths, joints.iter().map(|joint| joint.origin[1]))
-                .write(out);
-        }
-
-        let massless: Vec<&str> = self.links.iter().filter(|link| !link.has_inertial).map(|link| link.name).collect();
-        if !massless.is_empty() {
-            writeln!(out, "\nWithout inertial, so massless: {}", massless.join(", "))?;
-        }
-        if !self.left_out.is_empty() {
-            writeln!(out, "\n{strong}left out{plain}")?;
-            Table::default()
-                .text("what", self.left_out.iter().map(|left| &*left.what))
-                .text("why", self.left_out.iter().map(|left| left.why))
-                .write_body(out);
-        }
-        Ok(())
-    }
-
-    fn feet_in_words(&self) -> String {
-        if self.feet.is_empty() {
-            return "none: name them by --contact, or in each state by \"contacts\"".to_owned();
-        }
-        let foot = |foot: &Foot| format!("{} ({})", foot.link, foot.in_words());
-        self.feet.iter().map(foot).collect::<Vec<_>>().join(", ")
+        text::text(self, palette)
     }
 }
 
@@ -271,19 +266,6 @@ impl<'a> Foot<'a> {
             corners: None,
             half_diameters: None,
             mesh: None,
-        }
-    }
-}
-
-impl Joint<'_> {
-    fn in_words(&self) -> String {
-        match (self.sign, self.direction) {
-            (Some(sign), _) if sign < 0.0 => "turns about -y".to_owned(),
-            (Some(_), _) => "turns about +y".to_owned(),
-            (_, direction) => {
-                let [x, z] = direction.unwrap_or_default();
-                format!("slides along ({}, {})", number(x), number(z))
-            }
         }
     }
 }

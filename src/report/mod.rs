@@ -5,7 +5,7 @@
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
-//!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy.rs
+//!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```
 
 mod holds;
@@ -25,7 +25,7 @@ mod text;
 mod touchdown;
 
 #[cfg(feature = "accuracy")]
-pub use accuracy::{ADVICE, Accuracy, Compliant};
+pub use accuracy::{Accuracy, Compliant};
 pub use holds::{Counterexample, Holds, StateFields};
 pub(crate) use id::short_id;
 pub use inspection::Inspection;

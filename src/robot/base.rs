@@ -12,7 +12,7 @@
 use super::plane::PARALLEL;
 use super::role::Role;
 use super::{Axis, Base, Still};
-use crate::description::{Description, JointKind};
+use crate::description::Description;
 
 /// The share of the robot's mass up to which a link looks as if it only had to be given one.
 const LIGHT: f64 = 1e-2;
@@ -165,12 +165,5 @@ impl Welded {
             [[ax, az], [bx, bz]] if turns == 1 && (ax * bz - az * bx).abs() > PARALLEL => Some(chain),
             _ => None,
         }
-    }
-}
-
-impl JointKind {
-    /// Whether the joint, if it cannot be the base, hides motion that the plane would allow.
-    pub(super) fn moves_in_every_plane(self) -> bool {
-        matches!(self, Self::Planar | Self::Floating | Self::Spherical)
     }
 }

@@ -9,7 +9,6 @@
 use crate::description::Matrix;
 use crate::error::Reason;
 use crate::planar::{Vector, difference, dot};
-use nalgebra::Matrix3;
 
 /// Below this share of its terms a negative moment is rounding of a turned inertia.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -17,13 +16,24 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Files give a few digits: a moment may be greater than the other two together by this share.
 const ROUNDED: f64 = 1e-3;
 
-/// Whether some body has this inertia about its CoG: no moment is negative or greater than the other two together
-/// (Featherstone 2008, section 2.13).
+/// Whether some body has this inertia about its CoG: no principal moment is greater than the other two together, so that
+/// none is negative (Featherstone 2008, section 2.13).
+///
+/// That is, `tr(I) / 2 - I` has no negative eigenvalue, and so no negative principal minor.
 pub(super) fn is_physical(inertia: &Matrix) -> bool {
-    let moments = Matrix3::from_fn(|row, column| inertia[row][column]).symmetric_eigenvalues();
-    let largest = moments.max();
-    let slack = ROUNDED * largest;
-    moments.min() >= -slack && largest <= 0.5 * moments.sum() + slack
+    let largest = inertia.as_flattened().iter().map(|entry| entry.abs()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return true;
+    }
+    let scaled = inertia.map(|row| row.map(|entry| entry / largest));
+    let half = 0.5 * (scaled[0][0] + scaled[1][1] + scaled[2][2]);
+    let second = |row: usize, column: usize| if row == column { half - scaled[row][row] } else { -scaled[row][column] };
+    let minor = |a: usize, b: usize| second(a, a) * second(b, b) - second(a, b) * second(b, a);
+    let cofactor =
+        |row: usize, a: usize, b: usize| second(row, 0) * (second(a, 1) * second(b, 2) - second(a, 2) * second(b, 1));
+    let determinant = cofactor(0, 1, 2) + cofactor(1, 2, 0) + cofactor(2, 0, 1);
+    let minors = [second(0, 0), second(1, 1), second(2, 2), minor(0, 1), minor(1, 2), minor(2, 0), determinant];
+    minors.into_iter().all(|minor| minor >= -ROUNDED)
 }
 
 /// The inertia that a link brings to its body, in the body's frame.
@@ -154,8 +164,13 @@ mod tests {
         for [x, y, z] in [[0.0, 1.0, 0.0], [1.0, 1.0, 2.1], [-1.0, 1.0, 1.0], [-1.0; 3]] {
             assert!(!is_physical(&diagonal(x, y, z)), "{x} {y} {z}");
         }
-        // Its principal moments are 3, 1 and 1.
-        assert!(!is_physical(&[[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]));
+        // Its principal moments are 3, 1 and 1; at any size.
+        for size in [1.0, 1e300, 1e-300] {
+            assert!(!is_physical(
+                &[[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]].map(|row| row.map(|entry| size * entry))
+            ));
+            assert!(is_physical(&INERTIA.map(|row| row.map(|entry| size * entry))));
+        }
     }
 
     #[test]

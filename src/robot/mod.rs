@@ -34,6 +34,7 @@ pub use reading::{HeldJoint, PlaneReason, Reading, Still};
 pub use reduce::Reduction;
 pub use shape::{FootShape, Rim};
 
+use crate::error::Reason;
 use crate::planar::Vector;
 use crate::scalar::Real;
 
@@ -244,6 +245,14 @@ impl Robot {
     /// The link of that name.
     pub fn link(&self, name: &str) -> Option<usize> {
         self.links.iter().position(|link| link.name == name)
+    }
+
+    /// Why no link has that name.
+    pub fn no_link(&self, name: &str) -> Reason {
+        if self.reading.outside.iter().any(|outside| outside == name) {
+            return Reason::Inconsistent(format!("link \"{name}\" is part of the base, not of the robot"));
+        }
+        Reason::UnknownName { what: "link", name: name.to_owned() }
     }
 
     /// The moving joint of that name.

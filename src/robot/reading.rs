@@ -2,6 +2,7 @@
 
 use super::plane::Plane;
 use crate::description::JointKind;
+use std::fmt;
 
 /// How a file was read.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -75,22 +76,45 @@ pub enum Still {
     Base,
 }
 
+impl Reading {
+    /// Why the plane was taken, and whether another one would keep more joints.
+    pub fn plane_in_words(&self) -> String {
+        let because = match self.plane_because {
+            PlaneReason::Asked => "as asked",
+            PlaneReason::CommonAxis => "all hinges of the file turn in it",
+            PlaneReason::Usual => "the usual one, as the file's hinges have no common direction",
+        };
+        match self.better_plane {
+            Some((plane, joints)) => format!("{because}; --plane {} would keep {joints} joints", plane.name()),
+            None => because.to_owned(),
+        }
+    }
+}
+
 impl HeldJoint {
-    /// Why it has no coordinate, in words.
+    /// Why it has no coordinate and what became of its child, in words.
     pub fn why(&self) -> String {
         let Self { body, still, .. } = self;
-        let kept = if self.welded { "welded into" } else { "without a coordinate, but moves a body of its own," };
         match still {
-            Still::Fixed => format!("fixed: {kept} {body}"),
-            Still::Asked { value } => format!("held at {value} as asked: {kept} {body}"),
-            Still::OffPlane { angle, slides } => {
+            Still::Base => format!("{still}: x, z and pitch of {body} take its place"),
+            _ if self.welded => format!("{still}: welded into {body}"),
+            _ => format!("{still}: it has no coordinate, and moves a body of its own, {body}"),
+        }
+    }
+}
+
+impl fmt::Display for Still {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fixed => f.write_str("fixed"),
+            Self::Asked { value } => write!(f, "held at {value} as asked"),
+            Self::OffPlane { angle, slides } => {
                 let wanted = if *slides { "the plane" } else { "the plane's normal" };
-                let angle = angle.to_degrees();
-                format!("held at zero, its axis is {angle:.2} degrees off {wanted}: {kept} {body}")
+                write!(f, "held at zero, its axis being {:.2} degrees off {wanted}", angle.to_degrees())
             }
-            Still::Follows { leader } => format!("held like {leader}, which it follows: {kept} {body}"),
-            Still::Kind(kind) => format!("held at zero, being {}: {kept} {body}", kind.name()),
-            Still::Base => format!("part of the floating base: x, z and pitch of {body} take its place"),
+            Self::Follows { leader } => write!(f, "held like {leader}, which it follows"),
+            Self::Kind(kind) => write!(f, "held at zero, being {}", kind.name()),
+            Self::Base => f.write_str("part of the floating base"),
         }
     }
 }

@@ -57,16 +57,19 @@ impl Robot {
         };
 
         let held = held(description, &roles, &tree, &found);
-        let mut cautions: Vec<String> = found.caution.into_iter().collect();
-        cautions.extend(caution::about_held(&held, tree.joints.len() + tree.followers.len()));
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
+        let outside: Vec<String> = outside.map(|(link, _)| link.name.clone()).collect();
+        let seen = caution::Seen { description, posture: &posture, plane };
+        let mut cautions = caution::about_held(&seen, &held, tree.joints.len() + tree.followers.len());
+        cautions.extend(found.caution);
+        cautions.extend(caution::about_outside(description, &outside));
         let reading = Reading {
             plane,
             plane_because,
             better_plane: better_plane(description, &posture, plane),
             base_because: found.because,
             held,
-            outside: outside.map(|(link, _)| link.name.clone()).collect(),
+            outside,
             cautions,
         };
         let mut robot = Self {

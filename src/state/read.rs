@@ -296,7 +296,7 @@ pub(super) fn from_zero(node: Node, what: &str) -> Result<f64> {
 
 fn link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.links.iter().map(|link| link.name.as_str());
-    robot.link(name).ok_or_else(|| unknown_name(node, "link", name, known()))
+    robot.link(name).ok_or_else(|| node.refuse_name(name, robot.no_link(name)).did_you_mean(name, known()))
 }
 
 pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
@@ -312,13 +312,12 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
             Some(held) => {
                 node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", held.why())))
             }
-            None => unknown_name(node, "joint", name, known()),
+            None => {
+                let unknown = Reason::UnknownName { what: "joint", name: name.to_owned() };
+                node.refuse_name(name, unknown).did_you_mean(name, known())
+            }
         }
     })
-}
-
-fn unknown_name<'a>(node: Node, what: &'static str, name: &str, known: impl Iterator<Item = &'a str>) -> Error {
-    node.refuse_name(name, Reason::UnknownName { what, name: name.to_owned() }).did_you_mean(name, known)
 }
 
 fn missing(node: Node, what: &str) -> Error {

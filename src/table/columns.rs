@@ -22,8 +22,8 @@ const TOUCHDOWN: [&str; 6] = [
     "touchdown_touching",
 ];
 
-/// The last column.
-const ERROR: &str = "error";
+/// The last columns, behind all that the contract orders and the carried ones.
+const LAST: [&str; 3] = ["border", "family", "error"];
 
 /// The columns of a table of results, fixed before its first row.
 #[derive(Debug, Clone)]
@@ -63,7 +63,7 @@ impl Columns {
         if touchdowns {
             names.extend(TOUCHDOWN.map(str::to_owned));
         }
-        let own: HashSet<String> = names.iter().cloned().chain([ERROR.to_owned()]).collect();
+        let own: HashSet<String> = names.iter().cloned().chain(LAST.map(str::to_owned)).collect();
         let taken: HashSet<&str> = input.into_iter().flat_map(Header::carried).collect();
         let mut carried = 0;
         for column in input.into_iter().flat_map(Header::carried) {
@@ -74,7 +74,7 @@ impl Columns {
             names.push(name);
             carried += 1;
         }
-        names.push(ERROR.to_owned());
+        names.extend(LAST.map(str::to_owned));
         let contacts = contacts.into_iter().enumerate().map(|(at, name)| (name, at)).collect();
         Self { names, contacts, coordinates: robot.dofs(), touchdowns, carried }
     }
@@ -98,7 +98,7 @@ impl Columns {
             self.touchdown(touchdown, &mut cells);
         }
         if let Some(error) = &report.error {
-            cells.text(self.names.len() - 1, sentence(&error.message, error.place, error.hint));
+            cells.text(self.last() + 2, sentence(&error.message, error.place, error.hint));
         }
         let places: Vec<usize> =
             report.contacts.iter().map(|contact| self.place(contact.name)).collect::<Result<_>>()?;
@@ -120,7 +120,7 @@ impl Columns {
         cells.text(1, "refused");
         let error = &refused.error;
         let sentence = sentence(&error.message, error.place, error.hint);
-        cells.text(self.names.len() - 1, format!("line {}: {sentence}", refused.line));
+        cells.text(self.last() + 2, format!("line {}: {sentence}", refused.line));
         append(&cells.0, out);
     }
 
@@ -132,7 +132,7 @@ impl Columns {
             Some(id) => cells.text(0, id.to_string()),
             None => {}
         }
-        let start = self.names.len() - 1 - self.carried;
+        let start = self.last() - self.carried;
         for (at, field) in carried.into_iter().flat_map(Carried::fields).take(self.carried).enumerate() {
             cells.text(start + at, field);
         }
@@ -154,6 +154,10 @@ impl Columns {
         for (at, (_, velocity)) in base.chain(joints).take(self.coordinates).enumerate() {
             cells.number(start + at, *velocity);
         }
+        let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
+        let at_zero: Vec<String> = at_zero.map(|zero| format!("{}: {}", zero.contact, zero.inequality)).collect();
+        cells.text(self.last(), at_zero.join("; "));
+        cells.text(self.last() + 1, outcome.family.to_string());
     }
 
     fn touchdown(&self, touchdown: &Touchdown, cells: &mut Cells) {
@@ -166,6 +170,11 @@ impl Columns {
             cells.text(start + 4, touchdown.at);
             cells.text(start + 5, &touchdown.touching);
         }
+    }
+
+    /// The first of the last columns.
+    fn last(&self) -> usize {
+        self.names.len() - LAST.len()
     }
 
     /// The first column of a velocity.
@@ -183,6 +192,7 @@ impl Columns {
 }
 
 /// The names of all contacts that the feet can give: of a polygon two corners at once, with `every_corner` all of them.
+/// A link of several has its plain name as well, for when a single one of them touches.
 fn contacts(robot: &Robot, feet: &[NamedContact], every_corner: bool) -> Vec<String> {
     let mut counts = vec![0; robot.links.len()];
     for foot in Feet::new(robot, feet).iter() {

@@ -37,7 +37,10 @@ fn the_form_follows_the_ending_unless_it_is_said() {
     let run = batch("form", &[&rows, "--friction", "1", "-o", &table], "");
     assert_eq!((run.status, run.stdout.len()), (0, 0), "{}", run.stderr);
     let first = |path: &str| std::fs::read_to_string(path).expect("written").lines().next().map(str::to_owned);
-    assert!(first(&table).is_some_and(|line| line.starts_with("id,verdict,outcome,") && line.ends_with(",note,error")));
+    assert!(
+        first(&table)
+            .is_some_and(|line| line.starts_with("id,verdict,outcome,") && line.ends_with(",note,border,family,error"))
+    );
     let lines = batch("form", &[&rows, "--friction", "1"], "").lines();
     assert_eq!((&lines[0]["verdict"], &lines[0]["carried"]["note"]), (&json!("unique"), &json!("kept")));
     let said = batch("form", &[&rows, "--friction", "1", "-o", &table, "--output-format", "ndjson"], "");

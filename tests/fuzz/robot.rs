@@ -149,14 +149,25 @@ fn robot_text(choices: &mut Choices) -> String {
         }
         text += "</link>\n";
         if link > 0 {
-            let kind = choices.pick(&["continuous", "continuous", "revolute", "prismatic", "fixed"]);
+            let kind = if choices.once_in(16) {
+                choices.pick(&["planar", "floating", "spherical"])
+            } else {
+                choices.pick(&["continuous", "continuous", "revolute", "prismatic", "fixed"])
+            };
             let parent = choices.below(link);
             // Of the slides: forward or up; of the turns: along the normal.
             let axes = if kind == "prismatic" { ["1 0 0", "0 0 -1", "3 0 4"] } else { ["0 1 0", "0 -2 0", "0 1 1e-9"] };
-            let axis = if choices.once_in(32) { "1 2 3" } else { choices.pick(&axes) };
+            let axis =
+                if choices.once_in(16) { choices.pick(&["1 2 3", "1 0 0", "0 1 0.08"]) } else { choices.pick(&axes) };
+            let leader = choices.below(link + 1);
+            let mimic = if choices.once_in(16) {
+                format!("<mimic joint=\"j{leader}\" offset=\"0.1\"/>")
+            } else {
+                String::new()
+            };
             text += &format!(
                 "<joint name=\"j{link}\" type=\"{kind}\">{}<parent link=\"l{parent}\"/><child link=\"l{link}\"/>\
-                 <axis xyz=\"{axis}\"/></joint>\n",
+                 <axis xyz=\"{axis}\"/>{mimic}</joint>\n",
                 pose(choices)
             );
         }

@@ -200,7 +200,12 @@ fn states_are_refused_word_for_word() {
         case(
             "beyond f64",
             "{\"friction\": 1, \"contacts\": [], \"velocity\": {\"joints\": {\"left_hip\": 1e200}}}".into(),
-            "the kinetic energy must be a finite number, not inf | positions and velocities are too large for f64: are they in SI units?",
+            "velocity.joints.left_hip: the kinetic energy must be a finite number, not inf | positions and velocities are too large for f64: are they in SI units?",
+        ),
+        case(
+            "beyond f64",
+            "{\"friction\": 1, \"contacts\": [], \"velocity\": {\"base\": {\"x\": -1e200}, \"joints\": {\"left_hip\": 1e9}}}".into(),
+            "velocity.base.x: the kinetic energy must be a finite number, not inf | positions and velocities are too large for f64: are they in SI units?",
         ),
         case(
             "too many",
@@ -278,7 +283,7 @@ fn problems_are_refused_word_for_word() {
         case(
             "no Delassus matrix",
             delassus("[[1, 2], [2, 1]]"),
-            "1:2: delassus[0][0]: the Delassus matrix is indefinite: an impulse there would gain energy | G = J M^-1 J^T is positive semidefinite; check signs and units",
+            "1:2: delassus[1][0]: the Delassus matrix is indefinite: an impulse there would gain energy | G = J M^-1 J^T is positive semidefinite; check signs and units",
         ),
         case(
             "no Delassus matrix",

@@ -5,9 +5,12 @@
 use heelstrike::description::Description;
 use heelstrike::robot::{Axis, Base, LeftOut, Link, Mover, Reduction, Rim, Robot};
 use serde::Deserialize;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::FRAC_PI_2;
 
+mod base;
+mod plane;
 mod refusals;
+mod untidy;
 
 fn model(name: &str) -> Robot {
     let path = format!("{}/urdf/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
@@ -25,6 +28,10 @@ fn disc(link: &Link) -> ([f64; 2], f64) {
         (&[centre], Rim::Circle { radius }) => (centre, radius),
         other => panic!("{other:?} is no disc"),
     }
+}
+
+fn reduce(text: &str, reduction: &Reduction) -> Robot {
+    Robot::reduce(&Description::from_urdf(text).expect("a description"), reduction).expect("a robot")
 }
 
 /// A robot of these elements, on the line after its first tag.
@@ -126,12 +133,8 @@ fn block_is_one_body_on_one_point() {
 
 #[derive(Deserialize)]
 struct Reference {
-    variants: Variants,
-}
-
-#[derive(Deserialize)]
-struct Variants {
-    default: Model,
+    /// Some variants lack what is read here, so each is read when it is wanted.
+    variants: std::collections::BTreeMap<String, serde_json::Value>,
 }
 
 #[derive(Deserialize)]
@@ -148,7 +151,10 @@ struct ReferenceJoint {
     parent_body: usize,
     child_body: usize,
     origin_zero: [f64; 2],
-    axis_sign_y: f64,
+    /// Of a hinge.
+    axis_sign_y: Option<f64>,
+    /// Of a slide.
+    direction_zero: Option<[f64; 2]>,
 }
 
 #[derive(Deserialize)]
@@ -163,14 +169,23 @@ struct ReferenceBody {
 
 #[test]
 fn robots_of_others_equal_the_values_of_pinocchio() {
-    for (folder, file) in [("rabbit", "five_link_walker"), ("upkie", "upkie"), ("solo8", "solo")] {
+    for (folder, file, variant) in [
+        ("a1", "a1", "default"),
+        ("acrobot", "Acrobot", "fixed"),
+        ("cartpole", "cartpole", "fixed_prismatic"),
+        ("h1", "h1", "default"),
+        ("planar_walker_torso", "PlanarWalkerWithTorso", "rerooted"),
+        ("rabbit", "five_link_walker", "default"),
+        ("solo8", "solo", "default"),
+        ("upkie", "upkie", "default"),
+    ] {
         let read = |name: String| {
             let path = format!("{}/tests/data/robots/{folder}/{name}", env!("CARGO_MANIFEST_DIR"));
             std::fs::read_to_string(path).expect("a file")
         };
         let robot = load(&read(format!("{file}.urdf")));
         let reference: Reference = serde_json::from_str(&read("reference.json".into())).expect("a reference");
-        let expected = reference.variants.default;
+        let expected: Model = serde_json::from_value(reference.variants[variant].clone()).expect("the variant");
         assert_eq!(robot.coordinates().collect::<Vec<_>>(), expected.coordinates, "{folder}");
         assert_eq!(robot.bodies.len(), expected.bodies.len(), "{folder}");
         close(robot.mass(), expected.total_mass);
@@ -199,7 +214,11 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
             assert_eq!(joint.name, reference.name);
             assert_eq!(joint.parent, body(&expected.bodies[reference.parent_body].link));
             assert_eq!(joint.child, body(&expected.bodies[reference.child_body].link));
-            assert_eq!(joint.axis, Axis::Turn { sign: reference.axis_sign_y });
+            match (joint.axis, reference.axis_sign_y, reference.direction_zero) {
+                (Axis::Turn { sign }, Some(expected), _) => assert_eq!(sign, expected, "{}", joint.name),
+                (Axis::Slide { direction }, _, Some(expected)) => assert_eq!(direction, expected, "{}", joint.name),
+                (axis, ..) => panic!("{}: {axis:?}", joint.name),
+            }
             for k in [0, 1] {
                 close(origins[joint.child][k], reference.origin_zero[k]);
             }
@@ -406,19 +425,4 @@ fn a_long_chain_is_reduced_without_recursion() {
     let robot = load(&robot(&body));
     assert_eq!((robot.bodies.len(), robot.joints.len()), (count / 2 + 1, count / 2));
     assert_eq!(robot.bodies[1].com, [0.0, -1.0]);
-}
-
-// The base.
-
-#[test]
-fn a_fixed_base_leaves_the_joints_alone() {
-    let description = Description::from_urdf(&two_links("revolute", "<axis xyz=\"0 1 0\"/>")).expect("a description");
-    let bolted = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
-    let robot = Robot::reduce(&description, &bolted).expect("a robot");
-    assert_eq!((robot.base, robot.dofs()), (Base::Fixed, 1));
-    assert_eq!(Robot::reduce(&description, &Reduction::default()).expect("a robot").base, Base::Floating);
-
-    let still = Description::from_urdf(&two_links("fixed", "")).expect("a description");
-    let refused = Robot::reduce(&still, &bolted).expect_err("nothing moves");
-    assert_eq!(refused.to_string(), "robot: nothing that moves has mass");
 }

@@ -54,7 +54,7 @@ fn reductions_are_switched_off_together_or_by_name() {
     assert_eq!(left_out(&held), [["1 shape", "too high to reach the ground"]]);
     assert_eq!((columns(&held), columns(&of("--no-reduction=weld"))), (7, 6));
     assert_eq!(columns(&all), 7);
-    let why = "fixed: without a coordinate, but moves a body of its own, left_foot";
+    let why = "fixed: it has no coordinate, and moves a body of its own, left_foot";
     assert!(left_out(&all).contains(&["joint \"left_ankle\"", why]), "{all}");
     assert_eq!(held["outcomes"][0]["modes"], all["outcomes"][0]["modes"]);
 }

@@ -248,8 +248,39 @@ fn every_form_of_result_is_valid() {
 }
 
 #[test]
+fn every_form_of_a_report_on_accuracy_is_valid() {
+    let schema = schema::accuracy();
+    let accuracy = ["accuracy", "--time", "0", "--format", "json"];
+    for arguments in [
+        // Regular, and with compliant contact.
+        &["urdf/ramone.urdf", "examples/ramone.json"][..],
+        &["--no-proof", "--case", "friction infinite, biped"],
+        // Refused, without a condition, given as matrices.
+        &["--case", "massless feet"],
+        &["--case", "coincident feet"],
+        &["--case", "Hilbert"],
+        // A method left out.
+        &["--case", "chain of 1000 links, folded"],
+    ] {
+        let report: Value = serde_json::from_str(&written(&[&accuracy[..], arguments].concat(), "")).expect("JSON");
+        assert!(is_valid(&schema, &report), "{arguments:?}: {report}");
+        let mut more = report.clone();
+        more["studies"][0]["unknown?"] = json!(0);
+        assert!(!is_valid(&schema, &more), "{arguments:?}");
+        let mut less = report.clone();
+        less["studies"][0].as_object_mut().expect("an object").remove("methods");
+        assert!(!is_valid(&schema, &less), "{arguments:?}");
+    }
+}
+
+#[test]
 fn the_command_prints_the_schemas_and_no_other() {
-    for (name, expected) in [("state", schema::state()), ("result", schema::result()), ("problem", schema::problem())] {
+    for (name, expected) in [
+        ("state", schema::state()),
+        ("result", schema::result()),
+        ("problem", schema::problem()),
+        ("accuracy", schema::accuracy()),
+    ] {
         let printed: Value = serde_json::from_str(&written(&["schema", name], "")).expect("JSON");
         assert_eq!(printed, expected);
         assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");

@@ -20,6 +20,7 @@ const STIFFNESSES: [f64; 5] = [1e4, 1e6, 1e8, 1e10, 1e12];
 
 /// Compliant contact beside the outcomes of one state.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// The rigid outcomes, in the order of the analysis.
     pub outcomes: Vec<Target>,
@@ -35,6 +36,7 @@ pub struct Comparison {
 
 /// A rigid outcome.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Target {
     /// One mode per contact.
     pub modes: Vec<Mode>,
@@ -48,6 +50,7 @@ pub struct Target {
 
 /// Runs that share a value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Group {
     /// The parameter; none for all runs.
     pub parameter: Option<&'static str>,
@@ -56,7 +59,8 @@ pub struct Group {
     /// Number of runs.
     pub runs: usize,
     /// Distance to the nearest outcome, least, median and greatest: sqrt(T(v - v_outcome) / T(v before)), T the kinetic
-    /// energy.
+    /// energy; NaN, in JSON null, where there are no runs.
+    #[cfg_attr(feature = "schema", schemars(with = "[Option<f64>; 3]"))]
     pub distance: [f64; 3],
     /// Runs per outcome that end nearest to it.
     pub nearest: Vec<usize>,
@@ -66,6 +70,7 @@ pub struct Group {
 
 /// A run by the integrator's tolerance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ByTolerance {
     /// The relative tolerance.
     pub tolerance: f64,
@@ -79,6 +84,7 @@ pub struct ByTolerance {
 
 /// A run of the moving robot by the ground's stiffness.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ByStiffness {
     /// k_n \[N/m\].
     pub stiffness: f64,

@@ -8,19 +8,14 @@
 //!
 //! delta is the depth of a contact and s the stretch of its tangential spring; both start at zero. With times and lengths in
 //! units of 1/sqrt(k_n) nothing of the result depends on k_n: stiffness alone changes nothing, damping and ratios do.
-//! Source: Brogliato, *Nonsmooth Mechanics* (2016), section 2.1; Hairer and Wanner, *Solving ODEs II* (1996), section IV.8,
-//! for the integrator (Radau IIA of order 5).
+//! Source: Brogliato, *Nonsmooth Mechanics* (2016), section 2.1.
 
+use super::integrate::{End, Equations, Limits, integrate};
 use crate::impact::{ContactProblem, Friction};
 use crate::planar::Vector;
-use crate::{Error, Reason, Result};
-use differential_equations::control::ControlFlag;
-use differential_equations::interpolate::Interpolation;
+use crate::{Reason, Result};
 use differential_equations::linalg::Matrix;
-use differential_equations::methods::ImplicitRungeKutta;
-use differential_equations::ode::{ODE, solve_ode};
-use differential_equations::solout::Solout;
-use differential_equations::solution::Solution;
+use differential_equations::ode::ODE;
 
 /// The ground's parameters that matter while the configuration stands still, the same for all contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,17 +66,6 @@ pub fn run(problem: &ContactProblem, ground: Ground, tolerance: f64) -> Result<R
     Ok(Run { impulse: (0..model.contacts).map(impulse).collect(), velocity_after: after.collect(), steps, ended })
 }
 
-/// The refusal of what the integrator could not go through.
-pub(super) fn gave_up(error: &impl std::fmt::Debug) -> Error {
-    let why: String =
-        format!("the integration of the compliant contact ended early: {error:?}").chars().take(200).collect();
-    Error::new(Reason::Unsupported(why)).hint("take another tolerance, or damping and friction that are less extreme")
-}
-
-/// The first step, in the model's own time: the damper's force is there at once.
-const FIRST_STEP: f64 = 1e-6;
-/// Steps after which a run is given up.
-const MOST_STEPS: usize = 5_000;
 /// The longest run, in the model's own time.
 const HORIZON: f64 = 1e9;
 /// Forces and approaches of less than this part of the first ones change nothing any more.
@@ -145,17 +129,12 @@ impl Model {
     /// The last state, the number of steps, and whether it is an end.
     fn integrate<const N: usize>(&self, tolerance: f64) -> Result<(Vec<f64>, usize, bool)> {
         let start = [0.0; N];
-        let mut watch = Watch { model: self, state: start, steps: 0, ended: self.speed == 0.0 };
-        if !watch.ended {
-            // One tolerance for each entry: of a single one version 0.7 takes the power 2/3 once per entry.
-            let mut method = ImplicitRungeKutta::radau5()
-                .rtol([tolerance; N])
-                .atol([0.01 * tolerance; N])
-                .h0(FIRST_STEP)
-                .max_steps(MOST_STEPS);
-            solve_ode(&mut method, self, 0.0, HORIZON, &start, &mut watch).map_err(|error| gave_up(&error))?;
+        if self.speed == 0.0 {
+            return Ok((start.to_vec(), 0, true));
         }
-        Ok((watch.state.to_vec(), watch.steps, watch.ended))
+        let limits = Limits { relative: tolerance, absolute: 0.01 * tolerance, horizon: HORIZON };
+        let End { state, steps, ended } = integrate(self, start, limits)?;
+        Ok((state.to_vec(), steps, ended))
     }
 
     /// c = c- + G L, from the impulses in `state`: `scale` is 1, or 0 for the linear part alone.
@@ -235,34 +214,16 @@ impl<const N: usize> ODE<f64, [f64; N]> for Model {
     }
 }
 
-/// Ends a run when all contacts are free or at rest, and keeps its last state.
-struct Watch<'m, const N: usize> {
-    model: &'m Model,
-    state: [f64; N],
-    steps: usize,
-    ended: bool,
-}
-
-impl<const N: usize> Solout<f64, [f64; N]> for Watch<'_, N> {
-    fn solout<I: Interpolation<f64, [f64; N]> + ?Sized>(
-        &mut self,
-        _: f64,
-        _: f64,
-        state: &[f64; N],
-        _: &[f64; N],
-        _: &mut I,
-        _: &mut Solution<f64, [f64; N]>,
-    ) -> ControlFlag<f64, [f64; N]> {
-        self.steps += 1;
-        self.state = *state;
-        let velocity = self.model.velocity(state);
-        let phases = self.model.phases(state, &velocity);
-        self.ended = (0..self.model.contacts).all(|contact| {
-            let force = self.model.force(state, contact, velocity[contact], phases[contact]);
-            let pushed = force.iter().any(|entry| entry.abs() > SETTLED * self.model.damping[1]);
+impl<const N: usize> Equations<N> for Model {
+    /// Whether all contacts are free or at rest.
+    fn has_ended(&self, state: &[f64; N]) -> bool {
+        let velocity = self.velocity(state);
+        let phases = self.phases(state, &velocity);
+        (0..self.contacts).all(|contact| {
+            let force = self.force(state, contact, velocity[contact], phases[contact]);
+            let pushed = force.iter().any(|entry| entry.abs() > SETTLED * self.damping[1]);
             // A contact in the air that comes down strikes again.
             !pushed && velocity[contact][1] >= -SETTLED.sqrt()
-        });
-        if self.ended && self.steps > 2 { ControlFlag::Terminate } else { ControlFlag::Continue }
+        })
     }
 }

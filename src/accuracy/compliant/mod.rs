@@ -6,6 +6,7 @@
 
 mod comparison;
 mod frozen;
+mod integrate;
 mod map;
 mod moving;
 

@@ -7,7 +7,8 @@
 //! h holds gravity, Coriolis and centrifugal forces. The impact lasts some multiple of sqrt(m / k_n), so that the difference
 //! from the frozen model falls with 1 / sqrt(k_n).
 
-use super::frozen::{GREATEST_FRICTION, Ground, gave_up};
+use super::frozen::{GREATEST_FRICTION, Ground};
+use super::integrate::{Equations, Limits, integrate};
 use crate::Result;
 use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
@@ -16,20 +17,13 @@ use crate::impact::Friction;
 use crate::plan::{Motion, Plan, Posture};
 use crate::planar::{Vector, difference, dot, scaled, sum, turned};
 use crate::{Error, Reason};
-use differential_equations::control::ControlFlag;
-use differential_equations::interpolate::Interpolation;
-use differential_equations::methods::ImplicitRungeKutta;
-use differential_equations::ode::{ODE, solve_ode};
-use differential_equations::solout::Solout;
-use differential_equations::solution::Solution;
+use differential_equations::ode::ODE;
 use std::cell::RefCell;
 
 /// Downward, as everywhere on Earth \[m/s^2\].
 const GRAVITY: f64 = 9.81;
 /// The longest run, in units of sqrt(m / k_n) (1 + damping ratio).
 const HORIZON: f64 = 1e2;
-/// Steps after which a run is given up.
-const MOST_STEPS: usize = 5_000;
 
 /// A robot just before it strikes, ready to be integrated.
 #[derive(Debug)]
@@ -69,12 +63,9 @@ impl Moving<'_> {
         for (entry, rate) in start[dofs..].iter_mut().zip(self.velocity) {
             *entry = rate / model.speed;
         }
-        let mut method =
-            ImplicitRungeKutta::radau5().rtol([tolerance; N]).atol([tolerance; N]).h0(1e-6).max_steps(MOST_STEPS);
-        let mut watch = Watch { model: &model, state: start, steps: 0 };
         let horizon = HORIZON * (1.0 + ground.damping_ratio);
-        solve_ode(&mut method, &model, 0.0, horizon, &start, &mut watch).map_err(|error| gave_up(&error))?;
-        Ok(watch.state[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
+        let end = integrate(&model, start, Limits { relative: tolerance, absolute: tolerance, horizon })?;
+        Ok(end.state[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
     }
 }
 
@@ -234,27 +225,10 @@ impl<const N: usize> ODE<f64, [f64; N]> for Model<'_> {
     }
 }
 
-/// Ends a run when all contacts are free, and keeps its last state.
-struct Watch<'m, const N: usize> {
-    model: &'m Model<'m>,
-    state: [f64; N],
-    steps: usize,
-}
-
-impl<const N: usize> Solout<f64, [f64; N]> for Watch<'_, N> {
-    fn solout<I: Interpolation<f64, [f64; N]> + ?Sized>(
-        &mut self,
-        _: f64,
-        _: f64,
-        state: &[f64; N],
-        _: &[f64; N],
-        _: &mut I,
-        _: &mut Solution<f64, [f64; N]>,
-    ) -> ControlFlag<f64, [f64; N]> {
-        self.steps += 1;
-        self.state = *state;
-        let touching = self.model.evaluate(state, &mut [0.0; N]);
-        let free = touching.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0);
-        if free && self.steps > 2 { ControlFlag::Terminate } else { ControlFlag::Continue }
+impl<const N: usize> Equations<N> for Model<'_> {
+    /// Whether all contacts are free.
+    fn has_ended(&self, state: &[f64; N]) -> bool {
+        let touching = self.evaluate(state, &mut [0.0; N]);
+        touching.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0)
     }
 }

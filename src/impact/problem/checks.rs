@@ -105,6 +105,7 @@ impl ContactProblem {
                 .then(|| coupled().find(|&(i, j)| rest[(i, j)].abs() > 4.0 * rounding))
                 .flatten();
             if let Some((i, j)) = indefinite.map(|i| (i, i)).or(stray) {
+                let (i, j) = self.offending(rounding).unwrap_or((i, j));
                 return Err(Error::new(Reason::Inconsistent(
                     "the Delassus matrix is indefinite: an impulse there would gain energy".into(),
                 ))
@@ -125,5 +126,22 @@ impl ContactProblem {
             }
         }
         Ok(beyond_doubt == rows)
+    }
+
+    /// The entry of an indefinite G that alone makes it so: a negative one on the diagonal, else the one that exceeds the
+    /// geometric mean of its two diagonal entries by most.
+    fn offending(&self, rounding: f64) -> Option<(usize, usize)> {
+        let rows = 2 * self.contacts();
+        let excess = |(i, j): (usize, usize)| {
+            let mean = (self.delassus(i, i) * self.delassus(j, j)).max(0.0).sqrt();
+            if i == j { -self.delassus(i, i) } else { self.delassus(i, j).abs() - mean }
+        };
+        let diagonal = (0..rows).map(|i| (i, i));
+        let below = (0..rows).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let worst = |places: &mut dyn Iterator<Item = (usize, usize)>| {
+            let places = places.map(|place| (place, excess(place))).filter(|(_, excess)| *excess > rounding);
+            places.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+        };
+        worst(&mut diagonal.into_iter()).or_else(|| worst(&mut below.into_iter()))
     }
 }

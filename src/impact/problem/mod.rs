@@ -212,8 +212,19 @@ mod tests {
     #[test]
     fn asymmetric_and_indefinite_matrices_are_refused_with_the_entry() {
         assert_eq!(problem(vec![2.0, 1.0, 1.5, 2.0]).unwrap_err().place(), Some("delassus[1][0]"));
-        assert_eq!(problem(vec![1.0, 2.0, 2.0, 1.5]).unwrap_err().place(), Some("delassus[0][0]"));
-        assert!(problem(vec![0.0, 1.0, 1.0, 0.0]).is_err());
+        // 2 exceeds the geometric mean of 1 and 1.5.
+        assert_eq!(problem(vec![1.0, 2.0, 2.0, 1.5]).unwrap_err().place(), Some("delassus[1][0]"));
+        assert_eq!(problem(vec![0.0, 1.0, 1.0, 0.0]).unwrap_err().place(), Some("delassus[1][0]"));
+        assert_eq!(problem(vec![1.0, 2.0, 2.0, -1.5]).unwrap_err().place(), Some("delassus[1][1]"));
+        let two = |g: [[f64; 4]; 4]| {
+            let (friction, restitution) = (vec![Friction::Infinite; 2], vec![0.0; 2]);
+            ContactProblem::new(g.concat(), vec![[0.0, -1.0]; 2], friction, restitution).unwrap_err()
+        };
+        let mut g = [[4.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 2.5], [0.0, 0.0, 1.0, 0.0], [0.0, 2.5, 0.0, 2.0]];
+        assert_eq!(two(g).place(), Some("delassus[3][1]"));
+        // No pair is at fault where three together are: what the elimination leaves of the last one is negative.
+        g = [[1.0, -0.9, -0.9, 0.0], [-0.9, 1.0, -0.9, 0.0], [-0.9, -0.9, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+        assert_eq!(two(g).place(), Some("delassus[0][0]"));
         assert!(problem(vec![1.0, 2.0, 2.0, 4.0]).is_ok(), "singular is not indefinite");
         assert!(problem(vec![2.0, 1.0, 1.0, f64::NAN]).is_err());
     }

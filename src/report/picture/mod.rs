@@ -4,25 +4,46 @@
 
 use crate::{Error, Reason, Result};
 use kuva::backend::svg::SvgBackend;
+use kuva::plot::LinePlot;
+use kuva::plot::legend::{LegendEntry, LegendShape};
 use kuva::plot::scatter::{MarkerShape, ScatterPlot};
-use kuva::plot::{LegendPosition, LinePlot};
+use kuva::render::figure::Figure;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
-use kuva::render::render::render_multiple;
 use resvg::{tiny_skia, usvg};
 use std::sync::Arc;
 
-/// A picture of points over two axes.
+/// Panels side by side, each of points over two axes.
 #[derive(Debug, Clone)]
 pub struct Picture {
     /// Above the picture.
     pub title: String,
+    /// From left to right; the y axes of two are the same where both are logarithmic.
+    pub panels: Vec<Panel>,
+    /// What the marks are, to the right of all panels.
+    pub legend: Vec<Entry>,
+}
+
+/// Points over two axes.
+#[derive(Debug, Clone)]
+pub struct Panel {
     /// Below it.
     pub x: Axis,
     /// Beside it.
     pub y: Axis,
     /// What is drawn, the first one below the others.
     pub series: Vec<Series>,
+}
+
+/// What a mark is.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// In words.
+    pub name: String,
+    /// The mark.
+    pub mark: Mark,
+    /// Which colour of [`COLOURS`] it has.
+    pub colour: usize,
 }
 
 /// An axis.
@@ -37,8 +58,6 @@ pub struct Axis {
 /// Points that belong together.
 #[derive(Debug, Clone)]
 pub struct Series {
-    /// Its name in the legend.
-    pub name: String,
     /// x and y; on a logarithmic axis positive.
     pub points: Vec<(f64, f64)>,
     /// How it is drawn.
@@ -56,48 +75,48 @@ pub enum Mark {
     Square,
     /// A triangle each.
     Triangle,
+    /// A diamond each.
+    Diamond,
+    /// A star each.
+    Star,
+    /// A cross each.
+    Cross,
     /// A line through all.
     Line,
 }
 
-/// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
-pub const COLOURS: [&str; 8] = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7"];
+/// Colours that people with any colour vision tell apart (Okabe and Ito 2008), and grey for marks of any colour.
+pub const COLOURS: [&str; 9] =
+    ["#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7", "#999999"];
 
 /// What a mark takes of an axis that spans all points, on either side.
 const MARK: f64 = 0.02;
 const FONT: &[u8] = include_bytes!("DejaVuSans.ttf");
-const WIDTH: f64 = 900.0;
-const HEIGHT: f64 = 560.0;
+/// Of a panel.
+const WIDTH: f64 = 620.0;
+const HEIGHT: f64 = 520.0;
 
 impl Picture {
     /// As SVG; none where no point can be drawn.
     pub fn svg(&self) -> Option<String> {
-        let plots: Vec<Plot> = self.series.iter().filter_map(|series| self.plot(series)).collect();
-        if plots.is_empty() {
+        let drawn: Vec<&Panel> = self.panels.iter().filter(|panel| !panel.plots().is_empty()).collect();
+        if drawn.is_empty() {
             return None;
         }
-        let mut layout = Layout::auto_from_plots(&plots)
+        let entry = |entry: &Entry| LegendEntry {
+            label: entry.name.clone(),
+            color: COLOURS[entry.colour % COLOURS.len()].into(),
+            shape: entry.mark.shape().map_or(LegendShape::Line, LegendShape::Marker),
+            dasharray: None,
+        };
+        let figure = Figure::new(1, drawn.len())
             .with_title(&self.title)
-            .with_x_label(&self.x.label)
-            .with_y_label(&self.y.label)
-            .with_width(WIDTH)
-            .with_height(HEIGHT)
-            .with_font_family("DejaVu Sans, sans-serif")
-            .with_box_axes()
-            .with_legend_position(LegendPosition::OutsideRightTop);
-        let range = |pick: fn(&(f64, f64)) -> f64| self.powers(pick);
-        let format = || TickFormat::Custom(Arc::new(power_of_ten));
-        if self.x.logarithmic {
-            let (low, high, step) = range(|point| point.0);
-            let layout_x = layout.with_x_axis_min(low).with_x_axis_max(high).with_x_tick_step(step);
-            layout = layout_x.with_x_tick_format(format());
-        }
-        if self.y.logarithmic {
-            let (low, high, step) = range(|point| point.1);
-            let layout_y = layout.with_y_axis_min(low).with_y_axis_max(high).with_y_tick_step(step);
-            layout = layout_y.with_y_tick_format(format());
-        }
-        Some(SvgBackend::new().render_scene(&render_multiple(plots, layout)))
+            .with_plots(drawn.iter().map(|panel| panel.plots()).collect())
+            .with_layouts(drawn.iter().map(|panel| panel.layout(&drawn)).collect())
+            .with_shared_legend_right_top()
+            .with_shared_legend_entries(self.legend.iter().map(entry).collect())
+            .with_cell_size(WIDTH, HEIGHT);
+        Some(SvgBackend::new().render_scene(&figure.render()))
     }
 
     /// As PNG, twice as large as the SVG says; none where no point can be drawn.
@@ -117,49 +136,91 @@ impl Picture {
         resvg::render(&tree, tiny_skia::Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
         pixels.encode_png().map(Some).map_err(|error| refused(&error.to_string()))
     }
+}
+
+impl Panel {
+    /// Axes and their ticks; a logarithmic y axis is that of all `panels`.
+    fn layout(&self, panels: &[&Self]) -> Layout {
+        let mut layout = Layout::auto_from_plots(&self.plots())
+            .with_x_label(&self.x.label)
+            .with_y_label(&self.y.label)
+            .with_font_family("DejaVu Sans, sans-serif")
+            .with_box_axes();
+        let format = || TickFormat::Custom(Arc::new(power_of_ten));
+        if self.x.logarithmic {
+            let (low, high, step) = powers(self.drawn().map(|point| point.0));
+            let layout_x = layout.with_x_axis_min(low).with_x_axis_max(high).with_x_tick_step(step);
+            layout = layout_x.with_x_tick_format(format());
+        }
+        if self.y.logarithmic {
+            let beside = panels.iter().filter(|panel| panel.y.logarithmic);
+            let (low, high, step) = powers(beside.flat_map(|panel| panel.drawn()).map(|point| point.1));
+            let layout_y = layout.with_y_axis_min(low).with_y_axis_max(high).with_y_tick_step(step);
+            layout = layout_y.with_y_tick_format(format());
+        }
+        layout
+    }
+
+    fn plots(&self) -> Vec<Plot> {
+        self.series.iter().filter_map(|series| self.plot(series)).collect()
+    }
+
+    /// All points that can be drawn.
+    fn drawn(&self) -> impl Iterator<Item = (f64, f64)> + use<'_> {
+        self.series.iter().flat_map(|series| self.placed(series))
+    }
 
     /// The points that can be drawn, on logarithmic axes by their exponents: kuva's own logarithmic axis ends at 1e-10.
-    fn drawn(&self, series: &Series) -> Vec<(f64, f64)> {
+    fn placed(&self, series: &Series) -> Vec<(f64, f64)> {
         let place = |value: f64, axis: &Axis| if axis.logarithmic { libm::log10(value) } else { value };
         let points = series.points.iter().map(|&(x, y)| (place(x, &self.x), place(y, &self.y)));
         points.filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
     }
 
-    /// First and last exponent of a logarithmic axis and the step between its ticks.
-    fn powers(&self, pick: fn(&(f64, f64)) -> f64) -> (f64, f64, f64) {
-        let exponents: Vec<f64> = self.series.iter().flat_map(|series| self.drawn(series)).map(|p| pick(&p)).collect();
-        let least = exponents.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        // No mark lies on an axis.
-        let room = MARK * (most - least);
-        let low = (least - room).floor();
-        let high = (most + room).ceil().max(low + 1.0);
-        let step = match high - low {
-            span if span <= 8.0 => 1.0,
-            span if span <= 16.0 => 2.0,
-            span => (span / 40.0).ceil() * 5.0,
-        };
-        ((low / step).floor() * step, (high / step).ceil() * step, step)
-    }
-
     fn plot(&self, series: &Series) -> Option<Plot> {
-        let points = self.drawn(series);
+        let points = self.placed(series);
         if points.is_empty() {
             return None;
         }
         let colour = COLOURS[series.colour % COLOURS.len()];
-        let marker = match series.mark {
-            Mark::Line => {
-                let line = LinePlot::new().with_data(points).with_color(colour).with_stroke_width(2.0);
-                return Some(Plot::Line(line.with_legend(&series.name)));
+        Some(match series.mark.shape() {
+            None => Plot::Line(LinePlot::new().with_data(points).with_color(colour).with_stroke_width(2.0)),
+            Some(shape) => {
+                Plot::Scatter(ScatterPlot::new().with_data(points).with_color(colour).with_marker(shape).with_size(4.0))
             }
-            Mark::Circle => MarkerShape::Circle,
-            Mark::Square => MarkerShape::Square,
-            Mark::Triangle => MarkerShape::Triangle,
-        };
-        let scatter = ScatterPlot::new().with_data(points).with_color(colour).with_marker(marker).with_size(4.0);
-        Some(Plot::Scatter(scatter.with_legend(&series.name)))
+        })
     }
+}
+
+impl Mark {
+    /// kuva's marker; none for a line.
+    fn shape(self) -> Option<MarkerShape> {
+        Some(match self {
+            Self::Circle => MarkerShape::Circle,
+            Self::Square => MarkerShape::Square,
+            Self::Triangle => MarkerShape::Triangle,
+            Self::Diamond => MarkerShape::Diamond,
+            Self::Star => MarkerShape::Star,
+            Self::Cross => MarkerShape::Cross,
+            Self::Line => return None,
+        })
+    }
+}
+
+/// First and last exponent of a logarithmic axis and the step between its ticks.
+fn powers(exponents: impl Iterator<Item = f64>) -> (f64, f64, f64) {
+    let (least, most) = exponents
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), exponent| (least.min(exponent), most.max(exponent)));
+    // No mark lies on an axis.
+    let room = MARK * (most - least);
+    let low = (least - room).floor();
+    let high = (most + room).ceil().max(low + 1.0);
+    let step = match high - low {
+        span if span <= 8.0 => 1.0,
+        span if span <= 16.0 => 2.0,
+        span => (span / 40.0).ceil() * 5.0,
+    };
+    ((low / step).floor() * step, (high / step).ceil() * step, step)
 }
 
 /// The power of ten of an exponent, as in 10⁻⁶.
@@ -177,8 +238,10 @@ mod tests {
 
     fn picture(points: Vec<(f64, f64)>) -> Picture {
         let axis = |label: &str| Axis { label: label.into(), logarithmic: true };
-        let series = Series { name: "f64".into(), points, mark: Mark::Circle, colour: 1 };
-        Picture { title: "title".into(), x: axis("time [s]"), y: axis("error"), series: vec![series] }
+        let series = Series { points, mark: Mark::Circle, colour: 1 };
+        let panel = Panel { x: axis("time [s]"), y: axis("error"), series: vec![series] };
+        let entry = Entry { name: "f64".into(), mark: Mark::Circle, colour: 1 };
+        Picture { title: "title".into(), panels: vec![panel], legend: vec![entry] }
     }
 
     #[test]

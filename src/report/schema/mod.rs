@@ -36,6 +36,12 @@ pub fn result() -> Value {
     schema_of::<ResultLine>(SchemaSettings::draft2020_12().for_serialize())
 }
 
+/// The schema of what `accuracy` writes.
+#[cfg(feature = "accuracy")]
+pub fn accuracy() -> Value {
+    schema_of::<super::Accuracy>(SchemaSettings::draft2020_12().for_serialize())
+}
+
 /// One line of results.
 #[derive(JsonSchema)]
 #[serde(untagged)]

@@ -107,7 +107,10 @@ impl<'w> Writer<'w> {
         let outcomes = self.report.outcomes.as_deref().unwrap_or_default();
         if detail.brief {
             for (at, outcome) in outcomes.iter().enumerate() {
-                writeln!(self.out, "  {}  {}{}", at + 1, self.in_words(outcome.modes), graded(outcome))?;
+                let border = if outcome.border.is_some() { ", on a border" } else { "" };
+                let family = if outcome.family { ", the end of a family" } else { "" };
+                let words = self.in_words(outcome.modes);
+                writeln!(self.out, "  {}  {words}{border}{family}{}", at + 1, graded(outcome))?;
             }
             return Ok(());
         }
@@ -284,7 +287,12 @@ fn verdict_sentence(verdict: Verdict, outcomes: usize) -> String {
     match verdict {
         Verdict::Unique => "Exactly one outcome.".to_owned(),
         Verdict::Ambiguous => format!("{} outcomes are equally valid.", counted(outcomes)),
-        Verdict::None => "No outcome is consistent.".to_owned(),
+        // Regular contacts always have an outcome.
+        Verdict::None => {
+            "No outcome is consistent: the contacts depend on each other, and no impulse makes every one of \
+                          them rebound as its restitution asks."
+                .to_owned()
+        }
         Verdict::Undecided => {
             "Undecided: some sign was settled by no precision; what it leaves open is listed.".to_owned()
         }

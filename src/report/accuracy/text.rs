@@ -1,46 +1,13 @@
-//! Error against run time as JSON, text and a picture.
+//! Error against run time as text for people.
 
-#[cfg(feature = "plot")]
-use super::picture::{Axis, Mark, Picture, Series};
-use super::table::{Table, number};
-use super::text::Palette;
-use crate::accuracy::compliant::{Comparison, GREATEST_FRICTION, NEAR};
-use crate::accuracy::{Factorization, Method, Spread, Study, Work};
-use serde::Serialize;
+use super::{Accuracy, Compliant, name_of};
+use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
+use crate::accuracy::{Errors, Factorization, Method, Spread, Study, Work};
+use crate::report::Palette;
+use crate::report::table::{Table, number};
 use std::fmt::Write;
 
-/// What every method makes of some cases.
-#[derive(Debug, Clone, Serialize)]
-pub struct Accuracy {
-    /// The cases.
-    pub studies: Vec<Study>,
-    /// Compliant contact beside the rigid outcomes of one state.
-    pub compliant: Option<Compliant>,
-    /// What to use when.
-    pub advice: &'static str,
-}
-
-/// Compliant contact, and the state that it was tried on.
-#[derive(Debug, Clone, Serialize)]
-pub struct Compliant {
-    /// What the state is called.
-    pub name: String,
-    /// What came of it.
-    #[serde(flatten)]
-    pub comparison: Comparison,
-}
-
-/// What to use when.
-pub const ADVICE: &str = "Take f64 by articulated bodies for G, which is the quickest and keeps its digits in long chains; \
-let the proof decide every verdict that matters; take double-double where an error times the condition reaches the digits \
-that you need; f32 gains no time and loses half of them.";
-
 impl Accuracy {
-    /// The cases, and perhaps compliant contact.
-    pub fn new(studies: Vec<Study>, compliant: Option<Compliant>) -> Self {
-        Self { studies, compliant, advice: ADVICE }
-    }
-
     /// As text for people.
     pub fn text(&self, palette: &Palette) -> String {
         let mut out = String::new();
@@ -48,71 +15,13 @@ impl Accuracy {
             [study] => one(&mut out, study, palette),
             studies => many(&mut out, studies, palette),
         }
-        let _ = writeln!(out, "\n{}", self.advice);
+        if let Some(advice) = &self.advice {
+            let _ = writeln!(out, "\n{advice}");
+        }
         if let Some(compliant) = &self.compliant {
             compare(&mut out, compliant, palette);
         }
         out
-    }
-
-    /// Error of G against run time, a point for each method and case; not of the reference, whose hundred digits would
-    /// press all others together.
-    #[cfg(feature = "plot")]
-    pub fn picture(&self) -> Picture {
-        let axis = |label: &str| Axis { label: label.into(), logarithmic: true };
-        let mut series: Vec<Series> = Vec::new();
-        let methods = self.studies.iter().flat_map(|study| &study.methods);
-        for method in methods.filter(|method| method.number != "reference") {
-            let error = method.error.and_then(|error| error.delassus).filter(|&error| error > NO_ERROR);
-            let (Some(time), Some(error)) = (method.time, error) else {
-                continue;
-            };
-            let name = name_of(method);
-            let point = (time.median, error);
-            match series.iter_mut().find(|series| series.name == name) {
-                Some(series) => series.points.push(point),
-                None => series.push(Series { name, points: vec![point], mark: mark(method), colour: colour(method) }),
-            }
-        }
-        let title = match self.studies.as_slice() {
-            [study] => format!("Error against run time: {}", study.name),
-            studies => format!("Error against run time: {} cases", studies.len()),
-        };
-        Picture { title, x: axis("time from state to G [s]"), y: axis("largest error of G"), series }
-    }
-}
-
-#[cfg(feature = "plot")]
-fn mark(method: &Method) -> Mark {
-    match method.factorization {
-        Some(Factorization::ArticulatedBodies) | None => Mark::Circle,
-        Some(Factorization::SparseLtl) => Mark::Triangle,
-        Some(Factorization::DenseCholesky) => Mark::Square,
-    }
-}
-
-#[cfg(feature = "plot")]
-fn colour(method: &Method) -> usize {
-    match method.number {
-        "f32" => 1,
-        "f64" => 5,
-        "double-double" => 3,
-        _ => 0,
-    }
-}
-
-fn name_of(method: &Method) -> String {
-    match method.factorization {
-        Some(factorization) => format!("{}, {}", method.number, in_words(factorization)),
-        None => method.number.to_owned(),
-    }
-}
-
-fn in_words(factorization: Factorization) -> &'static str {
-    match factorization {
-        Factorization::SparseLtl => "sparse LTL",
-        Factorization::DenseCholesky => "dense Cholesky",
-        Factorization::ArticulatedBodies => "articulated bodies",
     }
 }
 
@@ -121,7 +30,7 @@ fn one(out: &mut String, study: &Study, Palette { strong, plain, .. }: &Palette)
     let _ = writeln!(out, "{strong}{}{plain}: {}", study.name, ending(study));
     let _ = writeln!(out, "Condition: {}.\n", conditions(study));
     let methods = &study.methods;
-    let error = |pick: fn(&crate::accuracy::Errors) -> Option<f64>| {
+    let error = |pick: fn(&Errors) -> Option<f64>| {
         methods.iter().map(move |method| method.error.as_ref().and_then(pick).map_or("-".into(), digits))
     };
     Table::default()
@@ -133,6 +42,7 @@ fn one(out: &mut String, study: &Study, Palette { strong, plain, .. }: &Palette)
         .text("of the outcomes", error(|error| error.outcome))
         .write(out);
     out.push_str("  time: median [quartiles]; digits: -log10 of the largest error, free of units\n");
+    tell_left_out(out, std::slice::from_ref(study));
 }
 
 fn work(work: Work) -> &'static str {
@@ -204,6 +114,22 @@ fn many(out: &mut String, studies: &[Study], Palette { strong, plain, .. }: &Pal
         .text("fewest", methods.iter().map(|method| errors(method, 2)))
         .write(out);
     out.push_str("  time: median [quartiles] of the cases; digits: -log10 of the largest error, free of units\n");
+    tell_left_out(out, studies);
+}
+
+/// Methods that were not tried, and why.
+fn tell_left_out(out: &mut String, studies: &[Study]) {
+    let every = || studies.iter().flat_map(|study| &study.methods);
+    let mut told: Vec<String> = Vec::new();
+    for (method, why) in every().filter_map(|method| Some((method, method.left_out?))) {
+        let name = name_of(method);
+        if !told.contains(&name) {
+            let cases = every().filter(|other| other.left_out == Some(why) && name_of(other) == name).count();
+            let of = if studies.len() > 1 { format!(" of {cases} of these cases") } else { String::new() };
+            let _ = writeln!(out, "  {name} is left out{of}: {why}");
+            told.push(name);
+        }
+    }
 }
 
 fn ending(study: &Study) -> String {

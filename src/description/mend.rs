@@ -1,0 +1,152 @@
+//! XML that real files have and the standard has not -> XML that can be parsed, every line and column where it was.
+//!
+//! Two things are mended: a declaration `<?xml ...?>` that is misspelt or does not come first becomes blanks (the text is
+//! UTF-8 already, so it has nothing to say), and prefixes that no element declares (`<sensor:camera>` of a robot without
+//! `xmlns:sensor`) are declared at the end of the root's tag.
+
+use super::xml::Cursor;
+use crate::error::{Error, Location};
+use std::borrow::Cow;
+
+/// The most prefixes that are declared: for each the text is parsed once more.
+const MOST_PREFIXES: usize = 10;
+
+/// A text, mended as far as it was needed.
+pub(super) struct Mended<'a> {
+    pub(super) text: Cow<'a, str>,
+    prefixes: Vec<String>,
+    /// Where declarations were put in, and how many characters.
+    inserted: Option<(Location, usize)>,
+}
+
+impl<'a> Mended<'a> {
+    /// `text` without its declaration.
+    pub(super) fn new(text: &'a str) -> Self {
+        let text = match declarations(text) {
+            found if found.is_empty() => Cow::Borrowed(text),
+            found => {
+                let blank = |(at, character): (usize, char)| {
+                    let inside = found.iter().any(|range| range.contains(&at));
+                    if inside && character != '\n' { ' ' } else { character }
+                };
+                Cow::Owned(text.char_indices().map(blank).collect())
+            }
+        };
+        Self { text, prefixes: Vec::new(), inserted: None }
+    }
+
+    /// The text with one more prefix declared; none where that cannot help.
+    pub(super) fn declaring(self, prefix: &str) -> Option<Self> {
+        let Self { text, mut prefixes, inserted } = self;
+        if prefixes.len() == MOST_PREFIXES || prefixes.iter().any(|known| known == prefix) {
+            return None;
+        }
+        let end = root_tag_end(&text)?;
+        let declaration = format!(" xmlns:{prefix}=\"undeclared:{prefix}\"");
+        let length = declaration.chars().count() + inserted.map_or(0, |(_, length)| length);
+        // Later ones follow the earlier, so the place stays that of the first.
+        let begin = inserted.map_or_else(|| Cursor::new(&text).locate(end), |(begin, _)| begin);
+        let mut text = text.into_owned();
+        text.insert_str(end, &declaration);
+        prefixes.push(prefix.to_owned());
+        Some(Self { text: Cow::Owned(text), prefixes, inserted: Some((begin, length)) })
+    }
+
+    /// Where a place of the mended text is in the file.
+    pub(super) fn in_file(&self, place: Location) -> Location {
+        match self.inserted {
+            Some((begin, length)) if place.line == begin.line && place.column > begin.column => {
+                Location { line: place.line, column: (place.column.saturating_sub(length)).max(begin.column) }
+            }
+            _ => place,
+        }
+    }
+
+    /// `error` at its place in the file.
+    pub(super) fn refusal(&self, error: Error) -> Error {
+        match error.location().map(|place| self.in_file(place)) {
+            Some(Location { line, column }) => error.on(line, column),
+            None => error,
+        }
+    }
+}
+
+/// The processing instructions before the root element, each with its end guessed at the first `>`.
+fn declarations(text: &str) -> Vec<std::ops::Range<usize>> {
+    let (mut at, mut found) = (0, Vec::new());
+    loop {
+        let rest = &text[at..];
+        let begin = at + (rest.len() - rest.trim_start().len());
+        let rest = &text[begin..];
+        let length = if rest.starts_with("<!--") {
+            rest.find("-->").map(|end| end + 3)
+        } else if rest.starts_with("<?") {
+            rest.find('>').map(|end| end + 1)
+        } else {
+            None
+        };
+        let Some(length) = length else { return found };
+        if rest.starts_with("<?") {
+            found.push(begin..begin + length);
+        }
+        at = begin + length;
+    }
+}
+
+/// Where the name and the attributes of the root's tag end.
+fn root_tag_end(text: &str) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        let begin = at + text[at..].find('<')?;
+        if let Some(comment) = text[begin..].strip_prefix("<!--") {
+            at = begin + 4 + comment.find("-->")? + 3;
+            continue;
+        }
+        let mut quote = None;
+        for (offset, character) in text[begin..].char_indices() {
+            match (quote, character) {
+                (None, '"' | '\'') => quote = Some(character),
+                (Some(open), _) if open == character => quote = None,
+                (None, '>') => {
+                    let end = begin + offset;
+                    return Some(if text[..end].ends_with('/') { end - 1 } else { end });
+                }
+                _ => {}
+            }
+        }
+        return None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_declaration_becomes_blanks_wherever_and_however_it_is_written() {
+        for (text, mended) in [
+            ("<?xml verison=\"1.0\"?>\n<robot/>", "                     \n<robot/>"),
+            ("<?xml version=\"1.0\">\n<robot/>", "                    \n<robot/>"),
+            ("\n <? xml\n?><robot/>", "\n       \n  <robot/>"),
+            ("<!-- <?xml?> -->\n<?xml?>\n<robot/>", "<!-- <?xml?> -->\n       \n<robot/>"),
+        ] {
+            assert_eq!(Mended::new(text).text, mended);
+        }
+        assert!(matches!(Mended::new("<robot/>").text, Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn declared_prefixes_stand_at_the_end_of_the_roots_tag_and_move_no_place() {
+        let text = "<!-- <a> -->\n<robot name=\"a > b\"><x:y/><z:y/></robot>";
+        let mended = Mended::new(text).declaring("x").and_then(|mended| mended.declaring("z")).expect("a root");
+        let tag = "<robot name=\"a > b\" xmlns:x=\"undeclared:x\" xmlns:z=\"undeclared:z\">";
+        assert_eq!(mended.text, format!("<!-- <a> -->\n{tag}<x:y/><z:y/></robot>"));
+        let place = |column| mended.in_file(Location { line: 2, column }).column;
+        assert_eq!(place(3), 3);
+        // What follows the tag's `>` and the element z:y.
+        assert_eq!((place(tag.len() + 1), place(tag.len() + 7)), (21, 27));
+        assert!(mended.declaring("x").is_none());
+        let alone = Mended::new("<robot/>").declaring("x").expect("a root");
+        assert_eq!(alone.text, "<robot xmlns:x=\"undeclared:x\"/>");
+    }
+}

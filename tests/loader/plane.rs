@@ -1,0 +1,310 @@
+//! Which plane, which joints stay in it, and what becomes of the others.
+
+use super::*;
+use heelstrike::robot::{Plane, PlaneReason, Still};
+
+fn in_plane(plane: Plane) -> Reduction {
+    Reduction { plane: Some(plane), ..Reduction::default() }
+}
+
+/// Massive links a, b, c ... in a chain, each 1 m below the one before, with joints j, k, l ... of these types and axes.
+fn chain(joints: &[(&str, &str)]) -> String {
+    let inertial = inertial(1.0, "0 0 0", 1.0);
+    let link = |k: usize| format!("<link name=\"{}\">{inertial}</link>\n", letter('a', k));
+    let joint = |(k, (kind, axis)): (usize, &(&str, &str))| {
+        format!(
+            "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"0 0 -1\"/>\
+             <axis xyz=\"{axis}\"/></joint>\n",
+            letter('j', k),
+            letter('a', k),
+            letter('a', k + 1)
+        )
+    };
+    robot(&(0..=joints.len()).map(link).chain(joints.iter().enumerate().map(joint)).collect::<String>())
+}
+
+fn letter(first: char, k: usize) -> char {
+    (first..='z').nth(k).expect("few")
+}
+
+fn kept(robot: &Robot) -> Vec<&str> {
+    robot.joints.iter().map(|joint| joint.name.as_str()).collect()
+}
+
+fn still<'a>(robot: &'a Robot, joint: &str) -> &'a Still {
+    &robot.held(joint).expect("a held joint").still
+}
+
+#[test]
+fn the_common_direction_of_all_hinges_gives_the_plane() {
+    for (axis, plane, sign) in [
+        ("0 1 0", Plane::XZ, 1.0),
+        ("0 -1 5e-4", Plane::XZ, -1.0),
+        ("1 0 0", Plane::YZ, -1.0),
+        ("-2 0 0", Plane::YZ, 1.0),
+        ("0 0 1", Plane::XY, -1.0),
+    ] {
+        let robot = load(&chain(&[("continuous", axis), ("revolute", axis)]));
+        assert_eq!((robot.reading.plane, robot.reading.plane_because), (plane, PlaneReason::CommonAxis), "{axis}");
+        // The normal of y-z is -x and that of x-y is -z.
+        assert!(robot.joints.iter().all(|joint| joint.axis == Axis::Turn { sign }), "{axis}");
+        assert_eq!(robot.reading.better_plane, None);
+    }
+}
+
+#[test]
+fn without_a_common_direction_the_plane_is_x_z_and_a_better_one_is_named() {
+    let robot = load(&chain(&[("continuous", "1 0 0"), ("revolute", "1 0 0"), ("revolute", "0 1 0")]));
+    assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::XZ, PlaneReason::Usual));
+    assert_eq!((robot.reading.better_plane, kept(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
+    assert!(robot.reading.plane_in_words().ends_with("--plane yz would keep 2 joints"));
+
+    let given = reduce(&chain(&[("continuous", "1 0 0"), ("revolute", "0 1 0")]), &in_plane(Plane::YZ));
+    assert_eq!((given.reading.plane_because, kept(&given)), (PlaneReason::Asked, vec!["j"]));
+    // No hinge has a direction.
+    let slide = load(&chain(&[("prismatic", "0 1 0"), ("prismatic", "0 0 1")]));
+    assert_eq!((slide.reading.plane_because, kept(&slide)), (PlaneReason::Usual, vec!["k"]));
+}
+
+#[test]
+fn each_plane_takes_its_own_components_bit_for_bit() {
+    let text = robot(
+        "<link name=\"a\"><inertial><origin xyz=\"0.1 0.2 0.3\"/><mass value=\"2\"/>\
+         <inertia ixx=\"0.11\" ixy=\"0\" ixz=\"0\" iyy=\"0.12\" iyz=\"0\" izz=\"0.13\"/></inertial></link>\
+         <link name=\"b\"><inertial><mass value=\"1\"/></inertial><collision><geometry><box size=\"2 4 6\"/></geometry>\
+         </collision></link><joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>\
+         <origin xyz=\"0.7 0.8 0.9\"/></joint>",
+    );
+    let alone = text.replace("<mass value=\"1\"/>", "<mass value=\"0\"/>");
+    for (plane, com, moment, point, corner) in [
+        (Plane::XZ, [0.1, 0.3], 0.12, [0.7 + 1.0, 0.9 + 3.0], [0.7 + 1.0, 0.9 + 3.0]),
+        (Plane::YZ, [0.2, 0.3], 0.11, [0.8 + 2.0, 0.9 + 3.0], [0.8 + 2.0, 0.9 + 3.0]),
+        (Plane::XY, [0.1, 0.2], 0.13, [0.7 + 1.0, 0.8 + 2.0], [0.7 + 1.0, 0.8 + 2.0]),
+    ] {
+        let robot = reduce(&alone, &in_plane(plane));
+        assert_eq!((robot.bodies[0].com, robot.bodies[0].moment), (com, moment), "{plane:?}");
+        assert_eq!(robot.links[1].point::<f64>([1.0, 2.0, 3.0]), point);
+        let [shape] = &robot.links[1].shapes[..] else { panic!("one shape") };
+        let corners = shape.corners();
+        assert!(corners.contains(&corner), "{plane:?}: {corners:?}");
+    }
+}
+
+#[test]
+fn joints_that_leave_the_plane_are_welded_at_zero_and_their_angle_told() {
+    let text =
+        chain(&[("revolute", "1 0 0"), ("revolute", "0 1 0"), ("continuous", "0 -1 0.0787"), ("revolute", "0 1 0")]);
+    let robot = load(&text);
+    assert_eq!(kept(&robot), ["k", "m"]);
+    let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com)).collect();
+    // a and b are one body with its CoG half way; so are c and d, behind k.
+    assert_eq!(bodies, [("a", 2.0, [0.0, -0.5]), ("c", 2.0, [0.0, -0.5]), ("e", 1.0, [0.0, 0.0])]);
+    assert_eq!(robot.joints[0].origin, [0.0, -2.0]);
+    let expected = [
+        left_out("joint \"j\"", "held at zero, its axis being 90.00 degrees off the plane's normal: welded into a"),
+        left_out("joint \"l\"", "held at zero, its axis being 4.50 degrees off the plane's normal: welded into c"),
+    ];
+    assert_eq!(robot.left_out, expected);
+
+    let slides = reduce(&chain(&[("prismatic", "0 1 0"), ("prismatic", "1 0 1")]), &Reduction::default());
+    let why = "held at zero, its axis being 90.00 degrees off the plane: welded into a";
+    assert_eq!(slides.left_out, [left_out("joint \"j\"", why)]);
+    assert_eq!(kept(&slides), ["k"]);
+}
+
+#[test]
+fn held_joints_are_welded_at_their_values_and_axes_judged_there() {
+    // j turns about x by a quarter, so that the z axis of k points to -y: k stays.
+    let text = chain(&[("revolute", "2 0 0"), ("revolute", "0 0 1"), ("prismatic", "0 0 1")]);
+    let hold = |hold: &[(usize, f64)]| Reduction { plane: Some(Plane::XZ), hold: hold.to_vec(), base: None };
+    let robot = reduce(&text, &hold(&[(0, FRAC_PI_2)]));
+    assert_eq!((kept(&robot), robot.joints[0].axis), (vec!["k"], Axis::Turn { sign: -1.0 }));
+    assert_eq!(still(&robot, "j"), &Still::Asked { value: FRAC_PI_2 });
+    // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
+    let [x, z] = robot.joints[0].origin;
+    assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15, "{x} {z}");
+
+    // A slide that is held carries its child along: 1 m down and 0.25 m up.
+    let robot = reduce(&text, &hold(&[(2, 0.25)]));
+    assert_eq!(kept(&robot), [""; 0]);
+    assert_eq!(robot.links[3].point::<f64>([0.0; 3]), [0.0, -2.75]);
+    let why = "held at 0.25 as asked: welded into a";
+    assert!(robot.left_out.contains(&left_out("joint \"l\"", why)), "{:?}", robot.left_out);
+
+    // A joint of the plane can be held as well, and then gives no plane.
+    let robot = reduce(
+        &chain(&[("revolute", "1 0 0"), ("revolute", "0 0 1")]),
+        &Reduction { hold: vec![(0, 0.0)], ..Reduction::default() },
+    );
+    assert_eq!((robot.reading.plane, kept(&robot)), (Plane::XY, vec!["k"]));
+}
+
+#[test]
+fn a_held_pitch_turns_all_that_hangs_on_it() {
+    // j dips the nose by a: what hung down points backward by sin a.
+    let text = chain(&[("revolute", "0 1 0"), ("revolute", "0 1 0")]);
+    let robot = reduce(&text, &Reduction { hold: vec![(0, 0.3)], ..Reduction::default() });
+    let [x, z] = robot.joints[0].origin;
+    assert!((x + 0.3_f64.sin()).abs() < 1e-15 && (z + 1.0 + 0.3_f64.cos()).abs() < 1e-15);
+}
+
+#[test]
+fn what_cannot_be_held_is_refused() {
+    let refused = |text: &str, hold: &[(usize, f64)]| {
+        let description = Description::from_urdf(text).expect("a description");
+        let reduction = Reduction { hold: hold.to_vec(), ..Reduction::default() };
+        Robot::reduce(&description, &reduction).expect_err("a refusal").to_string()
+    };
+    let text = chain(&[("fixed", "0 1 0"), ("revolute", "0 1 0"), ("floating", "0 1 0")]);
+    assert_eq!(refused(&text, &[(0, 0.0)]), "6:1: joint \"j\": it cannot be held at a value: it is fixed");
+    assert_eq!(refused(&text, &[(2, 0.0)]), "8:1: joint \"l\": it cannot be held at a value: it is floating");
+    assert_eq!(refused(&text, &[(1, 0.0), (1, 1.0)]), "7:1: joint \"k\": held joint \"k\" is given twice");
+    let value = "7:1: joint \"k\": the value at which it is held must be a finite number, not NaN";
+    assert_eq!(refused(&text, &[(1, f64::NAN)]), value);
+    let mimic = text.replace("type=\"fixed\">", "type=\"revolute\"><mimic joint=\"k\"/>");
+    let error = "6:1: joint \"j\": it cannot be held by itself: it follows joint \"k\"";
+    assert_eq!(refused(&mimic, &[(0, 0.0)]), error);
+}
+
+#[test]
+fn joints_without_a_single_axis_are_held_and_a_word_said() {
+    for (kind, word) in
+        [("planar", "planar"), ("floating", "floating"), ("spherical", "spherical"), ("ball", "spherical")]
+    {
+        let robot = load(&chain(&[("revolute", "0 1 0"), (kind, "0 1 0")]));
+        assert_eq!(kept(&robot), ["j"]);
+        let why = format!("held at zero, being {word}: welded into b");
+        assert_eq!(robot.left_out, [left_out("joint \"k\"", &why)]);
+        let caution = "k could move in the plane and is held all the same, having no single axis: replace it by revolute \
+                       and prismatic joints";
+        assert_eq!(robot.reading.cautions, [caution]);
+    }
+}
+
+#[test]
+fn axes_that_are_all_a_little_off_get_a_loud_word() {
+    // tan 5 degrees.
+    let tilted = ("revolute", "0 1 0.087488663525924");
+    let robot = load(&chain(&[("revolute", "1 0 0"), tilted, tilted]));
+    assert!(robot.joints.is_empty());
+    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    let held = "2 of 3 joints that could move are held only because their axes are 5.0 degrees off the plane (k, l); to keep them";
+    // From y + z tan 5 degrees back to y is a turn about x by minus 5 degrees.
+    assert_eq!(caution, &format!("{held}: --hold j=-0.087266"));
+    let text = chain(&[("revolute", "1 0 0"), tilted, tilted]);
+    assert_eq!(kept(&reduce(&text, &Reduction { hold: vec![(0, -0.087266)], ..Reduction::default() })), ["k", "l"]);
+
+    // A mounting that is tilted cannot be held elsewhere.
+    let hinge = ("revolute", "0 1 0");
+    let mounted = chain(&[("fixed", "1 0 0"), hinge, hinge, ("revolute", "1 0 0")])
+        .replace("<child link=\"b\"/><origin", "<child link=\"b\"/><origin rpy=\"0.0872665 0 0\"");
+    let robot = load(&mounted);
+    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    assert!(caution.ends_with("(k, l); to keep them: straighten the rpy of j"), "{caution}");
+
+    // Two shoulders among four joints that stay are no reason to shout.
+    let robot = load(&chain(&[hinge, hinge, hinge, hinge, tilted, tilted]));
+    assert!(robot.reading.cautions.is_empty(), "{:?}", robot.reading.cautions);
+
+    let aside = load(&chain(&[("revolute", "1 0 0"), ("revolute", "0 0 1")]));
+    let [caution] = &aside.reading.cautions[..] else { panic!("{:?}", aside.reading.cautions) };
+    assert!(caution.starts_with("no joint moves in this plane"), "{caution}");
+}
+
+// Joints that follow others.
+
+#[test]
+fn a_follower_is_tied_to_the_last_of_its_leaders() {
+    // j follows k by 2 q + 0.5, k follows m by -3 q: j = -6 q_m + 0.5.
+    let hinge = ("revolute", "0 1 0");
+    let text = chain(&[hinge, hinge, hinge, hinge]);
+    let follow = |text: &str, joint: &str, mimic: &str| {
+        text.replace(
+            &format!("name=\"{joint}\" type=\"revolute\">"),
+            &format!("name=\"{joint}\" type=\"revolute\">{mimic}"),
+        )
+    };
+    let text = follow(&text, "j", "<mimic joint=\"k\" multiplier=\"2\" offset=\"0.5\"/>");
+    let text = follow(&text, "k", "<mimic joint=\"m\" multiplier=\"-3\"/>");
+    let robot = load(&text);
+    assert_eq!(kept(&robot), ["l", "m"]);
+    let followers: Vec<_> = robot
+        .followers
+        .iter()
+        .map(|follower| (follower.name.as_str(), follower.leader, follower.multiplier, follower.offset))
+        .collect();
+    assert_eq!(followers, [("j", 1, -6.0, 0.5), ("k", 1, -3.0, 0.0)]);
+    let movers: Vec<_> = robot.bodies.iter().map(|body| body.joint).collect();
+    let expected =
+        [None, Some(Mover::Follower(0)), Some(Mover::Follower(1)), Some(Mover::Joint(0)), Some(Mover::Joint(1))];
+    assert_eq!(movers, expected);
+}
+
+#[test]
+fn a_follower_of_a_held_joint_is_held_with_it() {
+    let mimic = |axis: &str, leader: &str| {
+        chain(&[("revolute", axis), ("revolute", "0 1 0")]).replace(
+            "name=\"k\" type=\"revolute\">",
+            &format!("name=\"k\" type=\"revolute\"><mimic joint=\"{leader}\" multiplier=\"2\" offset=\"0.1\"/>"),
+        )
+    };
+    let robot = load(&mimic("1 0 0", "j"));
+    assert!(robot.joints.is_empty() && robot.followers.is_empty());
+    // At zero, whatever its offset.
+    assert_eq!(still(&robot, "k"), &Still::Follows { leader: "j".into() });
+    assert_eq!(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), [0.0, -3.0]);
+
+    // A leader that is held at a value takes its follower along: 2 * 0.2 + 0.1.
+    let robot = reduce(&mimic("0 1 0", "j"), &Reduction { hold: vec![(0, 0.2)], ..Reduction::default() });
+    let [x, z] = robot.links[2].point::<f64>([0.0, 0.0, -1.0]);
+    let (first, both): (f64, f64) = (0.2, 0.2 + 2.0 * 0.2 + 0.1);
+    assert!((x + first.sin() + both.sin()).abs() < 1e-15 && (z + 1.0 + first.cos() + both.cos()).abs() < 1e-15);
+
+    // A follower off the plane is held as such; its leader stays.
+    let robot = load(
+        &chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0")])
+            .replace("name=\"k\" type=\"revolute\">", "name=\"k\" type=\"revolute\"><mimic joint=\"j\"/>"),
+    );
+    assert_eq!((kept(&robot), robot.followers.len()), (vec!["j"], 0));
+    assert!(matches!(still(&robot, "k"), Still::OffPlane { .. }));
+}
+
+// Whatever the order and the names.
+
+#[test]
+fn names_change_nothing() {
+    let text = chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0"), ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
+    // Each letter the one that stands opposite in the alphabet, so that their order turns round; joints named like links.
+    let opposite = |letter: char| char::from_u32('a' as u32 + 'z' as u32 - letter as u32).expect("a letter");
+    let renamed: String = "abcdejklm".chars().fold(text.clone(), |text, letter| {
+        text.replace(&format!("\"{letter}\""), &format!("\"*{}\"", opposite(letter)))
+    });
+    let (robot, renamed) = (load(&text), load(&renamed.replace('*', "a name ü ")));
+    assert_eq!(renamed.joints[0].name, "a name ü q");
+    let numbers = |robot: &Robot| {
+        let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.mass, body.com, body.moment, body.joint)).collect();
+        let joints: Vec<_> = robot.joints.iter().map(|joint| (joint.parent, joint.origin, joint.axis)).collect();
+        (bodies, joints)
+    };
+    assert_eq!(numbers(&robot), numbers(&renamed));
+}
+
+#[test]
+fn order_in_the_file_changes_only_the_order() {
+    let text = chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0"), ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
+    let forward = load(&text);
+    let mut lines: Vec<&str> =
+        text.lines().filter(|line| line.starts_with("<link") || line.starts_with("<joint")).collect();
+    lines.reverse();
+    let backward = load(&robot(&lines.join("\n")));
+    assert_eq!(forward.bodies.len(), backward.bodies.len());
+    for (a, b) in forward.bodies.iter().zip(&backward.bodies) {
+        assert_eq!((&a.name, a.mass, a.com, a.moment), (&b.name, b.mass, b.com, b.moment));
+    }
+    let names: Vec<&str> = kept(&forward).into_iter().rev().collect();
+    assert_eq!(names, kept(&backward));
+    for joint in &forward.joints {
+        let other = &backward.joints[backward.joint(&joint.name).expect("the joint")];
+        assert_eq!(joint, other);
+    }
+}
