@@ -78,6 +78,9 @@
 #[doc = include_str!("../docs/guarantees.md")]
 pub mod guarantees {}
 
+#[doc = include_str!("../docs/left_out.md")]
+pub mod left_out {}
+
 pub mod error;
 pub mod excerpt;
 pub mod scalar;

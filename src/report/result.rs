@@ -131,9 +131,12 @@ pub struct LeftOut<'a> {
 }
 
 impl<'a> LeftOut<'a> {
-    /// All that was left out of `robot`.
+    /// All that was left out of `robot`, and of every robot.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
-        robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: &left.why }).collect()
+        let what = Cow::Borrowed("gravity, Coriolis forces, joint limits");
+        let never = Self { what, why: "do not enter an impact" };
+        let of_robot = robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: &left.why });
+        of_robot.chain([never]).collect()
     }
 
     /// All that was left out of `robot` and of this impact of it.
@@ -145,8 +148,8 @@ impl<'a> LeftOut<'a> {
                 pipeline::LeftOut::Column(joint) => {
                     (description::joint_place(&robot.joints[*joint].name), "held: it keeps its rate and has no column")
                 }
-                pipeline::LeftOut::OutOfReach(count) => (shapes(*count), "too high to reach the ground"),
-                pipeline::LeftOut::NotAsked(count) => (shapes(*count), "contacts are named by hand"),
+                pipeline::LeftOut::OutOfReach(count) => (format!("{} out of reach", shapes(*count)), "too high to reach the ground"),
+                pipeline::LeftOut::NotAsked(count) => (format!("{} of the file", shapes(*count)), "contacts are named by hand"),
                 pipeline::LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
                 pipeline::LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
             };
