@@ -180,44 +180,41 @@ impl<T: Real> Plan<T> {
             let mass = number(body.mass);
             let inertia =
                 Inertia { mass, first: scaled(mass, com), second: number(body.moment) + mass * dot(com, com) };
-            let still = PlanBody {
-                parent: None,
-                origin: [T::zero(); 2],
-                motion: Motion::Root,
-                coordinate: 2,
-                place: 2,
-                tie: None,
-                column: floating.then_some(2),
-                inertia,
-                rotor: T::zero(),
-            };
             let Some(mover) = body.joint else {
                 greatest.push(floating.then_some(2));
-                plan.bodies.push(still);
+                plan.bodies.push(PlanBody {
+                    parent: None,
+                    origin: [T::zero(); 2],
+                    motion: Motion::Root,
+                    coordinate: 2,
+                    place: 2,
+                    tie: None,
+                    column: floating.then_some(2),
+                    inertia,
+                    rotor: T::zero(),
+                });
                 continue;
             };
-            let (parent, origin, axis) = robot.hinge(mover);
-            // The joint whose coordinate moves the body, the body's own place in lists per joint and follower, and its tie.
-            let (index, own, tie) = match mover {
-                Mover::Joint(index) => (index, index, None),
+            // The joint whose coordinate moves the body, and the body's own place in lists per joint and follower; none of a
+            // weld. And its tie.
+            let (moved, tie) = match mover {
+                Mover::Joint(index) => (Some((index, index)), None),
                 Mover::Follower(index) => {
                     let Follower { leader, multiplier, offset, .. } = robot.followers[index];
-                    (leader, robot.joints.len() + index, Some(Tie { multiplier, offset }))
+                    (Some((leader, robot.joints.len() + index)), Some(Tie { multiplier, offset }))
                 }
-                Mover::Weld { .. } => {
-                    greatest.push(greatest[parent]);
-                    let (parent, origin) = (Some(parent), origin.map(number));
-                    plan.bodies.push(PlanBody { parent, origin, motion: Motion::Weld, column: None, ..still });
-                    continue;
-                }
+                Mover::Weld { .. } => (None, None),
             };
-            let column = (!held.contains(&index)).then(|| plan.column(&mut columns[index], base + index));
+            let (parent, origin, axis) = robot.hinge(mover);
+            let column = moved.filter(|(index, _)| !held.contains(index));
+            let column = column.map(|(index, _)| plan.column(&mut columns[index], base + index));
             greatest.push(match column {
                 Some(column) => plan.join_branch(column, parent, greatest[parent]),
                 None => greatest[parent],
             });
             let multiplier = tie.map_or(1.0, |tie| tie.multiplier);
-            let rotor = number(rotor_inertia.get(own).copied().unwrap_or(0.0));
+            let rotor = moved.and_then(|(_, own)| rotor_inertia.get(own).copied());
+            let rotor = number(rotor.unwrap_or(0.0));
             plan.bodies.push(PlanBody {
                 parent: Some(parent),
                 origin: origin.map(number),
@@ -231,8 +228,8 @@ impl<T: Real> Plan<T> {
                         Motion::Slide { direction, rate }
                     }
                 },
-                coordinate: base + index,
-                place: base + own,
+                coordinate: moved.map_or(0, |(index, _)| base + index),
+                place: moved.map_or(0, |(_, own)| base + own),
                 tie,
                 column,
                 inertia,

@@ -148,8 +148,12 @@ impl<'a> LeftOut<'a> {
                 pipeline::LeftOut::Column(joint) => {
                     (description::joint_place(&robot.joints[*joint].name), "held: it keeps its rate and has no column")
                 }
-                pipeline::LeftOut::OutOfReach(count) => (format!("{} out of reach", shapes(*count)), "too high to reach the ground"),
-                pipeline::LeftOut::NotAsked(count) => (format!("{} of the file", shapes(*count)), "contacts are named by hand"),
+                pipeline::LeftOut::OutOfReach(count) => {
+                    (format!("{} out of reach", shapes(*count)), "too high to reach the ground")
+                }
+                pipeline::LeftOut::NotAsked(count) => {
+                    (format!("{} of the file", shapes(*count)), "contacts are named by hand")
+                }
                 pipeline::LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
                 pipeline::LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
             };

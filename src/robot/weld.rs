@@ -7,11 +7,15 @@ use crate::planar::{Vector, sum};
 impl Robot {
     /// Whether a body can move: not the root of a bolted robot, nor what is welded to it.
     pub(super) fn moves(&self, body: usize) -> bool {
-        match self.bodies[body].joint {
-            None => self.base == Base::Floating,
-            Some(Mover::Weld { parent, .. }) => self.moves(parent),
-            Some(Mover::Joint(_) | Mover::Follower(_)) => true,
+        let mut at = body;
+        while self.base == Base::Fixed {
+            match self.bodies[at].joint {
+                None => return false,
+                Some(Mover::Weld { parent, .. }) => at = parent,
+                Some(Mover::Joint(_) | Mover::Follower(_)) => break,
+            }
         }
+        true
     }
 
     /// The CoG of each body together with all that is welded to it, in its frame \[m\]; none of a welded body.

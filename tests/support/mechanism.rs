@@ -221,6 +221,17 @@ impl Mechanism {
         self.poses(position, velocity).point(link, point)
     }
 
+    /// The ends of a loop, as JSON for the URDF with this root: a point of one link, and the point of another that is there
+    /// in this position.
+    pub fn meeting(&self, root: usize, position: &Motion, (link, point): (usize, Point), other: usize) -> Value {
+        let frames = self.frames(root);
+        let poses = self.poses(position, position);
+        let there = poses.point(link, point)[0];
+        let there = turned(minus(there, poses.origin[other][0]), -poses.pitch[other][0]);
+        let end = |link, point| json!({"link": format!("link{link}"), "offset": self.local(&frames, link, point)});
+        json!({"a": end(link, point), "b": end(other, there)})
+    }
+
     /// The state, as JSON for the URDF with this root, with contacts at points of links.
     pub fn state(&self, root: usize, position: &Motion, velocity: &Motion, contacts: &[(usize, Point, f64)]) -> Value {
         let frames = self.frames(root);
