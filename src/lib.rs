@@ -50,7 +50,7 @@
 //! # Frames and signs
 //!
 //! `x` points forward along the ground, `z` up. `pitch` and the angles of bodies are right-handed about the plane's normal
-//! n = up x forward (+y): a positive pitch dips the nose. Joint coordinates keep the URDF's own sign. A contact's normal
+//! n = up x forward (+y in the x-z plane): a positive pitch dips the nose. Joint coordinates keep the URDF's own sign. A contact's normal
 //! points from the ground to the robot, its tangent t is the normal turned clockwise: +x on level ground. [`planar`] is the
 //! one place where this handedness is written as code.
 //!

@@ -5,23 +5,18 @@
 //! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
 
 use super::mend::Mended;
+use super::named::{EXPAND, Named, WORLD, undefined_world};
 use super::strict::{Range, copy, copy_axis, copy_origin, copy_required, write_attribute};
+use super::tally::Tally;
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
 use super::{Ignored, JointKind, joint_place, link_place};
 use crate::error::{Location, Reason, Result};
 use roxmltree::{Document, Node};
-use std::collections::HashMap;
 
 /// The most joints that move: a chain of n of them takes n^3 / 3 steps to factorize.
 const MOST_MOVING: usize = 2000;
-/// The most kinds of elements that are passed over and told.
-const MOST_IGNORED: usize = 1000;
 /// The links or joints in one part of the strict copy; parts bound the memory that urdf-rs needs.
 const PART: usize = 1000;
-/// The link that joints may name as their parent without its being defined.
-const WORLD: &str = "world";
-/// The remedy for a file with macros.
-pub(super) const EXPAND: &str = "expand the file first: xacro FILE > robot.urdf";
 /// How a part of the strict copy begins.
 const OPENING: &str = "<robot name=\"\">";
 /// How a part of the strict copy ends.
@@ -157,18 +152,6 @@ fn read_document(document: &Document<'_>) -> Result<Draft> {
     Ok(Draft { name, links: draft_links, joints: draft_joints, ignored: ignored.kinds, strict })
 }
 
-/// Where a joint names the parent link `world` that no element defines, as many files do: the world needs no description.
-fn undefined_world(links: &Named, joints: &Named) -> Option<Location> {
-    if links.by_name.contains_key(WORLD) {
-        return None;
-    }
-    let hangs_on_it = |element: Node| {
-        let mut parents = xml::children(element).filter(|child| child.tag_name().name() == "parent");
-        parents.any(|parent| parent.attribute("link") == Some(WORLD))
-    };
-    joints.elements.iter().find(|(_, element, _)| hangs_on_it(*element)).map(|&(_, _, location)| location)
-}
-
 /// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
 fn refuse_many_joints(joints: &Named) -> Result<()> {
     let mut all = joints.elements.iter().map(|&(_, element, _)| element);
@@ -213,13 +196,6 @@ fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
     (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
 }
 
-/// Elements of one kind by name.
-struct Named<'a, 'input> {
-    what: &'static str,
-    elements: Vec<(&'a str, Node<'a, 'input>, Location)>,
-    by_name: HashMap<&'a str, usize>,
-}
-
 impl Draft {
     /// The draft with all places changed.
     fn moved(mut self, place: impl Fn(Location) -> Location) -> Self {
@@ -230,57 +206,6 @@ impl Draft {
             joint.location = place(joint.location);
         }
         self
-    }
-}
-
-impl<'a, 'input> Named<'a, 'input> {
-    fn new(what: &'static str) -> Self {
-        Self { what, elements: Vec::new(), by_name: HashMap::new() }
-    }
-
-    fn push(&mut self, element: Node<'a, 'input>, location: Location) -> Result<()> {
-        let name = xml::required_attribute(element, "name")?;
-        if name.contains("${") || name.contains("$(") {
-            let reason = format!("the name \"{name}\" is a macro's");
-            return Err(xml::refuse(element, Reason::Unsupported(reason)).hint(EXPAND));
-        }
-        if self.by_name.insert(name, self.elements.len()).is_some() {
-            return Err(xml::refuse(element, Reason::Duplicate { what: self.what, name: name.into() }));
-        }
-        self.elements.push((name, element, location));
-        Ok(())
-    }
-
-    /// The index of the thing that `attribute` of `element` names.
-    fn find(&self, element: Node<'_, '_>, attribute: &str) -> Result<usize> {
-        let name = xml::required_attribute(element, attribute)?;
-        self.by_name.get(name).copied().ok_or_else(|| {
-            let error = xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() });
-            error.did_you_mean(name, self.elements.iter().map(|(name, ..)| *name))
-        })
-    }
-}
-
-/// Counts elements that are passed over.
-#[derive(Default)]
-struct Tally {
-    kinds: Vec<Ignored>,
-    by_tag: HashMap<(&'static str, String), usize>,
-}
-
-impl Tally {
-    fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
-        let tag = element.tag_name().name();
-        let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
-        if kind == MOST_IGNORED {
-            let reason = Reason::TooMany { what: "kinds of unknown elements", limit: MOST_IGNORED };
-            return Err(xml::refuse(element, reason));
-        }
-        match self.kinds.get_mut(kind) {
-            Some(known) => known.count += 1,
-            None => self.kinds.push(Ignored { parent, tag: tag.into(), count: 1 }),
-        }
-        Ok(())
     }
 }
 

@@ -66,7 +66,7 @@ pub(super) fn copy(element: Node<'_, '_>, name: &str, count: usize, range: Range
         let expected = if count == 1 { "a number".into() } else { format!("{count} numbers") };
         let error = xml::refuse(element, Reason::Syntax(format!("{} must be {expected}, not \"{value}\"", what())));
         let is_xacro = value.contains("${");
-        return Err(if is_xacro { error.hint(super::draft::EXPAND) } else { error });
+        return Err(if is_xacro { error.hint(super::named::EXPAND) } else { error });
     }
     for number in parsed {
         finite(number, what).map_err(|error| xml::refuse(element, error.reason().clone()))?;

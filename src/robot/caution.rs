@@ -84,7 +84,7 @@ fn about_tilted(seen: &Seen, nearly: &[(&str, f64)], all: usize) -> String {
          them: {}",
         nearly.len(),
         names(&joints),
-        remedies.join(", "),
+        names(&remedies),
     )
 }
 

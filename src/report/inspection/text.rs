@@ -4,6 +4,7 @@ use super::{Inspection, Joint};
 use crate::report::table::{Table, number, scale};
 use crate::report::text::Palette;
 use crate::robot::Still;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 /// The longest line of the head, in characters.
@@ -138,9 +139,10 @@ impl Inspection<'_> {
     /// What was left out, that of one reason together; of joints without the bodies that they are welded into.
     fn left_out_by_reason(&self) -> Vec<(String, Vec<String>)> {
         let held = self.held.iter().map(|held| (held.why.clone(), held.name.to_owned()));
+        let names: HashSet<&str> = self.held.iter().map(|held| held.name).collect();
         let is_held = |what: &str| {
             let name = what.strip_prefix("joint \"").and_then(|name| name.strip_suffix('"'));
-            name.is_some_and(|name| self.held.iter().any(|held| held.name == name))
+            name.is_some_and(|name| names.contains(name))
         };
         let rest = self.left_out.iter().filter(|left| !is_held(&left.what));
         grouped(held.chain(rest.map(|left| (left.why.to_owned(), left.what.clone().into_owned()))))
@@ -150,8 +152,10 @@ impl Inspection<'_> {
 /// Things by their key, in the order of the first of each.
 fn grouped<T>(pairs: impl Iterator<Item = (String, T)>) -> Vec<(String, Vec<T>)> {
     let mut groups: Vec<(String, Vec<T>)> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
     for (key, thing) in pairs {
-        match groups.iter_mut().find(|(known, _)| *known == key) {
+        let place = *places.entry(key.clone()).or_insert(groups.len());
+        match groups.get_mut(place) {
             Some((_, things)) => things.push(thing),
             None => groups.push((key, vec![thing])),
         }

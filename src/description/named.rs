@@ -1,0 +1,58 @@
+//! Elements of a file by their names.
+
+use super::xml;
+use crate::error::{Location, Reason, Result};
+use roxmltree::Node;
+use std::collections::HashMap;
+
+/// The link that joints may name as their parent without its being defined.
+pub(super) const WORLD: &str = "world";
+/// The remedy for a file with macros.
+pub(super) const EXPAND: &str = "expand the file first: xacro FILE > robot.urdf";
+
+/// Elements of one kind by name.
+pub(super) struct Named<'a, 'input> {
+    what: &'static str,
+    pub(super) elements: Vec<(&'a str, Node<'a, 'input>, Location)>,
+    pub(super) by_name: HashMap<&'a str, usize>,
+}
+
+impl<'a, 'input> Named<'a, 'input> {
+    pub(super) fn new(what: &'static str) -> Self {
+        Self { what, elements: Vec::new(), by_name: HashMap::new() }
+    }
+
+    pub(super) fn push(&mut self, element: Node<'a, 'input>, location: Location) -> Result<()> {
+        let name = xml::required_attribute(element, "name")?;
+        if name.contains("${") || name.contains("$(") {
+            let reason = format!("the name \"{name}\" is a macro's");
+            return Err(xml::refuse(element, Reason::Unsupported(reason)).hint(EXPAND));
+        }
+        if self.by_name.insert(name, self.elements.len()).is_some() {
+            return Err(xml::refuse(element, Reason::Duplicate { what: self.what, name: name.into() }));
+        }
+        self.elements.push((name, element, location));
+        Ok(())
+    }
+
+    /// The index of the thing that `attribute` of `element` names.
+    pub(super) fn find(&self, element: Node<'_, '_>, attribute: &str) -> Result<usize> {
+        let name = xml::required_attribute(element, attribute)?;
+        self.by_name.get(name).copied().ok_or_else(|| {
+            let error = xml::refuse(element, Reason::UnknownName { what: self.what, name: name.into() });
+            error.did_you_mean(name, self.elements.iter().map(|(name, ..)| *name))
+        })
+    }
+}
+
+/// Where a joint names the parent link `world` that no element defines, as many files do: the world needs no description.
+pub(super) fn undefined_world(links: &Named, joints: &Named) -> Option<Location> {
+    if links.by_name.contains_key(WORLD) {
+        return None;
+    }
+    let hangs_on_it = |element: Node| {
+        let mut parents = xml::children(element).filter(|child| child.tag_name().name() == "parent");
+        parents.any(|parent| parent.attribute("link") == Some(WORLD))
+    };
+    joints.elements.iter().find(|(_, element, _)| hangs_on_it(*element)).map(|&(_, _, location)| location)
+}
