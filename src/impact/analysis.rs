@@ -14,7 +14,7 @@ use super::enumerate::{Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
 use super::labels::Labels;
 use super::lone;
-use super::mode::Mode;
+use super::mode::{Friction, Mode};
 use super::outcome::{Analysis, Because, Effort, Motion, Outcome, Rejection, Verdict};
 use super::problem::{ContactProblem, Source};
 use super::reading::{Reading, read_f64};
@@ -94,6 +94,8 @@ impl Scratch {
         };
         self.tableau.visit(&mut first);
         let FirstLook { regular, open, coarse, mut found, .. } = first;
+        let frictionless = problem.friction().iter().any(|friction| friction.is_zero());
+        let regular = regular || (frictionless && shows_regular(&mut self.tableau, &mut self.bounds, contacts));
         let scale = &self.scale;
         let was_open = !open.is_empty();
         let mut coarse = coarse;
@@ -281,6 +283,14 @@ fn no_slip_consistent(outcomes: &[Outcome]) -> Option<bool> {
         false if without_slip().next().is_some() => None,
         found => Some(found),
     }
+}
+
+/// Whether f64 shows that G is regular: for problems with a frictionless contact, none of whose combinations solves for all
+/// impulses.
+fn shows_regular(tableau: &mut Tableau<f64>, bounds: &mut Bounds, contacts: usize) -> bool {
+    let friction = vec![Friction::Infinite; contacts];
+    tableau.stick_all(|tableau, contact| bounds.follow(tableau, &friction, contact, contact));
+    bounds.at(contacts).impulse_error().is_finite()
 }
 
 /// Rank of G and, where it is regular, the condition number of G scaled to a unit diagonal.
@@ -496,7 +506,6 @@ impl Found {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mode::Friction;
     use super::*;
 
     #[test]

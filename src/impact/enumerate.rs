@@ -106,6 +106,17 @@ impl<T: Real> Tableau<T> {
         self.descend(0, 0, visitor);
     }
 
+    /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and tells after each; the
+    /// frictions that it was loaded with are lost.
+    pub fn stick_all(&mut self, mut tell: impl FnMut(&Self, usize)) {
+        self.friction.fill(Friction::Infinite);
+        for contact in 0..self.contacts {
+            self.modes[contact] = Mode::Stick;
+            self.decide(contact, Mode::Stick, contact);
+            tell(self, contact);
+        }
+    }
+
     /// The numbers of a single combination.
     pub fn leaf(&mut self, modes: &[Mode]) -> Leaf<'_, T> {
         let mut source = 0;
