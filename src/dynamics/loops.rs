@@ -269,7 +269,12 @@ pub fn close<T: Real>(
     }
     other_half_solve(plan, &workspace.factor, &mut change);
     for (&coordinate, &change) in plan.coordinates.iter().zip(&change) {
-        velocity[coordinate] = velocity[coordinate] + change;
+        velocity[coordinate] = match (kept.contains(&coordinate), closed) {
+            (false, _) => velocity[coordinate] + change,
+            // What is kept is kept without rounding.
+            (true, Closed::Velocity) => velocity[coordinate],
+            (true, Closed::Change) => T::zero(),
+        };
     }
     amplitudes
 }
