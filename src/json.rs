@@ -224,6 +224,14 @@ impl<'n> Node<'n> {
         self.refuse_name(self.as_text().unwrap_or_default(), reason)
     }
 
+    /// Puts an error about a part of this value at its line and column, the part's place behind the value's.
+    pub(crate) fn refuse_inside(&self, error: Error) -> Error {
+        let mut place = String::new();
+        self.write_place(&mut place);
+        place.push_str(error.place().unwrap_or_default());
+        self.locate(error.at(place))
+    }
+
     /// Puts an error that was found later at this value's line and column.
     pub(crate) fn locate(&self, error: Error) -> Error {
         let (line, column) = self.location("");

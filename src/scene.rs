@@ -1,13 +1,17 @@
 //! What surrounds the robot: ground, friction, restitution, held joints, loops, applied impulses.
 
+mod ground;
+
+pub use ground::{Ground, Profile};
+
 use crate::impact::Friction;
-use crate::planar::{Rotation, Vector};
+use crate::planar::Vector;
 
 /// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).
 #[derive(Debug, Clone, Default)]
 pub struct Scene {
-    /// Slope of the ground line through the world's origin \[rad\], uphill toward +x.
-    pub slope: f64,
+    /// What the robot strikes.
+    pub ground: Ground,
     /// Friction of each contact's link; none where the state leaves it to the command line.
     pub friction: ByLink<Friction>,
     /// Newton restitution of each contact's link, 0 to 1; 0 where none is given.
@@ -91,12 +95,5 @@ impl<T: Copy> ByLink<T> {
     /// The value of a link.
     pub fn of(&self, link: usize) -> Option<T> {
         self.links.iter().find(|(named, _)| *named == link).map(|&(_, value)| value).or(self.default)
-    }
-}
-
-impl Scene {
-    /// The turn that takes the level ground's axes to the sloped ground's (tangent, normal); uphill is a negative pitch.
-    pub fn ground(&self) -> Rotation<f64> {
-        Rotation::by(-self.slope)
     }
 }

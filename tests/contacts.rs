@@ -80,7 +80,7 @@ fn a_box_lies_flat_on_a_slope() {
     let found = impact(&flat_box(), &state);
     assert_eq!(names(&found), ["body/0", "body/1"]);
     assert!(close(found.contacts[1].point, [0.2 * cos, 0.2 * sin]));
-    assert!(close(found.contacts[0].normal, [-sin, cos]));
+    assert!(close(found.contacts[0].normal(), [-sin, cos]));
 }
 
 #[test]

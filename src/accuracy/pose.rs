@@ -16,6 +16,7 @@ use crate::pipeline::Impact;
 use crate::plan::{Plan, Posture};
 use crate::planar::Rotation;
 use crate::robot::Robot;
+use crate::scene::Ground;
 use crate::state::State;
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -49,7 +50,6 @@ pub struct Pose<'a> {
 impl<'a> Pose<'a> {
     /// `state` with the contacts that `impact`, its answer, found.
     pub fn new(robot: &'a Robot, state: &'a State, impact: &'a Impact) -> Self {
-        let ground = state.scene.ground();
         let stands = |link: usize| {
             let mut speeds = impact.contacts.iter().zip(&impact.velocity_before);
             speeds.position(|(contact, speed)| contact.link == link && *speed == [0.0; 2])
@@ -57,7 +57,7 @@ impl<'a> Pose<'a> {
         Self {
             robot,
             state,
-            points: impact.contacts.iter().map(|contact| contact.point_of(ground)).collect(),
+            points: impact.contacts.iter().map(Contact::point_of).collect(),
             contacts: &impact.contacts,
             stance: state.scene.stance.and_then(stands),
         }
@@ -129,11 +129,16 @@ impl<T: Number> Computation<T> {
             posture.sin.push(sin);
         }
         kinematics(plan, posture, workspace);
-        // Level ground is level in every number.
-        let slope = pose.state.scene.slope;
-        let ground = if slope == 0.0 { Rotation::identity() } else { T::rotation(-slope) };
+        let axes = |contact: &Contact| match pose.state.scene.ground {
+            // Level ground is level in every number.
+            Ground::Slope(0.0) => Rotation::identity(),
+            Ground::Slope(slope) => T::rotation(-slope),
+            Ground::Profile(_) => {
+                Rotation { cos: T::from_f64(contact.ground.cos), sin: T::from_f64(contact.ground.sin) }
+            }
+        };
         points.clear();
-        points.extend(pose.contacts.iter().map(|contact| contact.exact_point(pose.robot, ground)));
+        points.extend(pose.contacts.iter().map(|contact| contact.exact_point(pose.robot, axes(contact))));
         velocity.clear();
         velocity.extend(pose.state.velocity.iter().map(number));
         if let (Some(stance), true) = (pose.stance, plan.floating) {

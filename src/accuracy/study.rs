@@ -134,13 +134,12 @@ pub fn study(name: &str, subject: &Subject, options: &Options, budget: Budget) -
 /// Looks at a robot's state.
 pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> Study {
     let mut study = Study::of(name, Some(robot.dofs()));
-    if !state.scene.loops.is_empty() {
-        let reason = Reason::Unsupported("the methods compared here know no loops".into());
-        return study.refuse(Error::new(reason).hint("leave them out: the tree alone is compared"));
-    }
-    if !robot.followers.is_empty() {
-        let reason = Reason::Unsupported("the methods compared here know no joints that follow others".into());
-        return study.refuse(Error::new(reason).hint("remove <mimic> to let the joint move freely, or make it fixed"));
+    if !robot.followers.is_empty() || !state.scene.loops.is_empty() {
+        let reason =
+            Reason::Unsupported("the methods compared here know neither loops nor joints that follow others".into());
+        return study.refuse(
+            Error::new(reason).hint("leave the loops out; remove <mimic> to let a joint move freely, or make it fixed"),
+        );
     }
     let mut pipeline = Pipeline::new(robot, options.clone());
     let impact = match pipeline.impact(state) {

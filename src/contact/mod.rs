@@ -5,15 +5,24 @@
 //! ```
 
 mod detect;
+mod face;
 mod feet;
-mod shape;
+mod outline;
+mod placement;
+mod plane;
+mod point;
+mod profile;
+mod surface;
+mod terrain;
 
-pub(crate) use detect::Point;
-pub use detect::{Placement, detect, nearest, out_of_reach, place, stance_foot};
+pub use detect::{Stance, detect, left_behind, nearest, out_of_reach, stance};
 pub use feet::{Feet, Foot};
-pub(crate) use shape::points;
+pub use placement::Placement;
+pub(crate) use plane::Plane;
+pub(crate) use point::{Circle, Point, points};
+pub use surface::Surface;
 
-use crate::planar::Vector;
+use crate::planar::{Rotation, Vector};
 
 /// A closed contact of one state.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +41,8 @@ pub struct Contact {
     pub radius: f64,
     /// The contact point in the world \[m\].
     pub point: Vector<f64>,
-    /// Unit normal of the ground in the world, toward the robot.
-    pub normal: Vector<f64>,
+    /// Turn from the world's axes to the ground's (tangent, normal) at the contact.
+    pub ground: Rotation<f64>,
     /// Height above the ground along the normal \[m\], negative below it.
     pub gap: f64,
 }

@@ -89,7 +89,7 @@ impl Pipeline<'_> {
         let rows = independent_rows(&self.plan, &points, &self.kept, tolerance, &self.workspace);
         let loops = Loops { points, rows };
         loops.tell_left_out(named, robot, notes);
-        let foot = foot.map(|foot| foot.point_of(state.scene.ground()));
+        let foot = foot.map(Contact::point_of);
         notes.extend(self.close_velocity(&loops, named, foot, velocity)?);
         Ok(loops)
     }

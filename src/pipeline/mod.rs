@@ -12,7 +12,7 @@ mod uncertain;
 pub use self::left_out::LeftOut;
 use self::loops::Loops;
 use self::strike::Strike;
-use crate::contact::{self, Contact, Feet, Placement};
+use crate::contact::{self, Contact, Feet, Placement, Surface};
 use crate::dynamics::{
     Arm, Bounds, Constraints, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias,
     contact_jacobian, delassus, factorize, kinematics, kinetic_energy, mass_matrix, point_velocity,
@@ -21,10 +21,10 @@ use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{Analysis, Asked, ContactProblem, Errors, Friction, Scratch};
 use crate::plan::{Plan, Posture};
-use crate::planar::{Vector, dot, scaled, sum};
+use crate::planar::{Rotation, Vector, dot, scaled, sum};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
-use crate::scene::{NamedContact, Scene};
+use crate::scene::{Ground, NamedContact, Scene};
 use crate::state::State;
 use crate::uncertain::Holds;
 
@@ -168,7 +168,8 @@ impl<'r> Pipeline<'r> {
         self.check_inertia(!scene.loops.is_empty())?;
 
         let mut notes = Vec::new();
-        let (base, mut velocity, foot) = self.stand(state)?;
+        let surface = Surface::new(&scene.ground);
+        let (base, mut velocity, foot) = self.stand(state, &surface)?;
         let loops = match scene.loops.is_empty() {
             true => {
                 self.keep_rates();
@@ -176,11 +177,11 @@ impl<'r> Pipeline<'r> {
             }
             false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
         };
-        let (contacts, out_of_reach) = self.contacts(scene, base, &mut notes)?;
+        let (contacts, out_of_reach) = self.contacts(scene, base, &surface, &mut notes)?;
         check_matrix_size(contacts.len())?;
-        let stance = foot.as_ref().and_then(|foot| contacts.iter().position(|contact| same_point(contact, foot)));
+        let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
         self.points.clear();
-        self.points.extend(contacts.iter().map(|contact| contact.point_of(scene.ground())));
+        self.points.extend(contacts.iter().map(Contact::point_of));
         contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
         let resting = self.snap(&contacts, &mut notes);
         delassus(&self.plan, &mut self.workspace);
@@ -290,7 +291,7 @@ impl<'r> Pipeline<'r> {
                 body: link.body,
                 centre: link.point(contact.offset),
                 radius: contact.radius,
-                ground: Scene::default().ground(),
+                ground: Rotation::identity(),
             }
         }));
         contact_jacobian(&self.plan, &self.points, velocity, None, &mut self.workspace);
@@ -373,7 +374,7 @@ impl<'r> Pipeline<'r> {
     }
 
     /// The root's origin and the velocity by coordinate; with a stance both are such that its foot stands, and the foot.
-    fn stand(&self, state: &State) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
+    fn stand(&self, state: &State, surface: &Surface) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
         let mut velocity = state.velocity.clone();
         if !self.plan.floating {
             return Ok(([0.0; 2], velocity, None));
@@ -381,39 +382,53 @@ impl<'r> Pipeline<'r> {
         let Some(link) = state.scene.stance else {
             return Ok(([state.position[0], state.position[1]], velocity, None));
         };
-        let ground = state.scene.ground();
-        let at_zero = Placement::new(&self.plan, &self.workspace, [0.0; 2], ground);
+        let at_zero = Placement::new(&self.plan, &self.workspace, [0.0; 2]);
         let named = state.scene.contacts.as_deref();
         // A side is flat by the rounding of its corners, whatever the contact tolerance is.
         let flat = CONTACT_TOLERANCE * self.feet.size();
-        let foot = contact::stance_foot(self.robot, &self.feet, named, link, &at_zero, flat)?;
+        let stance = contact::stance(self.robot, &self.feet, named, link, (&at_zero, surface), flat)?;
         velocity[..2].fill(0.0);
-        let arm = foot.point_of(ground).arm(&self.workspace);
-        let moving = point_velocity(&self.plan, foot.body, arm, &velocity, &self.workspace);
+        let arm = stance.foot.point_of().arm(&self.workspace);
+        let moving = point_velocity(&self.plan, stance.foot.body, arm, &velocity, &self.workspace);
         velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
-        Ok((contact::place(&foot), velocity, Some(foot)))
+        Ok((stance.base, velocity, Some(stance.foot)))
     }
 
-    /// The closed contacts, and how many shapes were too high to be asked.
-    fn contacts(&self, scene: &Scene, base: Vector<f64>, notes: &mut Vec<String>) -> Result<(Vec<Contact>, usize)> {
-        let placement = Placement::new(&self.plan, &self.workspace, base, scene.ground());
-        let named = scene.contacts.as_deref();
-        let contacts = contact::detect(self.robot, &self.feet, named, &placement, self.tolerance())?;
+    /// The closed contacts, and how many shapes were too far from the ground to be asked.
+    fn contacts(
+        &self,
+        scene: &Scene,
+        base: Vector<f64>,
+        surface: &Surface,
+        notes: &mut Vec<String>,
+    ) -> Result<(Vec<Contact>, usize)> {
+        let placement = Placement::new(&self.plan, &self.workspace, base);
+        let (named, tolerance) = (scene.contacts.as_deref(), self.tolerance());
+        let contacts = contact::detect(self.robot, &self.feet, named, (&placement, surface), tolerance)?;
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;
         }
         if contacts.is_empty() && named.is_none() {
-            notes.push(match contact::nearest(self.robot, &self.feet, &placement) {
-                Some((link, height)) => {
+            notes.push(match (contact::nearest(self.robot, &self.feet, &placement, surface), &scene.ground) {
+                (Some((link, height)), Ground::Slope(_)) => {
                     format!("nothing touches the ground: the lowest foot, {link}, is {height:?} m above it")
                 }
-                None => "the robot has no feet: name contact points by `contacts` in the state or by --contact".into(),
+                (Some((link, distance)), Ground::Profile(_)) => {
+                    format!("nothing touches the ground: the nearest foot, {link}, is {distance:?} m away from it")
+                }
+                (None, _) => {
+                    "the robot has no feet: name contact points by `contacts` in the state or by --contact".into()
+                }
             });
         }
-        let out_of_reach = match named {
-            Some(_) => 0,
-            None => contact::out_of_reach(&self.feet, &placement, self.tolerance()),
-        };
+        let mut out_of_reach = 0;
+        if named.is_none() {
+            out_of_reach = contact::out_of_reach(&self.feet, &placement, surface, tolerance);
+            let ends = contact::left_behind(self.robot, &self.feet, &placement, surface, tolerance);
+            notes.extend(ends.into_iter().map(|(link, end)| {
+                format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
+            }));
+        }
         Ok((contacts, out_of_reach))
     }
 
@@ -545,7 +560,13 @@ impl<'r> Pipeline<'r> {
 /// straight legs and extreme mass ratios. No bound; it serves where none is asked for.
 const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Whether two contacts are the same material point.
-fn same_point(a: &Contact, b: &Contact) -> bool {
-    (a.link, a.body, a.centre, a.radius) == (b.link, b.body, b.centre, b.radius)
+/// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
+fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {
+    let same = |other: &Contact| {
+        (foot.link, foot.body, foot.centre, foot.radius) == (other.link, other.body, other.centre, other.radius)
+    };
+    let at = |exactly: bool| {
+        contacts.iter().position(|other| same(other) && (other.ground == foot.ground || !exactly && foot.radius == 0.0))
+    };
+    at(true).or_else(|| at(false))
 }

@@ -8,7 +8,7 @@ use crate::dynamics::{
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
 use crate::plan::{Plan, Posture};
-use crate::planar::{Rotation, Vector, dot, sum};
+use crate::planar::{Vector, dot, sum};
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Trigonometry};
 use crate::scene::Scene;
@@ -79,8 +79,7 @@ impl Strike<'_> {
             articulated_inertias(&plan, &mut workspace);
         }
 
-        let [cos, sin] = T::cos_sin(-scene.slope);
-        let point = |contact: &Contact| contact.exact_point(robot, Rotation { cos, sin });
+        let point = |contact: &Contact| contact.exact_point(robot, scene.ground.axes(contact.ground));
         let contacts: Vec<ContactPoint<T>> = self.contacts.iter().map(point).collect();
         if let Some(foot) = self.foot.map(point) {
             velocity[..2].fill(T::zero());

@@ -95,7 +95,10 @@ impl Kept<'_, '_> {
             }
             (one, other) => one.is_none() == other.is_none(),
         };
-        (same_foot && stance == self.answer.stance && resting == self.answer.resting)
+        // Elsewhere on a profile a named contact may have another normal.
+        let mut contacts = impact.contacts.iter().zip(&self.answer.impact.contacts);
+        let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
+        (same_foot && same_axes && stance == self.answer.stance && resting == self.answer.resting)
             .then_some((state, impact.analysis.ok()?))
     }
 

@@ -3,7 +3,7 @@
 use super::NamedVelocities;
 use crate::Robot;
 use crate::impact::{Friction, Mode, Verdict};
-use crate::scene::ByLink;
+use crate::scene::{ByLink, Ground};
 use crate::state::State;
 use crate::uncertain;
 use serde::Serialize;
@@ -107,8 +107,10 @@ impl Serialize for StateFields<'_> {
         if scene.restitution != ByLink::default() {
             map.serialize_entry("restitution", &self.by_link(&scene.restitution, |value| json!(value)))?;
         }
-        if scene.slope != 0.0 {
-            map.serialize_entry("ground", &json!({"slope": scene.slope}))?;
+        match &scene.ground {
+            Ground::Slope(0.0) => {}
+            Ground::Slope(slope) => map.serialize_entry("ground", &json!({"slope": slope}))?,
+            Ground::Profile(profile) => map.serialize_entry("ground", &json!({"profile": profile.points()}))?,
         }
         if let Some(stance) = scene.stance {
             map.serialize_entry("stance", self.link(stance))?;

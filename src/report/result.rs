@@ -377,7 +377,7 @@ impl<'a> Contact<'a> {
             link: robot.links.get(contact.link).map(|link| link.name.as_str()),
             name: &contact.name,
             point: Some(contact.point),
-            normal: Some(contact.normal),
+            normal: Some(contact.normal()),
             gap: Some(contact.gap),
             velocity_before,
         }

@@ -7,15 +7,14 @@ use crate::planar::{Vector, sum};
 impl Robot {
     /// Whether a body can move: not the root of a bolted robot, nor what is welded to it.
     pub(super) fn moves(&self, body: usize) -> bool {
-        let mut at = body;
-        while self.base == Base::Fixed {
-            match self.bodies[at].joint {
-                None => return false,
-                Some(Mover::Weld { parent, .. }) => at = parent,
-                Some(Mover::Joint(_) | Mover::Follower(_)) => break,
-            }
+        if self.base == Base::Floating {
+            return true;
         }
-        true
+        let mut at = body;
+        while let Some(Mover::Weld { parent, .. }) = self.bodies[at].joint {
+            at = parent;
+        }
+        self.bodies[at].joint.is_some()
     }
 
     /// The CoG of each body together with all that is welded to it, in its frame \[m\]; none of a welded body.

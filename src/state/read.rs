@@ -5,7 +5,7 @@ use super::{Defaults, State};
 use crate::impact::Friction;
 use crate::json::Node;
 use crate::robot::Base;
-use crate::scene::{AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop};
+use crate::scene::{AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, NamedLoop, Profile};
 use crate::{Error, Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
 
@@ -46,7 +46,7 @@ pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<St
             "velocity" => coordinates(field, robot, &mut state.velocity, number)?,
             "friction" => scene.friction = by_link(field, robot, friction)?,
             "restitution" => scene.restitution = by_link(field, robot, restitution)?,
-            "ground" => scene.slope = slope(field)?,
+            "ground" => scene.ground = ground(field)?,
             "stance" => scene.stance = Some(stance(field, robot)?),
             "held" => scene.held = held(field, robot)?,
             "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
@@ -164,21 +164,36 @@ pub(crate) fn restitution(node: Node) -> Result<f64> {
     Err(node.refuse(Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
 }
 
-/// `{"slope": radians}`.
-fn slope(field: Node) -> Result<f64> {
-    let mut slope = 0.0;
+/// `{"slope": radians}` or `{"profile": [[x, z], ...]}`.
+fn ground(field: Node) -> Result<Ground> {
+    let mut ground = None;
     for entry in field.fields("field")? {
-        match entry.key() {
-            "slope" => slope = entry.number()?,
-            "profile" => return Err(not_yet(entry, "a ground profile is")),
+        let read = match entry.key() {
+            "slope" => Ground::Slope(slope(entry)?),
+            "profile" => Ground::Profile(profile(entry)?),
             _ => return Err(entry.unknown_field(&["slope", "profile"])),
-        }
-        if slope.abs() >= FRAC_PI_2 {
-            let what = "slope".into();
-            return Err(entry.refuse(Reason::OutOfRange { what, allowed: "between -pi/2 and pi/2", value: slope }));
+        };
+        if ground.replace(read).is_some() {
+            let reason = Reason::Inconsistent("the ground has either a slope or a profile".into());
+            return Err(entry.refuse(reason).hint("leave one of them out: a profile of two points is a slope, too"));
         }
     }
-    Ok(slope)
+    Ok(ground.unwrap_or_default())
+}
+
+fn slope(entry: Node) -> Result<f64> {
+    let value = entry.number()?;
+    if value.abs() >= FRAC_PI_2 {
+        let what = "slope".into();
+        return Err(entry.refuse(Reason::OutOfRange { what, allowed: "between -pi/2 and pi/2", value }));
+    }
+    Ok(value)
+}
+
+/// A list of `[x, z]`.
+fn profile(entry: Node) -> Result<Profile> {
+    let points = entry.entries()?.map(|point| point.numbers("a list of 2 numbers, [x, z]"));
+    Profile::new(points.collect::<Result<_>>()?).map_err(|error| entry.refuse_inside(error))
 }
 
 /// A list of different joints.
@@ -322,8 +337,4 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
 
 fn missing(node: Node, what: &str) -> Error {
     node.refuse(Reason::Missing(format!("\"{what}\"")))
-}
-
-fn not_yet(node: Node, what: &str) -> Error {
-    node.refuse(Reason::Unsupported(format!("{what} not supported by this version"))).hint("leave it out")
 }

@@ -1,12 +1,12 @@
 //! The points of a robot that can touch the ground, and where they are.
 
 use super::Touching;
-use crate::contact::{Feet, Placement, Point, points};
+use crate::contact::{Circle, Feet, Placement, Plane, Point, points};
 use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
 use crate::plan::{Plan, Posture};
-use crate::planar::Vector;
+use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Link, Robot};
-use crate::scene::{NamedContact, Scene};
+use crate::scene::NamedContact;
 use crate::state::State;
 
 /// All points of a robot's feet, in the order of its links, and the memory to place them.
@@ -41,21 +41,21 @@ impl<'r> Points<'r> {
     /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
     pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
         let placement = self.placement(position);
-        self.points.iter().map(|&(_, point)| placement.lowest(point)).collect()
+        self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect()
     }
 
     fn placement(&mut self, position: &[f64]) -> Placement {
         self.posture.set(&self.plan, position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
         let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
-        Placement::new(&self.plan, &self.workspace, base, Scene::default().ground())
+        Placement::new(&self.plan, &self.workspace, base)
     }
 
     /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
     /// (`also`) among them; gives the shift \[m\] and the striking one's name.
     pub fn touch(&mut self, state: &mut State, striking: usize, also: &[usize], touching: Touching) -> (f64, String) {
         let placement = self.placement(&state.position);
-        let places: Vec<_> = self.points.iter().map(|&(_, point)| placement.lowest(point)).collect();
+        let places: Vec<_> = self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect();
         let above = |point: usize| (places[point][1] - places[striking][1]).abs();
         let mut closed = vec![striking];
         closed.extend(also);
@@ -109,16 +109,15 @@ impl<'r> Points<'r> {
 
     /// Speed of a point after `at` \[m/s\].
     fn speed(&self, point: usize, placement: &Placement, velocity: &[f64]) -> f64 {
-        let point = self.points[point].1;
-        let (body, (centre, radius)) = (point.body, placement.circle(point));
-        let arm = ContactPoint { body, centre, radius, ground: Scene::default().ground() }.arm(&self.workspace);
+        let Circle { body, centre, radius, .. } = Plane::LEVEL.circle(placement, self.points[point].1);
+        let arm = ContactPoint { body, centre, radius, ground: Rotation::identity() }.arm(&self.workspace);
         let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
         libm::hypot(x, z)
     }
 
     fn named(&self, point: usize, placement: &Placement) -> NamedContact {
         let (link, point) = self.points[point];
-        let (centre, radius) = placement.circle(point);
+        let Circle { centre, radius, .. } = Plane::LEVEL.circle(placement, point);
         NamedContact { link, offset: offset(&self.robot.links[link], centre), radius }
     }
 }

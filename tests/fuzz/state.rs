@@ -153,7 +153,7 @@ impl Writer<'_, '_, '_> {
             fields.push(format!("\"restitution\": {}", self.by_link(Self::restitution)));
         }
         if self.choices.once_in(4) {
-            fields.push(format!("\"ground\": {{\"slope\": {}}}", self.number()));
+            fields.push(format!("\"ground\": {}", self.ground()));
         }
         if self.choices.once_in(4) && !self.joints.is_empty() {
             let held = self.choices.pick(&self.joints);
@@ -218,6 +218,19 @@ impl Writer<'_, '_, '_> {
             _ if self.choices.once_in(8) => self.number(),
             _ => self.number().trim_start_matches('-').to_owned(),
         }
+    }
+
+    /// A slope, or steps about the world's origin, now and then in the wrong order.
+    fn ground(&mut self) -> String {
+        if !self.choices.once_in(3) {
+            return format!("{{\"slope\": {}}}", self.number());
+        }
+        let (mut x, mut points) = (-3.0, Vec::new());
+        for _ in 0..2 + self.choices.below(6) {
+            points.push(format!("[{x:?}, {}]", if self.choices.once_in(2) { "0".to_owned() } else { self.number() }));
+            x += self.choices.pick(&[1.0, 1.0, 1e-6, 0.3, 4.0, 1e-300, -1.0]);
+        }
+        format!("{{\"profile\": [{}]}}", points.join(", "))
     }
 
     fn restitution(&mut self) -> String {

@@ -143,6 +143,26 @@ fn states_are_refused_word_for_word() {
             "{\"ground\": {\"slope\": \"steep\"}}".into(),
             "1:22: ground.slope: expected a number, found a string",
         ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": [[0, 0], [1, 1e999]]}}".into(),
+            "1:41: ground.profile[1][1]: number out of range",
+        ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": [[1, 0], [0, 0]]}}".into(),
+            "1:13: ground.profile[1]: a profile's x rises from point to point, but 0.0 follows 1.0 | give a vertical riser a tiny width, such as 1e-6 m",
+        ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": [[-1e308, 0], [1e308, 0]]}}".into(),
+            "1:13: ground.profile[1]: the distance from the point before is beyond the range of f64 | give the points in metres",
+        ),
+        case(
+            "profiles",
+            "{\"ground\": {\"profile\": []}}".into(),
+            "1:13: ground.profile: a profile has at least two points, not 0 | level ground is \"ground\": {\"slope\": 0}",
+        ),
         case("slopes", "{\"ground\": 0.1}".into(), "1:2: ground: expected an object, found a number"),
         case(
             "restitution",

@@ -6,6 +6,7 @@ use crate::states::{Model, beside_a_border};
 use heelstrike::impact::{self, Analysis, Friction, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::robot::Robot;
+use heelstrike::scene::Ground;
 use heelstrike::state::State;
 use serde_json::{Value, json};
 use std::fmt;
@@ -347,7 +348,10 @@ pub fn state_json(robot: &Robot, state: &State) -> Value {
         "position": named(&state.position),
         "velocity": named(&state.velocity),
         "friction": by_link(scene.friction.links.iter().map(|&(link, value)| (link, friction(value))).collect()),
-        "ground": {"slope": scene.slope},
+        "ground": match &scene.ground {
+            Ground::Slope(slope) => json!({"slope": slope}),
+            Ground::Profile(profile) => json!({"profile": profile.points()}),
+        },
         "contacts": contacts
             .iter()
             .map(|contact| json!({"link": link(contact.link), "offset": contact.offset, "radius": contact.radius}))

@@ -10,6 +10,7 @@
 use crate::number::Number;
 use heelstrike::impact::Friction;
 use heelstrike::robot::{Axis, Mover, Robot};
+use heelstrike::scene::Ground;
 use heelstrike::state::State;
 use std::cmp::Ordering;
 
@@ -231,8 +232,16 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     }
     let factor = Factor::new(mass_matrix, bits)?;
 
-    // The ground's tangent and normal; uphill toward +x is a turn against the pitch.
-    let [cos, sin] = number(scene.slope).cos_sin();
+    // The ground's tangent and normal; uphill toward +x is a turn against the pitch. Of a profile, here of one segment, they
+    // are the rounded numbers that the product works with.
+    let [cos, sin] = match &scene.ground {
+        Ground::Slope(slope) => number(*slope).cos_sin(),
+        Ground::Profile(profile) => {
+            let [[x, z], [to_x, to_z]] = profile.points()[..] else { return None };
+            let length = f64::hypot(to_x - x, to_z - z);
+            [number((to_x - x) / length), number((to_z - z) / length)]
+        }
+    };
     let axes = [[cos.clone(), sin.clone()], [sin.negative(), cos]];
     let in_body = |link: usize, offset: [f64; 3]| {
         robot.links[link].pose.map(|row| {
@@ -257,9 +266,11 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     let mut velocity: Vec<N> = state.velocity.iter().copied().map(number).collect();
     let stance = scene.stance.and_then(|link| contacts.iter().position(|contact| contact.link == link));
     if let Some(stance) = stance {
-        // x and z go along the world's axes, so that the tangent's and normal's share are to be turned back.
+        // x and z go along the world's axes, so that the tangent's and normal's share are to be turned back; both are as long
+        // as the ground's axes, which a profile's rounding leaves not quite at one.
+        let square = dot(axes[0].iter().zip(&axes[0]), bits);
         velocity[..2].fill(number(0.0));
-        let [t, n] = rows[stance].each_ref().map(|row| dot(row.iter().zip(&velocity), bits).negative());
+        let [t, n] = rows[stance].each_ref().map(|row| dot(row.iter().zip(&velocity), bits).negative().over(&square));
         for k in 0..2 {
             velocity[k] = axes[0][k].times(&t).plus(&axes[1][k].times(&n));
         }

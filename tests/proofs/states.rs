@@ -4,7 +4,7 @@ use crate::oracle;
 use crate::random::Random;
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::robot::Robot;
-use heelstrike::scene::{AppliedImpulse, ByLink, NamedContact, Scene};
+use heelstrike::scene::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene};
 use heelstrike::state::State;
 
 /// A robot with the points that its states name as contacts.
@@ -182,7 +182,7 @@ impl Model {
         let alone = contacts.iter().filter(|contact| contact.link == contacts[0].link).count() == 1;
         let mut scene = Scene {
             friction: ByLink { default: None, links: by_link },
-            slope: if random.once_in(2) { random.between(-0.6, 0.6) } else { 0.0 },
+            ground: ground(random),
             stance: (alone && random.once_in(4)).then(|| contacts[0].link),
             ..Scene::default()
         };
@@ -326,4 +326,16 @@ fn widen<T: PartialEq>([a, b]: [f64; 2], property: impl Fn(f64) -> T) -> Option<
         reach *= 4.0;
     }
     None
+}
+
+/// Level ground, a slope, or a profile of one segment whose rounded normal is not quite of length one.
+fn ground(random: &mut Random) -> Ground {
+    if random.once_in(2) {
+        return Ground::Slope(0.0);
+    }
+    if random.once_in(2) {
+        return Ground::Slope(random.between(-0.6, 0.6));
+    }
+    let [x, z] = random.pick(&[[4.0, 3.0], [4.0, -3.0], [12.0, 5.0], [8.0, -6.0]]);
+    Ground::Profile(Profile::new(vec![[-x, -z], [x, z]]).expect("a profile"))
 }

@@ -122,7 +122,8 @@ fn schema_and_reader_of_states_agree() {
         "impulse": [{"link": "torso", "offset": [0, 0, 0], "vector": [0, 0]}],
     });
     let standing = json!({"id": 1, "stance": "left_foot", "friction": 0.8, "restitution": 0.5,
-        "position": {"base": {"pitch": 0.1}}, "uncertainty": {"friction": 0.1, "rotor_inertia": 0.1}});
+        "position": {"base": {"pitch": 0.1}}, "ground": {"profile": [[-1, 0], [1, 0.5], [2, 0.5]]},
+        "uncertainty": {"friction": 0.1, "rotor_inertia": 0.1}});
     let read = |text: &str| State::from_json(text, &robot, &Defaults::default());
     // Which names the robot has, and that a stance places the base.
     let beyond = |reason: &Reason| matches!(reason, Reason::UnknownName { .. } | Reason::Inconsistent(_));
@@ -175,8 +176,7 @@ fn the_schema_of_states_has_the_fields_that_the_reader_names() {
     ] {
         let error = State::from_json(&text.to_string(), &robot, &Defaults::default()).expect_err("an unknown field");
         let hint = error.remedy().and_then(|hint| hint.strip_prefix("the fields here are ")).expect("the known fields");
-        // Those that the reader knows only in order to refuse them.
-        let mut known: Vec<&str> = hint.split(", ").filter(|field| *field != "profile").collect();
+        let mut known: Vec<&str> = hint.split(", ").collect();
         known.sort_unstable();
         assert_eq!(of(pointer), known, "{text}");
     }

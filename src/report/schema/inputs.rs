@@ -150,12 +150,16 @@ struct Restitution(#[schemars(range(min = 0.0, max = 1.0))] f64);
 #[schemars(inline)]
 struct NotNegative(#[schemars(range(min = 0.0))] f64);
 
-/// The ground.
+/// The ground: level, a slope, or a profile.
 #[derive(JsonSchema)]
+#[schemars(extend("not" = {"required": ["slope", "profile"]}))]
 struct Ground {
     /// Its slope, uphill toward +x [rad].
     #[schemars(extend("exclusiveMinimum" = -FRAC_PI_2, "exclusiveMaximum" = FRAC_PI_2))]
     slope: Option<f64>,
+    /// Points [x, z] of rising x that segments join, solid below, and no ground beyond the ends [m].
+    #[schemars(length(min = 2))]
+    profile: Option<Vec<[f64; 2]>>,
 }
 
 /// A contact named by hand.

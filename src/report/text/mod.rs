@@ -149,6 +149,12 @@ impl<'w> Writer<'w> {
         if gaps.clone().flatten().any(|gap| gap != 0.0 && !is_residue(gap, lengths)) {
             table = table.numbers("gap [m]", lengths, gaps);
         }
+        // On a profile each contact may have axes of its own.
+        let normals = contacts.iter().map(|contact| contact.normal);
+        if normals.clone().any(|normal| normal != contacts[0].normal) {
+            let entry = |axis: usize| normals.clone().map(move |normal| normal.map(|normal| normal[axis]));
+            table = table.numbers("n: x", 1.0, entry(0)).numbers("z", 1.0, entry(1));
+        }
         let speeds = self.speeds();
         let before = |axis: usize| contacts.iter().map(move |contact| contact.velocity_before[axis]);
         let friction = self.subject.friction.iter().map(|friction| friction.map_or("-".into(), |mu| mu.to_string()));

@@ -1,0 +1,175 @@
+//! A foot's outline in the world: a convex polygon of corners, each with a rim about it.
+//!
+//! ```text
+//!     outside of the polygon     a point above a side, moved out by the rim's reach         the side's
+//!                                any other                                                  the corner's whose rim is nearest
+//! ```
+
+use super::face::{Face, distance, unit};
+use super::feet::Foot;
+use super::placement::Placement;
+use super::point::{Circle, Point, points};
+use crate::planar::{Vector, difference, dot, scaled, sum};
+use crate::robot::Rim;
+
+/// The outline of a foot where it is.
+#[derive(Debug, Clone)]
+pub(super) struct Outline<'p> {
+    placement: &'p Placement,
+    body: usize,
+    /// About each corner.
+    rim: Rim,
+    /// The corners with their rims, in their body's frame.
+    points: Vec<Point>,
+    /// The same corners in the world, counter-clockwise seen with forward to the right and up upward \[m\].
+    corners: Vec<Vector<f64>>,
+    /// The polygon's side from each corner to the next; none of a single corner, two of a line.
+    bones: Vec<Face>,
+    /// The same sides, moved out by the rim.
+    sides: Vec<Face>,
+}
+
+impl<'p> Outline<'p> {
+    pub fn new(foot: &Foot, placement: &'p Placement) -> Self {
+        let points: Vec<Point> = points(foot).collect();
+        let corners: Vec<Vector<f64>> = points.iter().map(|point| placement.world(point.body, point.centre)).collect();
+        let bones: Vec<Face> = match corners[..] {
+            [_] => Vec::new(),
+            _ => (0..corners.len()).map(|at| Face::of_foot(corners[at], corners[(at + 1) % corners.len()])).collect(),
+        };
+        let rim = foot.outline.rim();
+        let mut outline = Self { placement, body: foot.body, rim, points, corners, bones, sides: Vec::new() };
+        let moved = |bone: &Face| {
+            let out = outline.support(bone.normal);
+            Face { from: sum(bone.from, out), to: sum(bone.to, out), ..*bone }
+        };
+        outline.sides = outline.bones.iter().map(moved).collect();
+        outline
+    }
+
+    /// The rim's point that is farthest along a unit vector of the world, seen from the corner \[m\].
+    pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {
+        match self.rim {
+            Rim::Circle { radius } => scaled(radius, direction),
+            Rim::Ellipse { .. } => {
+                let local = self.rim.support(self.placement.turned_back(self.body, direction));
+                self.placement.turned(self.body, local)
+            }
+        }
+    }
+
+    /// How far the rim reaches along a unit vector of the world \[m\].
+    pub fn reach(&self, direction: Vector<f64>) -> f64 {
+        self.rim.reach(self.placement.turned_back(self.body, direction))
+    }
+
+    /// Whether the corners have no rim.
+    pub fn is_sharp(&self) -> bool {
+        self.rim == Rim::Circle { radius: 0.0 }
+    }
+
+    pub fn corners(&self) -> &[Vector<f64>] {
+        &self.corners
+    }
+
+    /// The lowest point of a corner's rim, seen along a unit normal of the ground \[m\].
+    pub fn lowest(&self, corner: usize, normal: Vector<f64>) -> Vector<f64> {
+        sum(self.corners[corner], self.support(scaled(-1.0, normal)))
+    }
+
+    /// What of a corner touches ground with this normal.
+    pub fn circle(&self, corner: usize, normal: Vector<f64>) -> Circle {
+        self.placement.circle(self.points[corner], normal)
+    }
+
+    /// The polygon's sides without their rim.
+    pub fn bones(&self) -> &[Face] {
+        &self.bones
+    }
+
+    pub fn sides(&self) -> &[Face] {
+        &self.sides
+    }
+
+    /// The sides that end and begin at a corner; none of a single corner.
+    pub fn at_corner(&self, corner: usize) -> Option<[&Face; 2]> {
+        let count = self.sides.len();
+        (count > 0).then(|| [&self.sides[(corner + count - 1) % count], &self.sides[corner]])
+    }
+
+    /// The corners next to a corner.
+    pub fn beside_corner(&self, corner: usize) -> Option<[Vector<f64>; 2]> {
+        let count = self.bones.len();
+        (count > 0).then(|| [self.bones[(corner + count - 1) % count].from, self.bones[corner].to])
+    }
+
+    /// The sides next to a side.
+    pub fn beside(&self, side: usize) -> [&Face; 2] {
+        let count = self.sides.len();
+        [&self.sides[(side + count - 1) % count], &self.sides[(side + 1) % count]]
+    }
+
+    /// What of a side touches a corner of the ground that is `at` it.
+    pub fn on_side(&self, side: usize, at: Vector<f64>) -> Circle {
+        let face = &self.sides[side];
+        let (from, to) = (self.points[side], self.points[(side + 1) % self.points.len()]);
+        let (behind, ahead) = (face.past_begin(at), -face.past_end(at));
+        let along = scaled(behind / (behind + ahead), difference(to.centre, from.centre));
+        let point = Point { centre: sum(from.centre, along), offset: None, ..from };
+        self.placement.circle(point, scaled(-1.0, face.normal))
+    }
+
+    /// The box about the outline, grown by `margin` \[m\]: its low and its high end.
+    pub fn region(&self, margin: f64) -> [Vector<f64>; 2] {
+        let margin = self.rim.bound() + margin;
+        let end = |axis: usize, extreme: fn(f64, f64) -> f64, start: f64| {
+            self.corners.iter().map(|corner| corner[axis]).fold(start, extreme)
+        };
+        [
+            [0, 1].map(|axis| end(axis, f64::min, f64::INFINITY) - margin),
+            [0, 1].map(|axis| end(axis, f64::max, f64::NEG_INFINITY) + margin),
+        ]
+    }
+
+    /// The direction out of a corner's rim toward a point, and how far the point lies beyond the rim \[m\]; none from the
+    /// rim's centre.
+    ///
+    /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the centre, which is
+    /// the nearest one where the distance is nothing; and the distance that to the tangent there.
+    pub fn beyond_rim(&self, corner: usize, point: Vector<f64>) -> Option<(Vector<f64>, f64)> {
+        let way = difference(point, self.corners[corner]);
+        let far = distance(point, self.corners[corner]);
+        if far == 0.0 {
+            return None;
+        }
+        match self.rim {
+            Rim::Circle { radius } => Some((unit(way), far - radius)),
+            Rim::Ellipse { half_diameters: [a, b] } => {
+                let [x, z] = self.placement.turned_back(self.body, way);
+                // (cos s, sin s) solves cos(s) a + sin(s) b = way / k; the gradient of k is the normal.
+                let area = a[0] * b[1] - a[1] * b[0];
+                let [along_a, along_b] = [(x * b[1] - z * b[0]) / area, (a[0] * z - a[1] * x) / area];
+                let gradient = [along_a * b[1] - along_b * a[1], along_b * a[0] - along_a * b[0]];
+                let normal = unit(scaled(area.signum(), gradient));
+                let size = libm::hypot(along_a, along_b);
+                let beyond = dot(normal, [x, z]) * (1.0 - 1.0 / size);
+                beyond.is_finite().then(|| (self.placement.turned(self.body, normal), beyond))
+            }
+        }
+    }
+
+    /// How deep a point is in the foot \[m\], negative outside.
+    pub fn depth_of(&self, point: Vector<f64>) -> f64 {
+        let height = |side: &Face| -side.height(point);
+        if self.bones.len() > 2 && self.bones.iter().all(|bone| bone.height(point) < 0.0) {
+            return self.sides.iter().map(height).fold(f64::INFINITY, f64::min);
+        }
+        let above =
+            self.bones.iter().zip(&self.sides).filter(|(bone, side)| bone.height(point) >= 0.0 && side.faces(point));
+        let rims = (0..self.corners.len()).map(|corner| match self.beyond_rim(corner, point) {
+            Some((_, beyond)) => -beyond,
+            None => self.rim.bound(),
+        });
+        above.map(|(_, side)| height(side)).chain(rims).fold(f64::NEG_INFINITY, f64::max)
+    }
+}

@@ -1,0 +1,70 @@
+//! Where the bodies are in the world.
+
+use super::point::{Circle, Point};
+use crate::dynamics::Workspace;
+use crate::plan::Plan;
+use crate::planar::{Rotation, Vector, scaled, sum};
+use crate::robot::Rim;
+use parry2d::math::{Pose, Vector as ParryVector};
+
+/// Poses of all bodies.
+#[derive(Debug, Clone)]
+pub struct Placement {
+    /// Origin of each body in the world \[m\].
+    origins: Vec<Vector<f64>>,
+    /// Pitch of each body as a turn.
+    turns: Vec<Rotation<f64>>,
+}
+
+impl Placement {
+    /// The bodies after `kinematics`, with the root's origin at `base` \[m\].
+    pub fn new(plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>) -> Self {
+        let mut origins: Vec<Vector<f64>> = Vec::with_capacity(plan.bodies.len());
+        for (body, &arm) in plan.bodies.iter().zip(&workspace.arm) {
+            origins.push(body.parent.map_or(base, |parent| sum(origins[parent], arm)));
+        }
+        Self { origins, turns: workspace.rotation.clone() }
+    }
+
+    /// The root's origin in the world \[m\].
+    pub(super) fn base(&self) -> Vector<f64> {
+        self.origins.first().copied().unwrap_or_default()
+    }
+
+    /// The world's point that is `local` in the frame of `body` \[m\].
+    pub(super) fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
+        sum(self.origins[body], self.turned(body, local))
+    }
+
+    /// A vector of a body's frame in the world's axes.
+    pub(super) fn turned(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
+        self.turns[body].apply(vector)
+    }
+
+    /// A vector of the world in a body's axes.
+    pub(super) fn turned_back(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
+        let Rotation { cos, sin } = self.turns[body];
+        Rotation { cos, sin: -sin }.apply(vector)
+    }
+
+    /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material point
+    /// that is lowest along the normal now.
+    pub(super) fn circle(&self, point: Point, normal: Vector<f64>) -> Circle {
+        let Point { body, centre, offset, rim } = point;
+        match rim {
+            Rim::Circle { radius } => Circle { body, centre, offset, radius },
+            Rim::Ellipse { .. } => {
+                let down = self.turned_back(body, scaled(-1.0, normal));
+                Circle { body, centre: sum(centre, rim.support(down)), offset, radius: 0.0 }
+            }
+        }
+    }
+
+    /// The body's frame for parry.
+    pub(super) fn pose(&self, body: usize) -> Pose {
+        let Rotation { cos, sin } = self.turns[body];
+        let [x, z] = self.origins[body];
+        // parry turns counter-clockwise, a positive pitch clockwise.
+        Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
+    }
+}

@@ -1,0 +1,87 @@
+//! A material point of a body, and the contact that it makes.
+
+use super::Contact;
+use super::feet::Foot;
+use crate::dynamics::ContactPoint;
+use crate::planar::{Rotation, Vector};
+use crate::robot::{Rim, Robot};
+use crate::scalar::Real;
+use crate::scene::NamedContact;
+
+/// A corner and the rim about it, rigid on a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Point {
+    pub body: usize,
+    pub centre: Vector<f64>,
+    /// In the link's own frame, where it was named so.
+    pub offset: Option<[f64; 3]>,
+    pub rim: Rim,
+}
+
+/// A circle, or with radius 0 a point, rigid on a body, that touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Circle {
+    pub body: usize,
+    pub centre: Vector<f64>,
+    /// In the link's own frame, where it was named so.
+    pub offset: Option<[f64; 3]>,
+    pub radius: f64,
+}
+
+/// Where a circle or point meets the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Touch {
+    pub circle: Circle,
+    /// Turn from the world's axes to the ground's (tangent, normal) there.
+    pub ground: Rotation<f64>,
+    /// Height of the material point, centre - radius * normal, above the ground \[m\].
+    pub gap: f64,
+}
+
+impl Point {
+    pub(super) fn named(robot: &Robot, contact: &NamedContact) -> Self {
+        let link = &robot.links[contact.link];
+        let (centre, offset) = (link.point(contact.offset), Some(contact.offset));
+        Self { body: link.body, centre, offset, rim: Rim::Circle { radius: contact.radius } }
+    }
+}
+
+/// The points of a foot that can touch.
+pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
+    let corners = foot.outline.corners().iter();
+    corners.map(|&centre| Point { body: foot.body, centre, offset: foot.offset, rim: foot.outline.rim() })
+}
+
+impl Contact {
+    /// Unit normal of the ground in the world, toward the robot.
+    pub fn normal(&self) -> Vector<f64> {
+        self.ground.apply([0.0, 1.0])
+    }
+
+    /// The contact for the dynamics.
+    pub fn point_of(&self) -> ContactPoint {
+        ContactPoint { body: self.body, centre: self.centre, radius: self.radius, ground: self.ground }
+    }
+
+    /// The same in numbers of any kind, a named point from the digits that it was named with.
+    pub fn exact_point<T: Real>(&self, robot: &Robot, ground: Rotation<T>) -> ContactPoint<T> {
+        let centre = match self.offset {
+            Some(offset) => robot.links[self.link].point(offset),
+            None => self.centre.map(T::from_f64),
+        };
+        ContactPoint { body: self.body, centre, radius: T::from_f64(self.radius), ground }
+    }
+
+    /// What the centre's coordinates were added up from, by magnitude \[m\].
+    pub fn stretch(&self, robot: &Robot) -> f64 {
+        match self.offset {
+            Some(offset) => {
+                let pose = robot.links[self.link].pose.iter();
+                pose.flat_map(|row| row.iter().zip([offset[0], offset[1], offset[2], 1.0]))
+                    .map(|(a, b)| (a * b).abs())
+                    .sum()
+            }
+            None => self.centre[0].abs() + self.centre[1].abs(),
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! Feet against a profile: where a foot touches, with which normal, and how deep it is.
+//!
+//! ```text
+//!     a corner's rim at a segment              the segment's normal; in a notch two contacts, one for each segment
+//!     a circle at a convex corner              from the ground's corner to the circle's centre
+//!     a foot's side across a convex corner     the side's own normal, turned round: the edge of a stair under a sole
+//!     a foot's corner on a convex corner       the middle of the normals that both allow
+//! ```
+//!
+//! Each corner of one boundary belongs to the side of the other that it is above, or to the corner whose sides it is past, so
+//! that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches with its
+//! corner and at the edge that it overhangs. A side may go behind another by twice the tolerance, and only at a small angle.
+
+use super::face::{Face, PARALLEL, distance, unit, upright};
+use super::feet::Foot;
+use super::outline::Outline;
+use super::placement::Placement;
+use super::point::Touch;
+use super::terrain::Terrain;
+use crate::planar::{Vector, difference, dot, scaled, sum};
+
+/// A foot deeper in the ground than the tolerance, by how much \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TooDeep(pub f64);
+
+/// What is touching, and how exactly that is known.
+#[derive(Debug, Clone, Copy)]
+struct Closeness {
+    /// What counts as touching \[m\].
+    tolerance: f64,
+    /// What counts as the same place \[m\]: the rounding of positions.
+    rounding: f64,
+}
+
+/// The contacts of a foot within `tolerance` of the ground, ascending in x; positions are known up to `rounding` \[m\].
+///
+/// # Errors
+/// The depth of a foot that is deeper than the tolerance.
+pub(super) fn touching(
+    terrain: &Terrain,
+    foot: &Foot,
+    placement: &Placement,
+    (tolerance, rounding): (f64, f64),
+) -> Result<Vec<Touch>, TooDeep> {
+    let outline = Outline::new(foot, placement);
+    let near = within_reach(terrain, foot, &outline, tolerance);
+    let deepest = depth(terrain, &outline, &near);
+    if deepest > tolerance {
+        return Err(TooDeep(deepest));
+    }
+    let close = Closeness { tolerance, rounding };
+    let mut touches: Vec<Touch> = Vec::new();
+    for &segment in &near {
+        for corner in 0..outline.corners().len() {
+            touches.extend(on_segment(terrain, segment, &outline, corner, close));
+        }
+    }
+    let on_segments = touches.len();
+    for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
+        // A foot's corner that is at the end of a segment, to rounding, touches there already.
+        let known = |touch: &Touch| {
+            let [before, after] = terrain.at_corner(corner);
+            let place = place(placement, touch);
+            touch.ground == before.axes() && before.past_end(place).abs() <= 2.0 * rounding
+                || touch.ground == after.axes() && after.past_begin(place).abs() <= 2.0 * rounding
+        };
+        let beneath = || match touches[..on_segments].iter().any(known) {
+            true => None,
+            false => side_on_corner(terrain, corner, &outline, close),
+        };
+        let found = corner_on_corner(terrain, corner, &outline, close).or_else(beneath);
+        touches.extend(found);
+    }
+    touches.sort_by(|a, b| place(placement, a)[0].total_cmp(&place(placement, b)[0]));
+    Ok(touches)
+}
+
+/// The segments that a foot may touch, ascending; all of them for a foot that reaches everywhere.
+pub(super) fn within_reach(terrain: &Terrain, foot: &Foot, outline: &Outline, tolerance: f64) -> Vec<usize> {
+    if foot.bounding_circle.1.is_infinite() {
+        return all(terrain);
+    }
+    let [low, high] = outline.region(tolerance);
+    terrain.near(low, high)
+}
+
+fn all(terrain: &Terrain) -> Vec<usize> {
+    (1..=terrain.segments().len()).collect()
+}
+
+/// The material point of a contact in the world \[m\].
+fn place(placement: &Placement, touch: &Touch) -> Vector<f64> {
+    let normal = touch.ground.apply([0.0, 1.0]);
+    difference(placement.world(touch.circle.body, touch.circle.centre), scaled(touch.circle.radius, normal))
+}
+
+/// How far heights are off by rounding alone \[m\]: they are sums of a few terms of this size.
+pub(super) fn rounding(placement: &Placement, size: f64) -> f64 {
+    let [x, z] = placement.base();
+    16.0 * f64::EPSILON * (size + x.abs() + z.abs())
+}
+
+/// The corners of these segments, ascending.
+fn corners_of(segments: &[usize]) -> impl Iterator<Item = usize> + '_ {
+    let new = |at: usize| at == 0 || segments[at - 1] + 1 != segments[at];
+    (0..segments.len()).flat_map(move |at| new(at).then(|| segments[at] - 1).into_iter().chain([segments[at]]))
+}
+
+/// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' rims, of the ground's corners in
+/// the foot, and of sides that cross.
+fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
+    let corners = (0..outline.corners().len()).map(|corner| depth_of_rim(terrain, outline, corner, near));
+    let ground = corners_of(near).map(|corner| outline.depth_of(terrain.at_corner(corner)[0].to));
+    let across = near.iter().flat_map(|&segment| {
+        let face = terrain.face(segment);
+        let reach = outline.reach(scaled(-1.0, face.normal));
+        outline.bones().iter().filter_map(move |bone| crossing(face, bone)).map(move |depth| reach + depth)
+    });
+    corners.chain(ground).chain(across).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// How deep a corner's rim is behind the segments that it is above \[m\], or as a whole below the profile.
+fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> f64 {
+    let centre = outline.corners()[corner];
+    if let Some((depth, normal)) = terrain.depth_of(centre) {
+        return depth + outline.reach(scaled(-1.0, normal));
+    }
+    let above = near.iter().filter_map(|&segment| {
+        let face = terrain.face(segment);
+        let lowest = outline.lowest(corner, face.normal);
+        (face.height(centre) >= 0.0 && face.faces(lowest)).then(|| -face.height(lowest))
+    });
+    above.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// How far a foot is from the ground \[m\].
+pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
+    -depth(terrain, outline, &all(terrain))
+}
+
+/// The x of the end that a foot reaches beyond, not higher than `tolerance` above it.
+pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) -> Option<f64> {
+    let [rear, front] = terrain.ends();
+    let hangs = |[x, z]: Vector<f64>, way: f64| {
+        let reach = |corner: usize, normal| outline.lowest(corner, normal);
+        (0..outline.corners().len()).any(|corner| {
+            way * (reach(corner, [-way, 0.0])[0] - x) > tolerance && reach(corner, [0.0, 1.0])[1] <= z + tolerance
+        })
+    };
+    if hangs(rear, -1.0) { Some(rear[0]) } else { hangs(front, 1.0).then_some(front[0]) }
+}
+
+/// The shortest way that takes one of two crossing sides off the other \[m\]; none where they do not cross.
+fn crossing(a: &Face, b: &Face) -> Option<f64> {
+    let [from, to] = [a.height(b.from), a.height(b.to)];
+    let [begin, end] = [b.height(a.from), b.height(a.to)];
+    let parted = |one: f64, other: f64| one.min(other) < 0.0 && one.max(other) > 0.0;
+    let shortest = [from, to, begin, end].map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+    (parted(from, to) && parted(begin, end)).then_some(shortest)
+}
+
+/// A corner's rim at a segment.
+fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usize, close: Closeness) -> Option<Touch> {
+    let face = terrain.face(segment);
+    let centre = outline.corners()[corner];
+    let lowest = outline.lowest(corner, face.normal);
+    let gap = face.height(lowest);
+    if gap.abs() > close.tolerance {
+        return None;
+    }
+    // In a notch the foot may be a little behind the other segment; beyond a convex corner it is not above this one.
+    let [rear, front] = [segment - 1, segment].map(|end| terrain.is_convex(end));
+    let reach = |convex: bool| if convex { 0.0 } else { close.tolerance };
+    let above = face.past_begin(lowest) >= -reach(rear) && face.past_end(lowest) <= reach(front);
+    let at_corner = |end: Vector<f64>, convex: bool| convex && distance(lowest, end) <= close.rounding;
+    if !above || at_corner(face.from, rear) || at_corner(face.to, front) {
+        return None;
+    }
+    let clear = |face: &Face| {
+        let slack = 2.0 * close.tolerance;
+        let beside = outline.beside_corner(corner);
+        beside.is_none_or(|beside| beside.into_iter().all(|neighbour| face.clears(centre, neighbour, slack)))
+    };
+    // Behind both sides of a convex corner the one that is left by the shorter way counts.
+    let height = face.height(centre);
+    let nearer = |other: usize, convex: bool| {
+        let beside = terrain.face(other);
+        let shorter = |other_height: f64| other_height > height || (other_height == height && other < segment);
+        let behind_both = convex && height < 0.0 && !terrain.is_wall(other) && beside.faces(centre);
+        behind_both && shorter(beside.height(centre)) && clear(beside)
+    };
+    if !clear(face) || nearer(segment - 1, rear) || nearer(segment + 1, front) {
+        return None;
+    }
+    Some(Touch { circle: outline.circle(corner, face.normal), ground: face.axes(), gap })
+}
+
+/// A foot's corner, or the rim about it, on a convex corner of the ground.
+fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Closeness) -> Option<Touch> {
+    let [before, after] = terrain.at_corner(corner);
+    let at = before.to;
+    let on = |foot: usize| {
+        let beyond = outline.beyond_rim(foot, at);
+        let together = outline.is_sharp() && beyond.is_none_or(|(_, far)| far <= close.rounding);
+        let past_both = || {
+            before.past_end(outline.lowest(foot, before.normal)) > 0.0
+                && after.past_begin(outline.lowest(foot, after.normal)) < 0.0
+        };
+        let is_nearest_foot = outline.at_corner(foot).is_none_or(|[ending, beginning]| {
+            ending.past_end(at) >= -close.rounding && beginning.past_begin(at) <= close.rounding
+        });
+        let far = beyond.map_or(0.0, |(_, far)| far);
+        if far > close.tolerance || !is_nearest_foot || !(together || past_both()) {
+            return None;
+        }
+        let (normal, gap) = match beyond {
+            Some((out, far)) if !outline.is_sharp() => (scaled(-1.0, out), far),
+            _ => {
+                let normal = common_normal([before, after], outline.at_corner(foot));
+                (normal, dot(normal, difference(outline.corners()[foot], at)))
+            }
+        };
+        Some(Touch { circle: outline.circle(foot, normal), ground: upright(normal), gap })
+    };
+    (0..outline.corners().len()).find_map(on)
+}
+
+/// The middle of the normals that a convex corner of the ground and a corner of the foot both allow; where the foot lies
+/// flat on a segment, that segment's normal.
+fn common_normal(ground: [&Face; 2], foot: Option<[&Face; 2]>) -> Vector<f64> {
+    // From the rear face's normal clockwise to the front one's. A foot pushes the ground the other way.
+    let ground = ground.map(|face| face.normal);
+    let Some(foot) = foot.map(|[before, after]| [before, after].map(|side| scaled(-1.0, side.normal))) else {
+        return unit(sum(ground[0], ground[1]));
+    };
+    // A foot's sides run counter-clockwise: its normals, turned round, go clockwise from the second to the first.
+    let foot = [foot[1], foot[0]];
+    let sine = |a: Vector<f64>, b: Vector<f64>| a[1] * b[0] - a[0] * b[1];
+    let within = |[first, last]: [Vector<f64>; 2], normal: Vector<f64>| {
+        sine(first, normal) >= -PARALLEL
+            && sine(normal, last) >= -PARALLEL
+            && dot(normal, sum(first, last)) >= -PARALLEL
+    };
+    // The later of both beginnings and the earlier of both ends.
+    let first = if within(ground, foot[0]) { foot[0] } else { ground[0] };
+    let last = if within(ground, foot[1]) { foot[1] } else { ground[1] };
+    let flat =
+        ground.into_iter().find(|&normal| sine(first, last).abs() <= PARALLEL && sine(normal, last).abs() <= PARALLEL);
+    flat.unwrap_or_else(|| unit(sum(first, last)))
+}
+
+/// A foot's side across a convex corner of the ground.
+fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Closeness) -> Option<Touch> {
+    let [before, after] = terrain.at_corner(corner);
+    let at = before.to;
+    let across = |side: usize| {
+        let face = &outline.sides()[side];
+        let (gap, slack) = (face.height(at), 2.0 * close.tolerance);
+        let beneath = face.past_begin(at) >= -close.rounding && face.past_end(at) <= close.rounding;
+        // Of a line, which is all surface, the ground's way tells the side.
+        let solid = outline.sides().len() > 2;
+        let clear = |side: &Face| side.clears(at, before.from, slack) && side.clears(at, after.to, slack);
+        let nearer = |other: &Face| solid && gap < 0.0 && other.faces(at) && other.height(at) > gap && clear(other);
+        if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
+            return None;
+        }
+        let ground = upright(scaled(-1.0, face.normal));
+        Some(Touch { circle: outline.on_side(side, at), ground, gap })
+    };
+    (0..outline.sides().len()).find_map(across)
+}

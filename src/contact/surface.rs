@@ -1,0 +1,165 @@
+//! The ground as feet meet it.
+
+use super::Contact;
+use super::face::{PARALLEL, distance};
+use super::feet::Foot;
+use super::outline::Outline;
+use super::placement::Placement;
+use super::plane::Plane;
+use super::point::{Point, Touch, points};
+use super::profile::{self, TooDeep};
+use super::terrain::Terrain;
+use crate::error::{Error, Reason, Result};
+use crate::planar::Vector;
+use crate::scene::Ground;
+
+/// A ground, compiled once for all feet of a state.
+#[derive(Debug, Clone)]
+pub struct Surface(Kind);
+
+#[derive(Debug, Clone)]
+enum Kind {
+    Plane(Plane),
+    Profile(Terrain),
+}
+
+/// What a foot is refused with that is too deep: by how much \[m\], and what to do.
+pub(super) struct Sunk {
+    pub depth: f64,
+    pub remedy: String,
+}
+
+impl Surface {
+    /// The ground of a scene.
+    pub fn new(ground: &Ground) -> Self {
+        Self(match ground {
+            Ground::Slope(slope) => Kind::Plane(Plane::sloped(*slope)),
+            Ground::Profile(profile) => Kind::Profile(Terrain::new(profile)),
+        })
+    }
+
+    /// The plane on which the foot of a stance is placed, and the point of the ground that it is placed at \[m\].
+    ///
+    /// # Errors
+    /// [`Reason::Inconsistent`] where a profile does not reach to x = 0.
+    pub(super) fn stance(&self) -> Result<(Plane, Vector<f64>)> {
+        match &self.0 {
+            Kind::Plane(plane) => Ok((*plane, [0.0; 2])),
+            Kind::Profile(terrain) => {
+                let (axes, point) = terrain.at_origin().ok_or_else(|| {
+                    let [[rear, _], [front, _]] = terrain.ends();
+                    let reason =
+                        format!("a stance is at x = 0, and the ground's profile goes from {rear:?} to {front:?}");
+                    Error::new(Reason::Inconsistent(reason))
+                        .at("stance")
+                        .hint("shift the profile along x, or give the base's x and z instead of a stance")
+                })?;
+                Ok((Plane::turned(axes), point))
+            }
+        }
+    }
+
+    /// The contact of a circle or point that was named, whatever its height.
+    pub(super) fn touch(&self, placement: &Placement, named: Point, tolerance: f64) -> Touch {
+        match &self.0 {
+            Kind::Plane(plane) => plane.touch(placement, named),
+            Kind::Profile(terrain) => {
+                // A circle's place is the same whatever the normal.
+                let circle = placement.circle(named, [0.0, 1.0]);
+                terrain.nearest_touch(circle, placement.world(circle.body, circle.centre), tolerance)
+            }
+        }
+    }
+
+    /// How far heights are off by rounding alone \[m\].
+    pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
+        match &self.0 {
+            Kind::Plane(plane) => plane.rounding(placement, size),
+            Kind::Profile(_) => profile::rounding(placement, size),
+        }
+    }
+
+    /// Where a foot is within `tolerance` of the ground, given `rounding`; all in metres.
+    ///
+    /// # Errors
+    /// The outer one for shapes that parry does not serve, the inner one for a foot deeper than the tolerance.
+    pub(super) fn touching(
+        &self,
+        foot: &Foot,
+        placement: &Placement,
+        tolerance: f64,
+        rounding: f64,
+    ) -> Result<std::result::Result<Vec<Touch>, Sunk>> {
+        match &self.0 {
+            Kind::Plane(plane) => {
+                let touches = plane.touching(foot, placement, tolerance)?;
+                let deep = touches.iter().map(|touch| -touch.gap).find(|&depth| depth > tolerance);
+                Ok(deep.map_or(Ok(touches), |depth| {
+                    let remedy = format!(
+                        "raise the base by {depth:?} m, correct the pose, or accept it by a greater --contact-tolerance"
+                    );
+                    Err(Sunk { depth, remedy })
+                }))
+            }
+            Kind::Profile(terrain) => {
+                let found = profile::touching(terrain, foot, placement, (tolerance, rounding));
+                Ok(found.map_err(|TooDeep(depth)| {
+                    let remedy = format!(
+                        "move the base or the profile by {depth:?} m, correct the pose, or accept it by a greater \
+                         --contact-tolerance"
+                    );
+                    Sunk { depth, remedy }
+                }))
+            }
+        }
+    }
+
+    /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
+    pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
+        match &self.0 {
+            Kind::Plane(plane) => plane.is_out_of_reach(foot, placement, tolerance),
+            Kind::Profile(terrain) => {
+                profile::within_reach(terrain, foot, &Outline::new(foot, placement), tolerance).is_empty()
+            }
+        }
+    }
+
+    /// What contacts of a link are in the order of: the place along a plane, x along a profile \[m\].
+    pub(super) fn along(&self, point: Vector<f64>) -> f64 {
+        match &self.0 {
+            Kind::Plane(plane) => plane.along(point),
+            Kind::Profile(_) => point[0],
+        }
+    }
+
+    /// Whether two contacts of a link are one: the same point, and on a profile the same place with the same normal up to
+    /// `rounding` \[m\], because a side's point at a corner is found and not given.
+    pub(super) fn is_same(&self, a: &Contact, b: &Contact, rounding: f64) -> bool {
+        let same_foot = (a.link, a.body, a.radius) == (b.link, b.body, b.radius);
+        same_foot
+            && match &self.0 {
+                Kind::Plane(_) => a.centre == b.centre,
+                Kind::Profile(_) => {
+                    distance(a.centre, b.centre) <= rounding && distance(a.normal(), b.normal()) <= PARALLEL
+                }
+            }
+    }
+
+    /// The end of the profile that a foot reaches beyond, not higher than `tolerance` above it: there is no ground there.
+    pub(super) fn left_behind(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Option<f64> {
+        match &self.0 {
+            Kind::Plane(_) => None,
+            Kind::Profile(terrain) => profile::left_behind(terrain, &Outline::new(foot, placement), tolerance),
+        }
+    }
+
+    /// How far a foot is from the ground \[m\].
+    pub(super) fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
+        match &self.0 {
+            Kind::Plane(plane) => {
+                points(foot).map(|point| plane.height(placement, point)).fold(f64::INFINITY, f64::min)
+            }
+            Kind::Profile(terrain) => profile::clearance(terrain, &Outline::new(foot, placement)),
+        }
+    }
+}

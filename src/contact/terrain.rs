@@ -1,0 +1,171 @@
+//! A profile compiled: its faces, their corners, and what of it is near.
+//!
+//! ```text
+//!     points --points on a straight line dropped--> faces [wall, segment, ..., segment, wall], corner k between k and k + 1
+//! ```
+//!
+//! The solid below the profile ends in upright walls below its ends. They bound the directions that the end points may push
+//! in, but are no ground themselves. A corner is convex where the ground falls away behind it, and concave in a notch.
+//! parry's polyline finds the segments near a foot and the nearest point; which side is inside, it does not know.
+
+use super::face::{Face, distance, unit, upright};
+use super::point::{Circle, Touch};
+use crate::planar::{Rotation, Vector, difference, dot, sum};
+use crate::scene::Profile;
+use parry2d::bounding_volume::Aabb;
+use parry2d::math::Vector as ParryVector;
+use parry2d::query::PointQueryWithLocation;
+use parry2d::shape::{Polyline, SegmentPointLocation};
+
+/// A profile, ready for feet.
+#[derive(Debug, Clone)]
+pub(crate) struct Terrain {
+    /// The segments between two walls.
+    faces: Vec<Face>,
+    polyline: Polyline,
+}
+
+impl Terrain {
+    pub fn new(profile: &Profile) -> Self {
+        let points = without_straight_ones(profile.points());
+        let mut faces: Vec<Face> = points.windows(2).map(|pair| Face::of_ground(pair[0], pair[1])).collect();
+        if let (Some(&first), Some(&last)) = (faces.first(), faces.last()) {
+            let below = |[x, z]: Vector<f64>, beside: Face| [x, z - distance(beside.from, beside.to)];
+            let rear =
+                Face { from: below(first.from, first), to: first.from, tangent: [0.0, 1.0], normal: [-1.0, 0.0] };
+            let front = Face { from: last.to, to: below(last.to, last), tangent: [0.0, -1.0], normal: [1.0, 0.0] };
+            faces.insert(0, rear);
+            faces.push(front);
+        }
+        let vertices = points.iter().map(|&[x, z]| ParryVector::new(x, z)).collect();
+        Self { faces, polyline: Polyline::new(vertices, None) }
+    }
+
+    /// The segments with an index between those of the walls.
+    pub(super) fn segments(&self) -> &[Face] {
+        &self.faces[1..self.faces.len() - 1]
+    }
+
+    /// The faces of these indices: 0 is the wall at the rear end.
+    pub(super) fn face(&self, index: usize) -> &Face {
+        &self.faces[index]
+    }
+
+    /// The faces that meet in a corner: 0 is the rear end.
+    pub(super) fn at_corner(&self, corner: usize) -> [&Face; 2] {
+        [&self.faces[corner], &self.faces[corner + 1]]
+    }
+
+    /// Whether the ground falls away on both sides of a corner.
+    pub(super) fn is_convex(&self, corner: usize) -> bool {
+        let [before, after] = self.at_corner(corner);
+        before.tangent[0] * after.tangent[1] < before.tangent[1] * after.tangent[0]
+    }
+
+    /// Whether a face is one of the two walls.
+    pub(super) fn is_wall(&self, index: usize) -> bool {
+        index == 0 || index + 1 == self.faces.len()
+    }
+
+    /// Indices of the segments within the box from `low` to `high`, ascending.
+    pub(super) fn near(&self, low: Vector<f64>, high: Vector<f64>) -> Vec<usize> {
+        let region = Aabb::new(ParryVector::new(low[0], low[1]), ParryVector::new(high[0], high[1]));
+        let mut near: Vec<usize> =
+            self.polyline.bvh().intersect_aabb(&region).map(|segment| segment as usize + 1).collect();
+        near.sort_unstable();
+        near
+    }
+
+    /// How deep a point is in the solid \[m\], and the normal of the segment that is nearest; none outside.
+    pub(super) fn depth_of(&self, point: Vector<f64>) -> Option<(f64, Vector<f64>)> {
+        let (face, corner) = self.is_inside(point).then(|| self.nearest(point))?;
+        let depth = match corner {
+            None => -self.faces[face].height(point),
+            Some(corner) => distance(point, self.faces[corner].to),
+        };
+        Some((depth, self.faces[face].normal))
+    }
+
+    /// The segment nearest to a point, and its corner where that is nearest.
+    fn nearest(&self, point: Vector<f64>) -> (usize, Option<usize>) {
+        let at = ParryVector::new(point[0], point[1]);
+        let (_, (segment, location)) = self.polyline.project_local_point_and_get_location(at, false);
+        let face = segment as usize + 1;
+        match location {
+            SegmentPointLocation::OnVertex(end) => (face, Some(face - 1 + end as usize)),
+            SegmentPointLocation::OnEdge(_) => (face, None),
+        }
+    }
+
+    /// The segment above, below or at x; none beyond the ends. Of two that meet there it is the less steep one, of equally
+    /// steep ones the rear one.
+    pub(super) fn segment_at(&self, x: f64) -> Option<&Face> {
+        let segments = self.segments();
+        let next = segments.partition_point(|face| face.to[0] < x);
+        let face = segments.get(next).filter(|face| face.from[0] <= x)?;
+        let after = segments.get(next + 1).filter(|after| after.from[0] <= x && after.normal[1] > face.normal[1]);
+        Some(after.unwrap_or(face))
+    }
+
+    fn is_inside(&self, point: Vector<f64>) -> bool {
+        self.segment_at(point[0]).is_some_and(|face| face.height(point) < 0.0)
+    }
+
+    /// The ends, rear and front.
+    pub(super) fn ends(&self) -> [Vector<f64>; 2] {
+        let segments = self.segments();
+        [segments[0].from, segments[segments.len() - 1].to]
+    }
+
+    /// The contact of a circle or point that was named: with the ground nearest to its centre, which is in the world at
+    /// `centre`. A point within `tolerance` of a corner takes the middle of the corner's normals; beyond the ends the last
+    /// segment counts as going on.
+    pub(super) fn nearest_touch(&self, circle: Circle, centre: Vector<f64>, tolerance: f64) -> Touch {
+        let (face, corner) = self.nearest(centre);
+        let inner = corner.filter(|&corner| corner > 0 && corner + 2 < self.faces.len() && self.is_convex(corner));
+        let (ground, height) = match inner {
+            Some(corner) if !self.is_inside(centre) => {
+                let at = self.faces[corner].to;
+                let (way, far) = (difference(centre, at), distance(centre, at));
+                let meets = far == 0.0 || circle.radius == 0.0 && far <= tolerance;
+                let normal = if meets { self.middle_normal(corner) } else { unit(way) };
+                (upright(normal), dot(normal, way))
+            }
+            _ => (self.faces[face].axes(), self.faces[face].height(centre)),
+        };
+        Touch { circle, ground, gap: height - circle.radius }
+    }
+
+    /// The middle of the normals that a corner's faces have.
+    fn middle_normal(&self, corner: usize) -> Vector<f64> {
+        let [before, after] = self.at_corner(corner);
+        unit(sum(before.normal, after.normal))
+    }
+
+    /// What stands in for a plane where the foot of a stance is placed: axes and point of the ground at x = 0.
+    pub(super) fn at_origin(&self) -> Option<(Rotation<f64>, Vector<f64>)> {
+        let face = self.segment_at(0.0)?;
+        // The height at x = 0, from the nearer end.
+        let [near, far] = if -face.from[0] <= face.to[0] { [face.from, face.to] } else { [face.to, face.from] };
+        let z = near[1] - near[0] * ((far[1] - near[1]) / (far[0] - near[0]));
+        Some((face.axes(), [0.0, z]))
+    }
+}
+
+/// The points without those that lie, to rounding, on the straight line between their neighbours.
+fn without_straight_ones(points: &[Vector<f64>]) -> Vec<Vector<f64>> {
+    let mut kept: Vec<Vector<f64>> = Vec::with_capacity(points.len());
+    for (at, &point) in points.iter().enumerate() {
+        let straight = match (kept.last(), points.get(at + 1)) {
+            (Some(&before), Some(&after)) => {
+                let scale = [before, point, after].iter().flatten().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+                Face::of_ground(before, after).height(point).abs() <= 8.0 * f64::EPSILON * scale
+            }
+            _ => false,
+        };
+        if !straight {
+            kept.push(point);
+        }
+    }
+    kept
+}

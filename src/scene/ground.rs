@@ -1,0 +1,103 @@
+//! The ground: a line through the world's origin, or a profile of segments.
+//!
+//! ```text
+//!     solid below the line           level (slope 0), or uphill toward +x
+//!     solid below the profile        (x_0, z_0) -- (x_1, z_1) -- ... -- (x_n, z_n), x rising; no ground beyond its ends
+//! ```
+
+use crate::error::{Error, Reason, Result};
+use crate::planar::{Rotation, Vector, difference};
+use crate::scalar::{Real, Trigonometry};
+
+/// What the robot strikes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ground {
+    /// A line through the world's origin by its slope \[rad\], uphill toward +x; level ground is the slope 0.
+    Slope(f64),
+    /// Steps, stairs, gaps.
+    Profile(Profile),
+}
+
+impl Default for Ground {
+    fn default() -> Self {
+        Self::Slope(0.0)
+    }
+}
+
+impl Ground {
+    /// The turn from the world's axes to those of a contact (tangent, normal) that detection found to be `found`, in numbers
+    /// of any kind: that of a slope from its angle, that of a profile by the very f64 numbers.
+    pub fn axes<T: Real + Trigonometry>(&self, found: Rotation<f64>) -> Rotation<T> {
+        match self {
+            Self::Slope(slope) => {
+                let [cos, sin] = T::cos_sin(-slope);
+                Rotation { cos, sin }
+            }
+            Self::Profile(_) => Rotation { cos: T::from_f64(found.cos), sin: T::from_f64(found.sin) },
+        }
+    }
+}
+
+/// A ground of straight segments between points of rising x; what lies below it is solid, what lies beyond its ends is void.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    points: Vec<Vector<f64>>,
+}
+
+impl Profile {
+    /// The profile through `points`, `[x, z]` in the world \[m\].
+    ///
+    /// # Errors
+    /// [`Reason::Inconsistent`] for fewer than two points, an x that does not rise and points too far apart for f64,
+    /// [`Reason::NotFinite`]; the place is the point's, as in `[3]`.
+    pub fn new(points: Vec<Vector<f64>>) -> Result<Self> {
+        if points.len() < 2 {
+            let reason = format!("a profile has at least two points, not {}", points.len());
+            return Err(Error::new(Reason::Inconsistent(reason)).hint("level ground is \"ground\": {\"slope\": 0}"));
+        }
+        for (at, &value) in points.iter().enumerate().flat_map(|(at, point)| point.iter().map(move |entry| (at, entry)))
+        {
+            if !value.is_finite() {
+                return Err(
+                    Error::new(Reason::NotFinite { what: "a profile's point".into(), value }).at(format!("[{at}]"))
+                );
+            }
+        }
+        for (at, pair) in points.windows(2).enumerate() {
+            let ([from, _], [to, _]) = (pair[0], pair[1]);
+            let refused = |reason: String| Error::new(Reason::Inconsistent(reason)).at(format!("[{}]", at + 1));
+            if to <= from {
+                let reason = format!("a profile's x rises from point to point, but {to:?} follows {from:?}");
+                return Err(refused(reason).hint("give a vertical riser a tiny width, such as 1e-6 m"));
+            }
+            let [across, up] = difference(pair[1], pair[0]);
+            if !libm::hypot(across, up).is_finite() {
+                let reason = "the distance from the point before is beyond the range of f64".to_owned();
+                return Err(refused(reason).hint("give the points in metres"));
+            }
+        }
+        Ok(Self { points })
+    }
+
+    /// The points, at least two, by rising x \[m\].
+    pub fn points(&self) -> &[Vector<f64>] {
+        &self.points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_profile_is_refused_with_the_point() {
+        let refused = |points: &[Vector<f64>]| Profile::new(points.to_vec()).expect_err("no profile");
+        assert_eq!(refused(&[[0.0, 1.0]]).to_string(), "a profile has at least two points, not 1");
+        let riser = refused(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.1]]);
+        assert_eq!(riser.to_string(), "[2]: a profile's x rises from point to point, but 0.3 follows 0.3");
+        assert_eq!(riser.remedy(), Some("give a vertical riser a tiny width, such as 1e-6 m"));
+        assert_eq!(refused(&[[0.0, 0.0], [1.0, f64::NAN]]).place(), Some("[1]"));
+        assert_eq!(refused(&[[-1e308, 0.0], [1e308, 0.0]]).place(), Some("[1]"));
+        assert!(Profile::new(vec![[0.0, 0.0], [f64::MIN_POSITIVE, 1e9]]).is_ok());
+    }
+}

@@ -1,0 +1,135 @@
+//! Which spot touches, once, and with which normal.
+
+use super::*;
+use std::f64::consts::FRAC_1_SQRT_2;
+
+#[test]
+fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
+    // A point on the edge of a step: halfway between tread and riser.
+    let edge = [[-2.0, 0.0], [0.0, 0.0], [1e-9, -2.0], [2.0, -2.0]];
+    let s = FRAC_1_SQRT_2;
+    let found = impact(&point(), &state([0.0; 3], FALLING, "1", &edge));
+    assert_eq!(found.contacts.len(), 1);
+    let [x, z] = found.contacts[0].normal();
+    assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
+    // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over the
+    // void: all of the quarter between riser and tread.
+    let flat = impact(&sole(), &state([-0.2, 0.1, 0.0], FALLING, "1", &edge));
+    assert_touches(&flat, &[[[-0.4, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]]]);
+    let hung = impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, "1", &edge));
+    assert_eq!(hung.contacts.len(), 1);
+    let [x, z] = hung.contacts[0].normal();
+    assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
+    // The heel of a sole that is pitched by -0.4 (nose up) allows -0.4 to pi/2 - 0.4 from upright toward +x; the edge 0 to
+    // pi/2. The middle of both is pi/4 - 0.2.
+    let (sin, cos) = 0.4_f64.sin_cos();
+    // The heel at (-0.2, -0.1) of the body, turned: (cos x + sin' z, cos z - sin' x) with sin' = sin(-0.4).
+    let heel = [-0.2 * cos + 0.1 * sin, -0.1 * cos - 0.2 * sin];
+    let tilted = impact(&sole(), &state([-heel[0], -heel[1], -0.4], FALLING, "1", &edge));
+    let angle = std::f64::consts::FRAC_PI_4 - 0.2;
+    assert_eq!(tilted.contacts.len(), 1);
+    let [x, z] = tilted.contacts[0].normal();
+    assert!((x - angle.sin()).abs() < 1e-9 && (z - angle.cos()).abs() < 1e-9, "{x} {z}");
+}
+
+#[test]
+fn a_spot_touches_once() {
+    // Whatever the overhang, from well beyond the tolerance to nothing and back, and whether the sole is a hair above or in
+    // the tread: two contacts with the tread's normal.
+    for overhang in [-1e-3, -1e-7, -1e-9, -1e-15, 0.0, 1e-15, 1e-9, 1e-7, 1e-3] {
+        for height in [-1e-9, -1e-16, 0.0, 1e-16, 1e-9] {
+            let text = state([-0.2 + overhang, 0.1 + height, 0.0], FALLING, "1", &step_down(0.0, 0.5));
+            let found = impact(&sole(), &text);
+            assert_eq!(found.contacts.len(), 2, "{overhang} {height}: {:?}", touches(&found));
+            for contact in &found.contacts {
+                assert_eq!(contact.normal(), [0.0, 1.0], "{overhang} {height}");
+                assert!((contact.gap - height).abs() < 1e-15, "{overhang} {height}: {}", contact.gap);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_plate_without_thickness_lies_on_an_edge() {
+    let plate = body(r#"<geometry><box size="0.4 0.1 0"/></geometry>"#);
+    for height in [-1e-9, 0.0, 1e-9] {
+        let found = impact(&plate, &state([0.0, height, 0.2], FALLING, "1", &step_down(0.0, 0.5)));
+        assert_eq!(found.contacts.len(), 1, "{height}");
+        assert_close(&found.contacts[0].normal(), &[0.2_f64.sin(), 0.2_f64.cos()]);
+    }
+}
+
+/// A cylinder of radius 0.2 m and 0.5 m long whose axis is `yaw` off the plane's normal, toward x: its ends are ellipses,
+/// 0.2 cos(yaw) by 0.2 m, at 0.25 sin(yaw) before and behind the CoG.
+fn oblique(yaw: f64) -> Robot {
+    body(&format!(
+        r#"<origin rpy="1.5707963267948966 0 {yaw:?}"/><geometry><cylinder radius="0.2" length="0.5"/></geometry>"#
+    ))
+}
+
+#[test]
+fn an_oblique_cylinder_meets_segments_and_corners() {
+    let yaw = 0.7_f64;
+    let (robot, half, reach) = (oblique(yaw), 0.2 * yaw.cos(), 0.25 * yaw.sin());
+    let near = |found: &Impact, expected: &[[[f64; 2]; 2]]| {
+        let (found, expected) = (touches(found), expected.as_flattened().as_flattened());
+        let found = found.as_flattened().as_flattened();
+        assert!(
+            found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12),
+            "{found:?}"
+        );
+    };
+    // Flat on a tread, and with its middle on an edge.
+    let up = [0.0, 1.0];
+    near(
+        &impact(&robot, &state([-1.0, 0.2, 0.0], FALLING, "1", &step_down(0.0, 1.0))),
+        &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]],
+    );
+    near(
+        &impact(&robot, &state([0.0, 0.2, 0.0], FALLING, "1", &step_down(0.0, 1.0))),
+        &[[[-reach, 0.0], up], [[0.0, 0.0], up]],
+    );
+    // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there is
+    // along (cos s / half, sin s / 0.2).
+    let s = FRAC_1_SQRT_2;
+    let out = [s / half, -s / 0.2];
+    let size = f64::hypot(out[0], out[1]);
+    let place = [-reach - half * s, 0.2 * s, 0.0];
+    let ridge = [[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]];
+    near(&impact(&robot, &state(place, FALLING, "1", &ridge)), &[[[0.0, 0.0], [-out[0] / size, -out[1] / size]]]);
+    // On a slope up: the front end reaches hypot(half sin, 0.2 cos) along the normal.
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let far = f64::hypot(half * sin, 0.2 * cos);
+    let place = [-reach - far * sin, far * cos, 0.0];
+    let found = impact(&robot, &state(place, FALLING, "1", &[[-4.0 * cos, -4.0 * sin], [4.0 * cos, 4.0 * sin]]));
+    let point = [-far * sin + half * half * sin / far, far * cos - 0.2 * 0.2 * cos / far];
+    near(&found, &[[point, [-sin, cos]]]);
+    // Sunk: by as much as it is too low.
+    assert!((depth(&robot, &state([-1.0, 0.15, 0.0], [0.0; 3], "1", &step_down(0.0, 1.0))) - 0.05).abs() < 1e-12);
+    assert!((depth(&robot, &state([0.0, 0.15, 0.0], [0.0; 3], "1", &ridge)) - 0.05).abs() < 1e-12);
+    assert!((depth(&robot, &state([-1.0, -0.3, 0.0], [0.0; 3], "1", &step_down(0.0, 1.0))) - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn contacts_named_by_hand_take_the_nearest_ground() {
+    let robot = point();
+    let named = |x: f64, z: f64, radius: f64| {
+        let text = format!(
+            r#"{{"friction": 1, "contacts": [{{"link": "body", "offset": [{x}, 0, {z}], "radius": {radius}}}],
+                "ground": {{"profile": [[-1, 0], [1, 0], [2, -1]]}}}}"#
+        );
+        let contact = impact(&robot, &text).contacts[0].clone();
+        ([contact.normal()[0], contact.normal()[1], contact.gap], contact.point)
+    };
+    let s = FRAC_1_SQRT_2;
+    assert_eq!(named(0.0, 2.0, 0.5), ([0.0, 1.0, 1.5], [0.0, 1.5]));
+    assert_eq!(named(0.0, -0.25, 0.0), ([0.0, 1.0, -0.25], [0.0, -0.25]));
+    assert_close(&named(2.0, 0.0, 0.0).0, &[s, s, s]);
+    // Nearest to the corner, at 0.4 rad; and on it, in the middle of both normals.
+    let (sin, cos) = 0.4_f64.sin_cos();
+    assert_close(&named(1.0 + sin, cos, 0.5).0, &[sin, cos, 0.5]);
+    let eighth = std::f64::consts::FRAC_PI_8;
+    assert_close(&named(1.0, 0.0, 0.0).0, &[eighth.sin(), eighth.cos(), 0.0]);
+    // Beyond an end the last segment goes on.
+    assert_eq!(named(-5.0, 0.5, 0.0), ([0.0, 1.0, 0.5], [-5.0, 0.5]));
+}

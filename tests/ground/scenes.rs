@@ -1,0 +1,111 @@
+//! Profiles beside what else a scene has: contacts by name, slopes, a stance, uncertainty.
+
+use super::*;
+use heelstrike::scene::{Ground, Profile};
+use heelstrike::uncertain::Holds;
+use std::f64::consts::FRAC_1_SQRT_2;
+
+#[test]
+fn feet_on_different_treads_act_as_contacts_named_on_level_ground() {
+    let robot = Robot::from_urdf(BIPED).expect("a good robot");
+    let state = |ground: &str| {
+        format!(
+            r#"{{"position": {{"base": {{"z": 0.8}}}}, "friction": 0.6,
+                "velocity": {{"base": {{"x": 0.4, "z": -0.7, "pitch": 0.3}}, "joints": {{"rear": -0.5, "front": 1.1}}}}, {ground}}}"#
+        )
+    };
+    let stairs = impact(&robot, &state(r#""ground": {"profile": [[-1, 0], [0, 0], [1e-6, 0.3], [1, 0.3]]}"#));
+    let named = impact(
+        &robot,
+        &state(r#""contacts": [{"link": "rear", "offset": [0, 0, -0.8]}, {"link": "front", "offset": [0, 0, -0.5]}]"#),
+    );
+    assert_close(&[stairs.contacts[0].gap, stairs.contacts[1].gap], &[0.0; 2]);
+    assert_close(&[named.contacts[1].gap], &[0.3]);
+    assert_same_outcomes(&stairs, &named);
+}
+
+#[test]
+fn a_straight_profile_is_a_slope() {
+    let biped = Robot::from_urdf(BIPED).expect("a good robot");
+    for slope in [-0.6_f64, -0.1, 0.0, 0.2, 0.6] {
+        let rise = 3.0 * slope.tan();
+        let grounds =
+            [format!(r#"{{"slope": {slope:?}}}"#), format!(r#"{{"profile": [[-3, {:?}], [3, {rise:?}]]}}"#, -rise)];
+        // Feet half a metre or less above and in the ground touch, so that there are two.
+        let wide = || Options { contact_tolerance: Some(0.5), ..Options::default() };
+        let state = |ground: &String| {
+            format!(
+                r#"{{"stance": "rear", "position": {{"base": {{"pitch": 0.1}}, "joints": {{"rear": 0.1, "front": 0.2}}}},
+                    "velocity": {{"base": {{"pitch": -0.6}}, "joints": {{"rear": 0.9, "front": 0.4}}}},
+                    "friction": 0.8, "restitution": 0.2, "ground": {ground}}}"#
+            )
+        };
+        let [sloped, straight] =
+            grounds.each_ref().map(|ground| try_impact(&biped, wide(), &state(ground)).expect("within the tolerance"));
+        assert_eq!([sloped.contacts.len(), straight.contacts.len()], [2; 2], "{slope}");
+        assert_same_outcomes(&sloped, &straight);
+
+        let (sin, cos) = slope.sin_cos();
+        let flat = [-0.1 * sin, 0.1 * cos, -slope];
+        let found = impact(&sole(), &state_on(flat, [0.4, -1.0, 0.3], "1", &grounds[1]));
+        assert_touches(&found, &[[[-0.2 * cos, -0.2 * sin], [-sin, cos]], [[0.2 * cos, 0.2 * sin], [-sin, cos]]]);
+    }
+}
+
+#[test]
+fn a_stance_stands_on_the_profile_at_x_0() {
+    let robot = sole();
+    let state = |profile: &str, more: &str| {
+        format!(r#"{{"stance": "body", "friction": 1{more}, "ground": {{"profile": {profile}}}}}"#)
+    };
+    let raised = impact(&robot, &state("[[-1, 0.25], [1, 0.75]]", r#", "position": {"base": {"pitch": 0.1}}"#));
+    assert_close(&raised.contacts[0].point, &[0.0, 0.5]);
+    assert_eq!(raised.velocity_before, [[0.0; 2]]);
+    // Of the two segments at the foot of a riser it is the tread; the rear end stands there, and the rest is in the step.
+    let error =
+        try_impact(&robot, Options::default(), &state("[[-1, 0], [0, 0], [1e-6, 0.15], [1, 0.15]]", "")).unwrap_err();
+    assert!(matches!(error.reason(), Reason::Penetration { depth, .. } if (depth - 0.15).abs() < 1e-6), "{error}");
+    let error = try_impact(&robot, Options::default(), &state("[[1, 0], [2, 0]]", "")).unwrap_err();
+    assert_eq!(error.place(), Some("stance"));
+    assert!(error.remedy().is_some_and(|remedy| remedy.contains("shift the profile")));
+}
+
+#[test]
+fn a_circle_that_stands_in_a_notch_rests_on_one_side() {
+    // The notch is at (0.5 - 0.5 sin, ...) = where the disc that stands level at x = 0 touches a wall at 45 degrees, too.
+    let away = 0.5 * (FRAC_1_SQRT_2 + FRAC_1_SQRT_2 - 1.0);
+    let notch = 0.5 * FRAC_1_SQRT_2 - (0.5 - 0.5 * FRAC_1_SQRT_2);
+    assert!(away > 0.0);
+    let text = format!(
+        r#"{{"stance": "body", "friction": 1, "velocity": {{"base": {{"pitch": 1}}}},
+            "ground": {{"profile": [[-3, 0], [{notch:?}, 0], [{:?}, 3]]}}}}"#,
+        notch + 3.0
+    );
+    let found = impact(&disc(), &text);
+    let s = FRAC_1_SQRT_2;
+    assert_touches(&found, &[[[0.0, 0.0], [0.0, 1.0]], [[0.5 * s, 0.5 - 0.5 * s], [-s, s]]]);
+    // It rolls at 1 rad/s: the centre at 0.5 m/s forward; the wall's point, at (0.5 s, -0.5 s) from there, moves by
+    // (-0.5 s, -0.5 s) more.
+    assert_eq!(found.velocity_before[0], [0.0; 2]);
+    let [x, z] = [0.5 - 0.5 * s, -0.5 * s];
+    assert_close(&found.velocity_before[1], &[s * x + s * z, -s * x + s * z]);
+}
+
+#[test]
+fn a_box_of_uncertainty_keeps_the_contacts_of_its_state() {
+    let with =
+        |state: String, uncertainty: &str| state.replacen('{', &format!(r#"{{"uncertainty": {uncertainty}, "#), 1);
+    // A disc on an edge, its pitch uncertain: the same edge with the same normal.
+    let (sin, cos) = 0.4_f64.sin_cos();
+    let text = state([0.5 * sin, 0.5 * cos, 0.0], FALLING, "0.6", &[[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]]);
+    let found = impact(&disc(), &with(text, r#"{"position": 1e-3, "velocity": 1e-3}"#));
+    assert!(matches!(found.holds, Some(Holds::Everywhere)), "{:?}", found.holds);
+    // On a tread at 0.9 m/s: L_t = 0.9 / (1 / m + r^2 / I) = 0.9, L_n = 2. It sticks where friction is more than 0.45.
+    let text = state([-1.0, 0.5, 0.0], [-0.9, -1.0, 0.0], "0.5", &[[-3.0, 0.0], [3.0, 0.0]]);
+    let found = impact(&disc(), &with(text, r#"{"friction": 0.25}"#));
+    let Some(Holds::Not(other)) = &found.holds else { panic!("{:?}", found.holds) };
+    assert_eq!(other.state.scene.ground, Ground::Profile(Profile::new(vec![[-3.0, 0.0], [3.0, 0.0]]).unwrap()));
+    let again = Pipeline::new(&disc(), Options::default()).impact(&other.state).expect("an answer");
+    let modes: Vec<_> = again.analysis.unwrap().outcomes.into_iter().map(|outcome| outcome.modes).collect();
+    assert_eq!(modes, other.outcomes);
+}
