@@ -223,17 +223,15 @@ impl<'r> Pipeline<'r> {
         let asked = Asked { explain, prove: !no_proof, reductions };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
-        // Articulated bodies hold neither ties nor constraints.
-        let by_mass = self.plan.tied || self.is_constrained(&loops);
-        if !by_mass && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+        if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.plan, &mut self.workspace);
         }
         let (velocity_after, loop_impulse) = outcomes
             .iter()
             .map(|outcome| match self.is_constrained(&loops) {
-                false => (self.struck(by_mass, &free, &outcome.impulse), Vec::new()),
+                false => (self.struck(&free, &outcome.impulse), Vec::new()),
                 true => {
-                    let mut change = self.struck(by_mass, &applied, &outcome.impulse);
+                    let mut change = self.struck(&applied, &outcome.impulse);
                     let impulse = self.answer_of_loops(&loops, &mut change);
                     (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
                 }
@@ -496,15 +494,15 @@ impl<'r> Pipeline<'r> {
     }
 
     /// The velocity by coordinate after contact impulses, from the one without them: by articulated bodies, which keep
-    /// thirteen digits and more in chains where M = L^T D L leaves eight, or `by_mass`.
-    fn struck(&mut self, by_mass: bool, free: &[f64], impulse: &[Vector<f64>]) -> Vec<f64> {
+    /// thirteen digits and more in chains where M = L^T D L leaves eight, unless joints follow others.
+    fn struck(&mut self, free: &[f64], impulse: &[Vector<f64>]) -> Vec<f64> {
         let mut after = free.to_vec();
         let Self { plan, workspace, points, column, motions, .. } = self;
         for (point, &[tangential, normal]) in points.iter().zip(impulse) {
             let axes = point.axes();
             let vector = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
             let at = (point.body, point.arm(workspace));
-            if by_mass {
+            if plan.tied {
                 add_impulse(plan, workspace, at, vector, column, &mut after);
             } else {
                 add_articulated_impulse(plan, workspace, at, vector, (&mut *column, &mut *motions), &mut after);
