@@ -19,7 +19,8 @@
 //!     G, c, friction, restitution --[impact]--> every outcome, verdict
 //!     Plan + a box of states --[uncertain]--> whether its outcomes are all the same
 //!     all of it --[pipeline]--> Impact --[report]--> JSON, text
-//!     CSV --[table]--> many states; of a recording --[touchdown]--> those in which a foot strikes; results --[table]--> CSV
+//!     CSV --[table]--> many states, bases in 3-D --[spatial]--> in the plane; results --[table]--> CSV
+//!     states of a recording --[touchdown]--> those in which a foot strikes
 //! ```
 //!
 //! # The impact
@@ -101,6 +102,7 @@ pub mod pipeline;
 pub mod accuracy;
 pub mod report;
 pub mod documents;
+pub mod spatial;
 pub mod table;
 pub mod touchdown;
 pub mod batch;

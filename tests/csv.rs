@@ -100,7 +100,7 @@ fn told(error: &Error) -> String {
 #[test]
 fn a_header_that_does_not_fit_is_refused_with_the_columns_place() {
     let (leg, bolted) = (leg(), bolted_leg());
-    let cases: [(&[u8], &Robot, Rates, &str); 14] = [
+    let cases: [(&[u8], &Robot, Rates, &str); 19] = [
         (
             b"q_kne,v_knee",
             &leg,
@@ -111,13 +111,43 @@ fn a_header_that_does_not_fit_is_refused_with_the_columns_place() {
             b"id,\"a,b\",v_base_y",
             &leg,
             Rates::Columns,
-            "1:10: column 3: v_base_y: bases in three dimensions are not supported by this version | give v_base_x, v_base_z and v_base_pitch",
+            "1:10: column 3: velocities beside a base in three dimensions are not read | leave out the columns v_..., and give --velocity central to take velocities from the time",
         ),
         (
-            b"q_base_qw,v_knee",
+            b"q_base_qw,q_base_qy,q_base_qx,time",
+            &leg,
+            Rates::Time,
+            "1:1: column 1: column q_base_qz is missing | a base in three dimensions has all of q_base_qw, q_base_qx, q_base_qy, q_base_qz; one in the plane q_base_x, q_base_z, q_base_pitch alone",
+        ),
+        (
+            b"time,q_base_y,q_base_pitch",
+            &leg,
+            Rates::Time,
+            "1:6: column 2: column q_base_qw is missing | a base in three dimensions has all of q_base_qw, q_base_qx, q_base_qy, q_base_qz; one in the plane q_base_x, q_base_z, q_base_pitch alone",
+        ),
+        (
+            b"q_base_pitch,q_base_qw,q_base_qy,q_base_qx,q_base_qz,time",
+            &leg,
+            Rates::Time,
+            "1:1: column 1: the base is turned by a quaternion, and by a pitch besides | leave out the one or the other",
+        ),
+        (
+            b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
             &leg,
             Rates::Columns,
-            "1:1: column 1: q_base_qw: bases in three dimensions are not supported by this version | give q_base_x, q_base_z and q_base_pitch",
+            "1:41: column 5: velocities beside a base in three dimensions are not read | leave out the columns v_..., and give --velocity central to take velocities from the time",
+        ),
+        (
+            b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,time",
+            &leg,
+            Rates::Columns,
+            "1:1: a source of velocities is missing | give --velocity central or backward: those of a base in three dimensions are taken from the time",
+        ),
+        (
+            b"v_knee,q_base_qw",
+            &bolted,
+            Rates::Columns,
+            "1:8: column 2: the robot is bolted to the world, its base has no coordinates | leave the column out, or give --base floating",
         ),
         (b"v_knee,time,v_knee", &leg, Rates::Columns, "1:13: column 3: column \"v_knee\" is given twice"),
         (b"time,v_knee,time", &leg, Rates::Columns, "1:13: column 3: column \"time\" is given twice"),
@@ -175,6 +205,46 @@ fn a_header_that_does_not_fit_is_refused_with_the_columns_place() {
         let error = Header::read(record, robot, rates).map(|_| ()).unwrap_err();
         assert_eq!(told(&error), expected, "{}", String::from_utf8_lossy(record));
     }
+}
+
+/// A leg that can swing out of the plane, with a wheel that follows its knee; its base is a chain of three joints.
+const HIP: &str = r#"<robot name="hip"><link name="world"/>
+    <link name="rail"/><link name="lift"/>
+    <link name="body"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <link name="thigh"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <link name="shin"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <link name="wheel"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <joint name="slide" type="prismatic"><parent link="world"/><child link="rail"/><axis xyz="1 0 0"/>
+        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
+    <joint name="rise" type="prismatic"><parent link="rail"/><child link="lift"/><axis xyz="0 0 1"/>
+        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
+    <joint name="tip" type="continuous"><parent link="lift"/><child link="body"/><axis xyz="0 1 0"/></joint>
+    <joint name="splay" type="continuous"><parent link="body"/><child link="thigh"/><axis xyz="1 0 0"/></joint>
+    <joint name="knee" type="continuous"><parent link="thigh"/><child link="shin"/><axis xyz="0 1 0"/></joint>
+    <joint name="spin" type="continuous"><parent link="shin"/><child link="wheel"/><axis xyz="0 1 0"/>
+        <mimic joint="knee" multiplier="2"/></joint>
+</robot>"#;
+
+#[test]
+fn columns_of_joints_without_a_coordinate_are_told_and_not_read() {
+    let robot = Robot::from_urdf(HIP).unwrap();
+    let header = Header::read(b"q_splay,q_knee,v_spin,q_spin,v_knee,v_splay,note", &robot, Rates::Columns).unwrap();
+    assert_eq!(header.ignored().collect::<Vec<_>>(), ["q_splay", "v_spin", "q_spin", "v_splay"]);
+    assert_eq!(header.carried().collect::<Vec<_>>(), ["note"]);
+    let mut rows = header.rows();
+    let row = rows.row(b"x,0.5,,nan,2,0,a", 2).unwrap().unwrap();
+    let state = row.state(&robot, &Defaults::default()).unwrap();
+    assert_eq!((&state.position[..], &state.velocity[..]), (&[0.0, 0.0, 0.0, 0.5][..], &[0.0, 0.0, 0.0, 2.0][..]));
+}
+
+#[test]
+fn a_joint_of_the_base_is_given_as_the_base() {
+    let robot = Robot::from_urdf(HIP).unwrap();
+    let error = Header::read(b"q_knee,v_rise", &robot, Rates::Columns).map(|_| ()).unwrap_err();
+    assert_eq!(
+        told(&error),
+        "1:8: column 2: joint \"rise\" is part of the floating base: x, z and pitch of body take its place | give v_base_x, v_base_z and v_base_pitch"
+    );
 }
 
 #[test]

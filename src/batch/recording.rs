@@ -92,8 +92,9 @@ pub fn samples<'h, R: Read>(
         Ok(None) => None,
         Ok(Some(row)) => {
             let source = Origin { line, id: row.id(), carried: row.carried(), excerpt: None };
-            Some(match row.time().and_then(|time| Ok((time, row.state(robot, defaults)?))) {
-                Ok((time, state)) => Ok(Sample { time, state, rate_over: [time; 2], source }),
+            let sample = || Ok((row.time()?, row.state(robot, defaults)?, row.spatial()?));
+            Some(match sample() {
+                Ok((time, state, spatial)) => Ok(Sample { time, state, rate_over: [time; 2], spatial, source }),
                 Err(error) => Err((Origin { excerpt: excerpt(record, line, &error), ..source }, error)),
             })
         }

@@ -1,5 +1,6 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
+use super::complaint::note;
 use super::delivery::Delivery;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, from_zero, pipeline_options};
 use super::output::{named, spare};
@@ -13,11 +14,12 @@ use heelstrike::excerpt::Excerpt;
 use heelstrike::scene::NamedContact;
 use heelstrike::state::Defaults;
 use heelstrike::table::{Columns, Header, Rates};
-use heelstrike::touchdown::{self, At, Difference, Thresholds, Touching};
+use heelstrike::touchdown::{self, At, Difference, Dropped, Thresholds, Touching};
 use heelstrike::{Error, Reason, Robot, report};
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::thread::available_parallelism;
 
 /// Find every outcome of many states: one line of JSON or row of CSV each, answered in order
@@ -72,10 +74,10 @@ pub struct Args {
 struct RecordingOptions {
     /// Answer only the moments at which a foot that was above the ground reaches it
     ///
-    /// A foot does so where it comes down far enough (--drop), faster than 0.045 of the robot's size per second, and ends low
-    /// enough (--ground-height); it touches when it is 0.002 of the size above the level on which it ends. The size is the
-    /// greatest distance from the root's origin to a foot or centre of gravity with all joints at zero. The base is then
-    /// shifted so that the foot is at z = 0.
+    /// A foot does so where it comes down far enough (--drop), faster than 0.05 m/s, and ends low enough (--ground-height); it
+    /// touches when it is 2 mm above the level on which it ends. Of robots smaller than 0.25 m all of these are in proportion;
+    /// the size is the greatest distance from the root's origin to a foot or centre of gravity with all joints at zero. The
+    /// base is then shifted so that the foot is at z = 0.
     #[arg(long)]
     touchdowns: bool,
     /// Which state of a touchdown is taken
@@ -83,15 +85,15 @@ struct RecordingOptions {
     at: AtRow,
     /// Which feet take part beside the one that strikes: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
     ///
-    /// With slow of every other link the lowest point, if it is slower than SPEED (m/s) and its height differs from the
+    /// With slow of every other body the lowest point, if it is slower than SPEED (m/s) and its height differs from the
     /// striking point's by no more than HEIGHT (m): feet that stand. With near every point at such a height, however it
     /// moves.
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     touching: Touching,
-    /// How far a foot must have come down, in metres [default: 0.011 of the robot's size]
+    /// How far a foot must have come down, in metres [default: 0.012, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
     drop: Option<f64>,
-    /// How far above z = 0 a foot may come to rest, in metres; recorded feet float [default: 0.019 of the robot's size]
+    /// How far above z = 0 a foot may come to rest, in metres; recorded feet float [default: 0.02, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
     ground_height: Option<f64>,
     /// Compute velocities from positions and the column time
@@ -224,10 +226,12 @@ pub(super) fn run(args: &Args) -> Outcome {
         columns.append_header(&mut line);
         delivery.write(&line)?;
     }
-    args.answer(&question, chunks, thresholds, &mut delivery)?;
+    let dropped = Mutex::new(Dropped::default());
+    args.answer(&question, chunks, thresholds, &dropped, &mut delivery)?;
     let told = std::mem::take(&mut delivery.summary);
     drop(delivery);
     drop(progress);
+    header.as_ref().inspect(|header| tell_of_columns(header, &dropped));
     args.tell(&told, summary, thresholds)?;
     Ok(if told.refused == 0 || args.refused == Refused::Ok { Answered::All } else { Answered::NotAll })
 }
@@ -278,6 +282,7 @@ impl Args {
         question: &Question,
         chunks: Input,
         thresholds: Thresholds,
+        dropped: &Mutex<Dropped>,
         delivery: &mut Delivery<W>,
     ) -> Result<(), Failure> {
         let threads = match self.threads {
@@ -288,9 +293,13 @@ impl Args {
         let ended = match (question.header, self.recording.difference(), question.touchdowns) {
             (Some(header), difference, touchdowns) if difference.is_some() || touchdowns.is_some() => {
                 let samples = batch::samples(chunks, header, question.robot, &question.defaults);
+                let samples: Box<dyn Iterator<Item = _> + Send> = match header.is_spatial() {
+                    true => Box::new(touchdown::sagittal(samples, dropped)),
+                    false => Box::new(samples),
+                };
                 let samples: Box<dyn Iterator<Item = _> + Send> = match difference {
                     Some(difference) => Box::new(touchdown::rates(samples, difference)),
-                    None => Box::new(samples),
+                    None => samples,
                 };
                 let states: Box<dyn Iterator<Item = Recorded> + Send> = match touchdowns {
                     Some((at, touching)) => {
@@ -330,6 +339,21 @@ impl Args {
             file.write_all(&line).map_err(|error| named(path, error))?;
         }
         Ok(())
+    }
+}
+
+/// What of the table did not enter the analysis.
+fn tell_of_columns(header: &Header, dropped: &Mutex<Dropped>) {
+    let ignored: Vec<&str> = header.ignored().collect();
+    if !ignored.is_empty() {
+        let (count, names) = (ignored.len(), ignored.join(", "));
+        note(&format!(
+            "{count} column{} not read, whose joints have no coordinate of their own (inspect tells why): {names}",
+            if count == 1 { "" } else { "s" },
+        ));
+    }
+    if let (true, Ok(dropped)) = (header.is_spatial(), dropped.lock()) {
+        note(&format!("the base is projected into its plane along the mean heading of each clip; left out: {dropped}"));
     }
 }
 

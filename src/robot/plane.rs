@@ -46,7 +46,7 @@ impl Plane {
     }
 
     /// Forward, normal and up as rows: takes vectors of the root link into the plane's axes.
-    pub(super) fn axes(self) -> Matrix {
+    pub(crate) fn axes(self) -> Matrix {
         match self {
             Self::XZ => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             Self::YZ => [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],

@@ -2,15 +2,18 @@
 
 use super::records::place_of;
 use super::rows::Rows;
-use crate::robot::Base;
+use crate::robot::{Base, Plane, Still};
 use crate::{Error, Reason, Result, Robot};
 use std::collections::HashSet;
 
 /// The entries of a floating base in the order of q.
 const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
 
-/// What recordings of three-dimensional robots have instead.
-const SPATIAL: [&str; 5] = ["base_y", "base_qw", "base_qx", "base_qy", "base_qz"];
+/// What recordings of three-dimensional robots have instead of the pitch.
+const QUATERNION: [&str; 4] = ["base_qw", "base_qx", "base_qy", "base_qz"];
+
+/// What they have besides.
+const SIDEWAYS: &str = "base_y";
 
 /// Where the velocities of a table come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -31,6 +34,18 @@ pub struct Header {
     pub(super) carried: Vec<usize>,
     pub(super) id: Option<usize>,
     pub(super) time: Option<usize>,
+    pub(super) spatial: Option<SpatialColumns>,
+}
+
+/// The columns of a base in three dimensions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SpatialColumns {
+    /// Of the origin's x and y.
+    pub origin: [Option<usize>; 2],
+    /// Of w, x, y, z.
+    pub quaternion: [usize; 4],
+    /// The robot's plane.
+    pub plane: Plane,
 }
 
 /// What a column holds; coordinates are indices into q.
@@ -39,6 +54,12 @@ pub(super) enum Column {
     Id,
     Position(usize),
     Velocity(usize),
+    /// y of a base in three dimensions.
+    Sideways,
+    /// A component of its quaternion, of w, x, y, z.
+    Quaternion(usize),
+    /// Of a joint that has no coordinate of its own.
+    Ignored,
     Friction,
     Restitution,
     Stance,
@@ -50,13 +71,19 @@ impl Header {
     ///
     /// # Errors
     /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
-    /// robot does not have, velocities that are missing or one too many (see [`Rates`]). The error tells the column's place
-    /// in `record`, on line 1.
+    /// robot does not have, a base in three dimensions that is half given or given beside a pitch, velocities that are missing
+    /// or one too many (see [`Rates`]). The error tells the column's place in `record`, on line 1.
     pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
         let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let names = names(record)?;
-        let mut header =
-            Self { columns: Vec::with_capacity(names.len()), carried: vec![], id: None, time: None, names };
+        let mut header = Self {
+            columns: Vec::with_capacity(names.len()),
+            carried: vec![],
+            id: None,
+            time: None,
+            spatial: None,
+            names,
+        };
         let mut seen = HashSet::new();
         for (at, name) in header.names.iter().enumerate() {
             let refused = |error: Error| in_column(error, record, at);
@@ -74,6 +101,7 @@ impl Header {
             }
             header.columns.push(column);
         }
+        header.spatial = header.spatial(record, robot)?;
         header.check(record, robot, rates)?;
         Ok(header)
     }
@@ -88,9 +116,48 @@ impl Header {
         self.time.is_some()
     }
 
+    /// Whether the base is given in three dimensions, so that the motion has to be projected clip by clip
+    /// ([`crate::touchdown::sagittal`]).
+    pub fn is_spatial(&self) -> bool {
+        self.spatial.is_some()
+    }
+
+    /// Names of the columns that are not read, because their joints have no coordinate of their own: they are held, welded or
+    /// follow another joint.
+    pub fn ignored(&self) -> impl Iterator<Item = &str> {
+        let ignored = self.columns.iter().zip(&self.names).filter(|(column, _)| **column == Column::Ignored);
+        ignored.map(|(_, name)| name.as_str())
+    }
+
     /// Names of the columns that are carried through.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
         self.carried.iter().map(|&at| self.names[at].as_str())
+    }
+
+    /// Where the first column of a kind is.
+    fn place(&self, wanted: Column) -> Option<usize> {
+        self.columns.iter().position(|column| *column == wanted)
+    }
+
+    /// The columns of a base in three dimensions, if it is given so.
+    fn spatial(&self, record: &[u8], robot: &Robot) -> Result<Option<SpatialColumns>> {
+        let components = [0, 1, 2, 3].map(|component| self.place(Column::Quaternion(component)));
+        let sideways = self.place(Column::Sideways);
+        let Some(first) = components.into_iter().flatten().chain(sideways).min() else { return Ok(None) };
+        if let Some(missing) = components.iter().position(Option::is_none) {
+            let missing = Reason::Missing(format!("column q_{}", QUATERNION[missing]));
+            let hint = "a base in three dimensions has all of q_base_qw, q_base_qx, q_base_qy, q_base_qz; one in the plane \
+                        q_base_x, q_base_z, q_base_pitch alone";
+            return Err(in_column(missing.into(), record, first).hint(hint));
+        }
+        if let Some(pitch) = self.place(Column::Position(2)) {
+            let reason = "the base is turned by a quaternion, and by a pitch besides".to_owned();
+            let error = in_column(Error::new(Reason::Inconsistent(reason)), record, pitch);
+            return Err(error.hint("leave out the one or the other"));
+        }
+        let quaternion = components.map(Option::unwrap_or_default);
+        let origin = [self.place(Column::Position(0)), sideways];
+        Ok(Some(SpatialColumns { origin, quaternion, plane: robot.reading.plane }))
     }
 
     /// Refuses a table without what a state needs.
@@ -102,10 +169,20 @@ impl Header {
             let what = format!("a column of {what}, such as {prefix}{example},");
             Err(Error::new(Reason::Missing(what)).on(1, 1).hint(hint))
         };
-        if first(|column| matches!(column, Column::Position(_))).is_none() && velocity.is_none() {
+        if first(|column| matches!(column, Column::Position(_) | Column::Quaternion(_))).is_none() && velocity.is_none()
+        {
             return missing("positions", "q_", "the first line must name the columns");
         }
+        if let (true, Some(at)) = (self.is_spatial(), velocity) {
+            let error = in_column(Error::new(spatial_velocity()), record, at);
+            return Err(error.hint(SPATIAL_VELOCITY));
+        }
         match (rates, velocity) {
+            (Rates::Columns, None) if self.is_spatial() && self.has_time() => {
+                let hint =
+                    "give --velocity central or backward: those of a base in three dimensions are taken from the time";
+                Err(Error::new(Reason::Missing("a source of velocities".into())).on(1, 1).hint(hint))
+            }
             (Rates::Columns, None) if self.has_time() => missing(
                 "velocities",
                 "v_",
@@ -185,10 +262,10 @@ fn line_and_column_after(record: &[u8], offset: u64) -> (usize, usize) {
 /// What the column called `name` holds.
 fn column(name: &str, robot: &Robot) -> Result<Column> {
     if let Some(coordinate) = name.strip_prefix("q_") {
-        return self::coordinate("q_", coordinate, robot).map(Column::Position);
+        return self::coordinate("q_", coordinate, robot, Column::Position);
     }
     if let Some(coordinate) = name.strip_prefix("v_") {
-        return self::coordinate("v_", coordinate, robot).map(Column::Velocity);
+        return self::coordinate("v_", coordinate, robot, Column::Velocity);
     }
     Ok(match name {
         "id" => Column::Id,
@@ -199,23 +276,44 @@ fn column(name: &str, robot: &Robot) -> Result<Column> {
     })
 }
 
-/// The index in q of a coordinate.
-fn coordinate(prefix: &str, name: &str, robot: &Robot) -> Result<usize> {
+/// Why velocities of a base in three dimensions are refused, and the remedy: engines give them in the world's axes, the
+/// body's, or both.
+fn spatial_velocity() -> Reason {
+    Reason::Unsupported("velocities beside a base in three dimensions are not read".into())
+}
+
+const SPATIAL_VELOCITY: &str =
+    "leave out the columns v_..., and give --velocity central to take velocities from the time";
+
+/// What the column of a coordinate holds: `moving` where it is one of the robot's, by its index in q.
+fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Column) -> Result<Column> {
     if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
-        return Ok(robot.base_dofs() + joint);
+        return Ok(moving(robot.base_dofs() + joint));
     }
     let in_base = BASE.iter().position(|entry| *entry == name);
     if let Some(at) = in_base.filter(|_| robot.base == Base::Floating) {
-        return Ok(at);
+        return Ok(moving(at));
     }
-    if robot.base == Base::Fixed && (in_base.is_some() || SPATIAL.contains(&name)) {
+    let in_space = QUATERNION.iter().position(|entry| *entry == name);
+    let spatial = in_space.map(Column::Quaternion).or((name == SIDEWAYS).then_some(Column::Sideways));
+    if robot.base == Base::Fixed && (in_base.is_some() || spatial.is_some()) {
         let reason = "the robot is bolted to the world, its base has no coordinates".to_owned();
         return Err(Error::new(Reason::Inconsistent(reason)).hint("leave the column out, or give --base floating"));
     }
-    if SPATIAL.contains(&name) {
-        let reason = format!("{prefix}{name}: bases in three dimensions are not supported by this version");
-        let hint = format!("give {prefix}base_x, {prefix}base_z and {prefix}base_pitch");
-        return Err(Error::new(Reason::Unsupported(reason)).hint(hint));
+    match spatial {
+        Some(column) if prefix == "q_" => return Ok(column),
+        Some(_) => return Err(Error::new(spatial_velocity()).hint(SPATIAL_VELOCITY)),
+        None => {}
+    }
+    match robot.held(name) {
+        Some(held) if held.still == Still::Base => {
+            let reason = Reason::Inconsistent(format!("joint \"{}\" is {}", short(name), held.why()));
+            let hint = format!("give {prefix}base_x, {prefix}base_z and {prefix}base_pitch");
+            return Err(Error::new(reason).hint(hint));
+        }
+        Some(_) => return Ok(Column::Ignored),
+        None if robot.followers.iter().any(|follower| follower.name == name) => return Ok(Column::Ignored),
+        None => {}
     }
     let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();
     let reason = Reason::UnknownName { what: "coordinate", name: short(name) };

@@ -14,6 +14,10 @@
 //! NaN so; it means "not given" under `id`, `friction`, `restitution` and `stance`, and it must stand under `q_base_x`,
 //! `q_base_z`, `v_base_x` and `v_base_z` in a row that has a stance. Lines without a field are skipped. An `id` is text.
 //!
+//! Of a base in three dimensions the columns are `q_base_x`, `q_base_y`, `q_base_z` and the quaternion `q_base_qw`,
+//! `q_base_qx`, `q_base_qy`, `q_base_qz` in the place of a pitch ([`crate::spatial`]); its velocities come from the time alone.
+//! Columns of joints that have no coordinate of their own are not read and not carried through ([`Header::ignored`]).
+//!
 //! # Output
 //!
 //! `id, verdict, outcome, margin, proven`, then `mode_<contact>, p_<contact>_t, p_<contact>_n` for every contact that the

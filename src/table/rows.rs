@@ -1,10 +1,11 @@
 //! Rows of a table and their states.
 
-use super::header::{Column, Header, short};
+use super::header::{Column, Header, SpatialColumns, short};
 use super::records::place_of;
 use crate::impact::Friction;
 use crate::robot::Base;
 use crate::scene::{ByLink, Scene};
+use crate::spatial::{Spatial, project};
 use crate::state::{Defaults, State};
 use crate::{Error, Reason, Result, Robot};
 use csv::ByteRecord;
@@ -133,11 +134,12 @@ impl Row<'_> {
         self.number(self.header.time.ok_or_else(missing)?)
     }
 
-    /// The state of `robot`; what the row and `defaults` leave open is 0, of the friction unknown.
+    /// The state of `robot`; what the row and `defaults` leave open is 0, of the friction unknown. Its x is that of the table
+    /// also where the base is given in three dimensions; along the heading it is put by [`crate::touchdown::sagittal`].
     ///
     /// # Errors
     /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that is
-    /// both placed by a stance and given. The error tells column, line and place.
+    /// both placed by a stance and given, a quaternion that is none. The error tells column, line and place.
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
         let (fields, columns) = (self.record.len(), self.header.columns.len());
         if fields != columns {
@@ -157,8 +159,10 @@ impl Row<'_> {
         for (at, &column) in self.header.columns.iter().enumerate() {
             match column {
                 Column::Position(to @ 0..2) | Column::Velocity(to @ 0..2) if stance.is_some() => {
-                    self.placed_base(at, to)?
+                    self.placed_base(at, ["x", "z"][to])?
                 }
+                Column::Sideways if stance.is_some() => self.placed_base(at, "y")?,
+                Column::Sideways | Column::Quaternion(_) => drop(self.number(at)?),
                 Column::Position(to) => state.position[to] = self.number(at)?,
                 Column::Velocity(to) => state.velocity[to] = self.number(at)?,
                 Column::Friction => friction = self.given(at)?.map(|text| self.friction(at, text)).transpose()?,
@@ -168,11 +172,37 @@ impl Row<'_> {
                     }
                 }
                 Column::Id => drop(self.given(at)?),
-                Column::Stance | Column::Carried => {}
+                Column::Stance | Column::Carried | Column::Ignored => {}
             }
+        }
+        if let Some((pitch, _)) = self.projected()? {
+            state.position[2] = pitch;
         }
         state.scene.friction.default = friction.or(defaults.friction);
         Ok(state)
+    }
+
+    /// What the plane does not hold of a base that is given in three dimensions.
+    ///
+    /// # Errors
+    /// Those of [`Row::state`] about it.
+    pub fn spatial(&self) -> Result<Option<Spatial>> {
+        Ok(self.projected()?.map(|(_, spatial)| spatial))
+    }
+
+    /// The pitch of a base in three dimensions, and the rest.
+    fn projected(&self) -> Result<Option<(f64, Spatial)>> {
+        let Some(SpatialColumns { origin, quaternion, plane }) = self.header.spatial else { return Ok(None) };
+        // A stance leaves x and y open.
+        let length = |at: Option<usize>| match at {
+            Some(at) if self.given(at)?.is_some() => self.number(at),
+            _ => Ok(0.0),
+        };
+        let origin = [length(origin[0])?, length(origin[1])?];
+        let [w, x, y, z] = quaternion.map(|at| self.number(at));
+        let (lines, column) = place_of(self.raw, quaternion[0]);
+        let refused = |error: Error| error.at("q_base_qw").on(self.line + lines, column);
+        project(origin, [w?, x?, y?, z?], plane).map(Some).map_err(refused)
     }
 
     fn stance(&self, robot: &Robot) -> Result<Option<usize>> {
@@ -194,12 +224,12 @@ impl Row<'_> {
         robot.link(name).map(Some).ok_or_else(unknown)
     }
 
-    /// Refuses a base's x or z beside a stance.
-    fn placed_base(&self, at: usize, coordinate: usize) -> Result<()> {
+    /// Refuses a base's coordinate beside a stance.
+    fn placed_base(&self, at: usize, coordinate: &str) -> Result<()> {
         if self.given(at)?.is_none() {
             return Ok(());
         }
-        let reason = Reason::Inconsistent(format!("the stance already gives the base's {}", ["x", "z"][coordinate]));
+        let reason = Reason::Inconsistent(format!("the stance already gives the base's {coordinate}"));
         Err(self.refuse(at, reason).hint("empty either the stance's cell or the base's x and z"))
     }
 

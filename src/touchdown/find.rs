@@ -88,6 +88,14 @@ enum Moment {
     After { at: usize, height: f64, smooth: usize },
 }
 
+impl Moment {
+    /// The row of the window that it is, or the last one before it.
+    fn row(self) -> usize {
+        let (Self::Row(at) | Self::After { at, .. }) = self;
+        at
+    }
+}
+
 /// So many rows before the moment of contact are used for the state at it.
 const BEFORE: usize = 3;
 
@@ -162,10 +170,9 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             if (height - last) / passed < -slow {
                 descent.falling = true;
             } else {
-                let level = height.min(last);
                 if descent.falling {
-                    if descent.from - level >= drop && level <= ground {
-                        struck.extend(self.moment(point, level + above, smooth).map(|moment| (point, moment)));
+                    if descent.from - last >= drop && last <= ground {
+                        struck.extend(self.moment(point, last + above, smooth).map(|moment| (point, moment)));
                     }
                     descent = Descent { from: height, falling: false };
                 }
@@ -217,15 +224,19 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         Some((last..self.window.len()).find(marked).map_or(after, Moment::Row))
     }
 
-    /// Makes touchdowns of the points that strike; those that strike together are one.
-    fn strike(&mut self, struck: Vec<(usize, Moment)>) {
+    /// Makes touchdowns of the points that strike and are free to; those that strike together are one.
+    fn strike(&mut self, mut struck: Vec<(usize, Moment)>) {
+        struck.retain(|&(point, moment)| {
+            self.points.is_free(point, &self.window[moment.row()].places, self.thresholds.together)
+        });
         let mut left = VecDeque::from(struck);
         while let Some((striking, moment)) = left.pop_front() {
             let also = left.iter().filter(|&&other| self.together((striking, moment), other));
             let also: Vec<usize> = also.map(|&(point, _)| point).collect();
             left.retain(|(point, _)| !also.contains(point));
             let (mut state, time, at) = self.state(striking, moment);
-            let (shift_z, contact) = self.points.touch(&mut state, striking, &also, self.touching);
+            let together = self.thresholds.together;
+            let (shift_z, contact) = self.points.touch(&mut state, striking, &also, self.touching, together);
             let Frame { sample, row, .. } = &self.window[at];
             let (row, source) = (*row, sample.source.clone());
             let finite = state.position.iter().chain(&state.velocity).all(|entry| entry.is_finite());
@@ -253,7 +264,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
 
     /// The state of a point's touchdown, its time, and the frame that it is of.
     fn state(&self, point: usize, moment: Moment) -> (State, f64, usize) {
-        let (Moment::Row(at) | Moment::After { at, .. }) = moment;
+        let at = moment.row();
         let Frame { sample, .. } = &self.window[at];
         let (mut state, mut time) = (sample.state.clone(), sample.time);
         if let (At::Crossing, Moment::After { height, smooth, .. }, Some(next)) =

@@ -1,17 +1,28 @@
 //! Touchdowns in recorded gaits: the moments at which a foot that was above the ground reaches it.
 //!
 //! ```text
-//!     samples in time --[rates, where the table has none]--> --[find]--> Touchdown: state, row, time, striking contact
+//!     samples in time --[sagittal, where the base is in 3-D]--> --[rates, where the table has none]--> --[find]-->
+//!     Touchdown: state, row, time, striking contact
 //! ```
 //!
 //! Recorded feet do not reach z = 0: they float or sink by centimetres, sink slowly while they stand, and may be scuffed
 //! over the ground. So a touchdown is told by the foot's motion. Of every point that can touch (a circle's lowest, a
 //! polygon's corners) the height is followed: a *descent* is a run of rows in which it falls faster than
 //! [`Thresholds::slow`]; it is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last not
-//! falling, and ends no higher than [`Thresholds::ground`] above z = 0. The moment of contact is the one at which the point
-//! is [`Thresholds::above`] over the level on which its descent ends; before it the foot still has the velocity with which
-//! it strikes. All thresholds are parts of the robot's size, so that a robot built or written down twice as large has the
-//! same touchdowns; how far feet float is up to the recording, and can be told ([`Touchdowns::with`]).
+//! falling, ends no higher than [`Thresholds::ground`] above z = 0, and the point is free toward the ground: the lowest of its
+//! body over a ground of some slope m near to level.
+//!
+//! ```text
+//!     z_i - m x_i <= z_j - m x_j  for all points j of the body of i,        with one |m| <= 0.15
+//! ```
+//!
+//! So the toe of a flat foot comes down though the heel is recorded a little lower, and the upper side of a sole or what is
+//! inside of a round foot does not. The moment of contact is the one at which the point is [`Thresholds::above`] over the
+//! level on which its descent ends; before it the foot still has the velocity with which it strikes.
+//!
+//! How far feet float, and how well a height is known, is a matter of recording and not of the robot, so the thresholds are
+//! lengths; they can be told ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its feet less, and has them in
+//! proportion.
 //!
 //! With [`At::Row`] the state is the last row before that moment as it is. With [`At::Crossing`] it is the state at the
 //! moment:
@@ -44,47 +55,44 @@ mod clip;
 mod find;
 mod points;
 mod rates;
+mod sagittal;
 
 pub use find::{Touchdowns, find};
 pub use rates::{Difference, Differentiated, rates};
+pub use sagittal::{Dropped, Sagittal, sagittal};
 
 use crate::contact::Feet;
 use crate::scene::NamedContact;
+use crate::spatial::Spatial;
 use crate::state::State;
 use crate::{Error, Reason, Robot};
 use std::fmt;
 use std::str::FromStr;
 
-/// What counts as a touchdown, by the robot's size: the greatest distance from the root's origin to a foot or CoG with all
-/// joints at zero.
+/// Robots of this size and larger \[m\] have the same thresholds; the size is the greatest distance from the root's origin to
+/// a foot or CoG with all joints at zero.
+pub const SMALL: f64 = 0.25;
+
+/// What counts as a touchdown; of a robot smaller than [`SMALL`] the same part of each as its size is of that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
-    /// The least height of a descent: 0.011 of the size \[m\].
+    /// The least height of a descent: 12 mm \[m\].
     pub drop: f64,
-    /// A point that falls more slowly has ended its descent: 0.045 of the size per second \[m/s\].
+    /// A point that falls more slowly has ended its descent: 0.05 m/s \[m/s\].
     pub slow: f64,
-    /// The highest level on which a descent may end: 0.019 of the size \[m\].
+    /// The highest level on which a descent may end: 20 mm \[m\].
     pub ground: f64,
-    /// How far above the level on which its descent ends a point touches the ground: 0.002 of the size \[m\].
+    /// How far above the level on which its descent ends a point touches the ground: 2 mm \[m\].
     pub above: f64,
-    /// Points that strike at the same row and are no more apart in height strike together: 1e-6 of the size \[m\].
+    /// Points that strike at the same row and are no more apart in height strike together: 1 um \[m\].
     pub together: f64,
 }
 
 impl Thresholds {
     /// Those for `robot` with the `feet` that were added to it.
     pub fn of(robot: &Robot, feet: &[NamedContact]) -> Self {
-        Self::of_size(Feet::new(robot, feet).size())
-    }
-
-    fn of_size(size: f64) -> Self {
-        Self {
-            drop: 0.011 * size,
-            slow: 0.045 * size,
-            ground: 0.019 * size,
-            above: 0.002 * size,
-            together: 1e-6 * size,
-        }
+        let part = (Feet::new(robot, feet).size() / SMALL).min(1.0);
+        Self { drop: 0.012 * part, slow: 0.05 * part, ground: 0.02 * part, above: 0.002 * part, together: 1e-6 * part }
     }
 }
 
@@ -97,6 +105,8 @@ pub struct Sample<S> {
     pub state: State,
     /// From when to when its velocity was taken \[s\]: at its own time alone, or of differences between two rows.
     pub rate_over: [f64; 2],
+    /// What the plane does not hold of a base in three dimensions, until the motion is projected ([`sagittal`]).
+    pub spatial: Option<Spatial>,
     /// What the caller knows it by.
     pub source: S,
 }
@@ -146,7 +156,7 @@ impl At {
 pub enum Touching {
     /// None.
     Strike,
-    /// Of every other link the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the striking
+    /// Of every other body the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the striking
     /// point's by no more than `height` \[m\].
     Slow {
         /// Metres per second.
@@ -154,7 +164,8 @@ pub enum Touching {
         /// Metres.
         height: f64,
     },
-    /// Every point whose height differs from the striking point's by no more than this \[m\], however it moves.
+    /// Every point free toward the ground whose height differs from the striking point's by no more than this \[m\],
+    /// however it moves.
     Near {
         /// Metres.
         height: f64,

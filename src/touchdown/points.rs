@@ -5,9 +5,12 @@ use crate::contact::{Circle, Feet, Placement, Plane, Point, points};
 use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Rotation, Vector};
-use crate::robot::{Base, Link, Robot};
+use crate::robot::{Base, Robot};
 use crate::scene::NamedContact;
 use crate::state::State;
+
+/// Ground and soles that are taken for level are so up to this slope.
+const SLOPE: f64 = 0.15;
 
 /// All points of a robot's feet, in the order of its links, and the memory to place them.
 #[derive(Debug)]
@@ -51,9 +54,35 @@ impl<'r> Points<'r> {
         Placement::new(&self.plan, &self.workspace, base)
     }
 
+    /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them to
+    /// within `together` \[m\]; all are at `places`.
+    pub fn is_free(&self, point: usize, places: &[Vector<f64>], together: f64) -> bool {
+        let [x, z] = places[point];
+        // Over the slope m a point is z - m x high.
+        let (mut least, mut most) = (-SLOPE, SLOPE);
+        for other in self.of_body(self.body(point)) {
+            let [across, above] = [x - places[other][0], z - places[other][1] - together];
+            if across > 0.0 {
+                least = least.max(above / across);
+            } else if across < 0.0 {
+                most = most.min(above / across);
+            } else if above > 0.0 {
+                return false;
+            }
+        }
+        least <= most
+    }
+
     /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
-    /// (`also`) among them; gives the shift \[m\] and the striking one's name.
-    pub fn touch(&mut self, state: &mut State, striking: usize, also: &[usize], touching: Touching) -> (f64, String) {
+    /// (`also`) among them, `together` as in [`Points::is_free`]; gives the shift \[m\] and the striking one's name.
+    pub fn touch(
+        &mut self,
+        state: &mut State,
+        striking: usize,
+        also: &[usize],
+        touching: Touching,
+        together: f64,
+    ) -> (f64, String) {
         let placement = self.placement(&state.position);
         let places: Vec<_> = self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect();
         let above = |point: usize| (places[point][1] - places[striking][1]).abs();
@@ -62,12 +91,13 @@ impl<'r> Points<'r> {
         match touching {
             Touching::Strike => {}
             Touching::Slow { speed, height } => {
-                let mut feet = self.lowest_of_other_links(&closed, &places);
+                let mut feet = self.lowest_of_other_bodies(&closed, &places);
                 feet.retain(|&point| above(point) <= height && self.speed(point, &placement, &state.velocity) < speed);
                 closed.append(&mut feet);
             }
             Touching::Near { height } => {
-                let near = |point: &usize| *point != striking && !also.contains(point) && above(*point) <= height;
+                let free = |point: &usize| above(*point) <= height && self.is_free(*point, &places, together);
+                let near = |point: &usize| *point != striking && !also.contains(point) && free(point);
                 closed.extend((0..places.len()).filter(near));
             }
         }
@@ -90,21 +120,21 @@ impl<'r> Points<'r> {
         (shift, name)
     }
 
-    /// The lowest point of every link of which none strikes.
-    fn lowest_of_other_links(&self, strikers: &[usize], places: &[Vector<f64>]) -> Vec<usize> {
-        let link = |point: usize| self.points[point].0;
-        let (mut lowest, mut of): (Vec<usize>, Option<usize>) = (Vec::new(), None);
-        for point in 0..self.points.len() {
-            if of != Some(link(point)) {
-                lowest.push(point);
-                of = Some(link(point));
-            } else if let Some(last) = lowest.last_mut().filter(|last| places[point][1] < places[**last][1]) {
-                *last = point;
-            }
-        }
-        let striking: Vec<usize> = strikers.iter().map(|&point| link(point)).collect();
-        lowest.retain(|&point| !striking.contains(&link(point)));
-        lowest
+    /// The lowest point of every body of which none strikes.
+    fn lowest_of_other_bodies(&self, strikers: &[usize], places: &[Vector<f64>]) -> Vec<usize> {
+        let striking: Vec<usize> = strikers.iter().map(|&point| self.body(point)).collect();
+        let others = (0..self.robot.bodies.len()).filter(|body| !striking.contains(body));
+        let height = |point: &usize| places[*point][1];
+        let lowest = |body| self.of_body(body).min_by(|a, b| height(a).total_cmp(&height(b)));
+        others.filter_map(lowest).collect()
+    }
+
+    fn body(&self, point: usize) -> usize {
+        self.points[point].1.body
+    }
+
+    fn of_body(&self, body: usize) -> impl Iterator<Item = usize> {
+        (0..self.points.len()).filter(move |&point| self.body(point) == body)
     }
 
     /// Speed of a point after `at` \[m/s\].
@@ -118,14 +148,6 @@ impl<'r> Points<'r> {
     fn named(&self, point: usize, placement: &Placement) -> NamedContact {
         let (link, point) = self.points[point];
         let Circle { centre, radius, .. } = Plane::LEVEL.circle(placement, point);
-        NamedContact { link, offset: offset(&self.robot.links[link], centre), radius }
+        NamedContact { link, offset: self.robot.links[link].offset(centre), radius }
     }
-}
-
-/// The point of the link's own frame, in the plane through its origin, that is at `point` of its body's frame.
-fn offset(link: &Link, point: Vector<f64>) -> [f64; 3] {
-    // The rows of a turn are its inverse's columns.
-    let [forward, up] = link.pose;
-    let across = [point[0] - forward[3], point[1] - up[3]];
-    [0, 1, 2].map(|axis| forward[axis] * across[0] + up[axis] * across[1])
 }

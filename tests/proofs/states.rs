@@ -64,7 +64,7 @@ pub fn models() -> Vec<Model> {
     let end = |z: f64| [0.0, 0.0, z];
     let legs = [("left_leg", end(-1.0), 0.0), ("right_leg", end(-1.0), 0.0)];
     let round = [("left_foot", end(0.0), 0.02815), ("right_foot", end(0.0), 0.02815)];
-    let h1 = read("tests/data/gaits/h1_planar.urdf");
+    let h1 = read("tests/proofs/h1_planar.urdf");
     let solo = ["FL_LOWER_LEG", "FR_LOWER_LEG", "HL_LOWER_LEG", "HR_LOWER_LEG"].map(|leg| (leg, end(-0.16), 0.0));
     vec![
         model("minimalistic", &read("urdf/minimalistic.urdf"), 2, &legs),

@@ -3,7 +3,7 @@
 use super::samples;
 use heelstrike::Robot;
 use heelstrike::table::Rates;
-use heelstrike::touchdown::{At, Difference, Thresholds, Touchdown, Touching, find, rates};
+use heelstrike::touchdown::{At, Difference, SMALL, Thresholds, Touchdown, Touching, find, rates};
 
 /// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own.
 const LIFT: &str = r#"<robot name="lift">
@@ -161,27 +161,61 @@ fn the_velocity_at_the_crossing_is_that_of_the_fall_also_at_ten_rows_a_second() 
 }
 
 #[test]
-fn a_robot_written_down_in_other_units_has_the_same_touchdowns() {
+fn small_robots_have_the_touchdowns_of_large_ones_in_proportion() {
     // One foot touches down, one is scuffed over the ground, one comes down too little: all near a threshold.
     let swings = [
         &[0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.005, 0.05][..],
         &[0.05, 0.04, 0.03, 0.0215, 0.0215, 0.03],
         &[0.0, 0.0115, 0.006, 0.0, 0.0],
-        &[0.05, 0.04, 0.0205, 0.02, 0.0196, 0.0196],
+        &[0.05, 0.04, 0.0206, 0.0198, 0.0195, 0.0195],
     ];
-    let found = |scale: f64| {
+    let found = |scale: f64, part: f64| {
         let rows = |heights: &[f64]| -> Vec<[f64; 3]> {
-            one_foot(heights).into_iter().map(|[time, a, b]| [time, a * scale, b * scale]).collect()
+            one_foot(heights).into_iter().map(|[time, a, b]| [time, a * part, b * part]).collect()
         };
         swings.map(|heights| {
             let touchdowns = lifted_at(scale, &rows(heights), At::Crossing, Touching::Strike);
             touchdowns.iter().map(|touchdown| touchdown.row).collect::<Vec<_>>()
         })
     };
-    let expected = found(1.0);
+    let expected = found(1.0, 1.0);
     assert!(expected.iter().any(Vec::is_empty) && expected.iter().any(|rows| !rows.is_empty()), "{expected:?}");
-    for scale in [1e-6, 1e-3, 1e3, 1e6] {
-        assert_eq!(found(scale), expected, "{scale}");
+    // However large the robot is, feet float as recorded.
+    for scale in [10.0, 1e3, 1e6] {
+        assert_eq!(found(scale, 1.0), expected, "{scale}");
+    }
+    // The foot at x = 1 with its radius makes the size.
+    let size = 1.1;
+    for scale in [0.1, 1e-3, 1e-6] {
+        assert_eq!(found(scale, scale * size / SMALL), expected, "{scale}");
+    }
+}
+
+/// A sole of 0.2 m, 20 mm thick, with a ball of 15 mm inside of its front end; it turns on its heel.
+const SOLE: &str = r#"<robot name="sole"><link name="foot">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><origin xyz="0.1 0 0.01"/><geometry><box size="0.2 0.1 0.02"/></geometry></collision>
+    <collision><origin xyz="0.18 0 0.018"/><geometry><sphere radius="0.015"/></geometry></collision>
+</link></robot>"#;
+
+#[test]
+fn what_another_point_of_the_foot_keeps_from_the_ground_does_not_strike() {
+    let robot = Robot::from_urdf(SOLE).unwrap();
+    // The heel stands where it was recorded, and the toe comes down from 60 mm until the sole is level or, as recorded, not.
+    for rest in [-0.02, 0.0, 0.02_f64] {
+        let mut table = "time,q_base_z,q_base_pitch\n".to_owned();
+        let pitch = |row: u32| -(0.3 - 0.03 * f64::from(row)).max(rest);
+        table.extend((0..15).map(|row| format!("{},-0.003,{}\n", f64::from(row) * 0.01, pitch(row))));
+        let rows = samples(&table, &robot, Rates::Time);
+        let rows: Vec<_> = rates(rows.into_iter(), Difference::Backward).collect();
+        let found = find(rows.into_iter(), &robot, &[], At::Row, "near:0.05".parse().unwrap()).unwrap();
+        let found: Vec<_> = found.map(Result::unwrap).collect();
+        assert_eq!(found.len(), 1, "rest at {rest}: {found:?}");
+        let contacts = found[0].state.scene.contacts.as_ref().unwrap();
+        let along: Vec<f64> = contacts.iter().map(|contact| (contact.offset[0] * 1e3).round()).collect();
+        let radii: Vec<f64> = contacts.iter().map(|contact| contact.radius).collect();
+        assert_eq!((along, radii), (vec![0.0, 200.0], vec![0.0; 2]), "heel and toe of the sole, rest at {rest}");
+        assert_eq!(found[0].striking, "foot/1");
     }
 }
 

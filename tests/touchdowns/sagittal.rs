@@ -1,0 +1,147 @@
+//! Motions in three dimensions, projected clip by clip.
+
+use super::{data, samples};
+use heelstrike::Robot;
+use heelstrike::table::Rates;
+use heelstrike::touchdown::{Dropped, Sampled, sagittal};
+use proptest::prelude::*;
+use std::sync::Mutex;
+
+const BODY: &str = r#"<robot name="body"><link name="body">
+    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision>
+</link></robot>"#;
+
+const HEADER: &str = "time,q_base_qy,q_base_x,q_base_qw,q_base_z,q_base_y,q_base_qz,q_base_qx\n";
+
+/// Time, x, y, z, yaw, pitch, roll.
+type Row = [f64; 7];
+
+/// The table of a motion.
+fn table(rows: &[Row]) -> String {
+    let mut table = HEADER.to_owned();
+    for [time, x, y, z, yaw, pitch, roll] in rows {
+        let ([sy, cy], [sp, cp], [sr, cr]) = (half(*yaw), half(*pitch), half(*roll));
+        let qw = cy * cp * cr + sy * sp * sr;
+        let qx = cy * cp * sr - sy * sp * cr;
+        let qy = cy * sp * cr + sy * cp * sr;
+        let qz = sy * cp * cr - cy * sp * sr;
+        table += &format!("{time},{qy},{x},{qw},{z},{y},{qz},{qx}\n");
+    }
+    table
+}
+
+fn half(angle: f64) -> [f64; 2] {
+    [(0.5 * angle).sin(), (0.5 * angle).cos()]
+}
+
+/// The projected rows, and what was left out.
+fn projected(table: &str, robot: &Robot) -> (Vec<Sampled<usize>>, Dropped) {
+    let dropped = Mutex::new(Dropped::default());
+    let found = sagittal(samples(table, robot, Rates::Time).into_iter(), &dropped).collect();
+    (found, dropped.into_inner().unwrap())
+}
+
+fn positions(table: &str) -> Vec<Vec<f64>> {
+    let (samples, _) = projected(table, &Robot::from_urdf(BODY).unwrap());
+    samples.into_iter().map(|sampled| sampled.unwrap().state.position).collect()
+}
+
+fn close(found: &[Vec<f64>], expected: &[Vec<f64>]) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+        // Digits of sums of up to ten metres.
+        assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+    }
+}
+
+#[test]
+fn a_walk_toward_the_left_is_one_along_x() {
+    let left = |time: f64| [time, 0.5, 3.0 + time, 0.9, std::f64::consts::FRAC_PI_2, 0.1 * time, 0.0];
+    let rows: Vec<Row> = (0..5).map(|row| left(0.25 * f64::from(row))).collect();
+    let expected: Vec<Vec<f64>> = rows.iter().map(|row| vec![row[2], 0.9, row[5]]).collect();
+    close(&positions(&table(&rows)), &expected);
+}
+
+#[test]
+fn each_clip_has_a_heading_of_its_own_and_what_is_left_out_is_told() {
+    let ahead = [[0.0, 0.0, 0.0, 1.0, 0.2, 0.0, 0.1], [0.1, 1.0, 0.5, 1.0, -0.2, 0.0, 0.0]];
+    let back = [[0.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0], [0.1, -1.0, 0.0, 1.0, 3.0, 0.0, -0.3]];
+    let (found, dropped) = projected(&table(&[ahead, back].concat()), &Robot::from_urdf(BODY).unwrap());
+    let x: Vec<f64> = found.iter().map(|sampled| sampled.as_ref().unwrap().state.position[0]).collect();
+    close(&[x], &[vec![0.0, 1.0, 0.0, -3.0_f64.cos()]]);
+    // The line through the middle of the first clip lies at y = 0.25; in the second one half of sin 3 is off it.
+    close(&[vec![dropped.roll, dropped.yaw, dropped.sideways]], &[vec![0.3, 0.2, 0.25]]);
+}
+
+#[test]
+fn a_refused_row_stays_in_its_place_and_a_circle_has_no_heading() {
+    let rows: Vec<Row> = (0..3).map(|row| [0.1 * f64::from(row), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]).collect();
+    let robot = Robot::from_urdf(BODY).unwrap();
+    let broken = table(&rows).replacen("0.1,0,0,1,", "0.1,0,0,0.5,", 1);
+    let (found, _) = projected(&broken, &robot);
+    let refused: Vec<bool> = found.iter().map(Result::is_err).collect();
+    assert_eq!(refused, [false, true, false]);
+    let (line, error) = found[1].as_ref().unwrap_err();
+    assert_eq!(
+        (*line, error.to_string().as_str()),
+        (3, "3:9: q_base_qw: the length of the quaternion must be 1, not 0.5")
+    );
+
+    let step = std::f64::consts::FRAC_PI_2;
+    let circle: Vec<Row> = (0..4).map(|row| [f64::from(row), 0.0, 0.0, 1.0, f64::from(row) * step, 0.0, 0.0]).collect();
+    let (found, _) = projected(&table(&circle), &robot);
+    for refused in found {
+        let (_, error) = refused.map(|_| ()).unwrap_err();
+        assert!(error.to_string().contains("all the way round"), "{error}");
+    }
+}
+
+#[test]
+fn recorded_robots_are_where_the_reduced_tables_have_them() {
+    for (gait, urdf, at_x) in
+        [("a1_walk", "a1/a1.urdf", 5e-9), ("h1_walk", "h1/h1.urdf", 5e-9), ("h1_run", "h1/h1.urdf", 5e-8)]
+    {
+        let robot = Robot::from_urdf(&data(&format!("robots/{urdf}"))).unwrap();
+        let (found, _) = projected(&data(&format!("gaits/{gait}.3d.csv")), &robot);
+        let planar = samples(&data(&format!("gaits/{gait}.csv")), &robot, Rates::Columns);
+        assert_eq!(found.len(), planar.len());
+        for (found, planar) in found.iter().zip(&planar) {
+            let (found, planar) = (found.as_ref().unwrap(), planar.as_ref().unwrap());
+            for (at, (is, should)) in found.state.position.iter().zip(&planar.state.position).enumerate() {
+                // The tables in three dimensions have nine digits.
+                let tolerance = if at == 0 { at_x } else { 5e-9 };
+                assert!((is - should).abs() < tolerance, "{gait}, line {}: {is} {should}", found.source);
+            }
+        }
+    }
+}
+
+/// A walk that leans and turns a little.
+fn walk() -> impl Strategy<Value = Vec<Row>> {
+    let row = (-1.0..1.0, -1.0..1.0, 0.5..1.5, -0.6..0.6, -1.0..1.0, -0.5..0.5);
+    prop::collection::vec(row, 2..12).prop_map(|rows| {
+        let timed = |(at, (x, y, z, yaw, pitch, roll)): (u32, _)| [f64::from(at), x, y, z, yaw, pitch, roll];
+        (0..).zip(rows).map(timed).collect()
+    })
+}
+
+proptest! {
+    #[test]
+    fn yawing_a_whole_recording_changes_nothing(rows in walk(), yaw in -3.0..3.0_f64) {
+        let turned: Vec<Row> = rows.iter().map(|&[time, x, y, z, own, pitch, roll]| {
+            let (sin, cos) = yaw.sin_cos();
+            [time, cos * x - sin * y, sin * x + cos * y, z, own + yaw, pitch, roll]
+        }).collect();
+        close(&positions(&table(&turned)), &positions(&table(&rows)));
+    }
+
+    #[test]
+    fn stepping_aside_changes_nothing(rows in walk(), aside in -5.0..5.0_f64) {
+        // The heading of rows that all look along x is x.
+        let straight = |aside: f64| -> Vec<Row> {
+            rows.iter().map(|&[time, x, y, z, _, pitch, _]| [time, x, y + aside, z, 0.0, pitch, 0.0]).collect()
+        };
+        close(&positions(&table(&straight(aside))), &positions(&table(&straight(0.0))));
+    }
+}
