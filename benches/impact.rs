@@ -116,9 +116,7 @@ fn analysis(bencher: Bencher) {
     let robot = ramone();
     let problem = problem(&robot, &state(&robot));
     let mut scratch = Scratch::default();
-    bencher.bench_local(move || {
-        scratch.analyse(black_box(&problem), black_box(&problem), Asked { explain: false, prove: true })
-    });
+    bencher.bench_local(move || scratch.analyse(black_box(&problem), black_box(&problem), Asked::default()));
 }
 
 /// A state as numbers to its whole answer.

@@ -79,10 +79,14 @@
 #[doc = include_str!("../docs/guarantees.md")]
 pub mod guarantees {}
 
+#[doc = include_str!("../docs/left_out.md")]
+pub mod left_out {}
+
 pub mod error;
 pub mod excerpt;
 pub mod scalar;
 pub mod planar;
+pub mod reductions;
 pub mod description;
 pub mod robot;
 pub mod scene;

@@ -44,7 +44,7 @@ pub(crate) struct PlanBody<T> {
     /// Origin of the joint in the parent's frame \[m\].
     pub origin: Vector<T>,
     pub motion: Motion<T>,
-    /// The joint's coordinate, or its leader's; of no meaning for the root.
+    /// The joint's coordinate, or its leader's; of no meaning for the root and for welds.
     pub coordinate: usize,
     /// Where a [`Posture`] has the joint's angle or displacement.
     pub place: usize,
@@ -62,8 +62,16 @@ pub(crate) struct PlanBody<T> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Motion<T> {
     Root,
-    Turn { sign: T, rate: T },
-    Slide { direction: Vector<T>, rate: Vector<T> },
+    Turn {
+        sign: T,
+        rate: T,
+    },
+    Slide {
+        direction: Vector<T>,
+        rate: Vector<T>,
+    },
+    /// None: it is rigid on its parent.
+    Weld,
 }
 
 /// A follower's coordinate: multiplier q + offset of its leader's.
@@ -105,6 +113,7 @@ impl<T: Trigonometry> Posture<T> {
             let (place, value) = (body.place, position.get(body.coordinate).copied().unwrap_or(0.0));
             let turn = match (body.motion, body.tie) {
                 (Motion::Root, _) if !plan.floating => continue,
+                (Motion::Weld, _) => continue,
                 (Motion::Root | Motion::Turn { .. }, None) => {
                     let [cos, sin] = T::cos_sin(value);
                     Rotation { cos, sin }
@@ -186,36 +195,41 @@ impl<T: Real> Plan<T> {
                 });
                 continue;
             };
-            // The joint whose coordinate moves the body, the body's own place in lists per joint and follower, and its tie.
-            let (index, own, tie) = match mover {
-                Mover::Joint(index) => (index, index, None),
+            // The joint whose coordinate moves the body, and the body's own place in lists per joint and follower; none of a
+            // weld. And its tie.
+            let (moved, tie) = match mover {
+                Mover::Joint(index) => (Some((index, index)), None),
                 Mover::Follower(index) => {
                     let Follower { leader, multiplier, offset, .. } = robot.followers[index];
-                    (leader, robot.joints.len() + index, Some(Tie { multiplier, offset }))
+                    (Some((leader, robot.joints.len() + index)), Some(Tie { multiplier, offset }))
                 }
+                Mover::Weld { .. } => (None, None),
             };
             let (parent, origin, axis) = robot.hinge(mover);
-            let column = (!held.contains(&index)).then(|| plan.column(&mut columns[index], base + index));
+            let column = moved.filter(|(index, _)| !held.contains(index));
+            let column = column.map(|(index, _)| plan.column(&mut columns[index], base + index));
             greatest.push(match column {
                 Some(column) => plan.join_branch(column, parent, greatest[parent]),
                 None => greatest[parent],
             });
             let multiplier = tie.map_or(1.0, |tie| tie.multiplier);
-            let rotor = number(rotor_inertia.get(own).copied().unwrap_or(0.0));
+            let rotor = moved.and_then(|(_, own)| rotor_inertia.get(own).copied());
+            let rotor = number(rotor.unwrap_or(0.0));
             plan.bodies.push(PlanBody {
                 parent: Some(parent),
                 origin: origin.map(number),
                 motion: match axis {
+                    None => Motion::Weld,
                     // Exactly: the sign is one or minus one.
-                    Axis::Turn { sign } => Motion::Turn { sign: number(sign), rate: number(sign * multiplier) },
-                    Axis::Slide { direction } => {
+                    Some(Axis::Turn { sign }) => Motion::Turn { sign: number(sign), rate: number(sign * multiplier) },
+                    Some(Axis::Slide { direction }) => {
                         let direction = direction.map(number);
                         let rate = if tie.is_some() { scaled(number(multiplier), direction) } else { direction };
                         Motion::Slide { direction, rate }
                     }
                 },
-                coordinate: base + index,
-                place: base + own,
+                coordinate: moved.map_or(0, |(index, _)| base + index),
+                place: moved.map_or(0, |(_, own)| base + own),
                 tie,
                 column,
                 inertia,

@@ -150,6 +150,7 @@ fn columns(computation: &Computation<Interval>) -> Vec<Column> {
             }
             Motion::Turn { sign, .. } => columns.push(column(Axis::Turn(sign), index)),
             Motion::Slide { .. } => columns.push(column(Axis::Slide(workspace.direction[index]), index)),
+            Motion::Weld => {}
         }
     }
     columns

@@ -181,7 +181,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
     let mut study = Study::of(name, None);
     study.contacts = problem.contacts();
     let mut scratch = Scratch::default();
-    let mut analyse = |prove| scratch.analyse(problem, problem, Asked { explain: false, prove });
+    let mut analyse = |prove| scratch.analyse(problem, problem, Asked { prove, ..Asked::default() });
     let analysis = match analyse(prove) {
         Ok(analysis) => analysis,
         Err(error) => return study.refuse(error),

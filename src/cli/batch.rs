@@ -209,7 +209,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     let columns = (output_form == Form::Csv).then(columns);
     let question = Question {
         robot: &robot,
-        options: pipeline_options(&args.contacts, feet, args.detail),
+        options: pipeline_options(&args.contacts, feet, args.detail, &args.robot.reductions),
         defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
         detail,
         header: header.as_ref(),

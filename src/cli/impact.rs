@@ -40,7 +40,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     let robot = args.robot.load()?;
     let by_input = if input::is_ndjson(&args.state) { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(by_input);
-    let mut options = pipeline_options(&args.contacts, args.robot.feet(&robot)?, args.detail);
+    let mut options = pipeline_options(&args.contacts, args.robot.feet(&robot)?, args.detail, &args.robot.reductions);
     if format == Format::Text && !args.detail.brief {
         // What is wrong with the other combinations is summed up for people also where they are not listed.
         options.explain_up_to = options.explain_up_to.max(SUMMED_UP);

@@ -1,11 +1,13 @@
 //! Options of the analysis.
 
 use super::{Failure, input};
+use clap::ValueEnum;
 use heelstrike::Robot;
 use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
 use heelstrike::impact::Friction;
 use heelstrike::pipeline;
+use heelstrike::reductions::Reductions;
 use heelstrike::report::Detail;
 use heelstrike::scene::{NamedContact, NamedLoop};
 use heelstrike::state::{Defaults, loops_from_json};
@@ -88,11 +90,59 @@ impl DetailOptions {
     }
 }
 
+/// What is left out where a scene does not need it.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub(super) struct ReductionOptions {
+    /// Compute what the scene does not need, too: everything, or these parts of it; the outcomes are the same
+    #[arg(long, value_name = "WHICH", value_enum, num_args = 0.., require_equals = true, value_delimiter = ',')]
+    no_reduction: Option<Vec<Part>>,
+}
+
+/// A reduction.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Part {
+    /// Links on fixed and held joints are welded into their parents
+    Weld,
+    /// Massless links without shapes on such joints vanish
+    Massless,
+    /// Joints that a state holds have no column
+    Held,
+    /// Shapes too high to reach the ground are skipped
+    Reach,
+    /// The modes of a contact without friction share one elimination
+    Frictionless,
+    /// The condition of a lone contact is taken in closed form
+    Lone,
+}
+
+impl ReductionOptions {
+    pub fn reductions(&self) -> Reductions {
+        let parts = match self.no_reduction.as_deref() {
+            None => return Reductions::ALL,
+            Some([]) => return Reductions::NONE,
+            Some(parts) => parts,
+        };
+        let mut reductions = Reductions::ALL;
+        for part in parts {
+            *match part {
+                Part::Weld => &mut reductions.weld,
+                Part::Massless => &mut reductions.massless,
+                Part::Held => &mut reductions.held,
+                Part::Reach => &mut reductions.reach,
+                Part::Frictionless => &mut reductions.frictionless,
+                Part::Lone => &mut reductions.lone,
+            } = false;
+        }
+        reductions
+    }
+}
+
 /// The pipeline's options.
 pub(super) fn pipeline_options(
     contacts: &ContactOptions,
     feet: Vec<NamedContact>,
     detail: DetailOptions,
+    reductions: &ReductionOptions,
 ) -> pipeline::Options {
     pipeline::Options {
         feet,
@@ -101,6 +151,7 @@ pub(super) fn pipeline_options(
         explain_up_to: if detail.explain { usize::MAX } else { 0 },
         matrices: detail.matrices,
         no_proof: detail.no_proof,
+        reductions: reductions.reductions(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::complaint::note;
 use super::meshes::Meshes;
+use super::options::ReductionOptions;
 use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::description::Description;
@@ -37,6 +38,8 @@ pub(super) struct RobotOptions {
     /// Add a foot: a point of a link, or a circle about it [repeatable]
     #[arg(long, value_name = "LINK:X,Y,Z[:RADIUS]", allow_hyphen_values = true, help_heading = "Robot")]
     pub contact: Vec<Foot>,
+    #[command(flatten)]
+    pub reductions: ReductionOptions,
 }
 
 /// The plane that the robot moves in.
@@ -144,6 +147,7 @@ impl RobotOptions {
             base: None,
             package_path: Vec::new(),
             contact: Vec::new(),
+            reductions: ReductionOptions::default(),
         }
     }
 
@@ -166,8 +170,12 @@ impl RobotOptions {
         let mut description = Description::from_urdf(text).map_err(refuse)?;
         let meshes = Meshes::of(&self.robot, &self.package_path);
         description.read_meshes(|name| meshes.fetch(name)).map_err(refuse)?;
-        let reduction =
-            Reduction { plane: self.plane.into(), hold: self.held(&description)?, base: self.base.map(Into::into) };
+        let reduction = Reduction {
+            plane: self.plane.into(),
+            hold: self.held(&description)?,
+            base: self.base.map(Into::into),
+            reductions: self.reductions.reductions(),
+        };
         Robot::reduce(&description, &reduction).map_err(refuse)
     }
 

@@ -1,10 +1,11 @@
 //! `heelstrike solve`: every outcome of a contact problem that is given as matrices.
 
-use super::options::{DetailOptions, SceneOptions};
+use super::options::{DetailOptions, ReductionOptions, SceneOptions};
 use super::output::{Format, OutputOptions};
 use super::stream::{Answers, SUMMED_UP, answer_all};
 use super::{Outcome, input};
 use heelstrike::impact::{Analysis, Asked, Scratch};
+use heelstrike::reductions::Reductions;
 use heelstrike::report::{Detail, Palette, Problem, Report, Subject, text};
 use heelstrike::state::Defaults;
 use heelstrike::{Error, Result};
@@ -23,6 +24,8 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
+    reductions: ReductionOptions,
+    #[command(flatten)]
     detail: DetailOptions,
     #[command(flatten)]
     output: OutputOptions,
@@ -36,6 +39,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         defaults: args.scene.defaults(),
         detail: args.detail.detail(),
         prove: !args.detail.no_proof,
+        reductions: args.reductions.reductions(),
         scratch: Scratch::default(),
     };
     args.output.spare(&[&args.problem])?;
@@ -46,12 +50,14 @@ struct Problems {
     defaults: Defaults,
     detail: Detail,
     prove: bool,
+    reductions: Reductions,
     scratch: Scratch,
 }
 
 impl Problems {
     fn analyse(&mut self, problem: &Problem, explain: bool) -> Result<Analysis> {
-        self.scratch.analyse(&problem.contact, &problem.contact, Asked { explain, prove: self.prove })
+        let asked = Asked { explain, prove: self.prove, reductions: self.reductions };
+        self.scratch.analyse(&problem.contact, &problem.contact, asked)
     }
 }
 

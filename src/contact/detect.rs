@@ -131,6 +131,12 @@ fn detected(
     Ok(contacts)
 }
 
+/// How many feet are too far from the ground for [`detect`] to look at them with this `tolerance` \[m\].
+pub fn out_of_reach(feet: &Feet, placement: &Placement, surface: &Surface, tolerance: f64) -> usize {
+    let tolerance = tolerance + surface.rounding(placement, feet.size());
+    feet.iter().filter(|foot| surface.is_out_of_reach(foot, placement, tolerance)).count()
+}
+
 /// The foot nearest to the ground, and its distance from it \[m\]; none where the robot has no feet.
 pub fn nearest(robot: &Robot, feet: &Feet, placement: &Placement, surface: &Surface) -> Option<(String, f64)> {
     let distances = feet.iter().map(|foot| (foot.link, surface.clearance(foot, placement)));

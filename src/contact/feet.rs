@@ -45,6 +45,14 @@ impl Feet {
         Self { feet, size }
     }
 
+    /// The same feet, each of which reaches everywhere: none is passed over for its height.
+    pub fn reaching_everywhere(mut self) -> Self {
+        for foot in &mut self.feet {
+            foot.bounding_circle.1 = f64::INFINITY;
+        }
+        self
+    }
+
     /// The shapes.
     pub fn iter(&self) -> impl Iterator<Item = &Foot> {
         self.feet.iter()
@@ -67,7 +75,8 @@ fn size(robot: &Robot, feet: &[Foot]) -> f64 {
         let [x, z] = sum(origins[body], point);
         libm::hypot(x, z)
     };
-    let centres = robot.bodies.iter().enumerate().map(|(index, body)| distance(index, body.com));
+    let centres = robot.centres().into_iter().enumerate();
+    let centres = centres.filter_map(|(index, centre)| Some(distance(index, centre?)));
     let soles = feet.iter().map(|foot| {
         let corners = foot.outline.corners().iter();
         corners.map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max) + foot.outline.rim().bound()

@@ -74,15 +74,20 @@ impl Plane {
         Touch { circle: self.circle(placement, point), ground: self.ground, gap: self.height(placement, point) }
     }
 
+    /// Whether a foot is so high that none of its points can be within `tolerance` \[m\] of the ground.
+    pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
+        let (centre, radius) = foot.bounding_circle;
+        dot(self.normal(), placement.world(foot.body, centre)) - radius > tolerance
+    }
+
     /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that faces
     /// it.
     ///
     /// # Errors
     /// [`Reason::Unsupported`] for a pair of shapes that parry does not serve; none of ours is.
     pub(super) fn touching(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Touch>> {
-        let (centre, radius) = foot.bounding_circle;
         let touch = |point: Point| self.touch(placement, point);
-        if dot(self.normal(), placement.world(foot.body, centre)) - radius > tolerance {
+        if self.is_out_of_reach(foot, placement, tolerance) {
             return Ok(Vec::new());
         }
         let Some(polygon) = foot.outline.polygon() else {

@@ -43,8 +43,7 @@ pub(super) fn touching(
     (tolerance, rounding): (f64, f64),
 ) -> Result<Vec<Touch>, TooDeep> {
     let outline = Outline::new(foot, placement);
-    let [low, high] = outline.region(tolerance);
-    let near = terrain.near(low, high);
+    let near = within_reach(terrain, foot, &outline, tolerance);
     let deepest = depth(terrain, &outline, &near);
     if deepest > tolerance {
         return Err(TooDeep(deepest));
@@ -74,6 +73,19 @@ pub(super) fn touching(
     }
     touches.sort_by(|a, b| place(placement, a)[0].total_cmp(&place(placement, b)[0]));
     Ok(touches)
+}
+
+/// The segments that a foot may touch, ascending; all of them for a foot that reaches everywhere.
+pub(super) fn within_reach(terrain: &Terrain, foot: &Foot, outline: &Outline, tolerance: f64) -> Vec<usize> {
+    if foot.bounding_circle.1.is_infinite() {
+        return all(terrain);
+    }
+    let [low, high] = outline.region(tolerance);
+    terrain.near(low, high)
+}
+
+fn all(terrain: &Terrain) -> Vec<usize> {
+    (1..=terrain.segments().len()).collect()
 }
 
 /// The material point of a contact in the world \[m\].
@@ -123,8 +135,7 @@ fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usi
 
 /// How far a foot is from the ground \[m\].
 pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
-    let all: Vec<usize> = (1..=terrain.segments().len()).collect();
-    -depth(terrain, outline, &all)
+    -depth(terrain, outline, &all(terrain))
 }
 
 /// The x of the end that a foot reaches beyond, not higher than `tolerance` above it.

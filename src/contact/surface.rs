@@ -114,6 +114,16 @@ impl Surface {
         }
     }
 
+    /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
+    pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
+        match &self.0 {
+            Kind::Plane(plane) => plane.is_out_of_reach(foot, placement, tolerance),
+            Kind::Profile(terrain) => {
+                profile::within_reach(terrain, foot, &Outline::new(foot, placement), tolerance).is_empty()
+            }
+        }
+    }
+
     /// What contacts of a link are in the order of: the place along a plane, x along a profile \[m\].
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
         match &self.0 {

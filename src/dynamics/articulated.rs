@@ -59,7 +59,7 @@ pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T
                 pivots[0] = xx - xz * (xz / zz);
                 continue;
             }
-            (_, None) => own,
+            (Motion::Weld, _) | (_, None) => own,
             (Motion::Turn { .. }, Some(column)) => {
                 pivots[column] = own.moment + body.rotor;
                 own.without_turn(body.rotor, pivots[column])
@@ -150,7 +150,7 @@ pub fn add_articulated_impulse<T: Real>(
         };
         let pivot = workspace.pivots[column];
         motions.push(match body.motion {
-            Motion::Root => (spin, carried),
+            Motion::Root | Motion::Weld => (spin, carried),
             Motion::Turn { sign, .. } => {
                 let moment = own.moment * spin + dot(own.coupling, carried);
                 rates[column] = rates[column] - sign * (moment / pivot);
@@ -202,7 +202,7 @@ fn to_root<T: Real>(
                 let rest = x - xz * up;
                 tell(0, rest, rest / workspace.pivots[0]);
             }
-            (_, None) => {}
+            (Motion::Weld, _) | (_, None) => {}
             (Motion::Turn { sign, .. }, Some(column)) => {
                 let rate = force.moment / workspace.pivots[column];
                 tell(column, sign * force.moment, sign * rate);

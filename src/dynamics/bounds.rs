@@ -84,7 +84,7 @@ impl Bounds {
                     let terms = (tie.multiplier * posture.displacement[body.coordinate]).abs() + tie.offset.abs();
                     terms * length(direction)
                 }
-                (Motion::Root | Motion::Turn { .. }, _) => 0.0,
+                (Motion::Root | Motion::Turn { .. } | Motion::Weld, _) => 0.0,
             };
             let levels = if body.tie.is_some() { 3 } else { 1 };
             self.bodies.push(Stretched {
@@ -159,6 +159,7 @@ impl Bounds {
                 }
                 Motion::Turn { rate, .. } => stretched.second * (rate * rate) + body.rotor,
                 Motion::Slide { rate, .. } => stretched.mass * dot(rate, rate) + body.rotor,
+                Motion::Weld => continue,
             };
             self.roots[column] += moment.sqrt();
         }
@@ -204,6 +205,7 @@ impl Bounds {
                     let rate = body.tie.map_or(1.0, |tie| tie.multiplier.abs());
                     tell(body.column, body.coordinate, rate);
                 }
+                Motion::Weld => {}
             }
             arm += self.bodies[at].arm;
             match body.parent {

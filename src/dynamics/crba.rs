@@ -50,10 +50,11 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
                 linear: scaled(own.mass, direction[index]),
                 angular: dot(turned(own.first), direction[index]),
             },
+            Motion::Weld => continue,
         };
         // `momentum` is that of a unit rate of this joint; the walk to the root projects it on every joint below.
         let along = |at: usize, momentum: Momentum<T>| match plan.bodies[at].motion {
-            Motion::Root => momentum.angular,
+            Motion::Root | Motion::Weld => momentum.angular,
             Motion::Turn { rate, .. } => rate * momentum.angular,
             Motion::Slide { .. } => dot(direction[at], momentum.linear),
         };

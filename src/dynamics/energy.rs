@@ -8,7 +8,7 @@
 
 use super::jacobian::{point_velocity, spin};
 use super::workspace::Workspace;
-use crate::plan::Plan;
+use crate::plan::{Motion, Plan};
 use crate::planar::{dot, turned};
 use crate::scalar::Real;
 
@@ -21,7 +21,7 @@ pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Works
         let first = workspace.rotation[index].apply(body.inertia.first);
         let cross = rate * dot(origin, turned(first));
         twice = twice + body.inertia.mass * dot(origin, origin) + cross + cross + body.inertia.second * rate * rate;
-        if body.parent.is_some() {
+        if !matches!(body.motion, Motion::Root | Motion::Weld) {
             let own = velocity[body.coordinate];
             twice = twice + body.rotor * own * own;
         }

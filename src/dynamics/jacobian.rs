@@ -103,13 +103,16 @@ pub(super) fn walk<T: Real>(
         let body = &plan.bodies[at];
         let unit = match body.motion {
             Motion::Root => break,
-            Motion::Turn { rate, .. } => scaled(rate, turned(arm)),
-            Motion::Slide { .. } => workspace.direction[at],
+            Motion::Turn { rate, .. } => Some(scaled(rate, turned(arm))),
+            Motion::Slide { .. } => Some(workspace.direction[at]),
+            Motion::Weld => None,
         };
-        if let Some(column) = body.column {
-            tell(column, unit);
+        if let Some(unit) = unit {
+            if let Some(column) = body.column {
+                tell(column, unit);
+            }
+            speed = sum(speed, scaled(velocity[body.coordinate], unit));
         }
-        speed = sum(speed, scaled(velocity[body.coordinate], unit));
         arm = sum(arm, workspace.arm[at]);
         match body.parent {
             Some(parent) => at = parent,

@@ -37,6 +37,11 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut
                 arm.push(base.apply(displaced));
                 direction.push(base.apply(rate));
             }
+            Motion::Weld => {
+                rotation.push(base);
+                arm.push(base.apply(body.origin));
+                direction.push([T::zero(); 2]);
+            }
         }
     }
 }

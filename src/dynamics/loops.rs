@@ -1,4 +1,4 @@
-//! Loops: pairs of points that stay together, eliminated before the contact problem.
+//! Loops: pairs of points that stay together, eliminated before the contact problem; and held joints that have a column.
 //!
 //! ```text
 //!     K v = 0,   K = J_a - J_b            M (v+ - v-) = J^T L + K^T l            W = K M^-1 K^T
@@ -9,7 +9,8 @@
 //! the rows of K are made orthogonal to each other one by one (modified Gram-Schmidt), K = C Z with C unit lower triangular,
 //! and every contact row loses its part along Z. So G' = Y'^T D^-1 Y' is semidefinite by construction, and no difference of
 //! large matrices is taken. Rows that follow from others are found by pivoting, in f64 alone: every other number takes the
-//! same rows in the same order. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT
+//! same rows in the same order. A joint that keeps its rate although it has a column (see
+//! [`Reductions::held`](crate::reductions::Reductions)) brings a row of the identity, before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT
 //! form). Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
 
 use super::delassus::{half_solve, other_half_solve, products};
@@ -28,9 +29,12 @@ pub struct Loop<T = f64> {
     pub points: [Vector<T>; 2],
 }
 
-/// The constraints of all loops, two rows (x and z in the world's axes) per loop, as `orthogonalize` leaves them.
+/// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's axes) per
+/// loop, as `orthogonalize` leaves them.
 #[derive(Debug, Clone)]
 pub struct LoopRows<T = f64> {
+    /// Coordinates that keep their rates; their rows come first.
+    kept: Vec<usize>,
     /// Rows of K in the order of their elimination: 2 loop + axis; none that follows from others.
     rows: Vec<usize>,
     /// Z by columns, those of a foot at rest behind those of the loops. nv each
@@ -45,8 +49,33 @@ pub struct LoopRows<T = f64> {
 
 impl<T> Default for LoopRows<T> {
     fn default() -> Self {
-        Self { rows: Vec::new(), basis: Vec::new(), basis_by_d: Vec::new(), squares: Vec::new(), coupling: Vec::new() }
+        Self {
+            kept: Vec::new(),
+            rows: Vec::new(),
+            basis: Vec::new(),
+            basis_by_d: Vec::new(),
+            squares: Vec::new(),
+            coupling: Vec::new(),
+        }
     }
+}
+
+/// What impulses keep as it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Constraints<'a> {
+    /// Coordinates with a column that keep their rates.
+    pub kept: &'a [usize],
+    /// Rows of K that count, 2 loop + axis.
+    pub rows: &'a [usize],
+}
+
+/// What [`close`] closes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Closed {
+    /// The velocity before the impact; a foot of the constraints that rests before it rests after it.
+    Velocity,
+    /// What impulses change in it.
+    Change,
 }
 
 impl<T: Real> Loop<T> {
@@ -98,8 +127,14 @@ impl<T: Real> Loop<T> {
 /// as a part of the squared motions of its two points, after its part along those before it is taken away.
 ///
 /// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column counts by the
-/// greatest motion that it gives to an end of a loop, which makes the choice free of units.
-pub fn independent_rows(plan: &Plan, loops: &[Loop], tolerance: f64, workspace: &Workspace) -> Vec<usize> {
+/// greatest motion that it gives to an end of a loop, which makes the choice free of units; one that is `kept` counts nothing.
+pub fn independent_rows(
+    plan: &Plan,
+    loops: &[Loop],
+    kept: &[usize],
+    tolerance: f64,
+    workspace: &Workspace,
+) -> Vec<usize> {
     let rows = |ends: &[usize]| -> Vec<Vec<f64>> {
         (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, workspace)).collect()
     };
@@ -107,6 +142,11 @@ pub fn independent_rows(plan: &Plan, loops: &[Loop], tolerance: f64, workspace: 
     let mut greatest = vec![0.0_f64; plan.columns()];
     for (most, entry) in a.iter().chain(&b).flat_map(|row| row.iter().enumerate()) {
         greatest[most] = greatest[most].max(entry.abs());
+    }
+    for (most, coordinate) in greatest.iter_mut().zip(&plan.coordinates) {
+        if kept.contains(coordinate) {
+            *most = 0.0;
+        }
     }
     let scaled = |row: &[f64]| -> Vec<f64> {
         row.iter().zip(&greatest).map(|(entry, &most)| if most > 0.0 { entry / most } else { 0.0 }).collect()
@@ -134,20 +174,24 @@ pub fn independent_rows(plan: &Plan, loops: &[Loop], tolerance: f64, workspace: 
     }
 }
 
-/// Makes these `rows` of K orthogonal, and behind them those of a `foot` that is to stay at rest where velocities are closed,
-/// from the factorized mass matrix.
+/// Makes the rows of these constraints orthogonal, and behind them those of a `foot` that is to stay at rest where velocities
+/// are closed, from the factorized mass matrix.
 pub fn orthogonalize<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
-    (rows, foot): (&[usize], Option<ContactPoint<T>>),
+    (kept, foot): (Constraints, Option<ContactPoint<T>>),
     workspace: &mut Workspace<T>,
 ) {
     let mut constraints = std::mem::take(&mut workspace.loops);
-    let LoopRows { rows: order, basis, basis_by_d, squares, coupling } = &mut constraints;
+    let LoopRows { kept: coordinates, rows: order, basis, basis_by_d, squares, coupling } = &mut constraints;
+    let Constraints { kept, rows } = kept;
     let nv = plan.columns();
+    coordinates.clear();
+    coordinates.extend_from_slice(kept);
     order.clear();
     order.extend_from_slice(rows);
-    let mut all: Vec<Vec<T>> = rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], workspace)).collect();
+    let mut all: Vec<Vec<T>> = kept.iter().map(|&coordinate| unit_row(plan, coordinate)).collect();
+    all.extend(rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], workspace)));
     all.extend(foot.into_iter().flat_map(|foot| {
         let (arm, still, workspace) = (foot.arm(workspace), still(plan), &*workspace);
         foot.axes().map(|axis| {
@@ -177,12 +221,12 @@ pub fn orthogonalize<T: Real>(
     workspace.loops = constraints;
 }
 
-/// Takes from Y, D^-1 Y and G what the loops do not let move: G becomes G'.
+/// Takes from Y, D^-1 Y and G what the constraints do not let move: G becomes G'.
 pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let nv = plan.columns();
     let Workspace { factor, half, half_by_d, delassus, loops, contact_velocity, .. } = workspace;
     for y in half.chunks_exact_mut(nv.max(1)) {
-        for k in 0..loops.rows.len() {
+        for k in 0..loops.kept.len() + loops.rows.len() {
             let along = products(y, &loops.basis_by_d[k * nv..(k + 1) * nv]) / loops.squares[k];
             subtract(y, &loops.basis[k * nv..(k + 1) * nv], along);
         }
@@ -190,27 +234,32 @@ pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     super::delassus::from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
 }
 
-/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. With `rest`
-/// a foot that rests before it rests after it, too. Gives the amplitude of each constraint for [`loop_impulse`] and
-/// [`spent_energy`].
+/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. Gives the
+/// amplitude of each constraint for [`loop_impulse`] and [`spent_energy`].
 pub fn close<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
-    rest: bool,
+    closed: Closed,
     velocity: &mut [T],
     workspace: &Workspace<T>,
 ) -> Vec<T> {
-    let LoopRows { rows, basis_by_d, squares, coupling, .. } = &workspace.loops;
+    let LoopRows { kept, rows, basis_by_d, squares, coupling, .. } = &workspace.loops;
     let (nv, all) = (plan.columns(), squares.len());
     let openings: Vec<Vector<T>> = loops.iter().map(|own| own.opening(plan, velocity, workspace)).collect();
-    let used = if rest { all } else { rows.len() };
+    // Whatever rate a kept coordinate has before the impact is what it keeps; and a foot may move in the impact.
+    let used = if closed == Closed::Velocity { all } else { kept.len() + rows.len() };
     if used == 0 {
         // Nothing is to be closed, and of a robot without loops there need be no factor.
         return Vec::new();
     }
+    let own = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {
+        (Some(&coordinate), _) if closed == Closed::Change => velocity[coordinate],
+        (None, Some(row)) => openings[row / 2][row % 2],
+        _ => T::zero(),
+    };
     let mut along: Vec<T> = Vec::with_capacity(used);
     for i in 0..used {
-        let own = rows.get(i).map_or(T::zero(), |row| openings[row / 2][row % 2]);
+        let own = own(i);
         along.push((0..i).fold(own, |left, k| left - coupling[i * all + k] * along[k]));
     }
     let amplitudes: Vec<T> = along.iter().zip(squares).map(|(&along, &square)| along / square).collect();
@@ -220,21 +269,28 @@ pub fn close<T: Real>(
     }
     other_half_solve(plan, &workspace.factor, &mut change);
     for (&coordinate, &change) in plan.coordinates.iter().zip(&change) {
-        velocity[coordinate] = velocity[coordinate] + change;
+        velocity[coordinate] = match (kept.contains(&coordinate), closed) {
+            (false, _) => velocity[coordinate] + change,
+            // What is kept is kept without rounding.
+            (true, Closed::Velocity) => velocity[coordinate],
+            (true, Closed::Change) => T::zero(),
+        };
     }
     amplitudes
 }
 
 /// The impulse \[N s\] on a of each loop, in the world's axes, that [`close`] gave; zero along rows that were left out.
 pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspace<T>) -> Vec<Vector<T>> {
-    let LoopRows { rows, squares, coupling, .. } = &workspace.loops;
+    let LoopRows { kept, rows, squares, coupling, .. } = &workspace.loops;
     let mut impulse = vec![[T::zero(); 2]; loops];
     // K^T l = -Z a with K = C Z, from the last row back.
     let mut solved = vec![T::zero(); rows.len()];
-    for k in (0..rows.len()).rev() {
-        let later = (k + 1..rows.len()).fold(T::zero(), |sum, i| sum + coupling[i * squares.len() + k] * solved[i]);
-        solved[k] = -amplitudes[k] - later;
-        impulse[rows[k] / 2][rows[k] % 2] = solved[k];
+    for (own, row) in rows.iter().enumerate().rev() {
+        let at = kept.len() + own;
+        let later = (own + 1..rows.len())
+            .fold(T::zero(), |sum, other| sum + coupling[(kept.len() + other) * squares.len() + at] * solved[other]);
+        solved[own] = -amplitudes[at] - later;
+        impulse[row / 2][row % 2] = solved[own];
     }
     impulse
 }
@@ -243,6 +299,12 @@ pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspa
 pub fn spent_energy(amplitudes: &[f64], workspace: &Workspace) -> f64 {
     let terms = amplitudes.iter().zip(&workspace.loops.squares);
     0.5 * terms.map(|(amplitude, square)| amplitude * amplitude * square).sum::<f64>()
+}
+
+/// The row of a coordinate that keeps its rate (nv).
+fn unit_row<T: Real>(plan: &Plan<T>, coordinate: usize) -> Vec<T> {
+    let entry = |&own: &usize| if own == coordinate { T::one() } else { T::zero() };
+    plan.coordinates.iter().map(entry).collect()
 }
 
 /// No velocity at all, where a walk tells motions alone.

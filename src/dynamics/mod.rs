@@ -27,7 +27,10 @@ pub use delassus::{add_impulse, delassus};
 pub use energy::kinetic_energy;
 pub use jacobian::{ContactPoint, contact_jacobian, point_velocity};
 pub use kinematics::kinematics;
-pub use loops::{Loop, LoopRows, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize, spent_energy};
+pub use loops::{
+    Closed, Constraints, Loop, LoopRows, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize,
+    spent_energy,
+};
 pub use ltl::factorize;
 pub use workspace::Workspace;
 

@@ -13,7 +13,8 @@ use super::certify::{Inverse, Layer, Question, Settled, combination, settle};
 use super::enumerate::{Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
 use super::labels::Labels;
-use super::mode::Mode;
+use super::lone;
+use super::mode::{Friction, Mode};
 use super::outcome::{Analysis, Because, Effort, Motion, Outcome, Rejection, Verdict};
 use super::problem::{ContactProblem, Source};
 use super::reading::{Reading, read_f64};
@@ -21,6 +22,7 @@ use super::redundant::{Judged, Member};
 use super::region::explanation;
 use super::sign::{Scale, SlackKind};
 use crate::error::{Error, Reason, Result};
+use crate::reductions::Reductions;
 use crate::scalar::{Ordered, Real, Sign};
 use nalgebra::DMatrix;
 
@@ -34,6 +36,14 @@ pub struct Asked {
     pub explain: bool,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
+    /// What of the enumeration is left out where a problem does not need it.
+    pub reductions: Reductions,
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Self { explain: false, prove: true, reductions: Reductions::ALL }
+    }
 }
 
 /// Memory that is reused from problem to problem.
@@ -51,7 +61,7 @@ pub struct Scratch {
 /// # Errors
 /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
 pub fn analyse(problem: &ContactProblem, explain: bool) -> Result<Analysis> {
-    Scratch::default().analyse(problem, problem, Asked { explain, prove: true })
+    Scratch::default().analyse(problem, problem, Asked { explain, ..Asked::default() })
 }
 
 impl Scratch {
@@ -68,6 +78,7 @@ impl Scratch {
         let asked = Asked { prove: asked.prove && source.is_exact(), ..asked };
         let errors = source.errors();
         self.scale.measure(problem, errors);
+        self.tableau.share_frictionless(asked.reductions.frictionless);
         self.tableau.load(problem);
         self.bounds.load(&self.tableau, &self.scale, errors.delassus, self.scale.noise);
         let mut first = FirstLook {
@@ -83,6 +94,8 @@ impl Scratch {
         };
         self.tableau.visit(&mut first);
         let FirstLook { regular, open, coarse, mut found, .. } = first;
+        let frictionless = problem.friction().iter().any(|friction| friction.is_zero());
+        let regular = regular || (frictionless && shows_regular(&mut self.tableau, &mut self.bounds, contacts));
         let scale = &self.scale;
         let was_open = !open.is_empty();
         let mut coarse = coarse;
@@ -99,7 +112,7 @@ impl Scratch {
             settle(source, Layer::DoubleDouble, &mut Coarse { problem, scale, coarse, found: &mut found });
         }
         found.join_families(scale);
-        let (rank, condition) = rank_and_condition(problem, source, scale, regular);
+        let (rank, condition) = rank_and_condition(problem, source, scale, regular, asked.reductions);
         let Found { mut outcomes, mut rejected, mut effort, total, .. } = found;
         if was_open || refined {
             outcomes.sort_by_key(|own| own.number);
@@ -151,7 +164,7 @@ impl Visitor<f64> for FirstLook<'_> {
         self.regular |= bound.impulse_error().is_finite()
             && leaf.modes.iter().all(|&mode| mode == Mode::Stick)
             && !self.problem.friction().iter().any(|friction| friction.is_zero());
-        self.labels.start(leaf.modes, self.problem.friction());
+        self.labels.start(leaf.modes, self.problem.friction(), self.found.asked.reductions.frictionless);
         while let Some(modes) = self.labels.next() {
             let reading = read_f64(leaf, modes, self.problem, self.scale, bound, self.found.asked.explain);
             match reading.sign {
@@ -272,21 +285,35 @@ fn no_slip_consistent(outcomes: &[Outcome]) -> Option<bool> {
     }
 }
 
+/// Whether f64 shows that G is regular: for problems with a frictionless contact, none of whose combinations solves for all
+/// impulses.
+fn shows_regular(tableau: &mut Tableau<f64>, bounds: &mut Bounds, contacts: usize) -> bool {
+    let friction = vec![Friction::Infinite; contacts];
+    tableau.stick_all(|tableau, contact| bounds.follow(tableau, &friction, contact, contact));
+    bounds.at(contacts).impulse_error().is_finite()
+}
+
 /// Rank of G and, where it is regular, the condition number of G scaled to a unit diagonal.
 fn rank_and_condition<S: Source>(
     problem: &ContactProblem,
     source: &S,
     scale: &Scale,
     regular: bool,
+    reductions: Reductions,
 ) -> (usize, Option<f64>) {
     let rows = 2 * problem.contacts();
     if rows == 0 {
         return (0, None);
     }
     let mobility = &scale.mobility;
-    let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
-    let values = scaled.symmetric_eigenvalues();
-    let (least, greatest) = (values.min(), values.max());
+    let [least, greatest] = match problem.contacts() {
+        1 if reductions.lone => lone::eigenvalues(problem, mobility),
+        _ => {
+            let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
+            let values = scaled.symmetric_eigenvalues();
+            [values.min(), values.max()]
+        }
+    };
     if regular && greatest < F64_CONDITION_LIMIT * least {
         return (rows, Some(greatest / least));
     }
@@ -352,7 +379,7 @@ struct Found {
 
 impl Default for Found {
     fn default() -> Self {
-        let asked = Asked { explain: false, prove: true };
+        let asked = Asked::default();
         Self { asked, outcomes: Vec::new(), rejected: Vec::new(), effort: Effort::default(), total: 0 }
     }
 }
@@ -479,7 +506,6 @@ impl Found {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mode::Friction;
     use super::*;
 
     #[test]

@@ -22,6 +22,8 @@ use crate::scalar::Real;
 pub struct Tableau<T> {
     contacts: usize,
     friction: Vec<Friction>,
+    /// Whether the modes of a closed frictionless contact are visited as one.
+    shares: bool,
     /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns of
     /// decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and lambda where
     /// it slides; L_t and L_n where it sticks.
@@ -33,8 +35,8 @@ pub struct Tableau<T> {
 /// One combination of modes and the numbers that it leads to.
 #[derive(Debug)]
 pub struct Leaf<'a, T> {
-    /// One mode per contact; a closed frictionless contact is always given as [`Mode::Stick`]: its tangential velocity
-    /// alone tells its mode.
+    /// One mode per contact; a closed frictionless contact, whose tangential velocity alone tells its mode, is given as
+    /// [`Mode::Stick`] where its modes are visited as one.
     pub modes: &'a [Mode],
     /// One pivot per contact; their product is det A, its sign the index. A separating contact's is one.
     pub pivots: &'a [T],
@@ -61,7 +63,19 @@ impl<T, F: FnMut(&Leaf<'_, T>)> Visitor<T> for F {
 impl<T: Real> Tableau<T> {
     /// Scratch without a problem.
     pub fn new() -> Self {
-        Self { contacts: 0, friction: Vec::new(), depths: Vec::new(), modes: Vec::new(), pivots: Vec::new() }
+        Self {
+            contacts: 0,
+            friction: Vec::new(),
+            shares: true,
+            depths: Vec::new(),
+            modes: Vec::new(),
+            pivots: Vec::new(),
+        }
+    }
+
+    /// Whether the modes of a closed contact without friction are visited as one, which they are unless it is said here.
+    pub fn share_frictionless(&mut self, shares: bool) {
+        self.shares = shares;
     }
 
     /// Takes over a problem.
@@ -92,6 +106,17 @@ impl<T: Real> Tableau<T> {
         self.descend(0, 0, visitor);
     }
 
+    /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and tells after each; the
+    /// frictions that it was loaded with are lost.
+    pub fn stick_all(&mut self, mut tell: impl FnMut(&Self, usize)) {
+        self.friction.fill(Friction::Infinite);
+        for contact in 0..self.contacts {
+            self.modes[contact] = Mode::Stick;
+            self.decide(contact, Mode::Stick, contact);
+            tell(self, contact);
+        }
+    }
+
     /// The numbers of a single combination.
     pub fn leaf(&mut self, modes: &[Mode]) -> Leaf<'_, T> {
         let mut source = 0;
@@ -113,7 +138,7 @@ impl<T: Real> Tableau<T> {
             visitor.leaf(&self.at(source));
             return;
         }
-        let modes = if self.friction[contact].is_zero() { &Mode::ALL[..2] } else { &Mode::ALL[..] };
+        let modes = if self.shares && self.friction[contact].is_zero() { &Mode::ALL[..2] } else { &Mode::ALL[..] };
         for &mode in modes {
             self.modes[contact] = mode;
             let depth = self.decide(contact, mode, source);

@@ -12,12 +12,12 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Begins with the labels of a leaf.
-    pub fn start(&mut self, modes: &[Mode], friction: &[Friction]) {
+    /// Begins with the labels of a leaf; its own modes alone, unless frictionless contacts `share` theirs.
+    pub fn start(&mut self, modes: &[Mode], friction: &[Friction], share: bool) {
         self.modes.clear();
         self.modes.extend_from_slice(modes);
         self.open.clear();
-        let varies = |&contact: &usize| modes[contact] == Mode::Stick && friction[contact].is_zero();
+        let varies = |&contact: &usize| share && modes[contact] == Mode::Stick && friction[contact].is_zero();
         self.open.extend((0..modes.len()).filter(varies));
         self.started = false;
     }
@@ -57,11 +57,13 @@ mod tests {
             }
             seen.len()
         };
-        labels.start(&[Mode::Stick, Mode::Stick, Mode::Stick], &friction);
+        labels.start(&[Mode::Stick, Mode::Stick, Mode::Stick], &friction, true);
         assert_eq!(count(&mut labels), 9);
-        labels.start(&[Mode::Separate, Mode::Stick, Mode::Stick], &friction);
+        labels.start(&[Mode::Stick, Mode::Stick, Mode::Stick], &friction, false);
+        assert_eq!(count(&mut labels), 1);
+        labels.start(&[Mode::Separate, Mode::Stick, Mode::Stick], &friction, true);
         assert_eq!(count(&mut labels), 3);
-        labels.start(&[Mode::Separate, Mode::SlidePlus, Mode::Separate], &friction);
+        labels.start(&[Mode::Separate, Mode::SlidePlus, Mode::Separate], &friction, true);
         assert_eq!(count(&mut labels), 1);
     }
 }

@@ -12,6 +12,7 @@ mod index;
 mod kernel;
 mod labels;
 mod linear;
+mod lone;
 pub mod mode;
 pub mod outcome;
 pub mod problem;

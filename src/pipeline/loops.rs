@@ -3,8 +3,8 @@
 use super::Pipeline;
 use crate::contact::Contact;
 use crate::dynamics::{
-    ContactPoint, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse, orthogonalize,
-    point_velocity, spent_energy,
+    Closed, Constraints, ContactPoint, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse,
+    orthogonalize, point_velocity, spent_energy,
 };
 use crate::error::{Error, Reason, Result};
 use crate::planar::{Vector, difference, dot};
@@ -86,7 +86,7 @@ impl Pipeline<'_> {
         let (robot, named) = (self.robot, &state.scene.loops);
         let points: Vec<Loop> = named.iter().map(|own| own.points(robot)).collect();
         let tolerance = self.refuse_gaps(&points, named)?;
-        let rows = independent_rows(&self.plan, &points, tolerance, &self.workspace);
+        let rows = independent_rows(&self.plan, &points, &self.kept, tolerance, &self.workspace);
         let loops = Loops { points, rows };
         loops.tell_left_out(named, robot, notes);
         let foot = foot.map(Contact::point_of);
@@ -102,14 +102,14 @@ impl Pipeline<'_> {
         foot: Option<ContactPoint>,
         velocity: &mut [f64],
     ) -> Result<Option<String>> {
-        let Self { robot, plan, workspace, .. } = self;
+        let Self { robot, plan, workspace, kept, .. } = self;
         let Loops { points, rows } = loops;
         let energy = kinetic_energy(plan, velocity, workspace);
         let openings = points.iter().map(|own| speed(own.opening(plan, velocity, workspace)));
         let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
         let Some((worst, (opening, own))) = widest else { return Ok(None) };
-        orthogonalize(plan, points, (rows, foot), workspace);
-        let amplitudes = close(plan, points, foot.is_some(), velocity, workspace);
+        orthogonalize(plan, points, (Constraints { kept, rows }, foot), workspace);
+        let amplitudes = close(plan, points, Closed::Velocity, velocity, workspace);
         if let Some(foot) = foot {
             let moving = point_velocity(plan, foot.body, foot.arm(workspace), velocity, workspace);
             for (own, moving) in velocity.iter_mut().zip(moving) {
@@ -156,19 +156,33 @@ impl Pipeline<'_> {
         Ok(if widest > 0.0 { DEPENDENT.max(known * known) } else { DEPENDENT })
     }
 
-    /// G without what the loops do not let move.
+    /// Prepares the constraints of a state without loops: the joints that keep their rates although they have columns.
+    pub(super) fn keep_rates(&mut self) {
+        if self.kept.is_empty() {
+            return;
+        }
+        let Self { plan, workspace, kept, .. } = self;
+        orthogonalize(plan, &[], (Constraints { kept, rows: &[] }, None), workspace);
+    }
+
+    /// Whether something beside the contacts gives impulses.
+    pub(super) fn is_constrained(&self, loops: &Loops) -> bool {
+        !(loops.points.is_empty() && self.kept.is_empty())
+    }
+
+    /// G without what the loops and the joints that keep their rates do not let move.
     pub(super) fn eliminate_loops(&mut self, loops: &Loops) {
-        if !loops.points.is_empty() {
+        if self.is_constrained(loops) {
             eliminate_loops(&self.plan, &mut self.workspace);
         }
     }
 
     /// Adds to a `change` of velocity by impulses what the loops answer; gives their impulses, per loop on its point a.
     pub(super) fn answer_of_loops(&self, loops: &Loops, change: &mut [f64]) -> Vec<Vector<f64>> {
-        if loops.points.is_empty() {
+        if !self.is_constrained(loops) {
             return Vec::new();
         }
-        let amplitudes = close(&self.plan, &loops.points, false, change, &self.workspace);
+        let amplitudes = close(&self.plan, &loops.points, Closed::Change, change, &self.workspace);
         loop_impulse(loops.points.len(), &amplitudes, &self.workspace)
     }
 }

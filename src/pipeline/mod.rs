@@ -4,22 +4,25 @@
 //!     State --> posture --> kinematics --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
 //! ```
 
+mod left_out;
 mod loops;
 mod strike;
 mod uncertain;
 
+pub use self::left_out::LeftOut;
 use self::loops::Loops;
 use self::strike::Strike;
 use crate::contact::{self, Contact, Feet, Placement, Surface};
 use crate::dynamics::{
-    Arm, Bounds, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias, contact_jacobian,
-    delassus, factorize, kinematics, kinetic_energy, mass_matrix, point_velocity,
+    Arm, Bounds, Constraints, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias,
+    contact_jacobian, delassus, factorize, kinematics, kinetic_energy, mass_matrix, point_velocity,
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{Analysis, Asked, ContactProblem, Errors, Friction, Scratch};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Rotation, Vector, dot, scaled, sum};
+use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::scene::{Ground, NamedContact, Scene};
 use crate::state::State;
@@ -40,6 +43,8 @@ pub struct Options {
     pub matrices: bool,
     /// Do without bounds of the rounding in M, J and c: faster, and nothing is proven.
     pub no_proof: bool,
+    /// What of the computation is left out where a scene does not need it.
+    pub reductions: Reductions,
 }
 
 /// The default contact tolerance, as part of the robot's size (see [`Feet::size`]).
@@ -64,6 +69,8 @@ pub struct Impact {
     pub holds: Option<Holds>,
     /// The matrices, if asked for.
     pub matrices: Option<Matrices>,
+    /// What of the scene does not enter the analysis.
+    pub left_out: Vec<LeftOut>,
     /// What a reader should know, in whole sentences.
     pub notes: Vec<String>,
 }
@@ -102,6 +109,8 @@ pub struct Pipeline<'r> {
     plan: Plan,
     held: Vec<usize>,
     rotor_inertia: Vec<f64>,
+    /// Coordinates of held joints that have a column all the same.
+    kept: Vec<usize>,
     posture: Posture,
     workspace: Workspace,
     bounds: Bounds,
@@ -114,13 +123,15 @@ pub struct Pipeline<'r> {
 impl<'r> Pipeline<'r> {
     /// A pipeline for states of `robot`.
     pub fn new(robot: &'r Robot, options: Options) -> Self {
+        let feet = Feet::new(robot, &options.feet);
         Self {
             robot,
-            feet: Feet::new(robot, &options.feet),
+            feet: if options.reductions.reach { feet } else { feet.reaching_everywhere() },
             options,
             plan: Plan::new(robot, &[], &[]),
             held: Vec::new(),
             rotor_inertia: Vec::new(),
+            kept: Vec::new(),
             posture: Posture::default(),
             workspace: Workspace::default(),
             bounds: Bounds::default(),
@@ -160,10 +171,13 @@ impl<'r> Pipeline<'r> {
         let surface = Surface::new(&scene.ground);
         let (base, mut velocity, foot) = self.stand(state, &surface)?;
         let loops = match scene.loops.is_empty() {
-            true => Loops::default(),
+            true => {
+                self.keep_rates();
+                Loops::default()
+            }
             false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
         };
-        let contacts = self.contacts(scene, base, &surface, &mut notes)?;
+        let (contacts, out_of_reach) = self.contacts(scene, base, &surface, &mut notes)?;
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
         self.points.clear();
@@ -175,7 +189,7 @@ impl<'r> Pipeline<'r> {
         let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
         self.tell_of_slow(&contacts, &mut notes);
-        if !scene.impulses.is_empty() || (!scene.loops.is_empty() && !self.options.no_proof) {
+        if !scene.impulses.is_empty() || (self.is_constrained(&loops) && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;
             self.bounds.velocity.fill([f64::INFINITY; 2]);
@@ -189,6 +203,7 @@ impl<'r> Pipeline<'r> {
         for &entry in &free {
             finite(entry, || "a velocity after the applied impulses".into())?;
         }
+        let kept = self.kept.clone();
         let source = Strike {
             robot: self.robot,
             scene,
@@ -198,13 +213,14 @@ impl<'r> Pipeline<'r> {
             stance,
             contacts: &contacts,
             resting: &resting,
-            loop_rows: &loops.rows,
+            constraints: Constraints { kept: &kept, rows: &loops.rows },
             friction: problem.friction(),
             restitution: problem.restitution(),
             errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
         };
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
-        let asked = Asked { explain, prove: !self.options.no_proof };
+        let Options { no_proof, reductions, .. } = self.options;
+        let asked = Asked { explain, prove: !no_proof, reductions };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
         if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
@@ -212,9 +228,9 @@ impl<'r> Pipeline<'r> {
         }
         let (velocity_after, loop_impulse) = outcomes
             .iter()
-            .map(|outcome| match scene.loops.is_empty() {
-                true => (self.struck(&free, &outcome.impulse), Vec::new()),
-                false => {
+            .map(|outcome| match self.is_constrained(&loops) {
+                false => (self.struck(&free, &outcome.impulse), Vec::new()),
+                true => {
                     let mut change = self.struck(&applied, &outcome.impulse);
                     let impulse = self.answer_of_loops(&loops, &mut change);
                     (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
@@ -229,6 +245,7 @@ impl<'r> Pipeline<'r> {
             loop_impulse,
             matrices: self.options.matrices.then(|| self.matrices()),
             holds: None,
+            left_out: self.left_out(scene, &contacts, problem.friction(), out_of_reach),
             analysis,
             contacts,
             notes,
@@ -284,7 +301,13 @@ impl<'r> Pipeline<'r> {
     /// Compiles the plan, unless the last one was for the same held joints and rotors.
     fn compile(&mut self, scene: &Scene) {
         if self.held != scene.held || self.rotor_inertia != scene.rotor_inertia {
-            self.plan = Plan::new(self.robot, &scene.held, &scene.rotor_inertia);
+            let (without, kept) = match self.options.reductions.held {
+                true => (&scene.held[..], &[][..]),
+                false => (&[][..], &scene.held[..]),
+            };
+            self.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
+            self.kept.clear();
+            self.kept.extend(kept.iter().map(|joint| self.robot.base_dofs() + joint));
             self.held.clone_from(&scene.held);
             self.rotor_inertia.clone_from(&scene.rotor_inertia);
         }
@@ -369,13 +392,14 @@ impl<'r> Pipeline<'r> {
         Ok((stance.base, velocity, Some(stance.foot)))
     }
 
+    /// The closed contacts, and how many shapes were too far from the ground to be asked.
     fn contacts(
         &self,
         scene: &Scene,
         base: Vector<f64>,
         surface: &Surface,
         notes: &mut Vec<String>,
-    ) -> Result<Vec<Contact>> {
+    ) -> Result<(Vec<Contact>, usize)> {
         let placement = Placement::new(&self.plan, &self.workspace, base);
         let (named, tolerance) = (scene.contacts.as_deref(), self.tolerance());
         let contacts = contact::detect(self.robot, &self.feet, named, (&placement, surface), tolerance)?;
@@ -395,13 +419,15 @@ impl<'r> Pipeline<'r> {
                 }
             });
         }
+        let mut out_of_reach = 0;
         if named.is_none() {
+            out_of_reach = contact::out_of_reach(&self.feet, &placement, surface, tolerance);
             let ends = contact::left_behind(self.robot, &self.feet, &placement, surface, tolerance);
             notes.extend(ends.into_iter().map(|(link, end)| {
                 format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
             }));
         }
-        Ok(contacts)
+        Ok((contacts, out_of_reach))
     }
 
     /// Takes slow contacts as resting where asked to, and tells which.

@@ -2,9 +2,9 @@
 
 use crate::contact::Contact;
 use crate::dynamics::{
-    ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus, articulated_inertias,
-    close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix, orthogonalize,
-    point_velocity,
+    Closed, Constraints, ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus,
+    articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix,
+    orthogonalize, point_velocity,
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
 use crate::plan::{Plan, Posture};
@@ -28,8 +28,8 @@ pub struct Strike<'a> {
     pub contacts: &'a [Contact],
     /// Contacts that are taken as exactly at rest.
     pub resting: &'a [bool],
-    /// The rows of the loops that count.
-    pub loop_rows: &'a [usize],
+    /// The joints that keep their rates although they have columns, and the rows of the loops that count.
+    pub constraints: Constraints<'a>,
     pub friction: &'a [Friction],
     pub restitution: &'a [f64],
     pub errors: Errors<'a>,
@@ -55,7 +55,8 @@ pub struct Contacts<T> {
 impl Strike<'_> {
     /// The state's own numbers, exactly.
     fn inputs<T: Trigonometry>(&self) -> Inputs<T> {
-        let plan = Plan::new(self.robot, &self.scene.held, &self.scene.rotor_inertia);
+        let held = if self.constraints.kept.is_empty() { &self.scene.held[..] } else { &[] };
+        let plan = Plan::new(self.robot, held, &self.scene.rotor_inertia);
         let mut posture = Posture::default();
         posture.set(&plan, self.position);
         Inputs { posture, velocity: self.velocity.iter().map(|&entry| T::from_f64(entry)).collect(), plan }
@@ -67,8 +68,9 @@ impl Strike<'_> {
         let Inputs { posture, mut velocity, plan } = inputs;
         let mut workspace = Workspace::default();
         kinematics(&plan, &posture, &mut workspace);
-        // Articulated bodies hold neither ties nor loops.
-        let by_mass = plan.tied || !scene.loops.is_empty();
+        let constrained = !(scene.loops.is_empty() && self.constraints.kept.is_empty());
+        // Articulated bodies hold neither ties nor constraints.
+        let by_mass = plan.tied || constrained;
         if by_mass {
             mass_matrix(&plan, &mut workspace);
             factorize(&plan, &mut workspace);
@@ -85,10 +87,12 @@ impl Strike<'_> {
             velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
         }
         let loops: Vec<Loop<T>> = scene.loops.iter().map(|own| own.points(robot)).collect();
-        if !loops.is_empty() {
-            let foot = self.foot.map(point);
-            orthogonalize(&plan, &loops, (self.loop_rows, foot), &mut workspace);
-            close(&plan, &loops, foot.is_some(), &mut velocity, &workspace);
+        if constrained {
+            let foot = self.foot.filter(|_| !loops.is_empty()).map(point);
+            orthogonalize(&plan, &loops, (self.constraints, foot), &mut workspace);
+            if !loops.is_empty() {
+                close(&plan, &loops, Closed::Velocity, &mut velocity, &workspace);
+            }
         }
         contact_jacobian(&plan, &contacts, &velocity, self.stance, &mut workspace);
         if by_mass {
@@ -96,7 +100,7 @@ impl Strike<'_> {
         } else {
             articulated_delassus(&plan, &contacts, &mut workspace);
         }
-        if !loops.is_empty() {
+        if constrained {
             eliminate_loops(&plan, &mut workspace);
         }
         for (speed, _) in workspace.contact_velocity.iter_mut().zip(self.resting).filter(|(_, rests)| **rests) {
@@ -118,7 +122,9 @@ impl Strike<'_> {
                     add_articulated_impulse(&plan, &workspace, point, vector, scratch, &mut change);
                 }
             }
-            close(&plan, &loops, false, &mut change, &workspace);
+            if constrained {
+                close(&plan, &loops, Closed::Change, &mut change, &workspace);
+            }
             for (point, speed) in contacts.iter().zip(&mut free) {
                 let more = point_velocity(&plan, point.body, point.arm(&workspace), &change, &workspace);
                 *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));

@@ -3,6 +3,7 @@
 use super::strike::{Contacts, Inputs, Strike};
 use super::{Answer, Impact, Pipeline};
 use crate::contact::Contact;
+use crate::dynamics::Constraints;
 use crate::impact::{Analysis, Friction, Mode};
 use crate::planar::{difference, dot};
 use crate::robot::Robot;
@@ -135,7 +136,7 @@ impl Model for Kept<'_, '_> {
             stance: *stance,
             contacts: &impact.contacts,
             resting,
-            loop_rows: &[],
+            constraints: Constraints::default(),
             friction: &self.friction,
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,

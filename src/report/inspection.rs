@@ -6,7 +6,7 @@ use super::result::LeftOut;
 use super::text::Palette;
 use crate::Robot;
 use crate::planar::Vector;
-use crate::robot::{self, Axis, Base, FootShape, Rim, Still};
+use crate::robot::{self, Axis, Base, FootShape, Mover, Rim, Still};
 use crate::scene::NamedContact;
 use serde::Serialize;
 
@@ -58,6 +58,12 @@ pub struct Body<'a> {
     pub com: Vector<f64>,
     /// Moment of inertia about the plane's normal through the CoG \[kg m^2\].
     pub moment: f64,
+    /// The body that it is rigid on, where links are not welded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed_to: Option<&'a str>,
+    /// Its origin in that body's frame \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Vector<f64>>,
 }
 
 /// A joint that moves in the plane.
@@ -150,12 +156,20 @@ impl<'a> Inspection<'a> {
     /// All that is known about `robot`, with `feet` beside its own.
     pub fn new(robot: &'a Robot, feet: &[NamedContact]) -> Self {
         let body_name = |body: usize| robot.bodies[body].name.as_str();
-        let bodies = robot.bodies.iter().enumerate().map(|(at, body)| Body {
-            name: &body.name,
-            links: robot.links.iter().filter(|link| link.body == at).map(|link| link.name.as_str()).collect(),
-            mass: body.mass,
-            com: body.com,
-            moment: body.moment,
+        let bodies = robot.bodies.iter().enumerate().map(|(at, body)| {
+            let weld = match body.joint {
+                Some(Mover::Weld { parent, origin }) => Some((body_name(parent), origin)),
+                _ => None,
+            };
+            Body {
+                name: &body.name,
+                links: robot.links.iter().filter(|link| link.body == at).map(|link| link.name.as_str()).collect(),
+                mass: body.mass,
+                com: body.com,
+                moment: body.moment,
+                fixed_to: weld.map(|(parent, _)| parent),
+                origin: weld.map(|(_, origin)| origin),
+            }
         });
         let joint = |name: &'a str, parent, child, origin, axis| {
             let (kind, sign, direction) = match axis {

@@ -13,7 +13,7 @@ use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, outcome};
 use crate::pipeline::{Impact, Matrices};
 use crate::planar::Vector;
 use crate::state::State;
-use crate::{Error, Result, Robot, contact};
+use crate::{Error, Result, Robot, contact, description, pipeline};
 use serde::Serialize;
 use serde_json::Value;
 use std::borrow::Cow;
@@ -72,7 +72,7 @@ pub struct Report<'a> {
     /// Rank of the Delassus matrix.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rank: Option<usize>,
-    /// What of the robot's file does not enter the analysis; of a robot.
+    /// What of the robot's file and of the scene does not enter the analysis; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<Vec<LeftOut<'a>>>,
     /// What a reader should know, in whole sentences.
@@ -120,7 +120,7 @@ pub struct Contact<'a> {
     pub velocity_before: Vector<f64>,
 }
 
-/// Something of the robot's file that does not enter the analysis.
+/// Something of the robot's file or of the scene that does not enter the analysis.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LeftOut<'a> {
@@ -131,19 +131,35 @@ pub struct LeftOut<'a> {
 }
 
 impl<'a> LeftOut<'a> {
-    /// All that was left out of `robot`.
+    /// All that was left out of `robot`, and of every robot.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
-        robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: &left.why }).collect()
+        let what = Cow::Borrowed("gravity, Coriolis forces, joint limits");
+        let never = Self { what, why: "do not enter an impact" };
+        let of_robot = robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: &left.why });
+        of_robot.chain([never]).collect()
     }
 
-    /// All that was left out of `robot` and of this state of it.
-    pub fn of_state(robot: &'a Robot, state: &State) -> Vec<Self> {
-        let mut all = Self::all(robot);
-        let held = state.scene.held.iter().map(|&joint| &robot.joints[joint].name);
-        all.extend(
-            held.map(|name| Self { what: Cow::Owned(format!("joint \"{name}\"")), why: "held: keeps its rate" }),
-        );
-        all
+    /// All that was left out of `robot` and of this impact of it.
+    pub fn of_impact(robot: &'a Robot, impact: &Impact) -> Vec<Self> {
+        let contacts = |of: &[usize]| of.iter().map(|&at| &*impact.contacts[at].name).collect::<Vec<_>>().join(", ");
+        let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };
+        let of_scene = impact.left_out.iter().map(|left| {
+            let (what, why) = match left {
+                pipeline::LeftOut::Column(joint) => {
+                    (description::joint_place(&robot.joints[*joint].name), "held: it keeps its rate and has no column")
+                }
+                pipeline::LeftOut::OutOfReach(count) => {
+                    (format!("{} out of reach", shapes(*count)), "too high to reach the ground")
+                }
+                pipeline::LeftOut::NotAsked(count) => {
+                    (format!("{} of the file", shapes(*count)), "contacts are named by hand")
+                }
+                pipeline::LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
+                pipeline::LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
+            };
+            Self { what: Cow::Owned(what), why }
+        });
+        Self::all(robot).into_iter().chain(of_scene).collect()
     }
 }
 
@@ -260,7 +276,7 @@ impl<'a> Report<'a> {
         let mut report = Self {
             id: state.id.as_ref(),
             kinetic_energy: Some(impact.kinetic_energy),
-            left_out: Some(LeftOut::of_state(robot, state)),
+            left_out: Some(LeftOut::of_impact(robot, impact)),
             holds: impact.holds.as_ref().map(Holds::from),
             counterexample: impact.holds.as_ref().and_then(|holds| Counterexample::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),

@@ -48,6 +48,11 @@ pub(super) struct Part {
 }
 
 impl Part {
+    /// A point mass.
+    pub(super) fn point(mass: f64, com: Vector<f64>) -> Self {
+        Self { mass, com, moment: 0.0 }
+    }
+
     /// The part with the three-dimensional `inertia` about its CoG, whose axes are the columns of `rotation` in the body's
     /// frame; a point mass without one.
     ///

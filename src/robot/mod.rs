@@ -27,6 +27,7 @@ mod reduce;
 mod role;
 mod shape;
 mod tree;
+mod weld;
 
 pub use plane::Plane;
 pub use reading::{HeldJoint, PlaneReason, Reading, Still};
@@ -83,12 +84,20 @@ pub struct Body {
 }
 
 /// What moves a body against its parent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mover {
     /// A joint with a coordinate of its own: an index into [`Robot::joints`].
     Joint(usize),
     /// One that follows another: an index into [`Robot::followers`].
     Follower(usize),
+    /// Nothing: it is rigid on its parent, and a body only because such links are not welded here
+    /// (see [`Reductions`](crate::reductions::Reductions)).
+    Weld {
+        /// The body it is fixed to (an index into [`Robot::bodies`]).
+        parent: usize,
+        /// Its origin in that body's frame \[m\].
+        origin: Vector<f64>,
+    },
 }
 
 /// A joint that moves in the plane.
@@ -212,31 +221,25 @@ impl Robot {
             .chain(self.joints.iter().map(|joint| joint.name.as_str()))
     }
 
-    /// The body on which what moves a body hangs, its origin in that body's frame at coordinate zero \[m\], and its motion.
-    pub fn hinge(&self, mover: Mover) -> (usize, Vector<f64>, Axis) {
+    /// The body on which what moves a body hangs, its origin in that body's frame at coordinate zero \[m\], and its motion;
+    /// none of a weld.
+    pub fn hinge(&self, mover: Mover) -> (usize, Vector<f64>, Option<Axis>) {
         match mover {
             Mover::Joint(joint) => {
                 let Joint { parent, origin, axis, .. } = self.joints[joint];
-                (parent, origin, axis)
+                (parent, origin, Some(axis))
             }
             Mover::Follower(follower) => {
                 let Follower { parent, origin, axis, .. } = self.followers[follower];
-                (parent, origin, axis)
+                (parent, origin, Some(axis))
             }
+            Mover::Weld { parent, origin } => (parent, origin, None),
         }
     }
 
     /// Mass of all that can move: of a bolted robot without the root body \[kg\].
     pub fn mass(&self) -> f64 {
-        self.bodies.iter().skip(self.bolted()).map(|body| body.mass).sum()
-    }
-
-    /// How many bodies, counted from the root, cannot move: 1 where it is bolted to the world, else 0.
-    fn bolted(&self) -> usize {
-        match self.base {
-            Base::Floating => 0,
-            Base::Fixed => 1,
-        }
+        (0..self.bodies.len()).filter(|&body| self.moves(body)).map(|body| self.bodies[body].mass).sum()
     }
 
     /// The link of that name.

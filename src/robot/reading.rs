@@ -44,6 +44,8 @@ pub struct HeldJoint {
     pub still: Still,
     /// The body that its child is welded into; for a joint of the base the robot's root link.
     pub body: String,
+    /// False where its child is kept apart as a body of its own, `body`.
+    pub welded: bool,
 }
 
 /// Why a joint has no coordinate.
@@ -95,7 +97,8 @@ impl HeldJoint {
         let Self { body, still, .. } = self;
         match still {
             Still::Base => format!("{still}: x, z and pitch of {body} take its place"),
-            _ => format!("{still}: welded into {body}"),
+            _ if self.welded => format!("{still}: welded into {body}"),
+            _ => format!("{still}: it has no coordinate, and moves a body of its own, {body}"),
         }
     }
 }

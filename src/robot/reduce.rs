@@ -10,6 +10,7 @@ use super::tree::{Place, Tree};
 use super::{Base, LeftOut, Link, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, product};
 use crate::error::{Error, Reason, Result};
+use crate::reductions::Reductions;
 
 /// What a user may say about the reduction.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -21,6 +22,8 @@ pub struct Reduction {
     pub hold: Vec<(usize, f64)>,
     /// How the root is held; without it that is judged.
     pub base: Option<Base>,
+    /// Which links are welded.
+    pub reductions: Reductions,
 }
 
 impl Robot {
@@ -50,7 +53,7 @@ impl Robot {
         let found = base::judge(description, &mut roles, reduction.base);
         let tree = {
             let rotation = product(&plane.axes(), &posture.rotations[found.root]);
-            Tree::grow(description, &posture, &roles, found.root, rotation)
+            Tree::grow(description, (&posture, &roles), found.root, rotation, reduction.reductions)
         };
 
         let held = held(description, &roles, &tree, &found);
@@ -88,7 +91,7 @@ impl Robot {
             }
             robot.left_out.extend(left_out::doubtful_inertia(link));
             let mut reduced = reduce_link(link, place, &mut robot.left_out);
-            if place.body < robot.bolted() && !reduced.shapes.is_empty() {
+            if !robot.moves(place.body) && !reduced.shapes.is_empty() {
                 reduced.shapes.clear();
                 robot.left_out.push(left_out::bolted_shapes(link));
             }
@@ -138,15 +141,19 @@ fn better_plane(description: &Description, posture: &Posture, plane: Plane) -> O
 /// The joints without a coordinate, in the file's order.
 fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgement) -> Vec<HeldJoint> {
     let body = |link: usize| tree.places[link].as_ref().map(|place| tree.bodies[place.body].name.clone());
+    let welded = |link: usize| tree.places[link].as_ref().is_none_or(|place| !tree.is_apart(place.body));
     let joints = description.joints.iter().zip(roles).enumerate();
     let held = joints.filter_map(|(index, (joint, role))| {
         let name = joint.name.clone();
         let root = || description.links[found.root].name.clone();
         match role {
-            _ if found.chain.contains(&index) => Some(HeldJoint { name, still: Still::Base, body: root() }),
+            _ if found.chain.contains(&index) => {
+                Some(HeldJoint { name, still: Still::Base, body: root(), welded: true })
+            }
             // A weld among links of the base says nothing about the robot.
             Role::Held(still) => {
-                Some(HeldJoint { name, still: still.clone(), body: body(joint.child).unwrap_or_else(root) })
+                let welded = welded(joint.child);
+                Some(HeldJoint { name, still: still.clone(), body: body(joint.child).unwrap_or_else(root), welded })
             }
             Role::Moves { .. } | Role::Free => None,
         }

@@ -3,7 +3,7 @@
 //! A link's frame stands in its body's frame at
 //!
 //! ```text
-//!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 behind a moving joint
+//!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 in a body of its own
 //! ```
 //!
 //! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is held at a value
@@ -13,8 +13,9 @@
 use super::posture::{Posture, held_shift, held_turn};
 use super::role::Role;
 use super::{Body, Follower, Joint, Mover};
-use crate::description::{Description, Matrix, Mimic, Pose, apply, product};
+use crate::description::{self, Description, Inertial, Matrix, Mimic, Pose, apply, product};
 use crate::planar::Vector;
+use crate::reductions::Reductions;
 
 /// A link's frame in its body's frame, in three dimensions and with the plane's axes: forward, normal, up.
 #[derive(Debug, Clone)]
@@ -58,10 +59,10 @@ impl Tree {
     /// before the next.
     pub(super) fn grow(
         description: &Description,
-        posture: &Posture,
-        roles: &[Role],
+        (posture, roles): (&Posture, &[Role]),
         root: usize,
         rotation: Matrix,
+        reductions: Reductions,
     ) -> Self {
         let links = &description.links;
         let outward = description.outward_from(root);
@@ -99,20 +100,43 @@ impl Tree {
                     }
                     Place { body: child, offset: [0.0; 3], ..at }
                 }
-                _ => match posture.held[index] {
-                    Some(value) => {
-                        let offset = at.point(held_shift(joint, value));
-                        Place { rotation: product(&at.rotation, &held_turn(joint, value)), offset, ..at }
+                _ => {
+                    let at = match posture.held[index] {
+                        Some(value) => {
+                            let offset = at.point(held_shift(joint, value));
+                            Place { rotation: product(&at.rotation, &held_turn(joint, value)), offset, ..at }
+                        }
+                        None => at,
+                    };
+                    let child = &links[joint.child];
+                    let welds = if vanishes(child) { reductions.massless } else { reductions.weld };
+                    if welds {
+                        at
+                    } else {
+                        let weld = Mover::Weld { parent: at.body, origin: at.in_plane() };
+                        bodies.push(Body::of(&child.name, Some(weld)));
+                        Place { body: bodies.len() - 1, offset: [0.0; 3], ..at }
                     }
-                    None => at,
-                },
+                }
             };
             places[joint.child] = Some(child);
         }
-        joints.sort_by_key(|joint| bodies[joint.child].joint.map(order));
-        following.sort_by_key(|follower| bodies[follower.child].joint.map(order));
+        joints.sort_by_key(|joint| bodies[joint.child].joint.and_then(order));
+        following.sort_by_key(|follower| bodies[follower.child].joint.and_then(order));
         Self { bodies, joints, followers: following, places }
     }
+
+    /// Whether a body is rigid on another and kept apart all the same.
+    pub(super) fn is_apart(&self, body: usize) -> bool {
+        matches!(self.bodies[body].joint, Some(Mover::Weld { .. }))
+    }
+}
+
+/// Whether nothing of a link is left once it is welded: it has neither inertia nor shapes.
+fn vanishes(link: &description::Link) -> bool {
+    let inertia = |inertia: &Matrix| inertia.iter().flatten().all(|&entry| entry == 0.0);
+    let massless = |own: &Inertial| own.mass == 0.0 && own.inertia.as_ref().is_none_or(inertia);
+    link.collisions.is_empty() && link.inertial.as_ref().is_none_or(massless)
 }
 
 /// Counts one on.
@@ -122,9 +146,10 @@ fn next(count: &mut usize) -> usize {
 }
 
 /// The place of a mover among those of its kind.
-fn order(mover: Mover) -> usize {
+fn order(mover: Mover) -> Option<usize> {
     match mover {
-        Mover::Joint(index) | Mover::Follower(index) => index,
+        Mover::Joint(index) | Mover::Follower(index) => Some(index),
+        Mover::Weld { .. } => None,
     }
 }
 

@@ -116,7 +116,8 @@ fn joints_that_leave_the_plane_are_welded_at_zero_and_their_angle_told() {
 fn held_joints_are_welded_at_their_values_and_axes_judged_there() {
     // j turns about x by a quarter, so that the z axis of k points to -y: k stays.
     let text = chain(&[("revolute", "2 0 0"), ("revolute", "0 0 1"), ("prismatic", "0 0 1")]);
-    let hold = |hold: &[(usize, f64)]| Reduction { plane: Some(Plane::XZ), hold: hold.to_vec(), base: None };
+    let hold =
+        |hold: &[(usize, f64)]| Reduction { plane: Some(Plane::XZ), hold: hold.to_vec(), ..Reduction::default() };
     let robot = reduce(&text, &hold(&[(0, FRAC_PI_2)]));
     assert_eq!((kept(&robot), robot.joints[0].axis), (vec!["k"], Axis::Turn { sign: -1.0 }));
     assert_eq!(still(&robot, "j"), &Still::Asked { value: FRAC_PI_2 });

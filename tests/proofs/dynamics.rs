@@ -120,7 +120,7 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                 }
                 Pose { turn: angle.cos_sin(), angle, origin, motions }
             }
-            Some(Mover::Follower(_)) => unreachable!("no robot here has followers"),
+            Some(Mover::Follower(_) | Mover::Weld { .. }) => unreachable!("no robot here has them"),
             Some(Mover::Joint(index)) => {
                 let joint = &robot.joints[index];
                 let parent = &poses[joint.parent];

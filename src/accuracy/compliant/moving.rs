@@ -206,7 +206,7 @@ fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<
                     Motion::Slide { .. } => {
                         (spin, sum(carried, scaled(2.0 * spin * rate, turned(workspace.direction[index]))))
                     }
-                    Motion::Root => (spin, carried),
+                    Motion::Root | Motion::Weld => (spin, carried),
                 }
             }
         };

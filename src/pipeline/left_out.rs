@@ -1,0 +1,52 @@
+//! What of one scene does not enter its analysis, beside what of the robot's file does not.
+
+use super::Pipeline;
+use crate::contact::Contact;
+use crate::impact::Friction;
+use crate::scene::Scene;
+
+/// Something that this scene does not need.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LeftOut {
+    /// The column of a joint that keeps its rate (an index into [`Robot::joints`](crate::Robot)).
+    Column(usize),
+    /// This many collision shapes, which are too high to reach the ground.
+    OutOfReach(usize),
+    /// This many collision shapes, because contacts are named by hand.
+    NotAsked(usize),
+    /// The tangential impulses of these contacts, which have no friction.
+    Tangential(Vec<usize>),
+    /// The friction cones of these contacts, whose friction is infinite.
+    Cone(Vec<usize>),
+}
+
+impl Pipeline<'_> {
+    /// What of a scene is left out; `out_of_reach` tells how many shapes were not looked at.
+    pub(super) fn left_out(
+        &self,
+        scene: &Scene,
+        contacts: &[Contact],
+        friction: &[Friction],
+        out_of_reach: usize,
+    ) -> Vec<LeftOut> {
+        let mut all = Vec::new();
+        if self.options.reductions.held {
+            all.extend(scene.held.iter().map(|&joint| LeftOut::Column(joint)));
+        }
+        let shapes = self.feet.iter().count();
+        match scene.contacts {
+            Some(_) if shapes > 0 => all.push(LeftOut::NotAsked(shapes)),
+            None if out_of_reach > 0 => all.push(LeftOut::OutOfReach(out_of_reach)),
+            _ => {}
+        }
+        let with = |wanted: Friction| (0..contacts.len()).filter(|&at| friction[at] == wanted).collect::<Vec<_>>();
+        let [none, infinite] = [with(Friction::ZERO), with(Friction::Infinite)];
+        if self.options.reductions.frictionless && !none.is_empty() {
+            all.push(LeftOut::Tangential(none));
+        }
+        if !infinite.is_empty() {
+            all.push(LeftOut::Cone(infinite));
+        }
+        all
+    }
+}

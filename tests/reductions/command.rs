@@ -1,0 +1,69 @@
+//! `--no-reduction` on the command line, and what results tell of it.
+
+use assert_cmd::Command;
+use serde_json::{Value, json};
+
+const RAMONE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/ramone.urdf");
+
+fn run(arguments: &[&str], input: &Value) -> Value {
+    let output = Command::new(env!("CARGO_BIN_EXE_heelstrike"))
+        .args(arguments)
+        .write_stdin(input.to_string())
+        .output()
+        .expect("the binary starts");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    serde_json::from_slice(&output.stdout).expect("one line of JSON")
+}
+
+fn state(friction: Value) -> Value {
+    json!({
+        "position": {"base": {"pitch": 0.05}, "joints": {"left_hip": 1.2, "left_knee": -1.5, "right_hip": 0.3}},
+        "velocity": {"base": {"pitch": 0.5}, "joints": {"right_hip": 1.0}},
+        "stance": "right_foot", "held": ["left_knee"], "friction": friction,
+    })
+}
+
+/// What and why of those entries that are about the scene, not about the file.
+fn left_out(result: &Value) -> Vec<[&str; 2]> {
+    let all = result["left_out"].as_array().expect("a list").iter();
+    let entries = all.map(|entry| ["what", "why"].map(|field| entry[field].as_str().expect("text")));
+    entries.filter(|[_, why]| !why.contains("welded") && *why != "do not enter an impact").collect()
+}
+
+#[test]
+fn a_result_tells_what_its_scene_did_not_need() {
+    let held = ["joint \"left_knee\"", "held: it keeps its rate and has no column"];
+    let high = ["1 shape out of reach", "too high to reach the ground"];
+    for (friction, more) in [
+        (json!(0.0), Some(["tangential impulse of right_foot", "friction 0"])),
+        (json!(0.8), None),
+        (json!("infinite"), Some(["friction cone of right_foot", "infinite friction"])),
+    ] {
+        let result = run(&["impact", RAMONE, "-", "--format", "json"], &state(friction));
+        let expected: Vec<_> = [held, high].into_iter().chain(more).collect();
+        assert_eq!(left_out(&result), expected);
+    }
+}
+
+#[test]
+fn reductions_are_switched_off_together_or_by_name() {
+    let of = |option: &str| run(&["impact", RAMONE, "-", "--format", "json", "--matrices", option], &state(json!(0.0)));
+    let columns = |result: &Value| result["coordinates"].as_array().expect("a list").len();
+    let (held, all) = (of("--no-reduction=held,frictionless"), of("--no-reduction"));
+    assert_eq!(left_out(&held), [["1 shape out of reach", "too high to reach the ground"]]);
+    assert_eq!((columns(&held), columns(&of("--no-reduction=weld"))), (7, 6));
+    assert_eq!(columns(&all), 7);
+    let why = "fixed: it has no coordinate, and moves a body of its own, left_foot";
+    assert!(left_out(&all).contains(&["joint \"left_ankle\"", why]), "{all}");
+    assert_eq!(held["outcomes"][0]["modes"], all["outcomes"][0]["modes"]);
+}
+
+#[test]
+fn inspect_shows_the_bodies_that_are_not_welded() {
+    let bodies = |options: &[&str]| {
+        let arguments = [&["inspect", RAMONE, "--format", "json"], options].concat();
+        run(&arguments, &Value::Null)["bodies"].as_array().expect("a list").len()
+    };
+    assert_eq!((bodies(&[]), bodies(&["--no-reduction=weld"]), bodies(&["--no-reduction=held"])), (5, 7, 5));
+}

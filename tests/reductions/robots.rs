@@ -1,0 +1,129 @@
+//! The robots of other people's projects (`data/robots`), with and without what their scenes need.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use heelstrike::description::Description;
+use heelstrike::reductions::Reductions;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::comparison::{FEWER, answer, difference, largest_rate, robot};
+
+#[derive(Deserialize)]
+struct Reference {
+    urdf: String,
+    variants: BTreeMap<String, Value>,
+}
+
+#[derive(Deserialize)]
+struct Variant {
+    coordinates: Vec<String>,
+    contacts: Vec<Contact>,
+    configs: Vec<Config>,
+}
+
+#[derive(Deserialize, Serialize)]
+struct Contact {
+    link: String,
+    offset: [f64; 3],
+    radius: f64,
+}
+
+#[derive(Deserialize)]
+struct Config {
+    q: Vec<f64>,
+    v: Vec<f64>,
+}
+
+/// The states that a robot's reference has, with one contact and with all, three kinds of friction, joints held and not.
+fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
+    let named = |values: &[f64]| {
+        let entries = variant.coordinates.iter().zip(values).map(|(name, &value)| (name.clone(), json!(value)));
+        let (base, joints): (Vec<_>, Vec<_>) = entries.enumerate().partition(|(index, _)| *index < base);
+        let [base, joints] = [base, joints].map(|part| Value::Object(part.into_iter().map(|(_, own)| own).collect()));
+        if base.as_object().is_some_and(|base| base.is_empty()) {
+            json!({"joints": joints})
+        } else {
+            json!({"base": base, "joints": joints})
+        }
+    };
+    let held: Vec<&String> = joints.iter().step_by(2).collect();
+    let mut states = Vec::new();
+    for config in &variant.configs {
+        for contacts in [1, 4].map(|most| &variant.contacts[..variant.contacts.len().min(most)]) {
+            for friction in [json!(0.0), json!(0.8), json!("infinite")] {
+                for held in [&[][..], &held[..]] {
+                    states.push(json!({
+                        "position": named(&config.q), "velocity": named(&config.v), "friction": friction,
+                        "contacts": contacts, "held": held,
+                    }));
+                }
+            }
+        }
+    }
+    states
+}
+
+fn compare(name: &str, variant: &str) {
+    let folder = format!("{}/tests/data/robots/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(format!("{folder}/reference.json")).expect("the robot's reference");
+    let Reference { urdf, mut variants } = serde_json::from_str(&text).expect("the reference is readable");
+    let variant: Variant = serde_json::from_value(variants.remove(variant).expect("the variant")).expect("readable");
+    let urdf = fs::read_to_string(format!("{folder}/{urdf}")).expect("the robot");
+    let description = Description::from_urdf(&urdf).expect("a good file");
+    let reduced = robot(&description, Reductions::ALL);
+    let joints: Vec<String> = reduced.joints.iter().map(|joint| joint.name.clone()).collect();
+    let mut states = states(&variant, reduced.base_dofs(), &joints);
+    // Feet that are found: each link with shapes stands once.
+    for link in reduced.links.iter().filter(|link| !link.shapes.is_empty() && reduced.base_dofs() > 0).take(6) {
+        let mut standing = states[2].clone();
+        let fields = standing.as_object_mut().expect("an object");
+        fields.remove("contacts");
+        for part in ["position", "velocity"] {
+            let base = fields[part]["base"].as_object_mut().expect("it floats");
+            base.remove("x");
+            base.remove("z");
+        }
+        fields.insert("stance".into(), json!(link.name));
+        states.push(standing);
+    }
+    let (mut compared, mut differences) = (0, Vec::new());
+    for (fewer, reductions) in FEWER.into_iter().enumerate() {
+        let unreduced = robot(&description, reductions);
+        for state in &states {
+            match (answer(&reduced, state, Reductions::ALL), answer(&unreduced, state, reductions)) {
+                (Ok(one), Ok(other)) => {
+                    compared += 1;
+                    let difference = difference(&one, &other, Some(largest_rate(state)));
+                    differences.extend(difference.err().map(|what| format!("{fewer}: {what}\n  {state}")));
+                }
+                // A foot that stands while another is in the ground; a joint that moves nothing.
+                (Err(one), Err(other)) if one.to_string() == other.to_string() => {}
+                (one, other) => differences.push(format!("{fewer}: {:?} and {:?}\n  {state}", one.err(), other.err())),
+            }
+        }
+    }
+    assert!(differences.is_empty(), "{name}: {} of {compared}\n{}", differences.len(), differences[0]);
+    assert!(compared >= FEWER.len() * states.len() / 2, "{name}: {compared} compared");
+}
+
+macro_rules! robots {
+    ($($name:ident $variant:literal)*) => {$(
+        #[test]
+        fn $name() {
+            compare(stringify!($name), $variant);
+        }
+    )*};
+}
+
+robots! {
+    a1 "default"
+    acrobot "fixed"
+    cartpole "fixed_prismatic"
+    h1 "default"
+    planar_walker_torso "rerooted"
+    rabbit "default"
+    solo8 "default"
+    upkie "default"
+}
