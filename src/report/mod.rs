@@ -13,6 +13,7 @@ mod id;
 #[cfg(feature = "accuracy")]
 mod accuracy;
 mod inspection;
+mod list;
 mod outcome;
 #[cfg(feature = "plot")]
 pub mod picture;

@@ -139,7 +139,7 @@ impl<'a> LeftOut<'a> {
         of_robot.chain([never]).collect()
     }
 
-    /// All that was left out of `robot` and of this impact of it.
+    /// All that was left out of this impact, and then of its `robot`.
     pub fn of_impact(robot: &'a Robot, impact: &Impact) -> Vec<Self> {
         let contacts = |of: &[usize]| of.iter().map(|&at| &*impact.contacts[at].name).collect::<Vec<_>>().join(", ");
         let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };
@@ -159,7 +159,7 @@ impl<'a> LeftOut<'a> {
             };
             Self { what: Cow::Owned(what), why }
         });
-        Self::all(robot).into_iter().chain(of_scene).collect()
+        of_scene.chain(Self::all(robot)).collect()
     }
 }
 

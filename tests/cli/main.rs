@@ -307,7 +307,7 @@ fn a_robot_in_the_air_keeps_its_velocity() {
       pitch           rad/s        0
 
     Note: nothing touches the ground: the lowest foot, block, is 1.0 m above it
-    Left out (see `heelstrike inspect`): gravity, Coriolis forces, joint limits, 1 shape out of reach.
+    Left out (see `heelstrike inspect`): 1 shape out of reach, gravity, Coriolis forces, joint limits.
     ");
     let result = heelstrike_reads(&["impact", BLOCK, "-", "--format", "json"], state).line();
     assert_eq!(result["verdict"], "no_contact");

@@ -1,6 +1,7 @@
 //! What was read of a robot, as text that fits a screen: first what a user needs to trust the model, long lists cut short.
 
 use super::{Inspection, Joint};
+use crate::report::list::list;
 use crate::report::table::{Table, number, scale};
 use crate::report::text::Palette;
 use crate::robot::Still;
@@ -161,21 +162,6 @@ fn grouped<T>(pairs: impl Iterator<Item = (String, T)>) -> Vec<(String, Vec<T>)>
         }
     }
     groups
-}
-
-/// The names that there is `room` for, at least the first, and how many more there are.
-fn list(names: &[impl AsRef<str>], room: usize) -> String {
-    let lengths = names.iter().map(|name| name.as_ref().chars().count() + 2);
-    let ends = lengths.scan(0, |end, length| {
-        *end += length;
-        Some(*end)
-    });
-    let shown = ends.take_while(|&end| end <= room + 2).count().max(1).min(names.len());
-    let mut text = names[..shown].iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
-    if shown < names.len() {
-        text.push_str(&format!(" and {} more", names.len() - shown));
-    }
-    text
 }
 
 /// A line of the head, broken between words.

@@ -5,6 +5,7 @@ mod reasons;
 
 use self::outcome::graded;
 use super::holds::Holds;
+use super::list::list;
 use super::result::{Contact, Report};
 use super::table::{Table, is_residue, number, scale};
 use super::{Detail, Problem};
@@ -14,6 +15,9 @@ use crate::pipeline::Impact;
 use crate::robot::{Axis, Base};
 use crate::state::State;
 use std::fmt::Write;
+
+/// The room for what was left out, in characters.
+const LEFT_OUT: usize = 200;
 
 /// What marks the important and the unimportant; empty for plain text, escape sequences for a terminal.
 #[derive(Debug, Clone, Copy, Default)]
@@ -265,8 +269,8 @@ impl<'w> Writer<'w> {
         }
         if let Some(left_out) = self.report.left_out.as_ref().filter(|left_out| !left_out.is_empty()) {
             let Palette { faint, plain, .. } = *self.palette;
-            let what = left_out.iter().map(|left| &*left.what).collect::<Vec<_>>().join(", ");
-            writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {what}.{plain}")?;
+            let what: Vec<&str> = left_out.iter().map(|left| &*left.what).collect();
+            writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {}.{plain}", list(&what, LEFT_OUT))?;
         }
         Ok(())
     }
