@@ -202,9 +202,11 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
     let on = |foot: usize| {
         let beyond = outline.beyond_rim(foot, at);
         let together = outline.is_sharp() && beyond.is_none_or(|(_, far)| far <= close.rounding);
+        // A point that is at the corner, to rounding, is left to it by both segments.
         let past_both = || {
-            before.past_end(outline.lowest(foot, before.normal)) > 0.0
-                && after.past_begin(outline.lowest(foot, after.normal)) < 0.0
+            let [rear, front] = [before, after].map(|face| outline.lowest(foot, face.normal));
+            let left = |past: bool, lowest| past || distance(lowest, at) <= close.rounding;
+            left(before.past_end(rear) > 0.0, rear) && left(after.past_begin(front) < 0.0, front)
         };
         let is_nearest_foot = outline.at_corner(foot).is_none_or(|[ending, beginning]| {
             ending.past_end(at) >= -close.rounding && beginning.past_begin(at) <= close.rounding

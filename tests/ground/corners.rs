@@ -133,3 +133,17 @@ fn contacts_named_by_hand_take_the_nearest_ground() {
     // Beyond an end the last segment goes on.
     assert_eq!(named(-5.0, 0.5, 0.0), ([0.0, 1.0, 0.5], [-5.0, 0.5]));
 }
+
+#[test]
+fn a_circle_whose_lowest_point_is_exactly_a_corner_of_the_ground_touches_there() {
+    let down = [[-2.0, 0.0], [0.0, 0.0], [2.0, -0.4]];
+    let on = |profile: &[[f64; 2]], x: f64| impact(&disc(), &state([x, 0.5, 0.0], FALLING, "0.5", profile));
+    // At the edge of a step, where a slope begins, and at both ends of the ground; the normal is that of the level segment.
+    for (profile, x) in [(&step_down(0.0, 1.0)[..], 0.0), (&down, 0.0), (&[[-2.0, 0.0], [0.25, 0.0]], 0.25)] {
+        assert_touches(&on(profile, x), &[[[x, 0.0], [0.0, 1.0]]]);
+    }
+    assert_touches(&on(&[[0.25, 0.0], [2.0, 0.0]], 0.25), &[[[0.25, 0.0], [0.0, 1.0]]]);
+    // A stance is placed on such a corner.
+    let stance = r#"{"stance": "body", "friction": 0.5, "ground": {"profile": [[-1, -1], [0, 0], [1, -0.5]]}}"#;
+    assert_eq!(impact(&disc(), stance).velocity_before, [[0.0; 2]]);
+}
