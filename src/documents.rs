@@ -47,7 +47,9 @@ pub fn utf8(bytes: &[u8]) -> Result<&str> {
         Err(broken) => {
             let valid = String::from_utf8_lossy(&bytes[..broken.valid_up_to()]);
             let (line, column) = line_and_column(&valid, valid.len());
-            Err(Error::new(Reason::Syntax("the text is not UTF-8".into())).on(line, column))
+            Err(Error::new(Reason::Syntax("the text is not UTF-8".into()))
+                .hint("save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote")
+                .on(line, column))
         }
     }
 }

@@ -179,16 +179,35 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     })
 }
 
-/// Refuses macros that are still to be expanded; a file that only declares their namespace is plain URDF.
+/// Refuses macros that are still to be expanded, by their namespace or as they were written before there was one; a file that
+/// only declares the namespace is plain URDF.
 fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     let is_macro = |element: &Node| element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro"));
-    match robot.descendants().find(|node| node.is_element() && is_macro(node)) {
-        Some(element) => {
-            let reason = format!("<xacro:{}> is not URDF", element.tag_name().name());
-            Err(xml::refuse(element, Reason::Unsupported(reason)).hint(EXPAND))
-        }
-        None => Ok(()),
+    let refused = |element: Node, what: String| {
+        xml::refuse(element, Reason::Unsupported(format!("{what} is not URDF"))).hint(EXPAND)
+    };
+    if let Some(element) = robot.descendants().find(|node| node.is_element() && is_macro(node)) {
+        return Err(refused(element, format!("<xacro:{}>", element.tag_name().name())));
     }
+    for element in robot.children().filter(Node::is_element) {
+        let place: fn(&str) -> String = match tag(robot, element) {
+            Some(old @ ("include" | "property" | "macro")) => {
+                return Err(refused(element, format!("<{old}> of xacro")));
+            }
+            Some("link") => link_place,
+            Some("joint") => joint_place,
+            // What other programs read may hold anything.
+            _ => continue,
+        };
+        for inside in element.descendants().filter(|node| node.is_element() && node.tag_name().name() != "gazebo") {
+            let mut values = inside.attributes().map(|attribute| attribute.value());
+            if let Some(value) = values.find(|value| value.contains("${") || value.contains("$(")) {
+                let name = element.attribute("name").unwrap_or_default();
+                return Err(refused(inside, format!("\"{value}\"")).at(place(name)));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The tag of a child of `robot`, if it is of the same namespace.

@@ -24,10 +24,6 @@ impl<'a, 'input> Named<'a, 'input> {
 
     pub(super) fn push(&mut self, element: Node<'a, 'input>, location: Location) -> Result<()> {
         let name = xml::required_attribute(element, "name")?;
-        if name.contains("${") || name.contains("$(") {
-            let reason = format!("the name \"{name}\" is a macro's");
-            return Err(xml::refuse(element, Reason::Unsupported(reason)).hint(EXPAND));
-        }
         if self.by_name.insert(name, self.elements.len()).is_some() {
             return Err(xml::refuse(element, Reason::Duplicate { what: self.what, name: name.into() }));
         }

@@ -64,9 +64,8 @@ pub(super) fn copy(element: Node<'_, '_>, name: &str, count: usize, range: Range
     let parsed: Vec<f64> = numbers.iter().flat_map(|number| number.parse()).collect();
     if numbers.len() != count || parsed.len() != count {
         let expected = if count == 1 { "a number".into() } else { format!("{count} numbers") };
-        let error = xml::refuse(element, Reason::Syntax(format!("{} must be {expected}, not \"{value}\"", what())));
-        let is_xacro = value.contains("${");
-        return Err(if is_xacro { error.hint(super::named::EXPAND) } else { error });
+        let reason = Reason::Syntax(format!("{} must be {expected}, not \"{value}\"", what()));
+        return Err(xml::refuse(element, reason));
     }
     for number in parsed {
         finite(number, what).map_err(|error| xml::refuse(element, error.reason().clone()))?;

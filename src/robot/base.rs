@@ -51,11 +51,19 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
     if asked == Some(Base::Fixed) {
         return at_root(Base::Fixed, "as asked".into());
     }
-    if let Some(chain) = welded.chain(description, roles, 0.0) {
+    let light = || welded.is_massless(root, 0.0).then(|| welded.chain(description, roles, LIGHT * welded.total))?;
+    if let Some(chain) = welded.chain(description, roles, 0.0).or_else(light) {
         let names = chain.map(|joint| format!("\"{}\"", description.joints[joint].name)).join(", ");
         let because = format!("the file's own chain of joints {names} is the base itself");
         let root = description.joints[chain[2]].child;
-        return Judgement { base: Base::Floating, root, because, chain: chain.into(), caution: None };
+        let lost: f64 = chain[1..].iter().map(|&joint| welded.mass(description.joints[joint].parent)).sum();
+        let caution = (lost > 0.0).then(|| {
+            format!(
+                "the links of the base's own chain ({names}) weigh {lost} kg, which is left out: give --base fixed to keep \
+                 the chain and its mass"
+            )
+        });
+        return Judgement { base: Base::Floating, root, because, chain: chain.into(), caution };
     }
     if asked == Some(Base::Floating) {
         return at_root(Base::Floating, "as asked".into());

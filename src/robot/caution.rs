@@ -77,14 +77,13 @@ fn about_tilted(seen: &Seen, nearly: &[(&str, f64)], all: usize) -> String {
             remedies.push(remedy);
         }
     }
-    let remedies: Vec<&str> = remedies.iter().map(String::as_str).collect();
     let joints: Vec<&str> = nearly.iter().map(|(name, _)| *name).collect();
     format!(
         "{} of {all} joints that could move are held only because their axes are {range} degrees off the plane ({}); to keep \
          them: {}",
         nearly.len(),
         names(&joints),
-        names(&remedies),
+        remedies.join(", "),
     )
 }
 
@@ -99,7 +98,10 @@ fn remedy(seen: &Seen, joint: usize) -> Option<String> {
     };
     let turned = before().filter(|&before| {
         let kind = description.joints[before].kind;
-        matches!(kind, JointKind::Revolute | JointKind::Continuous) && posture.held[before].is_none()
+        // One that is nearly in line is to be kept itself.
+        matches!(kind, JointKind::Revolute | JointKind::Continuous)
+            && posture.held[before].is_none()
+            && plane.off_normal(posture.axes[before]) > NEARLY
     });
     let mut turned = turned.filter_map(|before| Some((before, angle_into_line(axis, posture.axes[before], *plane)?)));
     if let Some((hinge, angle)) = turned.next() {

@@ -47,12 +47,16 @@ fn what_is_empty_is_refused() {
 
 #[test]
 fn bytes_that_are_no_text_are_refused_with_their_place() {
+    let told = |place: &str| {
+        let hint = "hint: save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote";
+        format!("error: <stdin>:{place}: the text is not UTF-8\n{hint}\n")
+    };
     let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
-    assert_refused(&["inspect", "-"], png, "error: <stdin>:1:1: the text is not UTF-8\n");
-    assert_refused(&["inspect", "-"], b"<robot name=\"\xe9\"/>", "error: <stdin>:1:14: the text is not UTF-8\n");
-    assert_refused(&["impact", RAMONE, "-"], b"{\n \"id\": \"\xff\"}", "error: <stdin>:2:9: the text is not UTF-8\n");
+    assert_refused(&["inspect", "-"], png, &told("1:1"));
+    assert_refused(&["inspect", "-"], b"<robot name=\"\xe9\"/>", &told("1:14"));
+    assert_refused(&["impact", RAMONE, "-"], b"{\n \"id\": \"\xff\"}", &told("2:9"));
     let sixteen = b"\xff\xfe<\0r\0o\0b\0o\0t\0/\0>\0";
-    assert_refused(&["inspect", "-"], sixteen, "error: <stdin>:1:1: the text is not UTF-8\n");
+    assert_refused(&["inspect", "-"], sixteen, &told("1:1"));
 }
 
 #[cfg(target_os = "linux")]

@@ -185,6 +185,17 @@ fn a_chain_whose_links_were_only_given_a_mass_gets_a_word() {
 }
 
 #[test]
+fn a_chain_of_next_to_nothing_under_a_massless_root_is_the_base_all_the_same() {
+    let robot = load(&chain(&[0.0, 1e-6, 1e-6, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
+    assert_eq!(found(&robot), (Base::Floating, "d", vec!["m"]));
+    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    assert!(caution.contains("weigh 0.000002 kg, which is left out"), "{caution}");
+    // A carriage of 1 kg is none.
+    let robot = load(&chain(&[0.0, 1.0, 0.0, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
+    assert_eq!(found(&robot), (Base::Fixed, "a", vec!["j", "k", "l", "m"]));
+}
+
+#[test]
 fn a_link_of_the_base_is_no_place_for_a_contact() {
     let robot = load(&chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]));
     let state = r#"{"friction": 1, "contacts": [{"link": "b"}]}"#;

@@ -37,7 +37,7 @@ fn what_is_no_urdf_is_refused() {
     );
     assert_refused(
         &two_links("revolute", "<origin xyz=\"0 ${l} 0\"/>"),
-        "4:68: joint \"j\": xyz of <origin> must be 3 numbers, not \"0 ${l} 0\"",
+        "4:68: joint \"j\": \"0 ${l} 0\" is not URDF",
         expand,
     );
 }

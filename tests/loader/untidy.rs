@@ -47,7 +47,24 @@ fn macros_are_recognised_whether_declared_or_not() {
             format!("<robot{declared}><link name=\"a\"><inertial>\n<xacro:mass/></inertial></link></robot>"),
             "2:1: <xacro:mass> is not URDF",
         ),
-        (format!("<robot>\n{}</robot>", LINK.replace("\"a\"", "\"${p}a\"")), "2:1: the name \"${p}a\" is a macro's"),
+        (
+            format!("<robot>\n{}</robot>", LINK.replace("\"a\"", "\"${p}a\"")),
+            "2:1: link \"${p}a\": \"${p}a\" is not URDF",
+        ),
+        (
+            format!("<robot>{LINK}\n<include filename=\"$(find x)/y.xacro\"/></robot>"),
+            "2:1: <include> of xacro is not URDF",
+        ),
+        (
+            format!(
+                "<robot>{}</robot>",
+                LINK.replace(
+                    "</link>",
+                    "\n<collision><geometry><sphere radius=\"$(arg r)\"/></geometry></collision></link>"
+                )
+            ),
+            "2:22: link \"a\": \"$(arg r)\" is not URDF",
+        ),
     ] {
         let refused = Robot::from_urdf(&text).expect_err("a macro");
         assert_eq!(refused.to_string(), message);

@@ -1,7 +1,36 @@
 //! STL, binary and ASCII -> vertices (the only user of mesh-loader).
 
+use std::borrow::Cow;
+
+/// What stands before the triangles of a binary file: 80 bytes for anybody, and their number \[byte\].
+const HEADER: usize = 84;
+/// A triangle of a binary file \[byte\].
+const TRIANGLE: usize = 50;
+
 /// The corners of all triangles \[m\], each as often as it is written. Or why there are none.
 pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
-    let scene = mesh_loader::stl::from_slice(bytes).map_err(|error| error.to_string())?;
+    let scene = mesh_loader::stl::from_slice(&tidied(bytes)?).map_err(|error| error.to_string())?;
     Ok(scene.meshes.iter().flat_map(|mesh| &mesh.vertices).map(|vertex| vertex.map(f64::from)).collect())
+}
+
+/// ASCII in small letters, as some programs write it in capitals; binary without what follows its last triangle.
+///
+/// # Errors
+/// A binary file that is cut short: mesh-loader would read what is there.
+fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
+    let begin = bytes.trim_ascii_start();
+    let is_text =
+        begin.len() >= 5 && begin[..5].eq_ignore_ascii_case(b"solid") && bytes.is_ascii() && !bytes.contains(&0);
+    if is_text {
+        return Ok(bytes.to_ascii_lowercase().into());
+    }
+    let Some(&[a, b, c, d]) = bytes.get(HEADER - 4..HEADER).and_then(|count| count.first_chunk()) else {
+        return Err("it is neither ASCII STL nor long enough for binary STL".into());
+    };
+    let announced = u32::from_le_bytes([a, b, c, d]);
+    let present = (bytes.len() - HEADER) / TRIANGLE;
+    match usize::try_from(announced) {
+        Ok(count) if count <= present => Ok(bytes[..HEADER + count * TRIANGLE].into()),
+        _ => Err(format!("{announced} triangles are announced, {present} are there")),
+    }
 }

@@ -97,7 +97,9 @@ fn assert_near(found: &[[f64; 3]], expected: &[[f64; 3]]) {
 fn every_format_gives_the_same_vertices() {
     let expected = sorted(&PYRAMID);
     assert_eq!(vertices("foot.stl", ascii_stl()), expected);
+    assert_eq!(vertices("foot.stl", ascii_stl().to_ascii_uppercase()), expected);
     assert_eq!(vertices("foot.STL", binary_stl(b"by hand")), expected);
+    assert_eq!(vertices("foot.STL", [binary_stl(b"by hand"), vec![7; 60]].concat()), expected);
     // Many programs begin a binary file as if it were a text.
     assert_eq!(vertices("foot.stl", binary_stl(b"solid foot")), expected);
     assert_eq!(vertices("foot.obj", obj()), expected);
@@ -162,6 +164,9 @@ fn what_cannot_be_read_is_told() {
     let unread = |file: &str, bytes: &[u8]| assert!(why(file, bytes).starts_with("cannot be read: "), "{file}");
     unread("a.stl", b"");
     unread("a.stl", &binary_stl(b"")[..200]);
+    // Between two triangles: what is there would make another foot.
+    let cut = &binary_stl(b"")[..84 + 50];
+    assert!(why("a.stl", cut).ends_with("triangles are announced, 1 are there"), "{}", why("a.stl", cut));
     unread("a.stl", b"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2");
     unread("a.obj", b"v 0 0 0\nf 1 2 3\n");
     unread("a.dae", b"<COLLADA>");
