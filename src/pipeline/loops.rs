@@ -145,7 +145,7 @@ impl Pipeline<'_> {
             let gap = speed(own.gap(&self.plan, &self.workspace));
             if gap.is_nan() || gap > OPEN * size {
                 let name = named.name(index, self.robot);
-                let reason = format!("the pose leaves {name} open: its points are {gap:.6} m apart");
+                let reason = format!("the pose leaves {name} open: its points are {gap:.4e} m apart");
                 let hint =
                     format!("the position must close every loop to {OPEN} of the robot's size ({:.1e} m)", OPEN * size);
                 return Err(Error::new(Reason::Inconsistent(reason)).at(format!("loops[{index}]")).hint(hint));

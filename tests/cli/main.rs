@@ -228,7 +228,7 @@ fn a_verdict_without_outcome_is_explained() {
     insta::assert_snapshot!(run.stdout, @"
     contact problem (walls): floor and ceiling touch the ground.
 
-    No outcome is consistent: the contacts depend on each other, and no impulse makes every one of them rebound as its restitution asks.
+    No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on each other, or nothing that may move moves them.
     ");
 }
 
@@ -571,7 +571,8 @@ fn bytes_that_are_no_text_are_refused_in_their_place() {
     let run = heelstrike_reads(&["batch", BLOCK, "-"], lines);
     assert_eq!(run.status, 1);
     let answers = run.lines();
-    assert_eq!(answers[0], serde_json::json!({"line": 1, "error": {"message": "the text is not UTF-8"}}));
+    let hint = "save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote";
+    assert_eq!(answers[0], serde_json::json!({"line": 1, "error": {"message": "the text is not UTF-8", "hint": hint}}));
     assert_eq!(answers[1]["verdict"], "no_impact");
 }
 

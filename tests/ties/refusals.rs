@@ -49,7 +49,7 @@ fn a_pose_that_leaves_a_loop_open() {
         |state| state["position"]["joints"]["rear"] = json!(0.7),
         [
             "loops[0]",
-            "the pose leaves loops[0] (rear - coupler) open: its points are 0.049979 m apart",
+            "the pose leaves loops[0] (rear - coupler) open: its points are 4.9979e-2 m apart",
             "the position must close every loop to 0.0001 of the robot's size (8.4e-5 m)",
         ],
     );

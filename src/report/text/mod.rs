@@ -299,8 +299,8 @@ fn verdict_sentence(verdict: Verdict, outcomes: usize) -> String {
         Verdict::Ambiguous => format!("{} outcomes are equally valid.", counted(outcomes)),
         // Regular contacts always have an outcome.
         Verdict::None => {
-            "No outcome is consistent: the contacts depend on each other, and no impulse makes every one of \
-                          them rebound as its restitution asks."
+            "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on each \
+             other, or nothing that may move moves them."
                 .to_owned()
         }
         Verdict::Undecided => {
