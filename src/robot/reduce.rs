@@ -145,17 +145,16 @@ fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Ju
     let joints = description.joints.iter().zip(roles).enumerate();
     let held = joints.filter_map(|(index, (joint, role))| {
         let name = joint.name.clone();
-        let root = || description.links[found.root].name.clone();
-        match role {
-            _ if found.chain.contains(&index) => {
-                Some(HeldJoint { name, still: Still::Base, body: root(), welded: true })
+        match (role, body(joint.child)) {
+            (Role::Held(still), Some(body)) => {
+                Some(HeldJoint { name, still: still.clone(), body, welded: welded(joint.child) })
             }
             // A weld among links of the base says nothing about the robot.
-            Role::Held(still) => {
-                let welded = welded(joint.child);
-                Some(HeldJoint { name, still: still.clone(), body: body(joint.child).unwrap_or_else(root), welded })
+            (role, outside) if found.chain.contains(&index) || outside.is_none() && matches!(role, Role::Held(_)) => {
+                let root = description.links[found.root].name.clone();
+                Some(HeldJoint { name, still: Still::Base, body: root, welded: true })
             }
-            Role::Moves { .. } | Role::Free => None,
+            _ => None,
         }
     });
     held.collect()

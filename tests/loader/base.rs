@@ -205,6 +205,13 @@ fn a_link_of_the_base_is_no_place_for_a_contact() {
 }
 
 #[test]
+fn a_joint_that_is_welded_to_the_base_belongs_to_it() {
+    let robot = load(&chain(&[0.0, 0.0, 0.0, 0.0, 2.0], &[FIXED, X, Z, PITCH]));
+    assert_eq!(robot.reading.outside, ["a", "b", "c", "d"]);
+    assert!(robot.reading.held.iter().all(|joint| joint.still == Still::Base), "{:?}", robot.reading.held);
+}
+
+#[test]
 fn a_foot_on_a_link_of_the_base_gets_a_word() {
     let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]).replace(
         "<link name=\"c\">",
