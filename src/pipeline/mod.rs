@@ -75,6 +75,17 @@ pub struct Impact {
     pub notes: Vec<String>,
 }
 
+/// A state's contact problem, not yet analysed.
+#[derive(Debug, Clone)]
+pub struct Unsolved {
+    /// The closed contacts.
+    pub contacts: Vec<Contact>,
+    /// Their problem, in f64.
+    pub problem: ContactProblem,
+    /// How far each foot is from the ground \[m\]; empty where the state names its contacts.
+    pub clearance: Vec<f64>,
+}
+
 /// The answer for one state, and what of its contacts was taken as given.
 struct Answer {
     impact: Impact,
@@ -84,6 +95,30 @@ struct Answer {
     stance: Option<usize>,
     /// Contacts that were taken as exactly at rest.
     resting: Vec<bool>,
+}
+
+/// A state and its contact problem, not yet analysed.
+struct Before {
+    /// The root's origin \[m\].
+    base: Vector<f64>,
+    /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
+    velocity: Vec<f64>,
+    /// The foot of the stance.
+    foot: Option<Contact>,
+    loops: Loops,
+    contacts: Vec<Contact>,
+    /// Shapes that were too far from the ground to be asked.
+    out_of_reach: usize,
+    /// The place of the stance's foot among the contacts.
+    stance: Option<usize>,
+    /// Contacts that were taken as exactly at rest.
+    resting: Vec<bool>,
+    kinetic_energy: f64,
+    /// What the applied impulses change in v, with and without the loops' answer.
+    change: Vec<f64>,
+    applied: Vec<f64>,
+    problem: ContactProblem,
+    notes: Vec<String>,
 }
 
 /// The matrices behind an answer.
@@ -142,6 +177,11 @@ impl<'r> Pipeline<'r> {
         }
     }
 
+    /// Changes up to how many contacts rejected combinations are listed, and gives what it was.
+    pub(crate) fn explain_up_to(&mut self, contacts: usize) -> usize {
+        std::mem::replace(&mut self.options.explain_up_to, contacts)
+    }
+
     /// Every outcome of one state.
     ///
     /// # Errors
@@ -160,45 +200,21 @@ impl<'r> Pipeline<'r> {
     /// As [`Pipeline::impact`], whatever the state's uncertainty is.
     fn answer(&mut self, state: &State) -> Result<Answer> {
         let scene = &state.scene;
-        self.compile(scene);
-        self.posture.set(&self.plan, &state.position);
-        kinematics(&self.plan, &self.posture, &mut self.workspace);
-        mass_matrix(&self.plan, &mut self.workspace);
-        factorize(&self.plan, &mut self.workspace);
-        self.check_inertia(!scene.loops.is_empty())?;
-
-        let mut notes = Vec::new();
-        let surface = Surface::new(&scene.ground);
-        let (base, mut velocity, foot) = self.stand(state, &surface)?;
-        let loops = match scene.loops.is_empty() {
-            true => {
-                self.keep_rates();
-                Loops::default()
-            }
-            false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
-        };
-        let (contacts, out_of_reach) = self.contacts(scene, base, &surface, &mut notes)?;
-        check_matrix_size(contacts.len())?;
-        let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
-        self.points.clear();
-        self.points.extend(contacts.iter().map(Contact::point_of));
-        contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
-        let resting = self.snap(&contacts, &mut notes);
-        delassus(&self.plan, &mut self.workspace);
-        self.eliminate_loops(&loops);
-        let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
-        self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
-        self.tell_of_slow(&contacts, &mut notes);
-        if !scene.impulses.is_empty() || (self.is_constrained(&loops) && !self.options.no_proof) {
-            // They go through M^-1, whose rounding these bounds do not follow.
-            self.bounds.delassus = f64::INFINITY;
-            self.bounds.velocity.fill([f64::INFINITY; 2]);
-        }
-
-        let mut change = self.applied(scene);
-        let applied = change.clone();
-        self.answer_of_loops(&loops, &mut change);
-        let problem = self.problem(scene, &contacts, &change)?;
+        let Before {
+            base: _,
+            velocity,
+            foot,
+            loops,
+            contacts,
+            out_of_reach,
+            stance,
+            resting,
+            kinetic_energy,
+            change,
+            applied,
+            problem,
+            mut notes,
+        } = self.before(state)?;
         let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
         for &entry in &free {
             finite(entry, || "a velocity after the applied impulses".into())?;
@@ -251,6 +267,81 @@ impl<'r> Pipeline<'r> {
             notes,
         };
         Ok(Answer { impact, foot, stance, resting })
+    }
+
+    /// The contact problem of a state as f64 has it, without its analysis.
+    ///
+    /// # Errors
+    /// As [`Pipeline::impact`].
+    pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
+        let Before { base, contacts, problem, .. } = self.before(state)?;
+        let clearance = match state.scene.contacts {
+            Some(_) => Vec::new(),
+            None => {
+                let placement = Placement::new(&self.plan, &self.workspace, base);
+                contact::clearances(&self.feet, &placement, &Surface::new(&state.scene.ground))
+            }
+        };
+        Ok(Unsolved { contacts, problem, clearance })
+    }
+
+    /// Everything up to the contact problem.
+    fn before(&mut self, state: &State) -> Result<Before> {
+        let scene = &state.scene;
+        self.compile(scene);
+        self.posture.set(&self.plan, &state.position);
+        kinematics(&self.plan, &self.posture, &mut self.workspace);
+        mass_matrix(&self.plan, &mut self.workspace);
+        factorize(&self.plan, &mut self.workspace);
+        self.check_inertia(!scene.loops.is_empty())?;
+
+        let mut notes = Vec::new();
+        let surface = Surface::new(&scene.ground);
+        let (base, mut velocity, foot) = self.stand(state, &surface)?;
+        let loops = match scene.loops.is_empty() {
+            true => {
+                self.keep_rates();
+                Loops::default()
+            }
+            false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
+        };
+        let (contacts, out_of_reach) = self.contacts(scene, base, &surface, &mut notes)?;
+        check_matrix_size(contacts.len())?;
+        let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
+        self.points.clear();
+        self.points.extend(contacts.iter().map(Contact::point_of));
+        contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
+        let resting = self.snap(&contacts, &mut notes);
+        delassus(&self.plan, &mut self.workspace);
+        self.eliminate_loops(&loops);
+        let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
+        self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
+        self.tell_of_slow(&contacts, &mut notes);
+        if !scene.impulses.is_empty() || (self.is_constrained(&loops) && !self.options.no_proof) {
+            // They go through M^-1, whose rounding these bounds do not follow.
+            self.bounds.delassus = f64::INFINITY;
+            self.bounds.velocity.fill([f64::INFINITY; 2]);
+        }
+
+        let mut change = self.applied(scene);
+        let applied = change.clone();
+        self.answer_of_loops(&loops, &mut change);
+        let problem = self.problem(scene, &contacts, &change)?;
+        Ok(Before {
+            base,
+            velocity,
+            foot,
+            loops,
+            contacts,
+            out_of_reach,
+            stance,
+            resting,
+            kinetic_energy,
+            change,
+            applied,
+            problem,
+            notes,
+        })
     }
 
     /// The contact problem of contacts given by hand, at a posture whose cosines and sines the caller knows better than
@@ -367,7 +458,8 @@ impl<'r> Pipeline<'r> {
         })
     }
 
-    fn tolerance(&self) -> f64 {
+    /// How far from the ground a foot may be and still touch \[m\].
+    pub fn tolerance(&self) -> f64 {
         self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
     }
 

@@ -5,6 +5,7 @@
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
+//!     Survey ──> Sweep, samples ──> JSON, CSV, text              sweep
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```
 
@@ -19,6 +20,7 @@ mod outcome;
 pub mod picture;
 mod problem;
 mod result;
+pub mod sweep;
 #[cfg(feature = "schema")]
 pub mod schema;
 mod table;

@@ -277,9 +277,14 @@ impl<'w> Writer<'w> {
 
     /// `left_foot lifts off, right_foot sticks`.
     fn in_words(&self, modes: &[Mode]) -> String {
-        let clauses = self.names().zip(modes).map(|(name, mode)| format!("{name} {}", verb(*mode)));
-        clauses.collect::<Vec<_>>().join(", ")
+        in_words(self.names(), modes)
     }
+}
+
+/// What each contact does, as in `left_foot lifts off, right_foot sticks`.
+pub(super) fn in_words<'n>(names: impl Iterator<Item = &'n str>, modes: &[Mode]) -> String {
+    let clauses = names.zip(modes).map(|(name, mode)| format!("{name} {}", verb(*mode)));
+    clauses.collect::<Vec<_>>().join(", ")
 }
 
 fn touching(contacts: &[Contact]) -> String {

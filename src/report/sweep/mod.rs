@@ -1,0 +1,179 @@
+//! A study's regions, borders and samples, as JSON, CSV and text.
+//!
+//! ```text
+//!     Survey --> Sweep {parameter, regions, borders, notes} --> head of the JSON, text
+//!     each sample --> Report --> "samples", rows of CSV
+//! ```
+
+mod samples;
+mod text;
+
+pub use samples::{Sample, columns};
+
+use super::ErrorObject;
+use crate::impact::Mode;
+use crate::sweep::{self, Inequality, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
+use serde::Serialize;
+
+/// What is known of a study of one parameter, without its samples.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sweep<'a> {
+    /// The parameter.
+    pub parameter: &'a str,
+    /// The regions, from the least to the greatest value.
+    pub regions: Vec<Region<'a>>,
+    /// The border between each two of them.
+    pub borders: Vec<Border<'a>>,
+    /// What a reader should know, in whole sentences.
+    pub notes: Vec<String>,
+    /// How many samples there are.
+    #[serde(skip)]
+    steps: usize,
+}
+
+/// A stretch of the parameter with one set of outcomes.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Region<'a> {
+    /// Regions of the same letter have the same contacts and outcomes.
+    pub letter: String,
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Names of the closed contacts; absent beside an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<&'a [String]>,
+    /// The modes of every outcome; absent beside an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outcomes: Option<&'a [Vec<Mode>]>,
+    /// Combinations that no precision excludes; absent where everything is decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided: Option<&'a [Vec<Mode>]>,
+    /// Why the states in it are refused, as at its middle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorObject<'a>>,
+}
+
+/// A border between two regions.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Border<'a> {
+    /// Where it is.
+    pub at: f64,
+    /// What turns.
+    #[serde(flatten)]
+    pub turns: Turns<'a>,
+}
+
+/// What turns at a border.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Turns<'a> {
+    /// The inequalities that are zero there.
+    pub turns: Vec<Turn<'a>>,
+    /// Contacts that are closed below it and open above it.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    pub opening: &'a [String],
+    /// Contacts that are open below it and closed above it.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    pub closing: &'a [String],
+}
+
+/// An inequality that is zero on a border.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Turn<'a> {
+    /// The contact's name.
+    pub contact: &'a str,
+    /// What of it is zero.
+    pub inequality: Inequality,
+    /// The outcome that begins or ends there.
+    pub modes: &'a [Mode],
+    /// On which side of the border it is one.
+    pub valid: Side,
+}
+
+impl<'a> Sweep<'a> {
+    /// What a survey of `parameter` has found.
+    pub fn new(parameter: &'a Parameter, survey: &'a Survey) -> Self {
+        let region = |region: &'a sweep::Region| {
+            let undecided = match &*region.regime {
+                Regime::Answered { undecided, .. } if !undecided.is_empty() => Some(&undecided[..]),
+                _ => None,
+            };
+            Region {
+                letter: letter(region.kind),
+                from: region.from,
+                to: region.to,
+                contacts: region.regime.outcomes().map(|_| region.regime.contacts()),
+                outcomes: region.regime.outcomes(),
+                undecided,
+                error: region.refused.as_ref().map(ErrorObject::new),
+            }
+        };
+        let border = |border: &'a sweep::Border| Border { at: border.at, turns: Turns::new(&border.turns) };
+        let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
+        Self {
+            parameter: &parameter.name,
+            regions: survey.regions.iter().map(region).collect(),
+            borders: survey.borders.iter().map(border).collect(),
+            notes: vec![not_guaranteed(contacts)],
+            steps: parameter.steps,
+        }
+    }
+
+    /// The letter of the region that a value lies in.
+    pub fn letter_at(&self, value: f64) -> &str {
+        let region = self.regions.iter().find(|region| value <= region.to).or(self.regions.last());
+        region.map_or("", |region| &region.letter)
+    }
+}
+
+impl<'a> Turns<'a> {
+    /// What was found to turn.
+    pub fn new(turns: &'a sweep::Turns) -> Self {
+        let turn = |turn: &'a sweep::Turn| Turn {
+            contact: &turn.contact,
+            inequality: turn.inequality,
+            modes: &turn.modes,
+            valid: turn.side,
+        };
+        Self { turns: turns.inequalities.iter().map(turn).collect(), opening: &turns.opening, closing: &turns.closing }
+    }
+}
+
+/// A, B, ..., Z, AA, AB, ...
+pub fn letter(kind: usize) -> String {
+    let last = char::from(b'A' + (kind % 26) as u8);
+    match kind / 26 {
+        0 => last.to_string(),
+        more => letter(more - 1) + &last.to_string(),
+    }
+}
+
+/// What a search of regions with so many contacts may have missed.
+pub fn not_guaranteed(contacts: usize) -> String {
+    if contacts > WATCHED_CONTACTS {
+        return format!(
+            "with more than {WATCHED_CONTACTS} contacts, regions between two samples of the same outcomes are not searched for: \
+             thinner ones than the distance of samples may be missing"
+        );
+    }
+    "borders are exact, the list of regions is not guaranteed: between two samples of the same outcomes a thinner region is \
+     found where an inequality of some combination turns or comes near zero, and missed where it oscillates more often than \
+     the samples show; more steps leave less room for that"
+        .to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_go_on_behind_z() {
+        let letters: Vec<String> = [0, 25, 26, 51, 52, 701, 702].map(letter).into();
+        assert_eq!(letters, ["A", "Z", "AA", "AZ", "BA", "ZZ", "AAA"]);
+    }
+}
