@@ -66,6 +66,11 @@ pub(crate) fn is_name(text: &str) -> bool {
     text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
 }
 
+/// The names that an expression is made of, those of functions as well.
+pub(crate) fn names_in(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|piece| is_name(piece))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,6 +127,11 @@ mod tests {
         }
         fault(&"(".repeat(100_000));
         fault(&"-".repeat(100_000));
+    }
+
+    #[test]
+    fn names_are_told_from_numbers() {
+        assert_eq!(names_in("2*a_1 + sin(b)/1e3-1e-c").collect::<Vec<_>>(), ["a_1", "sin", "b", "c"]);
     }
 
     #[test]

@@ -217,8 +217,9 @@ impl<'n> Node<'n> {
         let nearest = error.did_you_mean(&unknown, known.iter().copied());
         match nearest.remedy() {
             Some(_) => nearest,
+            None if known.is_empty() => nearest.hint("only pi, e and functions such as sin and atan2 are known here"),
             None => nearest.hint(format!(
-                "parameters and constants are {}; pi, e and functions such as sin and atan2 are known, too",
+                "known here are {}, beside pi, e and functions such as sin and atan2",
                 known.join(", ")
             )),
         }
