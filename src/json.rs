@@ -218,10 +218,8 @@ impl<'n> Node<'n> {
         match nearest.remedy() {
             Some(_) => nearest,
             None if known.is_empty() => nearest.hint("only pi, e and functions such as sin and atan2 are known here"),
-            None => nearest.hint(format!(
-                "known here are {}, beside pi, e and functions such as sin and atan2",
-                known.join(", ")
-            )),
+            None => nearest
+                .hint(format!("known here are {}, beside pi, e and functions such as sin and atan2", known.join(", "))),
         }
     }
 

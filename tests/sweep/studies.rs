@@ -172,8 +172,7 @@ fn variation(subject: &Subject, random: &mut Random) -> Value {
     if random.once_in(2) {
         let moving: Vec<&str> = subject.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
         if !moving.is_empty() {
-            robot["joints"] =
-                json!({random.pick(&moving): {"origin": [linear(random, 0.3), 0, linear(random, 0.3)]}});
+            robot["joints"] = json!({random.pick(&moving): {"origin": [linear(random, 0.3), 0, linear(random, 0.3)]}});
         }
     }
     robot

@@ -94,7 +94,12 @@ fn a_band_that_opens_by_an_extremum_is_found() {
         // A double root: an error of a few 1e-16 of N moves both ends by it over the width.
         let within = 2e-15 / width + 4e-12;
         assert!(within < 0.1 * width, "{width}");
-        assert_begins(&format!("a band of {width:.1e}"), &sweep("urdf/pdw.urdf", &straight(Some(j))), &expected, within);
+        assert_begins(
+            &format!("a band of {width:.1e}"),
+            &sweep("urdf/pdw.urdf", &straight(Some(j))),
+            &expected,
+            within,
+        );
     }
     // Beyond there is none.
     for off in [1e-12, 1e-6] {

@@ -26,24 +26,15 @@ fn the_borders_of_the_minimalistic_biped_turn_by_the_trailing_foot() {
     let expected = [
         (
             PI / 12.0,
-            vec![
-                trailing("normal_velocity", "separate", "below"),
-                trailing("tangential_impulse", "slide-", "above"),
-            ],
+            vec![trailing("normal_velocity", "separate", "below"), trailing("tangential_impulse", "slide-", "above")],
         ),
         (
             PI / 6.0,
-            vec![
-                trailing("normal_impulse", "stick", "above"),
-                trailing("tangential_velocity", "slide-", "below"),
-            ],
+            vec![trailing("normal_impulse", "stick", "above"), trailing("tangential_velocity", "slide-", "below")],
         ),
         (
             5.0 * PI / 12.0,
-            vec![
-                trailing("normal_velocity", "separate", "above"),
-                trailing("tangential_impulse", "slide+", "above"),
-            ],
+            vec![trailing("normal_velocity", "separate", "above"), trailing("tangential_impulse", "slide+", "above")],
         ),
     ];
     assert_eq!(sweep.borders.len(), expected.len());
@@ -85,11 +76,17 @@ fn a_border_where_a_contact_opens_names_it() {
     });
     let sweep = sweep("urdf/block.urdf", &study);
     let [below, above] = &sweep.regions[..] else { panic!("{:?}", sweep.regions) };
-    assert_eq!((below.contacts.as_deref(), above.contacts.as_deref()), (Some(&["block".to_owned()][..]), Some(&[][..])));
+    assert_eq!(
+        (below.contacts.as_deref(), above.contacts.as_deref()),
+        (Some(&["block".to_owned()][..]), Some(&[][..]))
+    );
     assert_eq!(above.outcomes, Some(vec![vec![]]));
     let border = &sweep.borders[0];
     // The contact tolerance is 1e-6 of the robot's size, the distance of its CoG at (-1, 1).
     let tolerance = 1e-6 * f64::sqrt(2.0);
     assert!((border.at - tolerance).abs() < 2e-12, "{} instead of {tolerance}", border.at);
-    assert_eq!((&border.opening[..], &border.closing[..], &border.turns[..]), (&["block".to_owned()][..], &[][..], &[][..]));
+    assert_eq!(
+        (&border.opening[..], &border.closing[..], &border.turns[..]),
+        (&["block".to_owned()][..], &[][..], &[][..])
+    );
 }

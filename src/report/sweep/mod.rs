@@ -8,6 +8,8 @@
 mod samples;
 mod text;
 
+#[cfg(feature = "schema")]
+pub(super) use samples::RefusedSample;
 pub use samples::{Sample, columns};
 
 use super::ErrorObject;
