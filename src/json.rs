@@ -185,7 +185,7 @@ impl<'n> Node<'n> {
     ///
     /// # Errors
     /// As [`Node::number`], and [`Reason::OutOfRange`].
-    pub(crate) fn from_zero(&self, what: &str) -> Result<f64> {
+    pub(crate) fn number_from_zero(&self, what: &str) -> Result<f64> {
         let value = self.number()?;
         if value >= 0.0 {
             return Ok(value);

@@ -28,7 +28,7 @@ enum Document {
     Problem,
     /// What `sweep` reads
     Study,
-    /// What `sweep` writes as JSON of one parameter
+    /// What `sweep` writes as JSON
     Sweep,
     /// What `accuracy` writes as JSON
     Accuracy,

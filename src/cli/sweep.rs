@@ -12,10 +12,9 @@ use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
 use heelstrike::report::Detail;
 use heelstrike::report::append_line;
-use heelstrike::report::sweep::{Sample, Sweep, columns};
-use heelstrike::scene::NamedContact;
+use heelstrike::report::sweep::{Regions, Sample, columns, letter};
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Model, Solver, Study, Survey, Workers};
+use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
@@ -111,50 +110,43 @@ pub(super) fn run(args: &Args) -> Outcome {
         0 => available_parallelism().map_or(1, usize::from),
         threads => threads.into(),
     };
-    one(args, &model, &feet, threads)
-}
-
-/// A study of one parameter.
-fn one(args: &Args, model: &Model, feet: &[NamedContact], threads: usize) -> Outcome {
     let format = Format::of(args);
-    let parts = Survey::work(model) + if format == Format::Text { 0 } else { Sample::count(model) };
-    let progress = Progress::of(parts as u64);
+    let pieces = Findings::work(&model) + if format == Format::Text { 0 } else { Sample::count(&model) };
+    let progress = Progress::of(pieces as u64);
     let done = || progress.step();
     let workers = Workers { threads, done: &done };
-    let survey = Survey::of(model, workers);
-    let sweep = Sweep::new(&model.study.parameters()[0], &survey);
+    let findings = Findings::of(&model, workers);
+    let regions = Regions::new(study.parameters(), &findings);
+    let regimes = findings.regimes();
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {
         Format::Text => {
-            output.write_all(sweep.text(&model.robot.name, output.palette()).as_bytes())?;
-            survey.regions.iter().filter(|region| region.refused.is_some()).count()
+            output.write_all(regions.text(&robot.name, output.palette()).as_bytes())?;
+            0
         }
         Format::Json => {
             let mut head = Vec::new();
-            append_line(&mut head, &sweep);
-            let detail = args.detail.detail();
-            json(&head, &mut output, model, workers, detail)?
+            append_line(&mut head, &regions);
+            json(&head, &mut output, &model, workers, args.detail.detail())?
         }
         Format::Csv => {
-            let contacts = survey.regions.iter().flat_map(|region| region.regime.contacts()).map(String::as_str);
-            let columns = columns(model, feet, contacts);
+            let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
+            let columns = columns(&model, &feet, contacts);
             let mut head = Vec::new();
             columns.append_header(&mut head);
             output.write_all(&head)?;
-            samples(&mut output, model, workers, |solver, sample, out| {
-                sample.append_rows(solver, &columns, sweep.letter_at(sample.point[0]), out)
+            let kind =
+                |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime).map(|(_, kind, _)| *kind);
+            samples(&mut output, &model, workers, |solver, sample, out| {
+                sample.append_rows(solver, &columns, |regime| kind(regime).map_or_else(String::new, letter), out)
             })?
         }
     };
     output.flush()?;
     progress.clear();
-    if refused == 0 {
-        return Ok(Answered::All);
-    }
-    for region in survey.regions.iter().filter_map(|region| region.refused.as_ref()) {
-        complain(region);
-    }
-    Ok(Answered::NotAll)
+    let refusals: Vec<&Error> = regimes.iter().filter_map(|(_, _, refused)| *refused).collect();
+    refusals.iter().for_each(|error| complain(error));
+    Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }
 
 /// Writes the object of `head`, a line, with the list of all samples as its last field; tells how many were refused.

@@ -153,7 +153,7 @@ pub(crate) fn friction(node: Node) -> Result<Friction> {
         Some(_) if !node.takes_expressions() => {
             Err(node.expected("a number or \"infinite\"").did_you_mean(node.text()?, ["infinite"]))
         }
-        _ => node.from_zero("friction").map(Friction::Finite),
+        _ => node.number_from_zero("friction").map(Friction::Finite),
     }
 }
 
@@ -221,7 +221,7 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
             Some(follower) => robot.joints.len() + follower,
             None => joint(entry, name, robot)?,
         };
-        inertia[place] = entry.from_zero("rotor inertia")?;
+        inertia[place] = entry.number_from_zero("rotor inertia")?;
     }
     Ok(inertia)
 }
@@ -235,7 +235,7 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
             match part.key() {
                 "link" => named = Some(link(part, part.text()?, robot)?),
                 "offset" => offset = part.numbers("a list of 3 numbers")?,
-                "radius" => radius = part.from_zero("radius")?,
+                "radius" => radius = part.number_from_zero("radius")?,
                 _ => return Err(part.unknown_field(&["link", "offset", "radius"])),
             }
         }

@@ -62,5 +62,5 @@ pub(super) fn refuse_a_placed_base(field: Node) -> Result<()> {
 }
 
 fn half_width(node: Node) -> Result<f64> {
-    node.from_zero("a half-width")
+    node.number_from_zero("a half-width")
 }

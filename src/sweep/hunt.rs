@@ -184,7 +184,7 @@ fn quartic(values: &[f64; NODES], x: f64) -> f64 {
 /// A zero of `f` between `a` and `b`, where its sign differs; the middle where it does not.
 fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
     let (mut at_a, mut at_b) = (f(a), f(b));
-    if !((at_a < 0.0) != (at_b < 0.0)) {
+    if (at_a < 0.0) == (at_b < 0.0) {
         return 0.5 * (a + b);
     }
     // False position with the Illinois rule, and bisection where it does not shrink the bracket fast.

@@ -34,6 +34,16 @@ pub enum Side {
     Above,
 }
 
+impl Side {
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Below => Self::Above,
+            Self::Above => Self::Below,
+        }
+    }
+}
+
 /// What of a contact is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -96,6 +106,28 @@ impl Turns {
         let below = solver.explained(&place(bracket.below.at));
         let above = solver.explained(&place(bracket.above.at));
         Self::between(below, above)
+    }
+
+    /// The same, seen from the other side.
+    pub fn reversed(&self) -> Self {
+        let turn = |turn: &Turn| Turn { side: turn.side.other(), ..turn.clone() };
+        Self {
+            inequalities: self.inequalities.iter().map(turn).collect(),
+            opening: self.closing.clone(),
+            closing: self.opening.clone(),
+            refused_below: self.refused_above.clone(),
+            refused_above: self.refused_below.clone(),
+        }
+    }
+
+    /// Whether the same turns, in whatever order.
+    pub fn is_same_as(&self, other: &Self) -> bool {
+        let all = |one: &Self, two: &Self| one.inequalities.iter().all(|turn| two.inequalities.contains(turn));
+        all(self, other)
+            && all(other, self)
+            && (&self.opening, &self.closing) == (&other.opening, &other.closing)
+            && (self.refused_below.is_some(), self.refused_above.is_some())
+                == (other.refused_below.is_some(), other.refused_above.is_some())
     }
 
     fn between(below: Result<(Vec<String>, Analysis)>, above: Result<(Vec<String>, Analysis)>) -> Self {

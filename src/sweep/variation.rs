@@ -45,10 +45,10 @@ fn link(entry: Node, varied: &mut Description) -> Result<()> {
     let massless = || Inertial { origin: Pose { xyz: [0.0; 3], rpy: [0.0; 3] }, mass: 0.0, inertia: None };
     for part in entry.fields("field")? {
         match part.key() {
-            "mass" => link.inertial.get_or_insert_with(massless).mass = part.from_zero("mass")?,
+            "mass" => link.inertial.get_or_insert_with(massless).mass = part.number_from_zero("mass")?,
             "com" => link.inertial.get_or_insert_with(massless).origin.xyz = part.numbers("a list of 3 numbers")?,
             "inertia" => {
-                let moment = part.from_zero("the moment of inertia")?;
+                let moment = part.number_from_zero("the moment of inertia")?;
                 let inertia = [[moment, 0.0, 0.0], [0.0, moment, 0.0], [0.0, 0.0, moment]];
                 link.inertial.get_or_insert_with(massless).inertia = Some(inertia);
             }
@@ -60,7 +60,7 @@ fn link(entry: Node, varied: &mut Description) -> Result<()> {
 }
 
 fn radius(part: Node, collisions: &mut [Collision]) -> Result<()> {
-    let value = part.from_zero("radius")?;
+    let value = part.number_from_zero("radius")?;
     let mut any = false;
     for collision in collisions {
         match &mut collision.geometry {

@@ -11,7 +11,7 @@ mod inputs;
 use super::NamedVelocities;
 use super::holds::{Holds, StateFields};
 use super::result::{Brief, Refused, Report};
-use super::sweep::{RefusedSample, Sweep};
+use super::sweep::{MapSweep, RefusedSample, Sweep};
 use super::touchdown::CarriedFields;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
@@ -40,7 +40,7 @@ pub fn study() -> Value {
     schema
 }
 
-/// The schema of what `sweep` writes of one parameter.
+/// The schema of what `sweep` writes.
 pub fn sweep() -> Value {
     schema_of::<SweepWhole>(SchemaSettings::draft2020_12().for_serialize())
 }
@@ -67,18 +67,28 @@ enum ResultLine<'a> {
     Refused(Refused<'a>),
 }
 
-/// A sweep with its samples.
+/// What is found along one parameter, or over two.
 #[derive(JsonSchema)]
+#[serde(untagged)]
 #[schemars(title = "Sweep")]
 #[expect(dead_code, reason = "the schema is all that is wanted of it")]
-struct SweepWhole<'a> {
+enum SweepWhole<'a> {
+    Along(WithSamples<'a, Sweep<'a>>),
+    Map(WithSamples<'a, MapSweep<'a>>),
+}
+
+/// Regions, and the samples behind them.
+#[derive(JsonSchema)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+struct WithSamples<'a, T> {
     #[serde(flatten)]
-    sweep: Sweep<'a>,
-    /// In the order of the parameter.
+    regions: T,
+    /// In the order of the parameters, the last of which changes fastest.
     samples: Vec<SampleWhole<'a>>,
 }
 
-/// The parameter's value under its name, and the result there.
+/// The parameters' values under their names, and the result there.
 #[derive(JsonSchema)]
 #[schemars(rename = "Sample", extend("additionalProperties" = {"type": "number"}))]
 #[expect(dead_code, reason = "the schema is all that is wanted of it")]

@@ -5,16 +5,18 @@
 //!     each sample --> Report --> "samples", rows of CSV
 //! ```
 
+mod map;
 mod samples;
 mod text;
 
+pub use map::{MapBorder, MapRegion, MapSweep};
 #[cfg(feature = "schema")]
 pub(super) use samples::RefusedSample;
 pub use samples::{Sample, columns};
 
-use super::ErrorObject;
+use super::{ErrorObject, Palette};
 use crate::impact::Mode;
-use crate::sweep::{self, Inequality, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
+use crate::sweep::{self, Findings, Inequality, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
 use serde::Serialize;
 
 /// What is known of a study of one parameter, without its samples.
@@ -34,6 +36,17 @@ pub struct Sweep<'a> {
     steps: usize,
 }
 
+/// What is known of a study, without its samples.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+pub enum Regions<'a> {
+    /// Of one parameter.
+    Along(Sweep<'a>),
+    /// Of two parameters.
+    Map(MapSweep<'a>),
+}
+
 /// A stretch of the parameter with one set of outcomes.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -44,6 +57,15 @@ pub struct Region<'a> {
     pub from: f64,
     /// Where it ends.
     pub to: f64,
+    /// What happens in it.
+    #[serde(flatten)]
+    pub happening: Happening<'a>,
+}
+
+/// What happens in a region.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Happening<'a> {
     /// Names of the closed contacts; absent beside an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<&'a [String]>,
@@ -97,23 +119,32 @@ pub struct Turn<'a> {
     pub valid: Side,
 }
 
+impl<'a> Regions<'a> {
+    /// What was found in a study of these parameters.
+    pub fn new(parameters: &'a [Parameter], findings: &'a Findings) -> Self {
+        match findings {
+            Findings::Along(survey) => Self::Along(Sweep::new(&parameters[0], survey)),
+            Findings::Map(map) => Self::Map(MapSweep::new(parameters, map)),
+        }
+    }
+
+    /// All regions and borders of `robot`'s study for people, with a line break at its end.
+    pub fn text(&self, robot: &str, palette: &Palette) -> String {
+        match self {
+            Self::Along(sweep) => sweep.text(robot, palette),
+            Self::Map(map) => map.text(robot, palette),
+        }
+    }
+}
+
 impl<'a> Sweep<'a> {
     /// What a survey of `parameter` has found.
     pub fn new(parameter: &'a Parameter, survey: &'a Survey) -> Self {
-        let region = |region: &'a sweep::Region| {
-            let undecided = match &*region.regime {
-                Regime::Answered { undecided, .. } if !undecided.is_empty() => Some(&undecided[..]),
-                _ => None,
-            };
-            Region {
-                letter: letter(region.kind),
-                from: region.from,
-                to: region.to,
-                contacts: region.regime.outcomes().map(|_| region.regime.contacts()),
-                outcomes: region.regime.outcomes(),
-                undecided,
-                error: region.refused.as_ref().map(ErrorObject::new),
-            }
+        let region = |region: &'a sweep::Region| Region {
+            letter: letter(region.kind),
+            from: region.from,
+            to: region.to,
+            happening: Happening::of(&region.regime, region.refused.as_ref().map(ErrorObject::new)),
         };
         let border = |border: &'a sweep::Border| Border { at: border.at, turns: Turns::new(&border.turns) };
         let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
@@ -125,11 +156,17 @@ impl<'a> Sweep<'a> {
             steps: parameter.steps,
         }
     }
+}
 
-    /// The letter of the region that a value lies in.
-    pub fn letter_at(&self, value: f64) -> &str {
-        let region = self.regions.iter().find(|region| value <= region.to).or(self.regions.last());
-        region.map_or("", |region| &region.letter)
+impl<'a> Happening<'a> {
+    /// That of a regime, and why it is refused, if it is.
+    fn of(regime: &'a Regime, error: Option<ErrorObject<'a>>) -> Self {
+        let undecided = match regime {
+            Regime::Answered { undecided, .. } if !undecided.is_empty() => Some(&undecided[..]),
+            _ => None,
+        };
+        let (contacts, outcomes) = (regime.outcomes().map(|_| regime.contacts()), regime.outcomes());
+        Self { contacts, outcomes, undecided, error }
     }
 }
 

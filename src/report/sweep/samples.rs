@@ -4,7 +4,7 @@ use super::super::{Detail, ErrorObject, Report, append_line};
 use crate::pipeline::Pipeline;
 use crate::scene::NamedContact;
 use crate::state::State;
-use crate::sweep::{Model, Solver};
+use crate::sweep::{Model, Regime, Solver};
 use crate::table::{Carried, Columns};
 use crate::{Result, Robot};
 use serde::Serialize;
@@ -67,20 +67,26 @@ impl<'a> Sample<'a> {
         refused.is_none()
     }
 
-    /// Appends the rows of the sample, which lies in the region of this `letter`; tells whether it was answered.
-    pub fn append_rows(&self, solver: &mut Solver, columns: &Columns, letter: &str, out: &mut Vec<u8>) -> bool {
-        let values = self.point.iter().map(|value| format!("{value:?}")).chain([letter.to_owned()]);
-        let carried = Carried::new(values);
+    /// Appends the rows of the sample, with the letter that `letter` gives to its regime; tells whether it was answered.
+    pub fn append_rows(
+        &self,
+        solver: &mut Solver,
+        columns: &Columns,
+        letter: impl Fn(&Regime) -> String,
+        out: &mut Vec<u8>,
+    ) -> bool {
+        let values = || self.point.iter().map(|value| format!("{value:?}"));
         let answered = solver.at(&self.point, |robot, state, pipeline| {
-            let mut written = Ok(());
-            answer(robot, &state, pipeline, Detail::default(), |report| {
-                written = columns.append_result(report, Some(&carried), out);
-            })
-            .and(written)
+            let impact = pipeline.impact(&state);
+            let carried = Carried::new(values().chain([letter(&Regime::of(&impact))]));
+            let impact = impact?;
+            columns.append_result(&Report::of_state(robot, &state, &impact, Detail::default())?, Some(&carried), out)
         });
         match answered.and_then(|answered| answered) {
             Ok(()) => true,
             Err(error) => {
+                let regime = Regime::of(&Err(error.clone()));
+                let carried = Carried::new(values().chain([letter(&regime)]));
                 columns.append_error(None, "", &ErrorObject::new(&error), Some(&carried), out);
                 false
             }

@@ -2,7 +2,7 @@
 
 use super::super::Palette;
 use super::super::text::in_words;
-use super::{Border, Region, Sweep, Turn, Turns};
+use super::{Happening, Sweep, Turn, Turns};
 use crate::sweep::Side;
 use std::fmt::Write;
 
@@ -24,13 +24,15 @@ impl Sweep<'_> {
         let width = places.iter().map(String::len).max().unwrap_or(0);
         let letters = self.regions.iter().map(|region| region.letter.len()).max().unwrap_or(1);
         for (index, (region, place)) in self.regions.iter().zip(places).enumerate() {
-            let whole: Vec<String> = region.lines();
+            let whole: Vec<String> = region.happening.lines();
             for (line, words) in whole.iter().enumerate() {
                 let (letter, place) = if line == 0 { (region.letter.as_str(), place.as_str()) } else { ("", "") };
                 writeln!(out, "{strong}{letter:letters$}{plain}  {place:width$}  {words}")?;
             }
             if let Some(border) = self.borders.get(index) {
-                writeln!(out, "{:letters$}  {faint}{}{plain}", "", border.line())?;
+                let sides = [&region.letter, &self.regions[index + 1].letter];
+                let turns = border.turns.in_words(sides);
+                writeln!(out, "{:letters$}  {faint}at {:?}: {turns}{plain}", "", border.at)?;
             }
         }
         for note in &self.notes {
@@ -40,7 +42,7 @@ impl Sweep<'_> {
     }
 }
 
-impl Region<'_> {
+impl Happening<'_> {
     /// Its outcomes, one a line.
     pub fn lines(&self) -> Vec<String> {
         if let Some(error) = &self.error {
@@ -62,25 +64,20 @@ impl Region<'_> {
     }
 }
 
-impl Border<'_> {
-    fn line(&self) -> String {
-        format!("at {:?}: {}", self.at, self.turns.in_words())
-    }
-}
-
 impl Turns<'_> {
-    /// What turns, as a sentence without its end.
-    pub fn in_words(&self) -> String {
+    /// What turns between regions of these letters, as a sentence without its end.
+    pub fn in_words(&self, [below, above]: [&String; 2]) -> String {
         let turn = |Turn { contact, inequality, modes, valid }: &Turn| {
             let modes: Vec<String> = modes.iter().map(ToString::to_string).collect();
-            let verb = match valid {
-                Side::Below => "ends",
-                Side::Above => "begins",
+            let side = match valid {
+                Side::Below => below,
+                Side::Above => above,
             };
-            format!("{contact} has {}, where {} {verb}", inequality.equation(), modes.join("/"))
+            format!("{contact} has {} where {} of {side} ends", inequality.equation(), modes.join("/"))
         };
-        let opening = self.opening.iter().map(|contact| format!("{contact} leaves the ground"));
-        let closing = self.closing.iter().map(|contact| format!("{contact} reaches the ground"));
+        let alone = |contact: &String, side: &str| format!("{contact} touches the ground in {side} alone");
+        let opening = self.opening.iter().map(|contact| alone(contact, below));
+        let closing = self.closing.iter().map(|contact| alone(contact, above));
         let all: Vec<String> = self.turns.iter().map(turn).chain(opening).chain(closing).collect();
         match all.is_empty() {
             true => "the outcomes change".to_owned(),
