@@ -73,8 +73,9 @@ impl<'t> Study<'t> {
         }
         let with_constants = Node::root_with(&tree, text, &constants);
         let field = with_constants.fields("field")?.find(|field| field.key() == "parameters");
-        let field =
-            field.ok_or_else(|| missing(root, "parameters", "{\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}"))?;
+        let field = field.ok_or_else(|| {
+            missing(root, "parameters", "as in \"parameters\": {\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}")
+        })?;
         let parameters =
             field.fields("parameter")?.map(|entry| parameter(entry, &constants)).collect::<Result<Vec<_>>>()?;
         if !(1..=2).contains(&parameters.len()) {
@@ -154,7 +155,9 @@ fn read_constants(tree: &Value, text: &str, constants: &mut Names) -> Result<()>
         for entry in field.fields("constant")?.filter(|entry| open.iter().any(|name| name == entry.key())) {
             match needs(&entry, &open) {
                 true => later.push(entry.key().to_owned()),
-                false => constants.set(entry.key(), entry.number()?),
+                false => {
+                    constants.set(entry.key(), entry.number().map_err(|error| beside_parameters(plain, entry, error))?)
+                }
             }
         }
         if later.len() == open.len() {
@@ -164,6 +167,19 @@ fn read_constants(tree: &Value, text: &str, constants: &mut Names) -> Result<()>
         open = later;
     }
     Ok(())
+}
+
+/// The refusal of a constant, which may be that it needs a parameter.
+fn beside_parameters(root: Node, entry: Node, error: Error) -> Error {
+    let parameters = root.fields("field").ok().and_then(|mut fields| fields.find(|field| field.key() == "parameters"));
+    let Some(field) = parameters else { return error };
+    let Ok(mut parameters) = field.fields("parameter") else { return error };
+    let text = entry.as_text().unwrap_or_default();
+    match parameters.find(|parameter| names_in(text).any(|used| used == parameter.key())) {
+        Some(parameter) => error
+            .hint(format!("{} is a parameter, and constants do not vary: write it into the state", parameter.key())),
+        None => error,
+    }
 }
 
 /// `{"from", "to", "steps"}`.
@@ -191,7 +207,12 @@ fn parameter(entry: Node, constants: &Names) -> Result<Parameter> {
         let reason = Reason::Inconsistent(format!("the range from {from:?} to {to:?} is empty or endless"));
         return Err(entry.refuse(reason).hint("\"from\" has to be less than \"to\""));
     }
-    Ok(Parameter { name, from, to, steps })
+    let parameter = Parameter { name, from, to, steps };
+    if parameter.sample(1) <= from || parameter.sample(steps - 2) >= to {
+        let reason = format!("the range from {from:?} to {to:?} has no room for {steps} different samples");
+        return Err(entry.refuse(Reason::Inconsistent(reason)).hint("take fewer of them, or a wider range"));
+    }
+    Ok(parameter)
 }
 
 fn samples(part: Node) -> Result<usize> {
