@@ -9,7 +9,6 @@ use std::time::Duration;
 /// What is written as JSON, as far as the tests read it.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Sweep {
-    pub parameter: String,
     pub regions: Vec<Region>,
     pub borders: Vec<Border>,
     pub samples: Vec<Value>,
@@ -22,7 +21,6 @@ pub struct Region {
     pub to: f64,
     pub contacts: Option<Vec<String>>,
     pub outcomes: Option<Vec<Vec<String>>>,
-    pub error: Option<Value>,
 }
 
 #[derive(Debug, Clone, Deserialize)]

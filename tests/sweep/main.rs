@@ -4,6 +4,8 @@
 
 mod command;
 mod completeness;
+mod invariances;
+mod output;
 mod paper;
 #[path = "../oracle/random.rs"]
 mod random;
