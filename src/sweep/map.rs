@@ -177,7 +177,7 @@ impl Map {
         let mut solver = begin();
         for area in &mut areas {
             if let (Regime::Refused { .. }, Some((middle, _))) = (&*area.regime, area.middles.first()) {
-                area.refused = solver.explained(middle).err();
+                area.refused = solver.explained(middle, &[]).err();
             }
         }
         let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);

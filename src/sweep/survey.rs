@@ -82,7 +82,7 @@ impl Survey {
                 kinds.len() - 1
             });
             let refused = match *regime {
-                Regime::Refused { .. } => solver.explained(&[0.5 * (from + to)]).err(),
+                Regime::Refused { .. } => solver.explained(&[0.5 * (from + to)], &[]).err(),
                 Regime::Answered { .. } => None,
             };
             Region { from, to, regime, kind, refused }
