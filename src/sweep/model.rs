@@ -7,7 +7,7 @@ use crate::impact::{Analysis, Inequalities, Mode};
 use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
 use crate::state::{Defaults, State};
-use crate::{Result, Robot};
+use crate::{Error, Result, Robot};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -115,6 +115,14 @@ impl<'a> Solver<'a> {
         let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))??;
         let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
         Ok((names, impact.analysis?))
+    }
+
+    /// Whether the contacts of a point depend on each other, and why it is refused, if it is.
+    pub(super) fn dependence(&mut self, point: &[f64]) -> (bool, Option<Error>) {
+        match self.explained(point, &[]) {
+            Ok((contacts, analysis)) => (analysis.rank < 2 * contacts.len(), None),
+            Err(error) => (false, Some(error)),
+        }
     }
 
     /// What happens at a point.
