@@ -89,9 +89,12 @@ impl Survey {
             Region { from, to, regime, kind, refused }
         };
         let regions = stretches.into_iter().map(&mut region).collect();
-        let border =
-            |bracket: &Bracket| Border { at: bracket.at(), turns: Turns::at(&mut solver, bracket, |at| vec![at]) };
-        Self { regions, borders: brackets.iter().map(border).collect() }
+        let border = |solver: &mut Solver, index: usize| {
+            let bracket: &Bracket = &brackets[index];
+            Border { at: bracket.at(), turns: Turns::at(solver, bracket, |at| vec![at]) }
+        };
+        let quiet = Workers { done: &|| (), ..workers };
+        Self { regions, borders: quiet.map(brackets.len(), begin, border), dependent }
     }
 
     /// How many pieces of work a survey of `model` has.
