@@ -9,17 +9,20 @@ use heelstrike::state::Defaults;
 use heelstrike::sweep::{Model, Study};
 use heelstrike::{Error, Reason, Robot};
 use serde_json::{Value, json};
+use std::sync::LazyLock;
+
+static RAMONE: LazyLock<(Description, Robot)> = LazyLock::new(|| {
+    let description = Description::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a description");
+    let robot = Robot::reduce(&description, &Reduction::default()).expect("a robot");
+    (description, robot)
+});
 
 /// Reads a study whole: its state and robot as well, at the ends and in the middle.
 fn read(text: &str) -> Result<(), Error> {
-    let urdf = std::fs::read_to_string("urdf/ramone.urdf").expect("the file");
-    let description = Description::from_urdf(&urdf)?;
-    let reduction = Reduction::default();
-    let robot = Robot::reduce(&description, &reduction)?;
+    let (description, robot) = &*RAMONE;
     let study = Study::from_json(text)?;
     let (options, defaults) = (Options::default(), Defaults::default());
-    Model { study: &study, description: &description, reduction: &reduction, robot: &robot, options, defaults }
-        .readable()
+    Model { study: &study, description, reduction: &Reduction::default(), robot, options, defaults }.readable()
 }
 
 fn sample() -> Value {

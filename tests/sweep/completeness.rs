@@ -86,6 +86,9 @@ fn compare(subject: &Subject, seed: u64, text: &Value, scan: u64, tally: &Mutex<
     }
     let mut tally = tally.lock().expect("no thread panics here");
     tally.studies += 1;
+    if tally.studies % 100 == 0 {
+        println!("{} studies", tally.studies);
+    }
     tally.slowest = tally.slowest.max((time, seed));
     tally.regions += survey.regions.len();
     tally.refused += usize::from(survey.regions.iter().any(|region| region.refused.is_some()));

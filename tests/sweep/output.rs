@@ -127,7 +127,7 @@ fn tables_have_the_parameter_and_the_region_beside_the_columns_of_batch() {
     let of = |name: &str| rows.iter().map(|row| column(row, name)).collect::<Vec<_>>();
     assert_eq!(of("region"), ["A", "C", "C", "D", "D", "D"]);
     assert_eq!(of("outcome"), ["1", "1", "1", "1", "2", "3"]);
-    assert_eq!(of("mode_left_leg"), ["separate", "stick", "stick", "separate", "slide+", "stick"]);
+    assert_eq!(of("mode_left_leg"), ["separate", "stick", "stick", "separate", "stick", "slide+"]);
     assert_eq!(of("alpha")[0], "0.001");
     assert_eq!(of("alpha")[5], "1.57");
 
