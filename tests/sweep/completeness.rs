@@ -86,7 +86,7 @@ fn compare(subject: &Subject, seed: u64, text: &Value, scan: u64, tally: &Mutex<
     }
     let mut tally = tally.lock().expect("no thread panics here");
     tally.studies += 1;
-    if tally.studies % 100 == 0 {
+    if tally.studies.is_multiple_of(100) {
         println!("{} studies", tally.studies);
     }
     tally.slowest = tally.slowest.max((time, seed));

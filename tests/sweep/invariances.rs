@@ -50,7 +50,7 @@ fn a_reversed_parameter_has_the_same_regions_from_the_other_end() {
     }
     for (one, other) in one.borders.iter().zip(other.borders.iter().rev()) {
         let swap = |side: &str| if side == "below" { "above" } else { "below" }.to_owned();
-        let mut there: Vec<_> = other.turns.iter().cloned().collect();
+        let mut there = other.turns.to_vec();
         there.iter_mut().for_each(|turn| turn.valid = swap(&turn.valid));
         there.sort();
         let mut here = one.turns.clone();
