@@ -143,5 +143,5 @@ fn survey(study: &Study, case: &str) -> bool {
     assert!(regions.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].regime != pair[1].regime), "{case}");
     assert_eq!(borders.len() + 1, regions.len(), "{case}");
     regions.iter().filter_map(|region| region.refused.as_ref()).for_each(|error| check_refusal(error, case));
-    regions.iter().all(|region| region.refused.is_none())
+    regions.iter().any(|region| region.refused.is_none())
 }
