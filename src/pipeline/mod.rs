@@ -53,6 +53,8 @@ pub const CONTACT_TOLERANCE: f64 = 1e-6;
 /// The answer for one state.
 #[derive(Debug, Clone)]
 pub struct Impact {
+    /// Where the bodies are.
+    pub placement: Placement,
     /// The closed contacts, in the order of all lists per contact.
     pub contacts: Vec<Contact>,
     /// Contact velocities before the impact, [tangential, normal] \[m/s\].
@@ -177,7 +179,8 @@ impl<'r> Pipeline<'r> {
             }
             false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
         };
-        let (contacts, out_of_reach) = self.contacts(scene, base, &surface, &mut notes)?;
+        let placement = Placement::new(&self.plan, &self.workspace, base);
+        let (contacts, out_of_reach) = self.contacts(scene, &placement, &surface, &mut notes)?;
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
         self.points.clear();
@@ -247,6 +250,7 @@ impl<'r> Pipeline<'r> {
             holds: None,
             left_out: self.left_out(scene, &contacts, problem.friction(), out_of_reach),
             analysis,
+            placement,
             contacts,
             notes,
         };
@@ -396,18 +400,17 @@ impl<'r> Pipeline<'r> {
     fn contacts(
         &self,
         scene: &Scene,
-        base: Vector<f64>,
+        placement: &Placement,
         surface: &Surface,
         notes: &mut Vec<String>,
     ) -> Result<(Vec<Contact>, usize)> {
-        let placement = Placement::new(&self.plan, &self.workspace, base);
         let (named, tolerance) = (scene.contacts.as_deref(), self.tolerance());
-        let contacts = contact::detect(self.robot, &self.feet, named, (&placement, surface), tolerance)?;
+        let contacts = contact::detect(self.robot, &self.feet, named, (placement, surface), tolerance)?;
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;
         }
         if contacts.is_empty() && named.is_none() {
-            notes.push(match (contact::nearest(self.robot, &self.feet, &placement, surface), &scene.ground) {
+            notes.push(match (contact::nearest(self.robot, &self.feet, placement, surface), &scene.ground) {
                 (Some((link, height)), Ground::Slope(_)) => {
                     format!("nothing touches the ground: the lowest foot, {link}, is {height:?} m above it")
                 }
@@ -421,8 +424,8 @@ impl<'r> Pipeline<'r> {
         }
         let mut out_of_reach = 0;
         if named.is_none() {
-            out_of_reach = contact::out_of_reach(&self.feet, &placement, surface, tolerance);
-            let ends = contact::left_behind(self.robot, &self.feet, &placement, surface, tolerance);
+            out_of_reach = contact::out_of_reach(&self.feet, placement, surface, tolerance);
+            let ends = contact::left_behind(self.robot, &self.feet, placement, surface, tolerance);
             notes.extend(ends.into_iter().map(|(link, end)| {
                 format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
             }));
