@@ -13,6 +13,7 @@ mod syntax;
 
 pub(crate) use read::id_in;
 
+use crate::expression::{Fault, Names};
 use crate::{Error, Reason, Result};
 use serde_json::Number;
 use std::borrow::Cow;
@@ -53,7 +54,7 @@ impl<'t> Value<'t> {
 /// How a node hangs on its parent.
 #[derive(Debug, Clone, Copy)]
 enum Step<'n> {
-    Root { text: &'n str },
+    Root { text: &'n str, names: Option<&'n Names> },
     Field { parent: &'n Node<'n>, key: &'n str },
     Entry { parent: &'n Node<'n>, index: usize },
 }
@@ -68,7 +69,12 @@ pub(crate) struct Node<'n> {
 impl<'n> Node<'n> {
     /// The root of the tree that was read from `text`.
     pub(crate) fn root(value: &'n Value<'n>, text: &'n str) -> Self {
-        Self { value, step: Step::Root { text } }
+        Self { value, step: Step::Root { text, names: None } }
+    }
+
+    /// The same, where any number may be an expression of `names`.
+    pub(crate) fn root_with(value: &'n Value<'n>, text: &'n str, names: &'n Names) -> Self {
+        Self { value, step: Step::Root { text, names: Some(names) } }
     }
 
     /// The key under which the value stands; empty for the root and for entries of lists.
@@ -155,14 +161,66 @@ impl<'n> Node<'n> {
         Ok(rows)
     }
 
-    /// The number; it is finite, because JSON has no others.
+    /// The number, or the value of an expression where they are allowed; it is finite, because JSON has no others.
     ///
     /// # Errors
-    /// [`Reason::WrongKind`].
+    /// [`Reason::WrongKind`], or [`Reason::Syntax`] for an expression without a value.
     pub(crate) fn number(&self) -> Result<f64> {
-        match self.value {
-            Value::Number(number) => number.as_f64().ok_or_else(|| self.expected("a number")),
-            _ => Err(self.expected("a number")),
+        match (self.value, self.names()) {
+            (Value::Number(number), _) => number.as_f64().ok_or_else(|| self.expected("a number")),
+            (Value::Text(text), Some(names)) => {
+                names.evaluate(text).map_err(|fault| self.refuse_expression(names, fault))
+            }
+            (_, Some(_)) => Err(self.expected("a number or an expression")),
+            (_, None) => Err(self.expected("a number")),
+        }
+    }
+
+    /// Whether a string here may be an expression.
+    pub(crate) fn takes_expressions(&self) -> bool {
+        self.names().is_some()
+    }
+
+    /// A number from 0 on; `what` it is.
+    ///
+    /// # Errors
+    /// As [`Node::number`], and [`Reason::OutOfRange`].
+    pub(crate) fn number_from_zero(&self, what: &str) -> Result<f64> {
+        let value = self.number()?;
+        if value >= 0.0 {
+            return Ok(value);
+        }
+        Err(self.refuse(Reason::OutOfRange { what: what.to_owned(), allowed: "0 or more", value }))
+    }
+
+    /// What expressions are made of, where they are allowed.
+    fn names(&self) -> Option<&'n Names> {
+        let mut step = self.step;
+        loop {
+            step = match step {
+                Step::Root { names, .. } => return names,
+                Step::Field { parent, .. } | Step::Entry { parent, .. } => parent.step,
+            };
+        }
+    }
+
+    /// Refuses an expression at the character that is wrong with it.
+    fn refuse_expression(&self, names: &Names, fault: Fault) -> Error {
+        let error = self.refuse(Reason::Syntax(format!("the expression has no value: {}", fault.what)));
+        let error = match error.location() {
+            // Behind the quotation mark.
+            Some(at) => error.on(at.line, at.column + 1 + fault.before),
+            None => error,
+        };
+        let Some(unknown) = fault.unknown else { return error };
+        let known: Vec<&str> = names.iter().collect();
+        let nearest = error.did_you_mean(&unknown, known.iter().copied());
+        match nearest.remedy() {
+            Some(_) => nearest,
+            None => nearest.hint(format!(
+                "parameters and constants are {}; pi, e and functions such as sin and atan2 are known, too",
+                known.join(", ")
+            )),
         }
     }
 
@@ -272,7 +330,7 @@ impl<'n> Node<'n> {
         let (mut key, mut step) = (None, self.step);
         let text = loop {
             step = match step {
-                Step::Root { text } => break text,
+                Step::Root { text, .. } => break text,
                 Step::Field { parent, key: nearer } => {
                     key = key.or(Some(nearer));
                     parent.step

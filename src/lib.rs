@@ -90,6 +90,7 @@ pub mod reductions;
 pub mod description;
 pub mod robot;
 pub mod scene;
+pub mod expression;
 mod json;
 pub mod state;
 pub mod plan;
@@ -106,6 +107,7 @@ pub mod spatial;
 pub mod table;
 pub mod touchdown;
 pub mod batch;
+pub mod sweep;
 
 pub use error::{Error, Reason, Result};
 pub use robot::Robot;

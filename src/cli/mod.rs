@@ -21,6 +21,7 @@ mod robot;
 mod schema;
 mod solve;
 mod stream;
+mod sweep;
 
 use clap::{Parser, Subcommand};
 use complaint::{complain, complain_at};
@@ -47,6 +48,7 @@ enum Command {
     Impact(impact::Args),
     Batch(batch::Args),
     Solve(solve::Args),
+    Sweep(sweep::Args),
     Accuracy(accuracy::Args),
     Schema(schema::Args),
     Completions(completions::Args),
@@ -95,6 +97,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Command::Impact(args) => impact::run(&args),
         Command::Batch(args) => batch::run(&args),
         Command::Solve(args) => solve::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),

@@ -20,6 +20,22 @@ impl Progress {
         }))
     }
 
+    /// A bar for so many pieces of work, where standard error is a terminal.
+    pub fn of(pieces: u64) -> Self {
+        Self(io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::with_draw_target(Some(pieces), ProgressDrawTarget::stderr());
+            let parts = "{wide_bar} {percent}%, {eta} left";
+            bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))
+        }))
+    }
+
+    /// One piece is done.
+    pub fn step(&self) {
+        if let Some(bar) = &self.0 {
+            bar.inc(1);
+        }
+    }
+
     /// The same input, watched.
     pub fn watch(&self, input: Box<dyn Read + Send>) -> Box<dyn Read + Send> {
         match &self.0 {

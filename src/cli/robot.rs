@@ -154,12 +154,17 @@ impl RobotOptions {
     /// Reads the robot, and tells what a user must know before trusting it.
     pub fn load(&self) -> Result<Robot, Failure> {
         let robot = self.read()?;
-        robot.reading.cautions.iter().for_each(|caution| note(caution));
+        caution(&robot);
         Ok(robot)
     }
 
     /// Reads the robot.
     pub fn read(&self) -> Result<Robot, Failure> {
+        self.described().map(|(_, _, robot)| robot)
+    }
+
+    /// Reads the robot, and keeps what it was reduced from.
+    pub fn described(&self) -> Result<(Description, Reduction, Robot), Failure> {
         let name = input::name(&self.robot);
         let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
         let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
@@ -176,7 +181,8 @@ impl RobotOptions {
             base: self.base.map(Into::into),
             reductions: self.reductions.reductions(),
         };
-        Robot::reduce(&description, &reduction).map_err(refuse)
+        let robot = Robot::reduce(&description, &reduction).map_err(refuse)?;
+        Ok((description, reduction, robot))
     }
 
     /// The joints that are given by `--hold`.
@@ -204,6 +210,11 @@ impl RobotOptions {
         };
         self.contact.iter().map(foot).collect()
     }
+}
+
+/// Tells what a user must know before trusting the robot.
+pub(super) fn caution(robot: &Robot) {
+    robot.reading.cautions.iter().for_each(|caution| note(caution));
 }
 
 #[cfg(test)]

@@ -144,6 +144,11 @@ pub fn nearest(robot: &Robot, feet: &Feet, placement: &Placement, surface: &Surf
     Some((robot.links[link].name.clone(), distance))
 }
 
+/// How far each foot is from the ground \[m\]; negative where it is in it.
+pub fn clearances(feet: &Feet, placement: &Placement, surface: &Surface) -> Vec<f64> {
+    feet.iter().map(|foot| surface.clearance(foot, placement)).collect()
+}
+
 /// The links of feet that reach beyond an end of the ground no higher than `tolerance` \[m\] above it, and the end's x \[m\].
 pub fn left_behind(
     robot: &Robot,

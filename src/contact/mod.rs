@@ -15,7 +15,7 @@ mod profile;
 mod surface;
 mod terrain;
 
-pub use detect::{Stance, detect, left_behind, nearest, out_of_reach, stance};
+pub use detect::{Stance, clearances, detect, left_behind, nearest, out_of_reach, stance};
 pub use feet::{Feet, Foot};
 pub use placement::Placement;
 pub(crate) use plane::Plane;

@@ -9,6 +9,7 @@ pub mod certify;
 pub mod enumerate;
 mod generators;
 mod index;
+pub mod inequalities;
 mod kernel;
 mod labels;
 mod linear;
@@ -22,7 +23,8 @@ mod redundant;
 mod region;
 pub mod sign;
 
-pub use analysis::{Asked, CONTACT_LIMIT, Scratch, analyse};
+pub use analysis::{Asked, CONTACT_LIMIT, Explain, Scratch, analyse};
+pub use inequalities::Inequalities;
 pub use mode::{Friction, Mode};
 pub use outcome::{Analysis, Because, Border, Effort, Explanation, Motion, Outcome, Region, Rejection, Verdict, Zero};
 pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

@@ -19,7 +19,7 @@ use crate::dynamics::{
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
-use crate::impact::{Analysis, Asked, ContactProblem, Errors, Friction, Scratch};
+use crate::impact::{Analysis, Asked, ContactProblem, Errors, Explain, Friction, Mode, Scratch};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Rotation, Vector, dot, scaled, sum};
 use crate::reductions::Reductions;
@@ -77,6 +77,17 @@ pub struct Impact {
     pub notes: Vec<String>,
 }
 
+/// A state's contact problem, not yet analysed.
+#[derive(Debug, Clone)]
+pub struct Unsolved {
+    /// The closed contacts.
+    pub contacts: Vec<Contact>,
+    /// Their problem, in f64.
+    pub problem: ContactProblem,
+    /// How far each foot is from the ground \[m\]; empty where the state names its contacts.
+    pub clearance: Vec<f64>,
+}
+
 /// The answer for one state, and what of its contacts was taken as given.
 struct Answer {
     impact: Impact,
@@ -86,6 +97,30 @@ struct Answer {
     stance: Option<usize>,
     /// Contacts that were taken as exactly at rest.
     resting: Vec<bool>,
+}
+
+/// A state and its contact problem, not yet analysed.
+struct Before {
+    /// Where the bodies are.
+    placement: Placement,
+    /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
+    velocity: Vec<f64>,
+    /// The foot of the stance.
+    foot: Option<Contact>,
+    loops: Loops,
+    contacts: Vec<Contact>,
+    /// Shapes that were too far from the ground to be asked.
+    out_of_reach: usize,
+    /// The place of the stance's foot among the contacts.
+    stance: Option<usize>,
+    /// Contacts that were taken as exactly at rest.
+    resting: Vec<bool>,
+    kinetic_energy: f64,
+    /// What the applied impulses change in v, with and without the loops' answer.
+    change: Vec<f64>,
+    applied: Vec<f64>,
+    problem: ContactProblem,
+    notes: Vec<String>,
 }
 
 /// The matrices behind an answer.
@@ -152,15 +187,111 @@ impl<'r> Pipeline<'r> {
     /// [`Reason::Missing`] for a contact without friction or a stance without a foot, [`Reason::MatricesTooLarge`] for
     /// hundreds of contacts, [`Reason::NotFinite`] for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
-        let mut answer = self.answer(state)?;
+        let mut answer = self.answer(state, None)?;
         if let Some(uncertainty) = &state.uncertainty {
             answer.impact.holds = Some(self.holds(state, uncertainty, &answer));
         }
         Ok(answer.impact)
     }
 
-    /// As [`Pipeline::impact`], whatever the state's uncertainty is.
-    fn answer(&mut self, state: &State) -> Result<Answer> {
+    /// As [`Pipeline::impact`], whatever the state's uncertainty is; of all rejected combinations those with `chosen` modes
+    /// are listed.
+    ///
+    /// # Errors
+    /// As [`Pipeline::impact`].
+    pub fn impact_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Impact> {
+        self.answer(state, Some(chosen)).map(|answer| answer.impact)
+    }
+
+    /// As [`Pipeline::impact`], whatever the state's uncertainty is; with `chosen` modes of rejected combinations, if they are.
+    fn answer(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
+        let scene = &state.scene;
+        let Before {
+            placement,
+            velocity,
+            foot,
+            loops,
+            contacts,
+            out_of_reach,
+            stance,
+            resting,
+            kinetic_energy,
+            change,
+            applied,
+            problem,
+            mut notes,
+        } = self.before(state)?;
+        let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
+        for &entry in &free {
+            finite(entry, || "a velocity after the applied impulses".into())?;
+        }
+        let kept = self.kept.clone();
+        let source = Strike {
+            robot: self.robot,
+            scene,
+            position: &state.position,
+            velocity: &velocity,
+            foot: foot.as_ref(),
+            stance,
+            contacts: &contacts,
+            resting: &resting,
+            constraints: Constraints { kept: &kept, rows: &loops.rows },
+            friction: problem.friction(),
+            restitution: problem.restitution(),
+            errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
+        };
+        let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
+        let Options { no_proof, reductions, .. } = self.options;
+        let explain = chosen.map_or(explain.into(), Explain::Only);
+        let asked = Asked { explain, prove: !no_proof, reductions };
+        let analysis = self.scratch.analyse(&problem, &source, asked);
+        let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
+        if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+            articulated_inertias(&self.plan, &mut self.workspace);
+        }
+        let (velocity_after, loop_impulse) = outcomes
+            .iter()
+            .map(|outcome| match self.is_constrained(&loops) {
+                false => (self.struck(&free, &outcome.impulse), Vec::new()),
+                true => {
+                    let mut change = self.struck(&applied, &outcome.impulse);
+                    let impulse = self.answer_of_loops(&loops, &mut change);
+                    (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
+                }
+            })
+            .unzip();
+        notes.extend(analysis.as_ref().ok().and_then(Analysis::energy_note));
+        let impact = Impact {
+            velocity_before: problem.velocity_before().to_vec(),
+            kinetic_energy,
+            velocity_after,
+            loop_impulse,
+            matrices: self.options.matrices.then(|| self.matrices()),
+            holds: None,
+            left_out: self.left_out(scene, &contacts, problem.friction(), out_of_reach),
+            analysis,
+            placement,
+            contacts,
+            notes,
+        };
+        Ok(Answer { impact, foot, stance, resting })
+    }
+
+    /// The contact problem of a state as f64 has it, without its analysis.
+    ///
+    /// # Errors
+    /// As [`Pipeline::impact`].
+    pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
+        let Before { placement, contacts, problem, .. } = self.before(state)?;
+        let clearance = match state.scene.contacts {
+            Some(_) => Vec::new(),
+            None => contact::clearances(&self.feet, &placement, &Surface::new(&state.scene.ground)),
+        };
+        Ok(Unsolved { contacts, problem, clearance })
+    }
+
+    /// Everything up to the contact problem.
+    fn before(&mut self, state: &State) -> Result<Before> {
         let scene = &state.scene;
         self.compile(scene);
         self.posture.set(&self.plan, &state.position);
@@ -202,59 +333,21 @@ impl<'r> Pipeline<'r> {
         let applied = change.clone();
         self.answer_of_loops(&loops, &mut change);
         let problem = self.problem(scene, &contacts, &change)?;
-        let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
-        for &entry in &free {
-            finite(entry, || "a velocity after the applied impulses".into())?;
-        }
-        let kept = self.kept.clone();
-        let source = Strike {
-            robot: self.robot,
-            scene,
-            position: &state.position,
-            velocity: &velocity,
-            foot: foot.as_ref(),
-            stance,
-            contacts: &contacts,
-            resting: &resting,
-            constraints: Constraints { kept: &kept, rows: &loops.rows },
-            friction: problem.friction(),
-            restitution: problem.restitution(),
-            errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
-        };
-        let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
-        let Options { no_proof, reductions, .. } = self.options;
-        let asked = Asked { explain, prove: !no_proof, reductions };
-        let analysis = self.scratch.analyse(&problem, &source, asked);
-        let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
-        if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
-            articulated_inertias(&self.plan, &mut self.workspace);
-        }
-        let (velocity_after, loop_impulse) = outcomes
-            .iter()
-            .map(|outcome| match self.is_constrained(&loops) {
-                false => (self.struck(&free, &outcome.impulse), Vec::new()),
-                true => {
-                    let mut change = self.struck(&applied, &outcome.impulse);
-                    let impulse = self.answer_of_loops(&loops, &mut change);
-                    (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
-                }
-            })
-            .unzip();
-        notes.extend(analysis.as_ref().ok().and_then(Analysis::energy_note));
-        let impact = Impact {
-            velocity_before: problem.velocity_before().to_vec(),
-            kinetic_energy,
-            velocity_after,
-            loop_impulse,
-            matrices: self.options.matrices.then(|| self.matrices()),
-            holds: None,
-            left_out: self.left_out(scene, &contacts, problem.friction(), out_of_reach),
-            analysis,
+        Ok(Before {
             placement,
+            velocity,
+            foot,
+            loops,
             contacts,
+            out_of_reach,
+            stance,
+            resting,
+            kinetic_energy,
+            change,
+            applied,
+            problem,
             notes,
-        };
-        Ok(Answer { impact, foot, stance, resting })
+        })
     }
 
     /// The contact problem of contacts given by hand, at a posture whose cosines and sines the caller knows better than
@@ -371,7 +464,8 @@ impl<'r> Pipeline<'r> {
         })
     }
 
-    fn tolerance(&self) -> f64 {
+    /// How far from the ground a foot may be and still touch \[m\].
+    pub fn tolerance(&self) -> f64 {
         self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
     }
 

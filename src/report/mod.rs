@@ -6,6 +6,7 @@
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Robot, Impact ──> Drawing ──> JSON, picture                       drawing
+//!     Survey ──> Sweep, samples ──> JSON, CSV, text                     sweep
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```
 
@@ -21,6 +22,7 @@ mod outcome;
 pub mod picture;
 mod problem;
 mod result;
+pub mod sweep;
 #[cfg(feature = "schema")]
 pub mod schema;
 mod table;

@@ -33,7 +33,7 @@ const BASE: [&str; 3] = ["x", "z", "pitch"];
 const LOOP_LIMIT: usize = 256;
 
 /// Reads a whole state.
-pub(super) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
+pub(crate) fn state(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
     let dofs = robot.dofs();
     let mut state = State { position: vec![0.0; dofs], velocity: vec![0.0; dofs], ..State::default() };
     let scene = &mut state.scene;
@@ -150,8 +150,10 @@ pub(super) fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -
 pub(crate) fn friction(node: Node) -> Result<Friction> {
     match node.as_text() {
         Some("infinite") => Ok(Friction::Infinite),
-        Some(_) => Err(node.expected("a number or \"infinite\"").did_you_mean(node.text()?, ["infinite"])),
-        None => from_zero(node, "friction").map(Friction::Finite),
+        Some(_) if !node.takes_expressions() => {
+            Err(node.expected("a number or \"infinite\"").did_you_mean(node.text()?, ["infinite"]))
+        }
+        _ => node.number_from_zero("friction").map(Friction::Finite),
     }
 }
 
@@ -219,7 +221,7 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
             Some(follower) => robot.joints.len() + follower,
             None => joint(entry, name, robot)?,
         };
-        inertia[place] = from_zero(entry, "rotor inertia")?;
+        inertia[place] = entry.number_from_zero("rotor inertia")?;
     }
     Ok(inertia)
 }
@@ -233,7 +235,7 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
             match part.key() {
                 "link" => named = Some(link(part, part.text()?, robot)?),
                 "offset" => offset = part.numbers("a list of 3 numbers")?,
-                "radius" => radius = from_zero(part, "radius")?,
+                "radius" => radius = part.number_from_zero("radius")?,
                 _ => return Err(part.unknown_field(&["link", "offset", "radius"])),
             }
         }
@@ -298,15 +300,6 @@ fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
         impulses.push(AppliedImpulse { link, offset, vector });
     }
     Ok(impulses)
-}
-
-/// A number from 0 on.
-pub(super) fn from_zero(node: Node, what: &str) -> Result<f64> {
-    let value = node.number()?;
-    if value >= 0.0 {
-        return Ok(value);
-    }
-    Err(node.refuse(Reason::OutOfRange { what: what.to_owned(), allowed: "0 or more", value }))
 }
 
 fn link(node: Node, name: &str, robot: &Robot) -> Result<usize> {

@@ -1,6 +1,6 @@
 //! How far the numbers of a state may be off.
 
-use super::read::{by_link, coordinates, from_zero, joint};
+use super::read::{by_link, coordinates, joint};
 use crate::json::Node;
 use crate::scene::ByLink;
 use crate::{Reason, Result, Robot};
@@ -62,5 +62,5 @@ pub(super) fn refuse_a_placed_base(field: Node) -> Result<()> {
 }
 
 fn half_width(node: Node) -> Result<f64> {
-    from_zero(node, "a half-width")
+    node.number_from_zero("a half-width")
 }

@@ -3,7 +3,7 @@
 use super::header::{Header, prefixed};
 use super::rows::Carried;
 use crate::contact::Feet;
-use crate::report::{Outcome, Refused, Report, Touchdown};
+use crate::report::{ErrorObject, Outcome, Refused, Report, Touchdown};
 use crate::scene::NamedContact;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
@@ -54,7 +54,23 @@ impl Columns {
     /// The columns for states of `robot` with the `feet` that were added to it; `input` is the table that the states come
     /// from, if they come from one; `touchdowns` where they are touchdowns found in it.
     pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, touchdowns: bool) -> Self {
-        let contacts = contacts(robot, feet, touchdowns);
+        Self::with(robot, feet, std::iter::empty(), input.into_iter().flat_map(Header::carried), touchdowns)
+    }
+
+    /// The same with columns of these names that are carried through, and for contacts that states name themselves.
+    pub fn with<'n>(
+        robot: &Robot,
+        feet: &[NamedContact],
+        named: impl Iterator<Item = &'n str>,
+        through: impl Iterator<Item = &'n str>,
+        touchdowns: bool,
+    ) -> Self {
+        let mut contacts = contacts(robot, feet, touchdowns);
+        for name in named {
+            if !contacts.iter().any(|known| known == name) {
+                contacts.push(name.to_owned());
+            }
+        }
         let mut names: Vec<String> = FIRST.map(str::to_owned).into();
         for contact in &contacts {
             names.extend([format!("mode_{contact}"), format!("p_{contact}_t"), format!("p_{contact}_n")]);
@@ -64,9 +80,10 @@ impl Columns {
             names.extend(TOUCHDOWN.map(str::to_owned));
         }
         let own: HashSet<String> = names.iter().cloned().chain(LAST.map(str::to_owned)).collect();
-        let taken: HashSet<&str> = input.into_iter().flat_map(Header::carried).collect();
+        let through: Vec<&str> = through.collect();
+        let taken: HashSet<&str> = through.iter().copied().collect();
         let mut carried = 0;
-        for column in input.into_iter().flat_map(Header::carried) {
+        for column in through {
             let mut name = column.to_owned();
             while own.contains(&name) || (name != column && taken.contains(name.as_str())) {
                 name.insert_str(0, "in_");
@@ -116,11 +133,22 @@ impl Columns {
 
     /// Appends the row of a refused state.
     pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut Vec<u8>) {
-        let mut cells = self.cells(refused.id.as_ref(), carried);
+        let line = format!("line {}: ", refused.line);
+        self.append_error(refused.id.as_ref(), &line, &refused.error, carried, out);
+    }
+
+    /// Appends the row of a state that has an error in place of outcomes, with `before` in front of it.
+    pub fn append_error(
+        &self,
+        id: Option<&Value>,
+        before: &str,
+        error: &ErrorObject,
+        carried: Option<&Carried>,
+        out: &mut Vec<u8>,
+    ) {
+        let mut cells = self.cells(id, carried);
         cells.text(1, "refused");
-        let error = &refused.error;
-        let sentence = sentence(&error.message, error.place, error.hint);
-        cells.text(self.last() + 2, format!("line {}: {sentence}", refused.line));
+        cells.text(self.last() + 2, before.to_owned() + &sentence(&error.message, error.place, error.hint));
         append(&cells.0, out);
     }
 

@@ -53,6 +53,11 @@ pub struct Row<'r> {
 pub struct Carried(ByteRecord);
 
 impl Carried {
+    /// These fields.
+    pub fn new(fields: impl Iterator<Item = String>) -> Self {
+        Self(fields.collect::<Vec<_>>().into())
+    }
+
     /// The fields in the order of [`Header::carried`]; none where the row could not be read.
     pub fn fields(&self) -> impl Iterator<Item = &[u8]> {
         self.0.iter()

@@ -1,0 +1,186 @@
+//! `heelstrike sweep`: outcomes against one or two parameters.
+
+use super::complaint::complain;
+use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
+use super::output::{Output, spare};
+use super::progress::Progress;
+use super::robot::{RobotOptions, caution};
+use super::{Answered, Failure, Outcome, input};
+use clap::ValueEnum;
+use heelstrike::Error;
+use heelstrike::documents::utf8;
+use heelstrike::excerpt::Excerpt;
+use heelstrike::report::Detail;
+use heelstrike::report::append_line;
+use heelstrike::report::sweep::{Regions, Sample, columns, letter};
+use heelstrike::state::Defaults;
+use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::thread::available_parallelism;
+
+/// Find all regions of equal outcomes against one or two parameters, and the borders between them
+///
+/// Numbers of the study's state and robot may be expressions of its parameters and constants, as "alpha + pi/2". Borders are
+/// bisected to 1e-12 of the range; thin regions between samples are searched for.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  heelstrike sweep urdf/minimalistic.urdf examples/paper/minimalistic.json
+  heelstrike sweep urdf/ramone_paper.urdf examples/paper/ramone.json -o ramone.json --plot ramone.svg
+  heelstrike sweep urdf/pdw.urdf examples/paper/inertia_map.json --plot map.png")]
+pub struct Args {
+    #[command(flatten)]
+    robot: RobotOptions,
+    /// The study: parameters, constants, and a state whose numbers may be expressions; "-" reads standard input
+    #[arg(value_name = "STUDY.json")]
+    study: PathBuf,
+    #[command(flatten)]
+    scene: SceneOptions,
+    #[command(flatten)]
+    loops: LoopOptions,
+    #[command(flatten)]
+    contacts: ContactOptions,
+    #[command(flatten)]
+    detail: DetailOptions,
+    /// Write to this file, which is replaced
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    output: Option<PathBuf>,
+    /// Regions for people, regions and samples as JSON, or samples as CSV [default: by the output's ending, else text]
+    #[arg(long, value_enum, help_heading = "Output")]
+    format: Option<Format>,
+    /// How many threads compute; 0 takes one per core
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
+    threads: u16,
+}
+
+/// The form of what is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Regions and borders for people
+    Text,
+    /// One object: regions, borders, samples
+    #[value(alias = "ndjson")]
+    Json,
+    /// A table of samples, one row per outcome
+    Csv,
+}
+
+impl Format {
+    fn of(args: &Args) -> Self {
+        let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
+        args.format.unwrap_or(match ending {
+            Some("csv") => Self::Csv,
+            Some("json" | "ndjson" | "jsonl") => Self::Json,
+            _ => Self::Text,
+        })
+    }
+}
+
+/// The largest study that is read \[bytes\].
+const LARGEST: u64 = 64 << 20;
+
+/// Samples that are answered together before they are written.
+const TOGETHER: usize = 4096;
+
+pub(super) fn run(args: &Args) -> Outcome {
+    let (description, reduction, robot) = args.robot.described()?;
+    caution(&robot);
+    let feet = args.robot.feet(&robot)?;
+    let name = input::name(&args.study);
+    let bytes = input::bytes_up_to(&args.study, LARGEST)?;
+    let refuse = |error: Error| {
+        let excerpt = error.location().and_then(|place| Excerpt::around(&bytes, 1, place));
+        Failure::RefusedAt(error.in_file(&name), excerpt)
+    };
+    let study = utf8(&bytes).and_then(Study::from_json).map_err(refuse)?;
+    let model = Model {
+        study: &study,
+        description: &description,
+        reduction: &reduction,
+        robot: &robot,
+        options: pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions),
+        defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
+    };
+    model.readable().map_err(refuse)?;
+    let inputs = [Some(&args.robot.robot), Some(&args.study), args.loops.loops.as_ref()];
+    spare(args.output.as_deref(), &inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
+
+    let threads = match args.threads {
+        0 => available_parallelism().map_or(1, usize::from),
+        threads => threads.into(),
+    };
+    let format = Format::of(args);
+    let pieces = Findings::work(&model) + if format == Format::Text { 0 } else { Sample::count(&model) };
+    let progress = Progress::of(pieces as u64);
+    let done = || progress.step();
+    let workers = Workers { threads, done: &done };
+    let findings = Findings::of(&model, workers);
+    let regions = Regions::new(study.parameters(), &findings);
+    let regimes = findings.regimes();
+    let mut output = Output::open(args.output.as_deref())?;
+    let refused = match format {
+        Format::Text => {
+            output.write_all(regions.text(&robot.name, output.palette()).as_bytes())?;
+            0
+        }
+        Format::Json => {
+            let mut head = Vec::new();
+            append_line(&mut head, &regions);
+            json(&head, &mut output, &model, workers, args.detail.detail())?
+        }
+        Format::Csv => {
+            let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
+            let columns = columns(&model, &feet, contacts);
+            let mut head = Vec::new();
+            columns.append_header(&mut head);
+            output.write_all(&head)?;
+            let kind =
+                |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime).map(|(_, kind, _)| *kind);
+            samples(&mut output, &model, workers, |solver, sample, out| {
+                sample.append_rows(solver, &columns, |regime| kind(regime).map_or_else(String::new, letter), out)
+            })?
+        }
+    };
+    output.flush()?;
+    progress.clear();
+    let refusals: Vec<&Error> = regimes.iter().filter_map(|(_, _, refused)| *refused).collect();
+    refusals.iter().for_each(|error| complain(error));
+    Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
+}
+
+/// Writes the object of `head`, a line, with the list of all samples as its last field; tells how many were refused.
+fn json(head: &[u8], output: &mut Output, model: &Model, workers: Workers, detail: Detail) -> Result<usize, Failure> {
+    let open = head.strip_suffix(b"}\n").unwrap_or(head);
+    output.write_all(open)?;
+    output.write_all(b",\"samples\":[")?;
+    let refused = samples(output, model, workers, |solver, sample, out| {
+        let separator = if sample.index == 0 { "" } else { "," };
+        out.extend(separator.bytes());
+        sample.append_json(solver, detail, out)
+    })?;
+    output.write_all(b"]}\n")?;
+    Ok(refused)
+}
+
+/// Writes all samples in order; tells how many were refused.
+fn samples(
+    output: &mut Output,
+    model: &Model,
+    workers: Workers,
+    append: impl Fn(&mut Solver, &Sample, &mut Vec<u8>) -> bool + Sync,
+) -> Result<usize, Failure> {
+    let (count, mut refused) = (Sample::count(model), 0);
+    for start in (0..count).step_by(TOGETHER) {
+        let answer = |solver: &mut Solver, index: usize| {
+            let mut out = Vec::new();
+            let answered = append(solver, &Sample::new(model, start + index), &mut out);
+            (out, answered)
+        };
+        for (out, answered) in workers.map(TOGETHER.min(count - start), || Solver::new(model), answer) {
+            output.write_all(&out)?;
+            refused += usize::from(!answered);
+        }
+    }
+    Ok(refused)
+}

@@ -1,0 +1,132 @@
+//! Numbers that are written as expressions of names (the only user of nanoexpr).
+//!
+//! ```text
+//!     "-(alpha + off)^2 / 2"  --names, pi, e, sin, cos, tan, atan2, sqrt, ...-->  f64
+//! ```
+//!
+//! `^` and `**` are powers and bind stronger than a sign: -a^2 = -(a^2). Functions are those of libm, so that an expression
+//! has the same value on every machine.
+
+use nanoexpr::{ErrorKind, Math, Variables};
+
+/// Names and their values; they stand before pi, e and the functions.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Names(Vec<(String, f64)>);
+
+/// What is wrong with an expression, and where.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fault {
+    /// In words.
+    pub what: String,
+    /// How many characters of the expression come before it.
+    pub before: usize,
+    /// The name that is not known, if that is it.
+    pub unknown: Option<String>,
+}
+
+impl Names {
+    /// Adds a name, or changes its value.
+    pub fn set(&mut self, name: &str, value: f64) {
+        match self.0.iter_mut().find(|(known, _)| known == name) {
+            Some((_, old)) => *old = value,
+            None => self.0.push((name.to_owned(), value)),
+        }
+    }
+
+    /// The names.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|(name, _)| name.as_str())
+    }
+
+    fn value(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
+    }
+
+    /// The value of an expression, which is finite.
+    pub(crate) fn evaluate(&self, text: &str) -> Result<f64, Fault> {
+        let variables = Variables(|name: &str| self.value(name));
+        nanoexpr::evaluate_with(text, &(variables, Math)).map_err(|error| {
+            let piece = text.get(error.span.start..error.span.end).unwrap_or_default();
+            let unknown = matches!(error.kind, ErrorKind::UnknownVariable | ErrorKind::UnknownFunction);
+            Fault {
+                what: match piece.trim() {
+                    "" => error.kind.to_string(),
+                    piece => format!("{}: {piece}", error.kind),
+                },
+                before: text.get(..error.span.start).map_or(0, |before| before.chars().count()),
+                unknown: unknown.then(|| piece.to_owned()),
+            }
+        })
+    }
+}
+
+/// Whether an expression can use it: letters, digits and underscores, no digit first.
+pub(crate) fn is_name(text: &str) -> bool {
+    let letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+    text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names() -> Names {
+        let mut names = Names::default();
+        names.set("a", 0.5);
+        names.set("off", 0.25);
+        names
+    }
+
+    #[test]
+    fn expressions_mean_what_they_look_like() {
+        let value = |text: &str| names().evaluate(text).unwrap_or_else(|fault| panic!("{text}: {fault:?}"));
+        for (text, expected) in [
+            ("-a^2", -0.25),
+            ("(-a)^2", 0.25),
+            ("2**3**2", 512.0),
+            ("2^-1", 0.5),
+            ("1e-3*a", 0.0005),
+            ("1.5E2", 150.0),
+            (".5 - a", 0.0),
+            ("a/2/2", 0.125),
+            ("8 - 4 - 2", 2.0),
+            ("--a", 0.5),
+            ("pi", std::f64::consts::PI),
+            ("atan2(1, -1)", 0.75 * std::f64::consts::PI),
+            ("sqrt(a*a + 2*off) ", libm::sqrt(0.75)),
+            ("sin(a)^2 + cos(a)^2", 1.0),
+            ("max(a, off)", 0.5),
+        ] {
+            assert_eq!(value(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn names_stand_before_constants_of_nature() {
+        let mut names = Names::default();
+        names.set("e", 0.5);
+        assert_eq!(names.evaluate("2*e"), Ok(1.0));
+        names.set("e", 0.25);
+        assert_eq!(names.evaluate("2*e"), Ok(0.5));
+    }
+
+    #[test]
+    fn what_has_no_value_is_refused_with_its_place() {
+        let fault = |text: &str| names().evaluate(text).expect_err(text);
+        assert_eq!(fault("2 * alpa").unknown.as_deref(), Some("alpa"));
+        assert_eq!(fault("2 * alpa").before, 4);
+        for text in
+            ["", "a +", "1/0", "sqrt(-1)", "(a", "a b", "nan", "inf", "1e999", "10^400", "a; b", "\u{3b1}", "sin"]
+        {
+            fault(text);
+        }
+        fault(&"(".repeat(100_000));
+        fault(&"-".repeat(100_000));
+    }
+
+    #[test]
+    fn only_what_an_expression_can_use_is_a_name() {
+        assert!(["a", "_x1", "leftHip"].into_iter().all(is_name));
+        assert!(!["", "1a", "left hip", "\u{3b1}", "a-b"].into_iter().any(is_name));
+    }
+}

@@ -1,0 +1,104 @@
+//! Every inequality of every combination as a number without poles, for whoever follows them along a parameter.
+//!
+//! ```text
+//!     slack s = N / det A      N and det A are as smooth as the problem is; s changes its sign at N = 0, and at poles det A = 0
+//! ```
+//!
+//! A set of outcomes changes only where some N passes zero. Numbers are f64 without error bounds: they tell where to look,
+//! and never what is true there.
+//!
+//! Cost: as the enumeration's, 4^n combinations of n contacts.
+
+use super::enumerate::{Leaf, Tableau};
+use super::labels::Labels;
+use super::mode::Mode;
+use super::problem::ContactProblem;
+use super::sign::slacks;
+
+/// The inequalities of all combinations of one problem.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Inequalities {
+    /// det A of each combination.
+    pub determinants: Vec<f64>,
+    /// N of every inequality, those of one combination after the other.
+    pub numerators: Vec<f64>,
+    /// Where the numerators of each combination end.
+    pub ends: Vec<usize>,
+}
+
+impl Inequalities {
+    /// Those of `problem`; combinations and their inequalities are always in the same order as long as the frictions are
+    /// zero, finite or infinite as before. Those of a combination that is singular up to rounding are all zero.
+    pub fn of(problem: &ContactProblem) -> Self {
+        let mut tableau = Tableau::<f64>::new();
+        let mut labels = Labels::default();
+        let mut all = Self::default();
+        tableau.load(problem);
+        tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
+            let determinant = match is_singular(leaf, problem) {
+                true => 0.0,
+                false => leaf.pivots.iter().product::<f64>(),
+            };
+            labels.start(leaf.modes, problem.friction(), true);
+            while let Some(modes) = labels.next() {
+                slacks(leaf, modes, problem.friction(), |slack| {
+                    all.numerators.push(if determinant == 0.0 { 0.0 } else { slack.number * determinant });
+                });
+                all.determinants.push(determinant);
+                all.ends.push(all.numerators.len());
+            }
+        });
+        all
+    }
+
+    /// The numerators of a combination.
+    pub fn of_combination(&self, combination: usize) -> std::ops::Range<usize> {
+        let start = if combination == 0 { 0 } else { self.ends[combination - 1] };
+        start..self.ends[combination]
+    }
+}
+
+/// A pivot that has lost so many digits of what it is the difference of is zero but for rounding.
+const SINGULAR: f64 = 1e-10;
+
+/// Whether a pivot is zero up to rounding: contacts depend on each other, or an inequality is at a pole.
+fn is_singular(leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> bool {
+    let lost = |(contact, (&mode, &pivot)): (usize, (&Mode, &f64))| {
+        let entry = |row: usize, column: usize| problem.delassus(2 * contact + row, 2 * contact + column);
+        let friction = problem.friction()[contact];
+        let (a, b) = friction.pair();
+        let size = match mode {
+            Mode::Separate => return false,
+            Mode::Stick if !friction.is_zero() => entry(0, 0) * entry(1, 1),
+            _ => a * entry(0, 1).abs() + b * entry(1, 1),
+        };
+        pivot.abs() <= SINGULAR * size
+    };
+    leaf.modes.iter().zip(leaf.pivots).enumerate().any(lost)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::{Friction, analyse};
+
+    #[test]
+    fn a_combination_is_valid_where_all_its_inequalities_have_the_sign_of_the_determinant() {
+        // The paper's section 4: G = [[2, 1], [1, 2]].
+        for mu in [Friction::Finite(0.4), Friction::Finite(6.0), Friction::Infinite] {
+            for before in [[1.0, -1.0], [-3.0, -1.0], [0.5, 0.2], [2.5, -0.5]] {
+                let problem = ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![mu], vec![0.0]).unwrap();
+                let all = Inequalities::of(&problem);
+                let modes = |combination: &usize| vec![Mode::ALL[*combination]];
+                let valid = |combination: &usize| {
+                    let determinant = all.determinants[*combination];
+                    all.numerators[all.of_combination(*combination)].iter().all(|number| number * determinant > 0.0)
+                };
+                let found: Vec<_> = (0..4).filter(valid).map(|combination| modes(&combination)).collect();
+                let analysis = analyse(&problem, false).unwrap();
+                let outcomes: Vec<_> = analysis.outcomes.into_iter().map(|outcome| outcome.modes).collect();
+                assert_eq!(found, outcomes, "{mu} {before:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Segments joined end to end: to curves, and to loops around areas.
+
+use super::cell::Segment;
+use super::regime::Regime;
+use super::turn::Turns;
+use crate::planar::Vector;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Segments of one border, joined.
+#[derive(Debug, Clone)]
+pub struct Chain {
+    pub left: Arc<Regime>,
+    pub right: Arc<Regime>,
+    pub points: Vec<Vector<f64>>,
+    pub turns: Turns,
+}
+
+/// A point by its digits: ends that meet are the same numbers.
+type Key = [u64; 2];
+
+fn key(point: Vector<f64>) -> Key {
+    point.map(f64::to_bits)
+}
+
+/// The curves that segments of the same regimes and turns join to.
+pub fn chains(segments: &[Segment]) -> Vec<Chain> {
+    let mut starts: HashMap<Key, Vec<(usize, bool)>> = HashMap::new();
+    for (index, segment) in segments.iter().enumerate() {
+        starts.entry(key(segment.from)).or_default().push((index, true));
+        starts.entry(key(segment.to)).or_default().push((index, false));
+    }
+    let mut used = vec![false; segments.len()];
+    let mut chains = Vec::new();
+    for first in 0..segments.len() {
+        if used[first] {
+            continue;
+        }
+        used[first] = true;
+        let own = &segments[first];
+        // On from its end, then back from its beginning; each segment may stand in either direction.
+        let mut grow = |mut point: Vector<f64>, forward: bool| {
+            let mut points = Vec::new();
+            loop {
+                let next = starts[&key(point)].iter().find(|&&(index, at_start)| {
+                    !used[index] && same_border(own, &segments[index], at_start == forward)
+                });
+                let Some(&(index, at_start)) = next else { return points };
+                used[index] = true;
+                point = if at_start { segments[index].to } else { segments[index].from };
+                points.push(point);
+            }
+        };
+        let onward = grow(own.to, true);
+        let mut points = grow(own.from, false);
+        points.reverse();
+        points.extend([own.from, own.to]);
+        points.extend(onward);
+        let turns = own.turns.as_deref().cloned().unwrap_or_default();
+        chains.push(Chain { left: Arc::clone(&own.left), right: Arc::clone(&own.right), points, turns });
+    }
+    chains
+}
+
+/// Whether two segments are of one border, the other one in the same direction or reversed.
+fn same_border(own: &Segment, other: &Segment, along: bool) -> bool {
+    let turns = |along: bool| match (&own.turns, &other.turns) {
+        (Some(a), Some(b)) => a.is_same_as(&if along { (**b).clone() } else { b.reversed() }),
+        (None, None) => true,
+        _ => false,
+    };
+    let sides = if along { (&other.left, &other.right) } else { (&other.right, &other.left) };
+    (&own.left, &own.right) == sides && turns(along)
+}
+
+/// The closed loops that have `regime` on their left, of borders and of the frame.
+pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> Vec<Vec<Vector<f64>>> {
+    let mut next: HashMap<Key, Vec<Vector<f64>>> = HashMap::new();
+    let mut order = Vec::new();
+    let mut add = |from: Vector<f64>, to: Vector<f64>| {
+        next.entry(key(from)).or_default().push(to);
+        order.push(from);
+    };
+    for segment in segments {
+        if segment.left == *regime {
+            add(segment.from, segment.to);
+        }
+        if segment.right == *regime {
+            add(segment.to, segment.from);
+        }
+    }
+    frame.iter().filter(|piece| piece.left == *regime).for_each(|piece| add(piece.from, piece.to));
+    let mut loops = Vec::new();
+    for start in order {
+        let mut points = Vec::new();
+        let mut at = start;
+        while let Some(to) = next.get_mut(&key(at)).and_then(Vec::pop) {
+            points.push(at);
+            at = to;
+        }
+        if points.len() > 2 {
+            loops.push(points);
+        }
+    }
+    loops
+}

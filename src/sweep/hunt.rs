@@ -1,0 +1,300 @@
+//! Where between two points of the same regime another one may hide.
+//!
+//! ```text
+//!     a set of outcomes changes only where a numerator N of some combination passes zero (see `impact::inequalities`):
+//!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> places to ask
+//! ```
+//!
+//! Combinations that one clearly violated inequality excludes on the whole interval are not followed. Nothing here decides
+//! anything: wherever a zero may be, the regime itself is asked for. What N does between the five points beyond what its
+//! fourth differences tell is not seen; that is the part that is not guaranteed.
+
+use super::model::Watched;
+
+/// Points at which an interval is looked at: its ends and three between them.
+const NODES: usize = 5;
+
+/// Places at which the quartic through them is looked at.
+const FINE: usize = 32;
+
+/// An interval is halved while fourth differences are greater than this part of the numbers, so many times at most.
+const SMOOTH: f64 = 0.05;
+const HALVINGS: usize = 5;
+
+/// The most places that are asked in one interval.
+const MOST: usize = 200;
+
+/// A number that is followed, by its place in [`Watched`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Curve {
+    Determinant(usize),
+    Numerator(usize),
+    Clearance(usize),
+}
+
+impl Curve {
+    fn value(self, watched: &Watched) -> f64 {
+        match self {
+            Self::Determinant(at) => watched.inequalities.determinants[at],
+            Self::Numerator(at) => watched.inequalities.numerators[at],
+            Self::Clearance(at) => watched.clearance[at],
+        }
+    }
+}
+
+/// Places between `a` and `b`, in ascending order, at which the regime may differ from that at both ends; zeros nearer to
+/// each other than `resolution` count as one.
+pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Watched>, a: f64, b: f64, resolution: f64) -> Vec<f64> {
+    let mut found = Vec::new();
+    look(watch, (a, b), resolution, HALVINGS, &mut found);
+    found.sort_by(f64::total_cmp);
+    found.dedup();
+    found.retain(|&x| a < x && x < b);
+    found
+}
+
+fn look(
+    watch: &mut impl FnMut(f64) -> Option<Watched>,
+    (a, b): (f64, f64),
+    resolution: f64,
+    halvings: usize,
+    found: &mut Vec<f64>,
+) {
+    let place = |k: f64| a + (b - a) * (k / (NODES - 1) as f64);
+    let nodes: Vec<Option<Watched>> = (0..NODES).map(|k| watch(place(k as f64))).collect();
+    let Some(nodes) = nodes.into_iter().collect::<Option<Vec<Watched>>>() else {
+        found.extend((1..NODES - 1).map(|k| place(k as f64)));
+        return;
+    };
+    let alike = |other: &Watched| {
+        let (first, one, two) = (&nodes[0], &nodes[0].inequalities, &other.inequalities);
+        one.ends == two.ends && first.contacts == other.contacts && first.clearance.len() == other.clearance.len()
+    };
+    if !nodes.iter().all(alike) {
+        found.extend((1..NODES - 1).map(|k| place(k as f64)));
+        return;
+    }
+    let curves: Vec<(Curve, [f64; NODES])> = followed(&nodes)
+        .into_iter()
+        .map(|curve| (curve, std::array::from_fn(|k| curve.value(&nodes[k]))))
+        .filter(|(_, values)| values.iter().all(|value| value.is_finite()) && !is_clear(values))
+        .collect();
+    let rough = curves.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
+    if rough && halvings > 0 && b - a > resolution {
+        let middle = place(2.0);
+        look(watch, (a, middle), resolution, halvings - 1, found);
+        found.push(middle);
+        look(watch, (middle, b), resolution, halvings - 1, found);
+        return;
+    }
+    let mut zeros = Vec::new();
+    let mut touches = Vec::new();
+    for (curve, values) in &curves {
+        let mut real =
+            |x: f64| watch(x).filter(|watched| alike(watched)).map_or(f64::NAN, |watched| curve.value(&watched));
+        let fine: Vec<f64> = (0..=FINE).map(|k| quartic(values, k as f64 * (NODES - 1) as f64 / FINE as f64)).collect();
+        let at = |k: usize| place(k as f64 * (NODES - 1) as f64 / FINE as f64);
+        for k in 0..FINE {
+            if (fine[k] < 0.0) != (fine[k + 1] < 0.0) {
+                zeros.push(zero(&mut real, at(k), at(k + 1), resolution));
+            }
+        }
+        for k in 1..FINE {
+            let [before, here, after] = [fine[k - 1], fine[k], fine[k + 1]];
+            let least = here.abs() <= before.abs() && here.abs() <= after.abs();
+            if least && (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0) {
+                let sign = if here < 0.0 { -1.0 } else { 1.0 };
+                let bottom = least_place(&mut |x| sign * real(x), at(k - 1), at(k + 1), resolution);
+                touches.push(bottom);
+                if sign * real(bottom) < 0.0 {
+                    zeros.push(zero(&mut real, at(k - 1), bottom, resolution));
+                    zeros.push(zero(&mut real, bottom, at(k + 1), resolution));
+                }
+            }
+        }
+        if zeros.len() + touches.len() > MOST {
+            break;
+        }
+    }
+    zeros.sort_by(f64::total_cmp);
+    found.extend(zeros.windows(2).filter(|pair| pair[1] - pair[0] > resolution).map(|pair| 0.5 * (pair[0] + pair[1])));
+    found.extend(touches);
+    // A lone zero of the same regime on both sides touches the border at most; beside it nothing changes for good.
+    found.extend(zeros);
+}
+
+/// The curves of all combinations that no inequality clearly excludes.
+fn followed(nodes: &[Watched]) -> Vec<Curve> {
+    let all = |curve: Curve| -> [f64; NODES] { std::array::from_fn(|k| curve.value(&nodes[k])) };
+    let inequalities = &nodes[0].inequalities;
+    let mut curves: Vec<Curve> = (0..nodes[0].clearance.len()).map(Curve::Clearance).collect();
+    for combination in 0..inequalities.ends.len() {
+        let determinant = all(Curve::Determinant(combination));
+        let numerators = inequalities.of_combination(combination);
+        if is_clear(&determinant) {
+            let violated = |at: usize| {
+                let values = all(Curve::Numerator(at));
+                is_clear(&values) && (values[0] < 0.0) != (determinant[0] < 0.0)
+            };
+            if numerators.clone().any(violated) {
+                continue;
+            }
+        } else {
+            curves.push(Curve::Determinant(combination));
+        }
+        curves.extend(numerators.map(Curve::Numerator));
+    }
+    curves
+}
+
+/// Whether the curve through these values keeps its sign with room to spare; one that is zero throughout has none to change.
+fn is_clear(values: &[f64; NODES]) -> bool {
+    let least = values.iter().fold(f64::INFINITY, |least, value| least.min(value.abs()));
+    let same = values.iter().all(|&value| (value < 0.0) == (values[0] < 0.0));
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)));
+    high == low || same && least > 0.25 * (high - low)
+}
+
+fn largest(values: &[f64; NODES]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+fn fourth_difference([a, b, c, d, e]: &[f64; NODES]) -> f64 {
+    a - 4.0 * b + 6.0 * c - 4.0 * d + e
+}
+
+/// The polynomial through the values at 0, 1, 2, 3, 4 (Newton's forward differences).
+fn quartic(values: &[f64; NODES], x: f64) -> f64 {
+    let mut differences = *values;
+    for order in 1..NODES {
+        for k in (order..NODES).rev() {
+            differences[k] -= differences[k - 1];
+        }
+    }
+    let mut sum = 0.0;
+    let mut factor = 1.0;
+    for (k, difference) in differences.iter().enumerate() {
+        sum += factor * difference;
+        factor *= (x - k as f64) / (k + 1) as f64;
+    }
+    sum
+}
+
+/// A zero of `f` between `a` and `b`, where its sign differs; the middle where it does not.
+fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
+    let (mut at_a, mut at_b) = (f(a), f(b));
+    if (at_a < 0.0) == (at_b < 0.0) {
+        return 0.5 * (a + b);
+    }
+    // False position with the Illinois rule, and bisection where it does not shrink the bracket fast.
+    let mut kept = 0_i32;
+    for step in 0..100 {
+        if b - a <= 0.1 * resolution {
+            break;
+        }
+        let secant = (a * at_b - b * at_a) / (at_b - at_a);
+        let x = if step % 3 == 2 || !(a < secant && secant < b) { 0.5 * (a + b) } else { secant };
+        if x <= a || x >= b {
+            break;
+        }
+        let at_x = f(x);
+        if at_x == 0.0 {
+            return x;
+        }
+        if (at_x < 0.0) == (at_a < 0.0) {
+            (a, at_a) = (x, at_x);
+            at_b *= if kept == 1 { 0.5 } else { 1.0 };
+            kept = 1;
+        } else {
+            (b, at_b) = (x, at_x);
+            at_a *= if kept == -1 { 0.5 } else { 1.0 };
+            kept = -1;
+        }
+    }
+    0.5 * (a + b)
+}
+
+/// Where `f` is least between `a` and `b` (golden section), or any place where it is negative.
+fn least_place(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let (mut left, mut right) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
+    let (mut at_left, mut at_right) = (f(left), f(right));
+    for _ in 0..60 {
+        if at_left < 0.0 {
+            return left;
+        }
+        if at_right < 0.0 {
+            return right;
+        }
+        if b - a <= resolution {
+            break;
+        }
+        if at_left < at_right {
+            (b, right, at_right) = (right, left, at_left);
+            left = b - GOLDEN * (b - a);
+            at_left = f(left);
+        } else {
+            (a, left, at_left) = (left, right, at_right);
+            right = a + GOLDEN * (b - a);
+            at_right = f(right);
+        }
+    }
+    0.5 * (a + b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::Inequalities;
+
+    /// One combination with these inequalities, det A = 1.
+    fn watched(numerators: &[f64]) -> Option<Watched> {
+        let ends = vec![numerators.len()];
+        let inequalities = Inequalities { determinants: vec![1.0], numerators: numerators.to_vec(), ends };
+        Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
+    }
+
+    #[test]
+    fn a_quartic_is_what_it_interpolates() {
+        let polynomial = |x: f64| 2.0 - x + 0.5 * x * x * x - 0.25 * x * x * x * x;
+        let values = std::array::from_fn(|k| polynomial(k as f64));
+        for x in [0.3, 1.0, 2.7, 3.9] {
+            assert!((quartic(&values, x) - polynomial(x)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_dip_between_two_points_is_found_however_thin() {
+        for width in [1e-2, 1e-4, 1e-6, 1e-7] {
+            let centre = 0.3 + 0.1 / 3.0;
+            let dip = |x: f64| libm::cos(x - centre) - libm::cos(0.5 * width);
+            let places = suspects(&mut |x| watched(&[-dip(x)]), 0.2, 0.5, 1e-12);
+            assert!(places.iter().any(|&x| dip(x) > 0.0), "{width}: {places:?}");
+        }
+    }
+
+    #[test]
+    fn two_borders_of_different_inequalities_enclose_a_place_to_ask() {
+        // Valid for a < x < a + 1e-9 alone.
+        let a = 0.123_456;
+        let numerators = |x: f64| [libm::sin(x - a), a + 1e-9 - x];
+        let places = suspects(&mut |x| watched(&numerators(x)), 0.0, 1.0, 1e-12);
+        assert!(places.iter().any(|&x| numerators(x).iter().all(|&number| number > 0.0)), "{places:?}");
+    }
+
+    #[test]
+    fn a_clearly_violated_combination_is_not_followed() {
+        let mut asked = 0;
+        let places = suspects(
+            &mut |x| {
+                asked += 1;
+                watched(&[-1.0 - 0.1 * x, libm::sin(40.0 * x)])
+            },
+            0.0,
+            1.0,
+            1e-12,
+        );
+        assert_eq!((places, asked), (Vec::new(), NODES));
+    }
+}

@@ -1,0 +1,74 @@
+//! Outcomes against one or two parameters: the regions of equal outcomes, and what turns at the borders between them.
+//!
+//! ```text
+//!     JSON --[study]--> Study: parameters, expressions     point --[model, variation]--> Robot, State --[pipeline]--> Impact
+//!     Impact --[regime]--> which outcomes are valid        inequalities of all combinations --[hunt]--> where they may change
+//!     samples --[line]--> borders, bisected to 1e-12 of the range --[turn]--> which inequality of which contact is zero there
+//!     one parameter --[survey]--> Survey                   two parameters --[map, cell, chain]--> Map
+//! ```
+
+mod cell;
+mod chain;
+mod hunt;
+mod line;
+mod map;
+mod middle;
+mod model;
+mod parallel;
+mod regime;
+mod study;
+mod survey;
+mod turn;
+mod variation;
+
+pub use line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stretches};
+pub use map::{Area, CELLS, Curve, Map};
+pub use model::{Model, Solver, WATCHED_CONTACTS, Watched};
+pub use parallel::Workers;
+pub use regime::Regime;
+pub use study::{Parameter, Study};
+pub use survey::{Border, Region, Survey};
+pub use turn::{Inequality, Side, Turn, Turns};
+
+use crate::Error;
+use std::sync::Arc;
+
+/// What a study shows.
+#[derive(Debug, Clone)]
+pub enum Findings {
+    /// Of one parameter.
+    Along(Survey),
+    /// Of two parameters.
+    Map(Map),
+}
+
+impl Findings {
+    /// Those of `model`; tells `workers` of [`Findings::work`] pieces of work.
+    pub fn of(model: &Model, workers: Workers) -> Self {
+        match model.study.parameters().len() {
+            2 => Self::Map(Map::of(model, workers)),
+            _ => Self::Along(Survey::of(model, workers)),
+        }
+    }
+
+    /// How many pieces of work the findings of `model` take.
+    pub fn work(model: &Model) -> usize {
+        match model.study.parameters().len() {
+            2 => Map::work(model),
+            _ => Survey::work(model),
+        }
+    }
+
+    /// Every region's regime, the number of its letter, and why it is refused, if it is.
+    pub fn regimes(&self) -> Vec<(&Arc<Regime>, usize, Option<&Error>)> {
+        match self {
+            Self::Along(survey) => {
+                survey.regions.iter().map(|region| (&region.regime, region.kind, region.refused.as_ref())).collect()
+            }
+            Self::Map(map) => {
+                let areas = map.areas.iter().enumerate();
+                areas.map(|(kind, area)| (&area.regime, kind, area.refused.as_ref())).collect()
+            }
+        }
+    }
+}

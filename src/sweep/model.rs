@@ -1,0 +1,153 @@
+//! From a point of the parameters to the impact there.
+
+use super::Study;
+use super::regime::Regime;
+use crate::description::Description;
+use crate::impact::{Analysis, Inequalities, Mode};
+use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
+use crate::robot::Reduction;
+use crate::state::{Defaults, State};
+use crate::{Error, Result, Robot};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// A study of one robot.
+#[derive(Debug, Clone)]
+pub struct Model<'a> {
+    /// What is varied.
+    pub study: &'a Study<'a>,
+    /// The robot's file.
+    pub description: &'a Description,
+    /// How it is reduced to its plane.
+    pub reduction: &'a Reduction,
+    /// The robot as the file has it.
+    pub robot: &'a Robot,
+    /// How contacts are found and what is computed.
+    pub options: Options,
+    /// What states take from elsewhere.
+    pub defaults: Defaults,
+}
+
+/// Answers points of one model, in memory that it keeps.
+#[derive(Debug)]
+pub struct Solver<'a> {
+    model: &'a Model<'a>,
+    /// For the robot as it is; none where the study varies it.
+    pipeline: Option<Pipeline<'a>>,
+    /// Regimes that were met, each kept once.
+    known: Vec<Arc<Regime>>,
+}
+
+/// What is followed from point to point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Watched {
+    /// Names of the closed contacts.
+    pub contacts: Vec<String>,
+    /// The inequalities of all combinations; of too many contacts none.
+    pub inequalities: Inequalities,
+    /// How far each foot is above the contact tolerance \[m\].
+    pub clearance: Vec<f64>,
+}
+
+/// The inequalities of up to this many contacts are followed: 4^n combinations.
+pub const WATCHED_CONTACTS: usize = 4;
+
+impl Model<'_> {
+    /// Whether states can be read at all.
+    ///
+    /// # Errors
+    /// The first sample's refusal, where robot or state cannot be read there, nor in the middle, nor at the last one.
+    pub fn readable(&self) -> Result<()> {
+        let parameters = self.study.parameters();
+        let mut solver = Solver::new(self);
+        let mut read = |part: f64| {
+            let point: Vec<f64> =
+                parameters.iter().map(|parameter| parameter.from + part * parameter.range()).collect();
+            solver.at(&point, |_, _, _| ())
+        };
+        match (read(0.0), read(0.5), read(1.0)) {
+            (Err(first), Err(_), Err(_)) => Err(first),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl<'a> Solver<'a> {
+    /// A solver for `model`.
+    pub fn new(model: &'a Model<'a>) -> Self {
+        let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.options.clone()));
+        Self { model, pipeline, known: Vec::new() }
+    }
+
+    /// Asks about the state at a point, as it is given there.
+    ///
+    /// # Errors
+    /// Whatever refuses the robot or the state of that point.
+    pub fn at<T>(
+        &mut self,
+        point: &[f64],
+        ask: impl for<'p> FnOnce(&'p Robot, State, &mut Pipeline<'p>) -> T,
+    ) -> Result<T> {
+        let Model { study, description, reduction, robot, options, defaults } = self.model;
+        let names = study.names(point);
+        if let Some(pipeline) = &mut self.pipeline {
+            return Ok(ask(robot, study.state(&names, robot, defaults)?, pipeline));
+        }
+        let description: Cow<Description> = study.describe(&names, description)?;
+        let robot = Robot::reduce(&description, reduction)?;
+        let state = study.state(&names, &robot, defaults)?;
+        Ok(ask(&robot, state, &mut Pipeline::new(&robot, options.clone())))
+    }
+
+    /// The impact at a point, whatever the state's uncertainty is.
+    ///
+    /// # Errors
+    /// Whatever refuses the point.
+    pub fn impact(&mut self, point: &[f64]) -> Result<Impact> {
+        self.at(point, |_, state, pipeline| pipeline.impact(&State { uncertainty: None, ..state }))?
+    }
+
+    /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
+    ///
+    /// # Errors
+    /// Whatever refuses the point.
+    pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
+        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))??;
+        let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
+        Ok((names, impact.analysis?))
+    }
+
+    /// Whether the contacts of a point depend on each other, and why it is refused, if it is.
+    pub(super) fn dependence(&mut self, point: &[f64]) -> (bool, Option<Error>) {
+        match self.explained(point, &[]) {
+            Ok((contacts, analysis)) => (analysis.rank < 2 * contacts.len(), None),
+            Err(error) => (false, Some(error)),
+        }
+    }
+
+    /// What happens at a point.
+    pub fn regime(&mut self, point: &[f64]) -> Arc<Regime> {
+        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, &[]));
+        let regime = Regime::of(&impact.and_then(|impact| impact));
+        if let Some(known) = self.known.iter().find(|known| ***known == regime) {
+            return Arc::clone(known);
+        }
+        self.known.push(Arc::new(regime));
+        Arc::clone(&self.known[self.known.len() - 1])
+    }
+
+    /// What is followed; none where the point is refused.
+    pub fn watched(&mut self, point: &[f64]) -> Option<Watched> {
+        let unsolved = self
+            .at(point, |_, state, pipeline| pipeline.unsolved(&state).map(|unsolved| (unsolved, pipeline.tolerance())));
+        let (Unsolved { contacts, problem, clearance }, tolerance) = unsolved.and_then(|inner| inner).ok()?;
+        Some(Watched {
+            inequalities: match contacts.len() <= WATCHED_CONTACTS {
+                true => Inequalities::of(&problem),
+                false => Inequalities::default(),
+            },
+            contacts: contacts.into_iter().map(|contact| contact.name).collect(),
+            clearance: clearance.into_iter().map(|height| height - tolerance).collect(),
+        })
+    }
+}

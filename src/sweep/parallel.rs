@@ -1,0 +1,73 @@
+//! The same work for many indices, on several threads, in order.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::{self, Builder};
+
+/// How work is shared, and who is told of its progress.
+#[derive(Clone, Copy)]
+pub struct Workers<'w> {
+    /// How many threads compute; with one none is started.
+    pub threads: usize,
+    /// Called after each piece of work.
+    pub done: &'w (dyn Fn() + Sync),
+}
+
+impl Workers<'_> {
+    /// What `work` makes of each index below `count`; each thread has a state of its own, which `begin` makes. Where fewer
+    /// threads can be started, these do the work.
+    pub fn map<S, T: Send>(
+        &self,
+        count: usize,
+        begin: impl Fn() -> S + Sync,
+        work: impl Fn(&mut S, usize) -> T + Sync,
+    ) -> Vec<T> {
+        let next = AtomicUsize::new(0);
+        let run = || {
+            let mut state = begin();
+            let mut made = Vec::new();
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                if index >= count {
+                    return made;
+                }
+                made.push((index, work(&mut state, index)));
+                (self.done)();
+            }
+        };
+        let all = Mutex::new(Vec::with_capacity(count));
+        let collect = || {
+            let made = run();
+            all.lock().unwrap_or_else(std::sync::PoisonError::into_inner).extend(made);
+        };
+        thread::scope(|scope| {
+            for _ in 1..self.threads.min(count) {
+                if Builder::new().spawn_scoped(scope, collect).is_err() {
+                    break;
+                }
+            }
+            collect();
+        });
+        let mut all = all.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        all.sort_unstable_by_key(|(index, _)| *index);
+        all.into_iter().map(|(_, made)| made).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_in_order_whatever_the_threads() {
+        for threads in [1, 2, 7, 200] {
+            let counted = AtomicUsize::new(0);
+            let done = || {
+                counted.fetch_add(1, Ordering::Relaxed);
+            };
+            let squares = Workers { threads, done: &done }.map(100, || (), |(), index| index * index);
+            assert_eq!(squares, (0..100).map(|index| index * index).collect::<Vec<_>>());
+            assert_eq!(counted.load(Ordering::Relaxed), 100);
+        }
+    }
+}

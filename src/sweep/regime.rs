@@ -1,0 +1,72 @@
+//! What happens at a point: the whole set of valid outcomes, or why there is none to tell.
+
+use crate::impact::Mode;
+use crate::pipeline::Impact;
+use crate::{Error, Reason, Result};
+use std::mem::{Discriminant, discriminant};
+
+/// What happens at a point; two points of one region have the same.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Regime {
+    /// The state is answered.
+    Answered {
+        /// Names of the closed contacts.
+        contacts: Vec<String>,
+        /// The modes of every outcome, in the order in which combinations are tried.
+        outcomes: Vec<Vec<Mode>>,
+        /// Combinations that are not excluded, although no precision shows them.
+        undecided: Vec<Vec<Mode>>,
+    },
+    /// The state is refused.
+    Refused {
+        /// The kind of reason.
+        reason: Discriminant<Reason>,
+        /// The place inside the state.
+        place: Option<String>,
+    },
+}
+
+impl Regime {
+    /// That of an answer.
+    pub fn of(answer: &Result<Impact>) -> Self {
+        let refused = |error: &Error| Self::Refused {
+            reason: discriminant(error.reason()),
+            place: error.place().map(str::to_owned),
+        };
+        let (impact, analysis) = match answer {
+            Err(error) => return refused(error),
+            Ok(impact) => match &impact.analysis {
+                Err(error) => return refused(error),
+                Ok(analysis) => (impact, analysis),
+            },
+        };
+        let list = |decided: bool| {
+            let chosen = analysis.outcomes.iter().filter(|outcome| outcome.decided == decided);
+            let mut list: Vec<Vec<Mode>> = chosen.map(|outcome| outcome.modes.clone()).collect();
+            list.sort();
+            list.dedup();
+            list
+        };
+        Self::Answered {
+            contacts: impact.contacts.iter().map(|contact| contact.name.clone()).collect(),
+            outcomes: list(true),
+            undecided: list(false),
+        }
+    }
+
+    /// The modes of every outcome; none where the state is refused.
+    pub fn outcomes(&self) -> Option<&[Vec<Mode>]> {
+        match self {
+            Self::Answered { outcomes, .. } => Some(outcomes),
+            Self::Refused { .. } => None,
+        }
+    }
+
+    /// Names of the closed contacts; empty where the state is refused.
+    pub fn contacts(&self) -> &[String] {
+        match self {
+            Self::Answered { contacts, .. } => contacts,
+            Self::Refused { .. } => &[],
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The regions of a study of one parameter, with what turns between them.
+
+use super::line::{Bracket, Landscape, Point, RESOLUTION, brackets, stretches};
+use super::model::{Model, Solver, Watched};
+use super::parallel::Workers;
+use super::regime::Regime;
+use super::turn::Turns;
+use crate::Error;
+use std::sync::Arc;
+
+/// All regions along one parameter.
+#[derive(Debug, Clone)]
+pub struct Survey {
+    /// The regions from the least to the greatest value, each with positive width; neighbours differ.
+    pub regions: Vec<Region>,
+    /// The border between each two of them.
+    pub borders: Vec<Border>,
+    /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
+    pub dependent: bool,
+}
+
+/// A stretch of the parameter with one set of outcomes.
+#[derive(Debug, Clone)]
+pub struct Region {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What happens in it.
+    pub regime: Arc<Regime>,
+    /// Which of all different regimes it has, counted from 0 in the order of their first region.
+    pub kind: usize,
+    /// The refusal at its middle, where it is refused.
+    pub refused: Option<Error>,
+}
+
+/// A border between two regions.
+#[derive(Debug, Clone)]
+pub struct Border {
+    /// Where it is, to [`RESOLUTION`] of the parameter's range.
+    pub at: f64,
+    /// What turns.
+    pub turns: Turns,
+}
+
+/// The points of a study of one parameter.
+struct Line<'s, 'm>(&'s mut Solver<'m>);
+
+impl Landscape for Line<'_, '_> {
+    fn regime(&mut self, at: f64) -> Arc<Regime> {
+        self.0.regime(&[at])
+    }
+
+    fn watched(&mut self, at: f64) -> Option<Watched> {
+        self.0.watched(&[at])
+    }
+}
+
+impl Survey {
+    /// The regions of `model`, whose study has one parameter; tells `workers` of [`Survey::work`] pieces of work.
+    pub fn of(model: &Model, workers: Workers) -> Self {
+        let Some(parameter) = model.study.parameters().first() else {
+            return Self { regions: Vec::new(), borders: Vec::new(), dependent: false };
+        };
+        let resolution = RESOLUTION * parameter.range();
+        let begin = || Solver::new(model);
+        let sample = |solver: &mut Solver, index: usize| {
+            let at = parameter.sample(index);
+            Point { at, regime: solver.regime(&[at]) }
+        };
+        let samples = workers.map(parameter.steps, begin, sample);
+        let between = |solver: &mut Solver, index: usize| {
+            brackets(&mut Line(solver), &samples[index], &samples[index + 1], resolution)
+        };
+        let found: Vec<Bracket> = workers.map(parameter.steps - 1, begin, between).into_iter().flatten().collect();
+        let (first, last) = (samples[0].clone(), samples[parameter.steps - 1].clone());
+        let (stretches, brackets) = stretches(first, last, &found, resolution);
+
+        let mut solver = begin();
+        let mut kinds: Vec<Arc<Regime>> = Vec::new();
+        let mut dependent = false;
+        let mut region = |super::line::Stretch { from, to, regime }| {
+            let kind = kinds.iter().position(|known| *known == regime).unwrap_or_else(|| {
+                kinds.push(Arc::clone(&regime));
+                kinds.len() - 1
+            });
+            let (depends, refused) = solver.dependence(&[0.5 * (from + to)]);
+            dependent |= depends;
+            Region { from, to, regime, kind, refused }
+        };
+        let regions = stretches.into_iter().map(&mut region).collect();
+        let border = |solver: &mut Solver, index: usize| {
+            let bracket: &Bracket = &brackets[index];
+            Border { at: bracket.at(), turns: Turns::at(solver, bracket, |at| vec![at]) }
+        };
+        let quiet = Workers { done: &|| (), ..workers };
+        Self { regions, borders: quiet.map(brackets.len(), begin, border), dependent }
+    }
+
+    /// How many pieces of work a survey of `model` has.
+    pub fn work(model: &Model) -> usize {
+        model.study.parameters().first().map_or(0, |parameter| 2 * parameter.steps - 1)
+    }
+}

@@ -1,0 +1,163 @@
+//! What happens at a border: the inequality that turns, and of which contact.
+//!
+//! ```text
+//!     an outcome that ends at a border is rejected behind it, because of the slack that is zero on it
+//! ```
+
+use super::line::Bracket;
+use super::model::Solver;
+use super::regime::Regime;
+use crate::impact::{Analysis, Because, Mode};
+use crate::{Error, Result};
+use serde::Serialize;
+
+/// An inequality that is zero on a border.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct Turn {
+    /// The outcome that begins or ends there.
+    pub modes: Vec<Mode>,
+    /// On which side of the border it is one.
+    pub side: Side,
+    /// The contact's name.
+    pub contact: String,
+    /// What is zero.
+    pub inequality: Inequality,
+}
+
+/// A side of a border.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// At smaller parameters.
+    Below,
+    /// At greater parameters.
+    Above,
+}
+
+impl Side {
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Below => Self::Above,
+            Self::Above => Self::Below,
+        }
+    }
+}
+
+/// What of a contact is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Inequality {
+    /// xi_n of a contact that separates.
+    NormalVelocity,
+    /// L_n of a closed contact.
+    NormalImpulse,
+    /// mu L_n - |L_t| of a sticking contact.
+    FrictionCone,
+    /// c_t+ of a sliding contact.
+    TangentialVelocity,
+    /// With infinite friction: L_t of a sliding contact.
+    TangentialImpulse,
+}
+
+impl Inequality {
+    /// As an equation.
+    pub fn equation(self) -> &'static str {
+        match self {
+            Self::NormalVelocity => "c_n+ = 0",
+            Self::NormalImpulse => "L_n = 0",
+            Self::FrictionCone => "|L_t| = mu L_n",
+            Self::TangentialVelocity => "c_t+ = 0",
+            Self::TangentialImpulse => "L_t = 0",
+        }
+    }
+
+    fn of(because: Because) -> Option<(usize, Self)> {
+        match because {
+            Because::Penetrates { contact } => Some((contact, Self::NormalVelocity)),
+            Because::Pulled { contact } => Some((contact, Self::NormalImpulse)),
+            Because::NeedsFriction { contact } => Some((contact, Self::FrictionCone)),
+            Because::SlidesBackward { contact } => Some((contact, Self::TangentialVelocity)),
+            Because::FrictionPushes { contact } => Some((contact, Self::TangentialImpulse)),
+            Because::NothingHolds { .. } | Because::NoSolution | Because::RedundantTwin | Because::OnBorder => None,
+        }
+    }
+}
+
+/// What happens at a border.
+#[derive(Debug, Clone, Default)]
+pub struct Turns {
+    /// The inequalities that are zero there.
+    pub inequalities: Vec<Turn>,
+    /// Contacts that are closed on the lower side alone.
+    pub opening: Vec<String>,
+    /// Contacts that are closed on the upper side alone.
+    pub closing: Vec<String>,
+    /// Why the lower side is refused, if it is.
+    pub refused_below: Option<Error>,
+    /// Why the upper side is refused, if it is.
+    pub refused_above: Option<Error>,
+}
+
+impl Turns {
+    /// What turns between the sides of a `bracket`, which `place` puts into the space of all parameters.
+    pub fn at(solver: &mut Solver, bracket: &Bracket, place: impl Fn(f64) -> Vec<f64>) -> Self {
+        let outcomes = |regime: &Regime| regime.outcomes().unwrap_or_default().to_vec();
+        let below = solver.explained(&place(bracket.below.at), &outcomes(&bracket.above.regime));
+        let above = solver.explained(&place(bracket.above.at), &outcomes(&bracket.below.regime));
+        Self::between(below, above)
+    }
+
+    /// The same, seen from the other side.
+    pub fn reversed(&self) -> Self {
+        let turn = |turn: &Turn| Turn { side: turn.side.other(), ..turn.clone() };
+        Self {
+            inequalities: self.inequalities.iter().map(turn).collect(),
+            opening: self.closing.clone(),
+            closing: self.opening.clone(),
+            refused_below: self.refused_above.clone(),
+            refused_above: self.refused_below.clone(),
+        }
+    }
+
+    /// Whether the same turns, in whatever order.
+    pub fn is_same_as(&self, other: &Self) -> bool {
+        let all = |one: &Self, two: &Self| one.inequalities.iter().all(|turn| two.inequalities.contains(turn));
+        all(self, other)
+            && all(other, self)
+            && (&self.opening, &self.closing) == (&other.opening, &other.closing)
+            && (self.refused_below.is_some(), self.refused_above.is_some())
+                == (other.refused_below.is_some(), other.refused_above.is_some())
+    }
+
+    fn between(below: Result<(Vec<String>, Analysis)>, above: Result<(Vec<String>, Analysis)>) -> Self {
+        let (below, above) = match (below, above) {
+            (Ok(below), Ok(above)) => (below, above),
+            (below, above) => {
+                return Self { refused_below: below.err(), refused_above: above.err(), ..Self::default() };
+            }
+        };
+        let missing = |from: &[String], other: &[String]| -> Vec<String> {
+            from.iter().filter(|name| !other.contains(name)).cloned().collect()
+        };
+        if below.0 != above.0 {
+            let (opening, closing) = (missing(&below.0, &above.0), missing(&above.0, &below.0));
+            return Self { opening, closing, ..Self::default() };
+        }
+        let mut inequalities = ending(&below, &above.1, Side::Below);
+        inequalities.extend(ending(&above, &below.1, Side::Above));
+        Self { inequalities, ..Self::default() }
+    }
+}
+
+/// The outcomes of one side that the other rejects, and for which inequality.
+fn ending((names, here): &(Vec<String>, Analysis), there: &Analysis, side: Side) -> Vec<Turn> {
+    let turn = |modes: &Vec<Mode>| {
+        let rejection = there.rejected.iter().find(|rejection| rejection.modes == *modes)?;
+        let (contact, inequality) = Inequality::of(rejection.because)?;
+        Some(Turn { modes: modes.clone(), side, contact: names.get(contact)?.clone(), inequality })
+    };
+    here.outcomes.iter().filter_map(|outcome| turn(&outcome.modes)).collect()
+}
