@@ -39,6 +39,14 @@ enum Curve {
 }
 
 impl Curve {
+    /// Whether it is zero up to rounding.
+    fn is_negligible(self, watched: &Watched) -> bool {
+        match self {
+            Self::Numerator(at) => watched.inequalities.negligible.get(at).is_some_and(|&negligible| negligible),
+            Self::Determinant(_) | Self::Clearance(_) => false,
+        }
+    }
+
     fn values(self, nodes: &[Watched]) -> [f64; NODES] {
         std::array::from_fn(|k| self.value(&nodes[k]))
     }
@@ -121,7 +129,10 @@ fn look(
     let curves: Vec<(Followed, [f64; NODES])> = followed(&nodes)
         .into_iter()
         .map(|followed| (followed, followed.curve.values(&nodes)))
-        .filter(|(_, values)| values.iter().all(|value| value.is_finite()) && !is_clear(values))
+        .filter(|(followed, values)| {
+            let known = values.iter().all(|value| value.is_finite());
+            known && !is_clear(values) && !nodes.iter().all(|node| followed.curve.is_negligible(node))
+        })
         .collect();
     let rough = curves.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
     if rough && halvings > 0 && b - a > resolution {
@@ -300,7 +311,8 @@ mod tests {
     /// One combination with these inequalities, det A = 1.
     fn watched(numerators: &[f64]) -> Option<Watched> {
         let ends = vec![numerators.len()];
-        let inequalities = Inequalities { determinants: vec![1.0], numerators: numerators.to_vec(), ends };
+        let inequalities =
+            Inequalities { determinants: vec![1.0], numerators: numerators.to_vec(), ends, ..Inequalities::default() };
         Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
     }
 
