@@ -38,7 +38,7 @@ fn ordered(found: &Found, expected: &[&[Modes]], counts: impl Fn(&str) -> bool) 
         .collect();
     let word = |modes: &Vec<String>| if modes.is_empty() { "nothing".to_owned() } else { modes.join(" or ") };
     let said = regions.iter().zip(&all).map(|(region, all)| format!("{} from {:.6}", word(all), region.from));
-    Ok(Finding { words: said.collect::<Vec<_>>().join(", "), agrees: all == expected })
+    Ok(Finding { words: said.collect::<Vec<_>>().join(", "), agrees: Some(all == expected) })
 }
 
 /// A region, and from where to where the paper has it.
@@ -53,5 +53,5 @@ pub fn bands(found: &Found, expected: &[Band], within: f64) -> Result<Finding, S
             modes == should && (from - printed_from).abs() <= within && (to - printed_to).abs() <= within
         });
     let said = bands.iter().map(|(modes, from, to)| format!("{} {from:.4}..{to:.4}", modes.join(" or ")));
-    Ok(Finding { words: said.collect::<Vec<_>>().join(", "), agrees: agrees })
+    Ok(Finding { words: said.collect::<Vec<_>>().join(", "), agrees: Some(agrees) })
 }

@@ -20,7 +20,7 @@ fn name(modes: &[Mode]) -> String {
 /// The outcomes are these.
 pub fn outcomes(found: &Found, expected: &[Modes]) -> Result<Finding, String> {
     let outcomes: Vec<String> = analysis(found)?.outcomes.iter().map(|outcome| name(&outcome.modes)).collect();
-    Ok(Finding { agrees: outcomes == expected, words: outcomes.join(" or ") })
+    Ok(Finding { agrees: Some(outcomes == expected), words: outcomes.join(" or ") })
 }
 
 /// One of the paper's cases with the trailing foot's velocity after \[m/s\] and impulse \[N s\], each tangential and normal.
@@ -50,5 +50,5 @@ pub fn cases(found: &Found, unit: f64, expected: &[Case], valid: Modes) -> Resul
         agrees &= near(c, velocity) && near(l, impulse);
         words.push(format!("{modes} c = ({:.3}, {:.3}), L = ({:.3}, {:.3})", c[0], c[1], l[0], l[1]));
     }
-    Ok(Finding { words: words.join("; "), agrees: agrees })
+    Ok(Finding { words: words.join("; "), agrees: Some(agrees) })
 }

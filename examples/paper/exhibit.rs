@@ -1,19 +1,27 @@
 //! A figure's robot and study, or state, and what is found there.
 
 use crate::figures::{Figure, Input};
+use heelstrike::Robot;
 use heelstrike::description::Description;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::robot::Reduction;
 use heelstrike::state::{Defaults, State};
 use heelstrike::sweep::{Findings, Map, Model, Study, Survey, Workers};
-use heelstrike::Robot;
 use std::error::Error;
 use std::fs::read_to_string;
+use std::path::PathBuf;
 use std::thread::available_parallelism;
 
 /// Where the studies are, and where pictures go unless another directory is given.
 pub const HERE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/paper");
 const ROBOTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/urdf");
+
+impl Figure {
+    /// Where its study or state is.
+    pub fn path(&self) -> PathBuf {
+        format!("{HERE}/{}.json", self.input.name()).into()
+    }
+}
 
 /// The files of a figure.
 pub struct Exhibit {
@@ -39,7 +47,14 @@ impl Exhibit {
     /// # Errors
     /// Missing files, and a robot that is refused.
     pub fn read(figure: &'static Figure) -> Result<Self, Box<dyn Error>> {
-        let text = read_to_string(format!("{HERE}/{}.json", figure.input.name()))?;
+        Self::read_with(figure, read_to_string(figure.path())?)
+    }
+
+    /// Reads the robot of `figure`, for another study or state than its own.
+    ///
+    /// # Errors
+    /// A missing file, and a robot that is refused.
+    pub fn read_with(figure: &'static Figure, text: String) -> Result<Self, Box<dyn Error>> {
         let description = Description::from_urdf(&read_to_string(format!("{ROBOTS}/{}.urdf", figure.robot))?)?;
         let robot = Robot::reduce(&description, &Reduction::default())?;
         Ok(Self { figure, text, description, robot })

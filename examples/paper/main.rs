@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let finding = (claim.check)(&found)?;
             println!("  paper:      {}", claim.words);
             println!("  heelstrike: {}", finding.words);
-            println!("  {}", if finding.agrees { "They agree." } else { "They DIFFER." });
+            println!("  {}", finding.agreement());
         }
         println!();
     }

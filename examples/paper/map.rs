@@ -42,11 +42,11 @@ pub fn closes_at(found: &Found, inertia: f64) -> Result<Finding, String> {
         slides[0], slides[1], ambiguous[0], ambiguous[1]
     );
     let near = |point: Vector<f64>| (point[1] - inertia).abs() <= WITHIN && (point[0] - slides[0]).abs() <= WITHIN;
-    Ok(Finding { words, agrees: near(slides) && near(ambiguous) })
+    Ok(Finding { words, agrees: Some(near(slides) && near(ambiguous)) })
 }
 
 /// From where to where along the first parameter an area reaches at a value of the second.
-pub fn across(area: &Area, at: f64) -> Vec<[f64; 2]> {
+fn across(area: &Area, at: f64) -> Vec<[f64; 2]> {
     let mut crossings: Vec<f64> = Vec::new();
     for points in &area.loops {
         for ([x, y], [next_x, next_y]) in points.iter().zip(points.iter().cycle().skip(1)) {
@@ -59,25 +59,25 @@ pub fn across(area: &Area, at: f64) -> Vec<[f64; 2]> {
     crossings.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// The first band of sliding at the second parameter's value.
-fn first_band(map: &Map, at: f64) -> Option<[f64; 2]> {
-    let bands = map.areas.iter().filter(|area| slides(area)).flat_map(|area| across(area, at));
-    bands.min_by(|a, b| a[0].total_cmp(&b[0]))
+/// All bands with a slide among their outcomes at a value of the second parameter, in order.
+pub fn bands_at(map: &Map, at: f64) -> Vec<(Vec<String>, [f64; 2])> {
+    let of = |area: &Area| {
+        let modes = modes(&area.regime);
+        let bands = if modes.iter().any(|modes| modes.contains("slide")) { across(area, at) } else { Vec::new() };
+        bands.into_iter().map(move |band| (modes.clone(), band)).collect::<Vec<_>>()
+    };
+    let mut bands: Vec<_> = map.areas.iter().flat_map(of).collect();
+    bands.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]));
+    bands
 }
 
-/// The first band of sliding lies elsewhere, by more than its width, when the second parameter is `by` less or more than 0.
-pub fn band_shifts(found: &Found, by: f64) -> Result<Finding, String> {
+/// Where the bands lie at some values of the second parameter; the paper's numbers are lost.
+pub fn bands_move(found: &Found, values: &[f64]) -> Result<Finding, String> {
     let map = map(found)?;
-    let [back, upright, forward] = [by, 0.0, -by].map(|at| first_band(map, at));
-    let (Some(back), Some(upright), Some(forward)) = (back, upright, forward) else {
-        return Ok(Finding { words: "there is no such band".into(), agrees: false });
+    let at = |value: &f64| {
+        let bands = bands_at(map, *value);
+        let said = bands.iter().map(|(modes, [from, to])| format!("{} {from:.4}..{to:.4}", modes.join(" or ")));
+        format!("at {value}: {}", said.collect::<Vec<_>>().join(", "))
     };
-    let middle = |band: [f64; 2]| 0.5 * (band[0] + band[1]);
-    let shift = |band| middle(band) - middle(upright);
-    let words = format!(
-        "pitched {by} rad backward {:.4}..{:.4} (shift {:+.4}), upright {:.4}..{:.4}, {by} rad forward {:.4}..{:.4} (shift {:+.4})",
-        back[0], back[1], shift(back), upright[0], upright[1], forward[0], forward[1], shift(forward)
-    );
-    let width = upright[1] - upright[0];
-    Ok(Finding { words, agrees: shift(back).abs() > width && shift(forward).abs() > width })
+    Ok(Finding { words: values.iter().map(at).collect::<Vec<_>>().join("; "), agrees: None })
 }
