@@ -5,11 +5,11 @@
 //! ```
 
 use super::model::{Model, Solver};
+use crate::Robot;
 use crate::description::{Description, Inertial};
 use crate::robot::{Axis, Base};
 use crate::scene::Ground;
 use crate::state::State;
-use crate::Robot;
 
 /// A unit and a number that has it.
 type Measured = (&'static str, f64);
