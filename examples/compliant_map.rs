@@ -3,7 +3,7 @@
 
 use heelstrike::accuracy::compliant::{Biped, Map, NEAR};
 use heelstrike::impact::{Friction, Mode};
-use heelstrike::report::picture::{Axis, Entry, Mark, Panel, Picture, Series};
+use heelstrike::report::picture::{Axis, Colour, Entry, Key, Legend, Mark, Panel, Picture, Shape, Stroke};
 use std::error::Error;
 use std::fmt::Write;
 
@@ -66,17 +66,21 @@ fn picture(map: &Map) -> Picture {
     };
     let border = map.separatrix.iter().zip(&map.ratios).filter_map(|(speed, &ratio)| speed.map(|speed| (speed, ratio)));
     let drawn = [
-        ("lifts off", ends(Mode::Separate), Mark::Circle, 2),
-        ("stops", ends(Mode::Stick), Mark::Square, 1),
-        ("no rigid outcome within 1 %", none(map), Mark::Triangle, 0),
-        ("separatrix", border.collect(), Mark::Line, 6),
+        ("lifts off", ends(Mode::Separate), Mark::Circle, Colour::SkyBlue),
+        ("stops", ends(Mode::Stick), Mark::Square, Colour::Orange),
+        ("no rigid outcome within 1 %", none(map), Mark::Triangle, Colour::Black),
     ];
-    let entry = |&(name, _, mark, colour): &(&str, _, _, _)| Entry { name: name.into(), mark, colour };
-    let legend = drawn.iter().map(entry).collect();
-    let panel = Panel {
-        x: Axis { label: "approach speed of the trailing foot [m/s]".into(), logarithmic: false },
-        y: Axis { label: "d_t / d_n".into(), logarithmic: true },
-        series: drawn.into_iter().map(|(_, points, mark, colour)| Series { points, mark, colour }).collect(),
-    };
-    Picture { title: "Minimalistic biped at alpha = 1.4, overdamped contact".into(), panels: vec![panel], legend }
+    let stroke = Stroke::solid(Colour::Vermilion, 2.0);
+    let marks = drawn.iter().map(|&(name, _, mark, colour)| (name, Key::Mark(mark, colour)));
+    let keys = marks.chain([("separatrix", Key::Line(stroke))]);
+    let entries = keys.map(|(name, key)| Entry { name: name.into(), key }).collect();
+    let shapes = drawn.into_iter().map(|(_, points, mark, colour)| Shape::Marks { points, mark, colour, size: 3.0 });
+    let x = Axis { label: "approach speed of the trailing foot [m/s]".into(), ..Axis::default() };
+    let y = Axis { label: "d_t / d_n".into(), logarithmic: true, ..Axis::default() };
+    let line = Shape::Line { points: border.collect(), stroke };
+    Picture {
+        title: "Minimalistic biped at α = 1.4, overdamped contact".into(),
+        rows: vec![vec![Panel { shapes: shapes.chain([line]).collect(), ..Panel::new(x, y) }]],
+        legend: Legend { entries, below: false },
+    }
 }

@@ -1,0 +1,253 @@
+//! Axes: what they span, and where their ticks are.
+
+use super::font;
+use kuva::render::layout::TickFormat;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// An axis of a panel.
+#[derive(Debug, Clone, Default)]
+pub struct Axis {
+    /// What is measured, with its unit.
+    pub label: String,
+    /// Whether its scale is logarithmic; what is not positive is then not drawn.
+    pub logarithmic: bool,
+    /// From where to where it goes, of a logarithmic one outward to whole powers of ten; none for all that is drawn.
+    pub range: Option<(f64, f64)>,
+    /// Whether it has neither ticks nor label, for another panel beside it has the same.
+    pub bare: bool,
+    /// Whether it measures angles \[rad\] whose ticks are parts of pi.
+    pub in_pi: bool,
+}
+
+/// What an axis spans, in the numbers at its ticks: exponents, or multiples of a power of ten.
+#[derive(Debug, Clone)]
+pub(super) struct Span {
+    pub low: f64,
+    pub high: f64,
+    /// Between ticks.
+    pub step: f64,
+    logarithmic: bool,
+    in_pi: bool,
+    /// A value is the number at its tick times ten to this.
+    power: i32,
+}
+
+/// What an axis has beyond all points, on either side, as a part of them.
+const ROOM: f64 = 0.04;
+/// What a mark takes of a logarithmic axis.
+const MARK: f64 = 0.02;
+/// Values that agree to this part of them are the same.
+const ROUNDING: f64 = 1e-10;
+/// About how far ticks are apart \[px\].
+const PITCH: f64 = 75.0;
+
+impl Span {
+    /// Of an axis of this `length` \[px\] along which `values` lie.
+    pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, length: f64) -> Self {
+        let usable = values.filter(|value| value.is_finite() && (!axis.logarithmic || *value > 0.0));
+        let extent = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
+        let (least, most) = axis.range.unwrap_or_else(|| usable.fold((f64::INFINITY, f64::NEG_INFINITY), extent));
+        let (least, most) = if least <= most { (least, most) } else { (1.0, 1.0) };
+        if axis.logarithmic {
+            return Self::of_powers(libm::log10(least), libm::log10(most));
+        }
+        let room = if axis.range.is_some() { 0.0 } else { ROOM * (most - least) };
+        let (mut low, mut high) = (least - room, most + room);
+        // What differs by rounding alone is one value.
+        let same = axis.range.is_none() && most - least <= ROUNDING * least.abs().max(most.abs());
+        if low >= high || same {
+            let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
+            (low, high) = (low - room, high + room);
+        }
+        let largest = low.abs().max(high.abs());
+        let power =
+            if axis.in_pi || (1e-2..1e5).contains(&largest) { 0 } else { libm::floor(libm::log10(largest)) as i32 };
+        let mut span = Self { low, high, step: 1.0, logarithmic: false, in_pi: axis.in_pi, power };
+        (span.low, span.high) = (span.shown(low), span.shown(high));
+        span.set_step(length);
+        span
+    }
+
+    fn set_step(&mut self, length: f64) {
+        if !self.logarithmic {
+            let least = (self.high - self.low) * PITCH / length;
+            // Halves of pi, or whole multiples.
+            self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
+        }
+    }
+
+    /// Of a logarithmic axis, in exponents.
+    fn of_powers(least: f64, most: f64) -> Self {
+        // No mark lies on an axis.
+        let room = MARK * (most - least);
+        let low = (least - room).floor();
+        let high = (most + room).ceil().max(low + 1.0);
+        let step = match high - low {
+            span if span <= 8.0 => 1.0,
+            span if span <= 16.0 => 2.0,
+            span => (span / 40.0).ceil() * 5.0,
+        };
+        let (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
+        Self { low, high, step, logarithmic: true, in_pi: false, power: 0 }
+    }
+
+    /// The number that stands at a value's tick.
+    fn shown(&self, value: f64) -> f64 {
+        match (self.logarithmic, self.power) {
+            (true, _) => libm::log10(value),
+            _ if self.in_pi => value / PI,
+            (false, 0) => value,
+            (false, power) if power < -300 => value * 1e300 * libm::pow(10.0, f64::from(-power - 300)),
+            (false, power) => value * libm::pow(10.0, f64::from(-power)),
+        }
+    }
+
+    /// Where on the axis a value is, 0 at its beginning and 1 at its end; of what has no place not finite.
+    pub fn share(&self, value: f64) -> f64 {
+        (self.shown(value) - self.low) / (self.high - self.low)
+    }
+
+    /// How many pixels a unit takes on an axis of this `length` \[px\].
+    pub fn scale(&self, length: f64) -> f64 {
+        length * (self.share(1.0) - self.share(0.0))
+    }
+
+    /// The axis, of this `length` \[px\], from its middle so many times as long.
+    pub fn widen(&mut self, factor: f64, length: f64) {
+        let more = 0.5 * (factor - 1.0) * (self.high - self.low);
+        self.extend(more, more, length);
+    }
+
+    /// The axis, of this `length` \[px\], with `room` \[px\] left free at its end.
+    pub fn leave(&mut self, room: f64, length: f64) {
+        self.extend(0.0, (self.high - self.low) * room / (length - room), length);
+    }
+
+    fn extend(&mut self, below: f64, above: f64, length: f64) {
+        (self.low, self.high) = (self.low - below, self.high + above);
+        self.set_step(length);
+    }
+
+    /// How kuva writes a tick.
+    pub fn format(&self) -> TickFormat {
+        if self.logarithmic {
+            return TickFormat::Custom(Arc::new(power_of_ten));
+        }
+        if self.in_pi {
+            return TickFormat::Custom(Arc::new(part_of_pi));
+        }
+        let decimals = decimals(self.step);
+        TickFormat::Custom(Arc::new(move |value| fixed(value, decimals)))
+    }
+
+    /// The label, with the power of ten that the ticks leave out.
+    pub fn label(&self, label: &str) -> String {
+        let label = font::printable(label);
+        if self.power == 0 { label } else { format!("{label} × {}", power_of_ten(f64::from(self.power))) }
+    }
+}
+
+/// The first of 1, 2, 5, 10 ... that is not less.
+fn step(least: f64) -> f64 {
+    let power = libm::floor(libm::log10(least));
+    let unit = libm::pow(10.0, power);
+    [1.0, 2.0, 5.0]
+        .into_iter()
+        .map(|times| times * unit)
+        .find(|step| *step >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * unit)
+}
+
+/// How many decimals tell ticks apart.
+fn decimals(step: f64) -> usize {
+    (-libm::floor(libm::log10(step) + 1e-9)).clamp(0.0, 17.0) as usize
+}
+
+/// With so many decimals, and zero without a sign.
+fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|digit| matches!(digit, '0' | '.')) => rest.to_owned(),
+        Some(rest) => format!("−{rest}"),
+        None => text,
+    }
+}
+
+/// A multiple of half of pi, as in −π/2.
+fn part_of_pi(share: f64) -> String {
+    let halves = (2.0 * share).round();
+    let sign = if halves < 0.0 { "−" } else { "" };
+    let (whole, divisor) = if halves % 2.0 == 0.0 { (0.5 * halves.abs(), "") } else { (halves.abs(), "/2") };
+    match whole {
+        0.0 => "0".to_owned(),
+        1.0 => format!("{sign}π{divisor}"),
+        _ => format!("{sign}{whole}π{divisor}"),
+    }
+}
+
+/// The power of ten of an exponent, as in 10⁻⁶.
+fn power_of_ten(exponent: f64) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let exponent = exponent.round();
+    let digits = format!("{}", exponent.abs()).chars().filter_map(|digit| digit.to_digit(10)).collect::<Vec<_>>();
+    let sign = if exponent < 0.0 { "⁻" } else { "" };
+    format!("10{sign}{}", digits.into_iter().map(|digit| DIGITS[digit as usize]).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn span(range: (f64, f64)) -> Span {
+        Span::new(&Axis { range: Some(range), ..Axis::default() }, std::iter::empty(), 400.0)
+    }
+
+    #[test]
+    fn powers_are_written_as_such() {
+        assert_eq!(power_of_ten(-16.0), "10⁻¹⁶");
+        assert_eq!(power_of_ten(2.0), "10²");
+    }
+
+    #[test]
+    fn ticks_are_round_and_have_the_decimals_that_tell_them_apart() {
+        for (range, step, at, text) in [
+            ((0.0, 1.57), 0.5, 0.5, "0.5"),
+            ((-1.0, 1.0), 0.5, -1e-17, "0.0"),
+            ((0.4700, 0.4712), 0.0005, 0.47, "0.4700"),
+            ((-300.0, 20.0), 100.0, -200.0, "−200"),
+        ] {
+            let span = span(range);
+            assert_eq!(span.step, step, "{range:?}");
+            assert_eq!(span.format().format(at), text, "{range:?}");
+            assert_eq!(span.label("a [m]"), "a [m]");
+        }
+    }
+
+    #[test]
+    fn magnitudes_beside_one_move_into_the_label() {
+        for (scale, power) in [(1e-7, "10⁻⁷"), (1e9, "10⁹"), (1e-310, "10⁻³¹⁰")] {
+            let span = span((0.0, 4.0 * scale));
+            assert_eq!(span.label("p [N s]"), format!("p [N s] × {power}"));
+            assert_eq!(span.step, 1.0);
+            assert!((span.share(scale) - 0.25).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn angles_are_parts_of_pi() {
+        let axis = Axis { range: Some((-PI, PI)), in_pi: true, ..Axis::default() };
+        let span = Span::new(&axis, std::iter::empty(), 320.0);
+        assert_eq!((span.low, span.high, span.step), (-1.0, 1.0, 0.5));
+        let ticks = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|at| span.format().format(at));
+        assert_eq!(ticks, ["−π", "−π/2", "0", "π/2", "π", "3π/2", "2π"]);
+    }
+
+    #[test]
+    fn a_single_value_has_room_about_it() {
+        for value in [0.0, -3.0, 1e-200] {
+            let span = Span::new(&Axis::default(), [value].into_iter(), 400.0);
+            assert!((span.share(value) - 0.5).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! A curve on the screen: cut where it leaves the panel, and thinned out where nobody sees it.
+//!
+//! ```text
+//!     points [px] --parts inside--> pieces --Douglas and Peucker 1973--> the fewest corners within a tenth of a pixel
+//! ```
+
+type Pixel = (f64, f64);
+
+/// What is left out lies no farther from the curve than this \[px\].
+const SEEN: f64 = 0.1;
+/// A curve that needs more corners than this is drawn more coarsely.
+const MOST: usize = 4000;
+/// How far beyond the panel a curve goes on \[px\]: its end and the corners of wide strokes are not seen.
+const BEYOND: f64 = 20.0;
+
+/// The pieces of the curve through `points` that lie within `width` and `height` \[px\], or just beyond.
+pub(super) fn visible(points: &[Pixel], (width, height): (f64, f64)) -> Vec<Vec<Pixel>> {
+    let mut pieces: Vec<Vec<Pixel>> = Vec::new();
+    let mut open = false;
+    for pair in points.windows(2) {
+        let Some((from, to)) = within(pair[0], pair[1], (width, height)) else {
+            open = false;
+            continue;
+        };
+        match pieces.last_mut() {
+            Some(piece) if open && piece.last() == Some(&from) => piece.push(to),
+            _ => pieces.push(vec![from, to]),
+        }
+        open = to == pair[1];
+    }
+    pieces.iter().map(|piece| thinned(piece)).collect()
+}
+
+/// A closed loop of `corners`, thinned out; where it leaves the panel, somewhere outside of it.
+pub(super) fn closed(corners: &[Pixel], (width, height): (f64, f64)) -> Vec<Pixel> {
+    let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
+    // A loop's ends are one point; halfway round it is split, so that each half is a curve with two ends.
+    let (once, again) = rest.split_at(rest.len() / 2);
+    let mut half: Vec<Pixel> = std::iter::once(first).chain(once.iter().copied()).collect();
+    let turn = half.last().copied().unwrap_or(first);
+    let other: Vec<Pixel> = std::iter::once(turn).chain(again.iter().copied()).chain([first]).collect();
+    half = thinned(&half);
+    half.pop();
+    let mut other = thinned(&other);
+    other.pop();
+    let far = width + height;
+    half.into_iter().chain(other).map(|(x, y)| (x.clamp(-far, width + far), y.clamp(-far, height + far))).collect()
+}
+
+/// The part of a segment inside of the panel (Liang and Barsky 1984).
+fn within(from: Pixel, to: Pixel, (width, height): (f64, f64)) -> Option<(Pixel, Pixel)> {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (mut first, mut last) = (0.0_f64, 1.0_f64);
+    let sides =
+        [(-dx, from.0 + BEYOND), (dx, width + BEYOND - from.0), (-dy, from.1 + BEYOND), (dy, height + BEYOND - from.1)];
+    for (speed, distance) in sides {
+        if speed == 0.0 {
+            if distance < 0.0 {
+                return None;
+            }
+        } else if speed < 0.0 {
+            first = first.max(distance / speed);
+        } else {
+            last = last.min(distance / speed);
+        }
+    }
+    let at = |share: f64| (from.0 + share * dx, from.1 + share * dy);
+    let start = if first > 0.0 { at(first) } else { from };
+    let end = if last < 1.0 { at(last) } else { to };
+    (first <= last).then_some((start, end))
+}
+
+/// The curve with no more corners than it needs.
+fn thinned(points: &[Pixel]) -> Vec<Pixel> {
+    let mut tolerance = SEEN;
+    loop {
+        let corners = corners(points, tolerance);
+        if corners.len() <= MOST {
+            return corners;
+        }
+        tolerance *= 2.0;
+    }
+}
+
+/// Corners so that no point is farther than `tolerance` from the line through them.
+fn corners(points: &[Pixel], tolerance: f64) -> Vec<Pixel> {
+    let Some(end) = points.len().checked_sub(1) else { return Vec::new() };
+    let mut kept = vec![false; points.len()];
+    kept[0] = true;
+    kept[end] = true;
+    let mut spans = vec![(0, end)];
+    while let Some((first, last)) = spans.pop() {
+        let distances = (first + 1..last).map(|at| (at, distance(points[at], points[first], points[last])));
+        let Some((far, most)) = distances.max_by(|(_, a), (_, b)| a.total_cmp(b)) else { continue };
+        if most > tolerance {
+            kept[far] = true;
+            spans.extend([(first, far), (far, last)]);
+        }
+    }
+    points.iter().zip(kept).filter(|(_, kept)| *kept).map(|(&point, _)| point).collect()
+}
+
+/// Of a point to a segment.
+fn distance(point: Pixel, from: Pixel, to: Pixel) -> f64 {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (px, py) = (point.0 - from.0, point.1 - from.1);
+    let square = dx * dx + dy * dy;
+    let share = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    libm::hypot(px - share * dx, py - share * dy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_straight_line_keeps_its_ends_and_a_bend_its_corner() {
+        let line: Vec<Pixel> = (0..=100).map(|at| (f64::from(at), 2.0 * f64::from(at.min(50)))).collect();
+        assert_eq!(visible(&line, (200.0, 200.0)), [[(0.0, 0.0), (50.0, 100.0), (100.0, 100.0)]]);
+    }
+
+    #[test]
+    fn no_point_of_a_thinned_curve_is_farther_than_is_seen() {
+        let curve: Vec<Pixel> =
+            (0..20_000).map(|at| f64::from(at) * 0.03).map(|x| (x, 200.0 + 150.0 * libm::sin(0.05 * x))).collect();
+        let pieces = visible(&curve, (600.0, 400.0));
+        assert_eq!(pieces.len(), 1);
+        let thin = &pieces[0];
+        assert!(thin.len() < 400, "{}", thin.len());
+        for &point in &curve {
+            let nearest = thin.windows(2).map(|pair| distance(point, pair[0], pair[1])).fold(f64::INFINITY, f64::min);
+            assert!(nearest <= SEEN, "{point:?} is {nearest} px away");
+        }
+    }
+
+    #[test]
+    fn what_lies_outside_is_cut_away_without_bending_the_rest() {
+        let pole = [(0.0, 50.0), (50.0, 1e12), (100.0, 50.0), (300.0, 50.0)];
+        let pieces = visible(&pole, (100.0, 100.0));
+        assert_eq!(pieces.len(), 2);
+        assert_eq!(pieces[0][0], (0.0, 50.0));
+        assert_eq!(pieces[0][1].1, 120.0);
+        assert_eq!(pieces[1].last(), Some(&(120.0, 50.0)));
+    }
+
+    #[test]
+    fn noise_is_drawn_coarsely() {
+        let noise: Vec<Pixel> = (0..50_000).map(|at| (f64::from(at) * 0.01, f64::from(at * 7919 % 400))).collect();
+        assert!(visible(&noise, (600.0, 400.0)).iter().map(Vec::len).sum::<usize>() <= MOST);
+    }
+}

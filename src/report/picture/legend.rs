@@ -1,0 +1,122 @@
+//! What the signs of a picture mean.
+
+use super::colour::Colour;
+use super::font;
+use super::shape::{Anchor, Mark, Stroke, arrow, path, text};
+use super::{Pixel, shape};
+use kuva::render::render::Primitive;
+
+/// What the signs of a picture mean.
+#[derive(Debug, Clone, Default)]
+pub struct Legend {
+    /// One after the other.
+    pub entries: Vec<Entry>,
+    /// Whether they stand below all panels, not in a column to the right of them.
+    pub below: bool,
+}
+
+/// What a sign is.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// In words; of several lines where it has line breaks, or no room for one.
+    pub name: String,
+    /// The sign.
+    pub key: Key,
+}
+
+/// A sign.
+#[derive(Debug, Clone, Copy)]
+pub enum Key {
+    /// A line.
+    Line(Stroke),
+    /// A mark.
+    Mark(Mark, Colour),
+    /// An area or a band.
+    Fill(Colour),
+    /// An arrow.
+    Arrow {
+        /// Its shaft.
+        stroke: Stroke,
+        /// Its length, in units of the first panel's x axis.
+        length: f64,
+    },
+}
+
+/// Height of the font, from one row to the next, and from one line of an entry to the next \[px\].
+const SIZE: u32 = 12;
+const ROW: f64 = 20.0;
+const LINE: f64 = 16.0;
+/// Of a key, long enough for two periods of any dashes \[px\].
+const KEY: f64 = 36.0;
+/// From a key to its name, and from an entry to the next one in a row \[px\].
+const GAP: f64 = 8.0;
+const NEXT: f64 = 22.0;
+
+/// Where an entry is.
+struct Place {
+    at: Pixel,
+    lines: Vec<String>,
+}
+
+impl Legend {
+    /// Where each entry is, and the size of all, in a picture whose panels are so wide \[px\].
+    fn places(&self, panels: f64, scale: f64) -> (Vec<Place>, Pixel) {
+        let room = if self.below { panels } else { f64::INFINITY };
+        let (mut places, mut whole, mut x, mut y, mut row) = (Vec::new(), (0.0_f64, 0.0_f64), 0.0, 0.0, 0.0_f64);
+        for entry in &self.entries {
+            let key = entry.key.width(scale) + GAP;
+            let lines = font::lines(&entry.name, SIZE, room - key);
+            let width = key + lines.iter().map(|line| font::width(line, SIZE)).fold(0.0, f64::max);
+            let height = ROW + LINE * lines.len().saturating_sub(1) as f64;
+            if x > 0.0 && (!self.below || x + width > room) {
+                (x, y, row) = (0.0, y + row, 0.0);
+            }
+            places.push(Place { at: (x, y), lines });
+            row = row.max(height);
+            whole = (whole.0.max(x + width), y + row);
+            x += width + NEXT;
+        }
+        (places, whole)
+    }
+
+    /// How much room it takes \[px\].
+    pub(super) fn size(&self, panels: f64, scale: f64) -> Pixel {
+        self.places(panels, scale).1
+    }
+
+    /// Draws it with its upper left corner at `at`; a unit of the first panel's x axis takes `scale` \[px\].
+    pub(super) fn draw(&self, at: Pixel, panels: f64, scale: f64, out: &mut Vec<Primitive>) {
+        for (entry, Place { at: (x, y), lines }) in self.entries.iter().zip(self.places(panels, scale).0) {
+            let (x, middle) = (at.0 + x, at.1 + y + 0.5 * ROW);
+            let width = entry.key.width(scale);
+            entry.key.draw((x, middle), width, out);
+            for (line, content) in lines.iter().enumerate() {
+                let baseline = middle + 0.5 * font::CAPITAL * f64::from(SIZE) + LINE * line as f64;
+                text((x + width + GAP, baseline), content, SIZE, Anchor::Start, Colour::Black, false, out);
+            }
+        }
+    }
+}
+
+impl Key {
+    fn width(self, scale: f64) -> f64 {
+        match self {
+            Self::Line(_) => KEY,
+            Self::Mark(..) => 0.4 * KEY,
+            Self::Fill(_) => 0.6 * KEY,
+            Self::Arrow { length, .. } => length * scale,
+        }
+    }
+
+    fn draw(self, (x, y): Pixel, width: f64, out: &mut Vec<Primitive>) {
+        match self {
+            Self::Line(stroke) => out.push(path(&[&[(x, y), (x + width, y)]], false, None, Some(stroke))),
+            Self::Mark(mark, colour) => mark.draw((x + 0.5 * width, y), colour, shape::MARK, out),
+            Self::Fill(colour) => {
+                let box_of = [(x, y - 6.0), (x + width, y - 6.0), (x + width, y + 6.0), (x, y + 6.0)];
+                out.push(path(&[&box_of], true, Some(colour), Some(Stroke::solid(Colour::Grey, 0.8))));
+            }
+            Self::Arrow { stroke, .. } => arrow((x, y), (x + width, y), stroke, out),
+        }
+    }
+}
