@@ -29,13 +29,6 @@ static FOUND: LazyLock<BTreeMap<&'static str, Found>> = LazyLock::new(|| {
     FIGURES.iter().map(found).collect()
 });
 
-fn survey(found: &Found) -> &Survey {
-    match found {
-        Found::Along(survey) => survey,
-        _ => panic!("no study of one parameter"),
-    }
-}
-
 /// Every region that has a slide among its outcomes.
 fn bands(survey: &Survey) -> Vec<(Vec<String>, [f64; 2])> {
     let regions = survey.regions.iter().map(|region| (along::modes(&region.regime), [region.from, region.to]));
@@ -63,9 +56,10 @@ fn every_file_is_a_figure() -> Result<(), Box<dyn Error>> {
 fn nothing_is_refused_anywhere_in_a_study() {
     for (name, found) in FOUND.iter() {
         match found {
-            Found::Along(survey) => assert!(survey.regions.iter().all(|region| region.refused.is_none()), "{name}"),
-            Found::Map(map) => assert!(map.areas.iter().all(|area| area.refused.is_none()), "{name}"),
-            Found::State(impact) => assert!(impact.analysis.as_ref().is_ok_and(|analysis| analysis.proven), "{name}"),
+            Found::Regions(findings) => {
+                assert!(findings.regimes().iter().all(|(_, _, refused)| refused.is_none()), "{name}");
+            }
+            Found::Outcomes(_) => assert!(found.analysis().is_ok_and(|analysis| analysis.proven), "{name}"),
         }
     }
 }
@@ -89,13 +83,13 @@ fn all_claims_come_out_but_those_on_table_1_as_printed() -> Result<(), Box<dyn E
 }
 
 #[test]
-fn ramone_slides_in_the_bands_of_both_descriptions() {
+fn ramone_slides_in_the_bands_of_both_descriptions() -> Result<(), String> {
     const PRINTED: f64 = 0.5e-4;
     let three = "separate/stick or stick/stick or slide+/stick";
     let printed = [("slide+/stick", [0.4388, 0.5256]), ("slide-/stick", [1.0535, 1.1219])];
     let computed = [("slide+/stick", [0.4708, 0.5438]), ("slide-/stick", [1.0201, 1.0597]), (three, [1.3432, 1.3965])];
     for (name, expected) in [("table_1_as_printed", &printed[..]), ("table_1_as_computed", &computed)] {
-        let bands = bands(survey(&FOUND[name]));
+        let bands = bands(FOUND[name].survey()?);
         assert_eq!(bands.len(), expected.len(), "{name}: {bands:?}");
         for ((modes, at), (should, ends)) in bands.iter().zip(expected) {
             assert_eq!(modes.join(" or "), *should, "{name}");
@@ -103,13 +97,14 @@ fn ramone_slides_in_the_bands_of_both_descriptions() {
             assert!(off <= PRINTED, "{name}: {at:?} instead of {ends:?}");
         }
     }
+    Ok(())
 }
 
 /// On a line of the map's grid every point of a curve is bisected, as the borders along one parameter are.
 #[test]
 fn the_pitch_map_agrees_with_sweeps_at_three_pitches() -> Result<(), Box<dyn Error>> {
     const WITHIN: f64 = 1e-9;
-    let Found::Map(map) = &FOUND["pitch_map"] else { panic!("no map") };
+    let map = FOUND["pitch_map"].map()?;
     let figure = FIGURES.iter().find(|figure| figure.name == "pitch_map").ok_or("no figure")?;
     let mut counted: BTreeMap<u64, usize> = BTreeMap::new();
     for [_, pitch] in map.curves.iter().flat_map(|curve| &curve.points) {
@@ -124,7 +119,7 @@ fn the_pitch_map_agrees_with_sweeps_at_three_pitches() -> Result<(), Box<dyn Err
         study["constants"]["pitch"] = pitch.into();
         let found = Exhibit::read_with(figure, study.to_string())?.found()?;
 
-        let (along, across) = (bands(survey(&found)), map::bands_at(map, pitch));
+        let (along, across) = (bands(found.survey()?), map::bands_at(map, pitch));
         assert_eq!(along.len(), 3, "{along:?}");
         assert_eq!(across.len(), 3, "{across:?}");
         for ((modes, along), (should, across)) in along.iter().zip(&across) {

@@ -2,7 +2,7 @@
 
 use crate::exhibit::Found;
 use crate::figures::Finding;
-use heelstrike::sweep::{Regime, Survey};
+use heelstrike::sweep::Regime;
 
 /// The modes of an outcome, trailing/leading, as "slide-/stick".
 pub type Modes = &'static str;
@@ -11,13 +11,6 @@ pub type Modes = &'static str;
 pub fn modes(regime: &Regime) -> Vec<String> {
     let outcome = |modes: &Vec<_>| modes.iter().map(ToString::to_string).collect::<Vec<String>>().join("/");
     regime.outcomes().unwrap_or_default().iter().map(outcome).collect()
-}
-
-fn survey(found: &Found) -> Result<&Survey, String> {
-    match found {
-        Found::Along(survey) => Ok(survey),
-        _ => Err("this is no study of one parameter".into()),
-    }
 }
 
 /// The regions have these outcomes in this order.
@@ -31,7 +24,7 @@ pub fn order_without_slides(found: &Found, expected: &[&[Modes]]) -> Result<Find
 }
 
 fn ordered(found: &Found, expected: &[&[Modes]], counts: impl Fn(&str) -> bool) -> Result<Finding, String> {
-    let regions = &survey(found)?.regions;
+    let regions = &found.survey()?.regions;
     let all: Vec<Vec<String>> = regions
         .iter()
         .map(|region| modes(&region.regime).into_iter().filter(|modes| counts(modes)).collect())
@@ -46,7 +39,7 @@ pub type Band<'a> = (&'a [Modes], f64, f64);
 
 /// All regions with a slide among their outcomes are these, to `within`.
 pub fn bands(found: &Found, expected: &[Band], within: f64) -> Result<Finding, String> {
-    let regions = survey(found)?.regions.iter().map(|region| (modes(&region.regime), region.from, region.to));
+    let regions = found.survey()?.regions.iter().map(|region| (modes(&region.regime), region.from, region.to));
     let bands: Vec<_> = regions.filter(|(modes, ..)| modes.iter().any(|modes| modes.contains("slide"))).collect();
     let agrees = bands.len() == expected.len()
         && bands.iter().zip(expected).all(|((modes, from, to), (should, printed_from, printed_to))| {

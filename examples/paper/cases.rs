@@ -3,15 +3,8 @@
 use crate::along::Modes;
 use crate::exhibit::Found;
 use crate::figures::Finding;
-use heelstrike::impact::{Analysis, Mode};
+use heelstrike::impact::Mode;
 use heelstrike::planar::Vector;
-
-fn analysis(found: &Found) -> Result<&Analysis, String> {
-    match found {
-        Found::State(impact) => impact.analysis.as_ref().map_err(ToString::to_string),
-        _ => Err("this is no state".into()),
-    }
-}
 
 fn name(modes: &[Mode]) -> String {
     modes.iter().map(ToString::to_string).collect::<Vec<_>>().join("/")
@@ -19,7 +12,7 @@ fn name(modes: &[Mode]) -> String {
 
 /// The outcomes are these.
 pub fn outcomes(found: &Found, expected: &[Modes]) -> Result<Finding, String> {
-    let outcomes: Vec<String> = analysis(found)?.outcomes.iter().map(|outcome| name(&outcome.modes)).collect();
+    let outcomes: Vec<String> = found.analysis()?.outcomes.iter().map(|outcome| name(&outcome.modes)).collect();
     Ok(Finding { agrees: Some(outcomes == expected), words: outcomes.join(" or ") })
 }
 
@@ -29,7 +22,7 @@ pub type Case = (Modes, Vector<f64>, Vector<f64>);
 /// The cases have these numbers in parts of `unit`, to one of the last of three digits; `valid` alone is an outcome.
 pub fn cases(found: &Found, unit: f64, expected: &[Case], valid: Modes) -> Result<Finding, String> {
     const LAST_DIGIT: f64 = 1e-3;
-    let analysis = analysis(found)?;
+    let analysis = found.analysis()?;
     let outcomes = analysis.outcomes.iter().map(|outcome| {
         (name(&outcome.modes), outcome.velocity_after.first().copied(), outcome.impulse.first().copied())
     });

@@ -3,6 +3,7 @@
 use crate::figures::{Figure, Input};
 use heelstrike::Robot;
 use heelstrike::description::Description;
+use heelstrike::impact::Analysis;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::robot::Reduction;
 use heelstrike::state::{Defaults, State};
@@ -33,12 +34,10 @@ pub struct Exhibit {
 
 /// What a figure shows.
 pub enum Found {
-    /// Regions along one parameter.
-    Along(Survey),
-    /// Regions of two parameters.
-    Map(Map),
-    /// One state's outcomes and everything that is none.
-    State(Box<Impact>),
+    /// The regions of a study.
+    Regions(Findings),
+    /// One state, its outcomes and everything that is none.
+    Outcomes(Box<(State, Impact)>),
 }
 
 impl Exhibit {
@@ -60,38 +59,89 @@ impl Exhibit {
         Ok(Self { figure, text, description, robot })
     }
 
+    /// The robot.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
     /// The regions of a study, or the outcomes of a state.
     ///
     /// # Errors
     /// A study or a state that is refused.
     pub fn found(&self) -> heelstrike::Result<Found> {
         match self.figure.input {
-            Input::Study(_) => self.regions(),
+            Input::Study(_) | Input::Explained(_) => {
+                self.study(|model, workers| Findings::of(model, workers)).map(Found::Regions)
+            }
             Input::State(_) => self.outcomes(),
         }
     }
 
-    fn regions(&self) -> heelstrike::Result<Found> {
+    /// Asks about the study, with all cores.
+    ///
+    /// # Errors
+    /// A study that is refused.
+    pub fn study<T>(&self, ask: impl FnOnce(&Model, Workers) -> T) -> heelstrike::Result<T> {
         let study = Study::from_json(&self.text)?;
         let model = Model {
             study: &study,
             description: &self.description,
             reduction: &Reduction::default(),
             robot: &self.robot,
-            options: Options::default(),
+            options: self.options(),
             defaults: Defaults::default(),
         };
         model.readable()?;
         let threads = available_parallelism().map_or(1, usize::from);
-        Ok(match Findings::of(&model, Workers { threads, done: &|| () }) {
-            Findings::Along(survey) => Found::Along(survey),
-            Findings::Map(map) => Found::Map(map),
-        })
+        Ok(ask(&model, Workers { threads, done: &|| () }))
+    }
+
+    fn options(&self) -> Options {
+        let explain_up_to = match self.figure.input {
+            Input::Study(_) => 0,
+            Input::Explained(_) | Input::State(_) => usize::MAX,
+        };
+        Options { explain_up_to, ..Options::default() }
     }
 
     fn outcomes(&self) -> heelstrike::Result<Found> {
         let state = State::from_json(&self.text, &self.robot, &Defaults::default())?;
-        let options = Options { explain_up_to: usize::MAX, ..Options::default() };
-        Pipeline::new(&self.robot, options).impact(&state).map(Box::new).map(Found::State)
+        let impact = Pipeline::new(&self.robot, self.options()).impact(&state)?;
+        Ok(Found::Outcomes(Box::new((state, impact))))
+    }
+}
+
+impl Found {
+    /// The regions along one parameter.
+    ///
+    /// # Errors
+    /// Where something else was found.
+    pub fn survey(&self) -> Result<&Survey, String> {
+        match self {
+            Self::Regions(Findings::Along(survey)) => Ok(survey),
+            _ => Err("this is no study of one parameter".into()),
+        }
+    }
+
+    /// The regions of two parameters.
+    ///
+    /// # Errors
+    /// Where something else was found.
+    pub fn map(&self) -> Result<&Map, String> {
+        match self {
+            Self::Regions(Findings::Map(map)) => Ok(map),
+            _ => Err("this is no study of two parameters".into()),
+        }
+    }
+
+    /// The outcomes of a state.
+    ///
+    /// # Errors
+    /// Where something else was found, or none could be.
+    pub fn analysis(&self) -> Result<&Analysis, String> {
+        match self {
+            Self::Outcomes(found) => found.1.analysis.as_ref().map_err(ToString::to_string),
+            Self::Regions(_) => Err("this is no state".into()),
+        }
     }
 }

@@ -52,7 +52,9 @@ impl Finding {
 pub enum Input {
     /// A study for `heelstrike sweep`.
     Study(&'static str),
-    /// A state for `heelstrike impact`.
+    /// A study for `heelstrike sweep --explain`, whose picture has beta and gamma.
+    Explained(&'static str),
+    /// A state for `heelstrike impact --explain`.
     State(&'static str),
 }
 
@@ -60,7 +62,7 @@ impl Input {
     /// The file's name, without its ending.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Study(name) | Self::State(name) => name,
+            Self::Study(name) | Self::Explained(name) | Self::State(name) => name,
         }
     }
 }
@@ -191,7 +193,7 @@ pub const FIGURES: &[Figure] = &[
         name: "figure_10a",
         title: "Figure 10(a): passive dynamic walker, inertia below m along (l - along)",
         robot: "pdw",
-        input: Input::Study("figure_10a"),
+        input: Input::Explained("figure_10a"),
         claims: &[Claim {
             words: "leaves the ground (A), slides whatever the friction (B), stays (C, D), three outcomes (E)",
             check: |found| order(found, &[LIFT_OFF, SLIDE_FORWARD, STOP, THREE]),
@@ -201,7 +203,7 @@ pub const FIGURES: &[Figure] = &[
         name: "figure_10b",
         title: "Figure 10(b): passive dynamic walker, inertia equal to m along (l - along)",
         robot: "pdw",
-        input: Input::Study("figure_10b"),
+        input: Input::Explained("figure_10b"),
         claims: &[Claim {
             words: "sliding with infinite friction and multiple solutions vanish",
             check: |found| order(found, &[LIFT_OFF, STOP]),
@@ -211,7 +213,7 @@ pub const FIGURES: &[Figure] = &[
         name: "figure_10c",
         title: "Figure 10(c): passive dynamic walker, inertia above m along (l - along)",
         robot: "pdw",
-        input: Input::Study("figure_10c"),
+        input: Input::Explained("figure_10c"),
         claims: &[Claim {
             words: "no sliding whatever the friction, but multiple solutions",
             check: |found| order(found, &[LIFT_OFF, THREE]),
@@ -282,7 +284,7 @@ pub const FIGURES: &[Figure] = &[
         input: Input::Study("pitch_map"),
         claims: &[Claim {
             words: "pitching the main body forward and backward by some angle shifts the band of sliding by another",
-            check: |found| bands_move(found, &[-0.5, -0.1, 0.0, 0.1, 0.5]),
+            check: |found| bands_move(found, &[-0.4, -0.1, 0.0, 0.1, 0.4]),
         }],
     },
 ];

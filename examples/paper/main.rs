@@ -11,6 +11,7 @@ mod cases;
 mod exhibit;
 mod figures;
 mod map;
+mod picture;
 
 use exhibit::Exhibit;
 use figures::FIGURES;
@@ -31,6 +32,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("  {}", finding.agreement());
         }
         println!();
+        if let Some(svg) = picture::svg(&exhibit, &found)? {
+            std::fs::write(directory.join(format!("{}.svg", figure.name)), svg)?;
+        }
     }
     Ok(())
 }

@@ -6,13 +6,6 @@ use crate::figures::Finding;
 use heelstrike::planar::Vector;
 use heelstrike::sweep::{Area, Map};
 
-fn map(found: &Found) -> Result<&Map, String> {
-    match found {
-        Found::Map(map) => Ok(map),
-        _ => Err("this is no study of two parameters".into()),
-    }
-}
-
 fn slides(area: &Area) -> bool {
     matches!(&modes(&area.regime)[..], [only] if only.starts_with("slide"))
 }
@@ -36,7 +29,7 @@ pub fn junction(map: &Map) -> Option<[Vector<f64>; 2]> {
 /// The sliding band ends, and the ambiguous band begins, at this inertia.
 pub fn closes_at(found: &Found, inertia: f64) -> Result<Finding, String> {
     const WITHIN: f64 = 1e-3;
-    let [slides, ambiguous] = junction(map(found)?).ok_or("one of the bands is not there")?;
+    let [slides, ambiguous] = junction(found.map()?).ok_or("one of the bands is not there")?;
     let words = format!(
         "sliding ends at alpha = {:.5}, j = {:.5}; ambiguity begins at alpha = {:.5}, j = {:.5}; m along (l - along) = {inertia:.5}",
         slides[0], slides[1], ambiguous[0], ambiguous[1]
@@ -73,7 +66,7 @@ pub fn bands_at(map: &Map, at: f64) -> Vec<(Vec<String>, [f64; 2])> {
 
 /// Where the bands lie at some values of the second parameter; the paper's numbers are lost.
 pub fn bands_move(found: &Found, values: &[f64]) -> Result<Finding, String> {
-    let map = map(found)?;
+    let map = found.map()?;
     let at = |value: &f64| {
         let bands = bands_at(map, *value);
         let said = bands.iter().map(|(modes, [from, to])| format!("{} {from:.4}..{to:.4}", modes.join(" or ")));
