@@ -4,7 +4,7 @@ use super::{Kind, angles, colours};
 use crate::impact::{Mode, Motion};
 use crate::planar::Vector;
 use crate::report::picture::{Axis, Band, Colour, Dash, Entry, Key, Legend, Panel, Picture, Point, Shape, Stroke};
-use crate::report::text::in_words;
+use crate::report::words;
 use crate::sweep::{Course, Place, Regime, Region, Survey};
 
 /// What is drawn of a contact.
@@ -267,10 +267,10 @@ impl<'a> Styles<'a> {
             entries.extend(angles::legend());
         }
         entries.extend(self.0.iter().map(|Style { contacts, modes, dash, colour, letters, .. }| {
-            let words = in_words(contacts.iter().map(String::as_str), modes);
+            let sentence = words::modes(contacts.iter().map(String::as_str), modes);
             let line = |dash| Key::Line(Stroke { dash, ..Stroke::solid(Colour::Black, 1.6) });
             let key = dash.map_or(Key::Fill(*colour), line);
-            Entry { name: format!("{}: {words}", letters.join(", ")), key }
+            Entry { name: format!("{}: {sentence}", letters.join(", ")), key }
         }));
         for Kind { letter, colour, happening } in kinds {
             let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
