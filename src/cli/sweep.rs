@@ -124,9 +124,9 @@ pub(super) fn run(args: &Args) -> Outcome {
     let findings = Findings::of(&model, workers);
     let regions = Regions::new(study.parameters(), &findings);
     let regimes = findings.regimes();
-    if args.plot.is_asked_for() {
+    if args.plot.is_asked() {
         progress.expect(picture::work(&model, &findings) as u64);
-        args.plot.draw(&picture::of(&model, &findings, workers))?;
+        args.plot.draw(&picture::of(&model, &findings, workers), "no region was found")?;
     }
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {

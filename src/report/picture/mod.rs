@@ -16,6 +16,7 @@ mod curve;
 mod font;
 mod frame;
 mod legend;
+mod names;
 mod number;
 mod png;
 mod shape;
@@ -49,7 +50,7 @@ pub struct Picture {
 /// Shapes over two axes.
 #[derive(Debug, Clone)]
 pub struct Panel {
-    /// Above it; its second line is smaller.
+    /// Above it; what comes after a line break is smaller.
     pub title: String,
     /// Below it.
     pub x: Axis,

@@ -1,11 +1,11 @@
 //! One parameter: panels below each other, for each contact its velocity after and its impulse.
 
-use super::{Kind, angles};
+use super::{Kind, angles, colours};
 use crate::impact::{Mode, Motion};
 use crate::planar::Vector;
 use crate::report::picture::{Axis, Band, Colour, Dash, Entry, Key, Legend, Panel, Picture, Point, Shape, Stroke};
-use crate::report::text::in_words;
-use crate::sweep::{Course, Place, Region, Survey};
+use crate::report::words;
+use crate::sweep::{Course, Place, Regime, Region, Survey};
 
 /// What is drawn of a contact.
 struct Quantity {
@@ -40,7 +40,8 @@ const ZERO: f64 = 1e-12;
 
 /// What the regions of a survey look like, whose outcomes follow these courses.
 pub fn picture(x: Axis, survey: &Survey, courses: &[Course]) -> Picture {
-    let styles = Styles::of(survey);
+    let kinds = kinds(survey);
+    let styles = Styles::of(survey, &kinds);
     let whole = Whole { survey, courses, styles: &styles };
     let mut panels = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect::<Vec<_>>();
     if panels.is_empty() {
@@ -49,25 +50,25 @@ pub fn picture(x: Axis, survey: &Survey, courses: &[Course]) -> Picture {
     }
     for (index, panel) in panels.iter_mut().enumerate() {
         let letter = |kind: &Kind| if index == 0 { kind.letter.clone() } else { String::new() };
-        panel.bands = bands(survey, |kind| (letter(kind), kind.colour));
+        panel.bands = bands(survey, &kinds, |kind| (letter(kind), kind.colour));
     }
     let mut explained = angles::panels(survey, courses);
     let angles = !explained.is_empty();
     // These have letters of their own.
-    explained.iter_mut().for_each(|panel| panel.bands = bands(survey, |_| (String::new(), Colour::White)));
+    explained.iter_mut().for_each(|panel| panel.bands = bands(survey, &kinds, |_| (String::new(), Colour::White)));
     panels.extend(explained);
     let last = panels.len() - 1;
     for (index, panel) in panels.iter_mut().enumerate() {
         panel.x = Axis { bare: index < last, ..x.clone() };
     }
-    let legend = Legend { entries: styles.legend(survey, angles), below: true };
+    let legend = Legend { entries: styles.legend(&kinds, angles), below: true };
     Picture { title: String::new(), rows: panels.into_iter().map(|panel| vec![panel]).collect(), legend }
 }
 
 /// The regions, each with a letter and a colour.
-fn bands(survey: &Survey, look: impl Fn(&Kind) -> (String, Colour)) -> Vec<Band> {
+fn bands(survey: &Survey, kinds: &[Kind], look: impl Fn(&Kind) -> (String, Colour)) -> Vec<Band> {
     let band = |region: &Region| {
-        let (letter, fill) = look(&kind(region));
+        let (letter, fill) = look(&kinds[region.kind]);
         Band { from: region.from, to: region.to, letter, fill }
     };
     survey.regions.iter().map(band).collect()
@@ -79,8 +80,21 @@ fn is_seen(region: &Region, survey: &Survey) -> bool {
     WIDTH * (region.to - region.from) >= range
 }
 
-fn kind(region: &Region) -> Kind<'_> {
-    Kind::new(region.kind, &region.regime, region.refused.as_ref())
+/// Every kind of region, in the order of letters.
+fn kinds(survey: &Survey) -> Vec<Kind<'_>> {
+    let mut firsts: Vec<&Region> = Vec::new();
+    for region in &survey.regions {
+        if region.kind == firsts.len() {
+            firsts.push(region);
+        }
+    }
+    let regimes: Vec<&Regime> = firsts.iter().map(|region| &*region.regime).collect();
+    let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
+    firsts
+        .iter()
+        .zip(colours(&regimes, &borders))
+        .map(|(region, colour)| Kind::new(region.kind, &region.regime, region.refused.as_ref(), colour))
+        .collect()
 }
 
 /// Everything along the parameter.
@@ -151,7 +165,8 @@ impl<'a> Whole<'a> {
                         Some((place.at, (quantity.of)(motion).get(index)?[axis]))
                     };
                     let points: Vec<Point> = course.places.iter().filter_map(point).collect();
-                    ranges.extend(shown(&points));
+                    // Nobody sees a curve in a region that is but a line.
+                    ranges.extend(shown(&points).filter(|_| is_seen(region, self.survey)));
                     let stroke = Stroke { dash: self.styles.dash(contacts, modes), ..stroke };
                     shapes.push(Shape::Line { points, stroke });
                 }
@@ -199,11 +214,11 @@ struct Style<'a> {
 impl<'a> Styles<'a> {
     /// Where some region is ambiguous, each outcome that is seen has its own dashes wherever it is valid; of more outcomes than there are
     /// dashes only those of ambiguous regions have.
-    fn of(survey: &'a Survey) -> Self {
+    fn of(survey: &'a Survey, kinds: &[Kind]) -> Self {
         let mut styles: Vec<Style> = Vec::new();
         for region in &survey.regions {
             let contacts = region.regime.contacts();
-            let Kind { letter, colour, .. } = kind(region);
+            let Kind { letter, colour, .. } = &kinds[region.kind];
             let outcomes = region.regime.outcomes().unwrap_or_default();
             for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
                 let ambiguous = outcomes.len() > 1 && is_seen(region, survey);
@@ -211,7 +226,7 @@ impl<'a> Styles<'a> {
                     Some(style) => {
                         style.ambiguous |= ambiguous;
                         style.seen |= is_seen(region, survey);
-                        if !style.letters.contains(&letter) {
+                        if !style.letters.contains(letter) {
                             style.letters.push(letter.clone());
                         }
                     }
@@ -221,7 +236,7 @@ impl<'a> Styles<'a> {
                             contacts,
                             modes,
                             dash: None,
-                            colour,
+                            colour: *colour,
                             letters,
                             ambiguous,
                             seen: is_seen(region, survey),
@@ -243,7 +258,7 @@ impl<'a> Styles<'a> {
     }
 
     /// Components, what angles there are, outcomes with the letters of their regions, regions without any.
-    fn legend(&self, survey: &Survey, angles: bool) -> Vec<Entry> {
+    fn legend(&self, kinds: &[Kind], angles: bool) -> Vec<Entry> {
         let mut entries = Vec::new();
         if !self.0.is_empty() {
             entries.extend(COMPONENTS.map(|(name, stroke)| Entry { name: name.into(), key: Key::Line(stroke) }));
@@ -252,19 +267,16 @@ impl<'a> Styles<'a> {
             entries.extend(angles::legend());
         }
         entries.extend(self.0.iter().map(|Style { contacts, modes, dash, colour, letters, .. }| {
-            let words = in_words(contacts.iter().map(String::as_str), modes);
+            let sentence = words::modes(contacts.iter().map(String::as_str), modes);
             let line = |dash| Key::Line(Stroke { dash, ..Stroke::solid(Colour::Black, 1.6) });
             let key = dash.map_or(Key::Fill(*colour), line);
-            Entry { name: format!("{}: {words}", letters.join(", ")), key }
+            Entry { name: format!("{}: {sentence}", letters.join(", ")), key }
         }));
-        let mut told = Vec::new();
-        for region in &survey.regions {
-            let Kind { letter, colour, happening } = kind(region);
+        for Kind { letter, colour, happening } in kinds {
             let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
             let lines = if answered { happening.not_excluded() } else { happening.lines() };
-            if !lines.is_empty() && !told.contains(&letter) {
-                entries.push(Entry { name: format!("{letter}: {}", lines.join("\n")), key: Key::Fill(colour) });
-                told.push(letter);
+            if !lines.is_empty() {
+                entries.push(Entry { name: format!("{letter}: {}", lines.join("\n")), key: Key::Fill(*colour) });
             }
         }
         entries

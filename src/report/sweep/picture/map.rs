@@ -1,12 +1,12 @@
 //! Two parameters: areas of equal outcomes with their letters, and the borders between them.
 
-use super::Kind;
-use super::place::{Box, clear_of};
+use super::place::{Box, clear_of, freest};
+use super::{Kind, colours};
 use crate::planar::Vector;
 use crate::report::picture::{
     Anchor, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
 };
-use crate::sweep::{Area, Map};
+use crate::sweep::{Area, Map, Regime};
 
 /// Inside of the axes \[px\].
 const SIZE: Pixel = (540.0, 420.0);
@@ -26,8 +26,10 @@ const DIRECTIONS: usize = 24;
 pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
     let mut shapes: Vec<Shape> = Vec::new();
     let mut entries = Vec::new();
-    for (index, area) in map.areas.iter().enumerate() {
-        let Kind { letter, colour, happening } = Kind::new(index, &area.regime, area.refused.as_ref());
+    let regimes: Vec<&Regime> = map.areas.iter().map(|area| &*area.regime).collect();
+    let borders: Vec<[usize; 2]> = map.curves.iter().map(|curve| curve.sides).collect();
+    for ((index, area), colour) in map.areas.iter().enumerate().zip(colours(&regimes, &borders)) {
+        let Kind { letter, happening, .. } = Kind::new(index, &area.regime, area.refused.as_ref(), colour);
         let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
         // The seam between two fills lies under the border's line.
         shapes.push(Shape::Area { loops, fill: Some(colour), stroke: None });
@@ -64,7 +66,8 @@ fn letters(x: &Axis, y: &Axis, map: &Map) -> Vec<Shape> {
     let mut shapes = Vec::new();
     let mut small: Vec<(usize, &Area)> = Vec::new();
     for (index, area) in map.areas.iter().enumerate() {
-        let middles = area.middles.iter().map(|(middle, _)| text(index, pixel(*middle)));
+        let half = lettered(index).1;
+        let middles = area.middles.iter().map(|(middle, _)| text(index, freest(pixel(*middle), half, &taken)));
         let fitting: Vec<_> =
             middles.filter(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR).collect();
         if fitting.is_empty() {
