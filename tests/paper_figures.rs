@@ -17,7 +17,7 @@ mod figures;
 mod map;
 
 use exhibit::{Exhibit, Found, HERE};
-use figures::{FIGURES, Figure, Input};
+use figures::{FIGURES, Figure};
 use heelstrike::sweep::Survey;
 
 /// What each figure shows, by its name, found once for all tests of this file.
@@ -106,6 +106,7 @@ fn the_pitch_map_agrees_with_sweeps_at_three_pitches() -> Result<(), Box<dyn Err
     const WITHIN: f64 = 1e-9;
     let map = FOUND["pitch_map"].map()?;
     let figure = FIGURES.iter().find(|figure| figure.name == "pitch_map").ok_or("no figure")?;
+    let study = std::fs::read_to_string(figure.path())?;
     let mut counted: BTreeMap<u64, usize> = BTreeMap::new();
     for [_, pitch] in map.curves.iter().flat_map(|curve| &curve.points) {
         *counted.entry(pitch.to_bits()).or_default() += 1;
@@ -114,10 +115,11 @@ fn the_pitch_map_agrees_with_sweeps_at_three_pitches() -> Result<(), Box<dyn Err
         // A line of the grid crosses all six curves; other points share their pitch with none.
         let lines = counted.iter().filter(|(_, count)| **count >= 6).map(|(bits, _)| f64::from_bits(*bits));
         let pitch = lines.min_by(|a, b| (a - near).abs().total_cmp(&(b - near).abs())).ok_or("no line of the grid")?;
-        let mut study: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(figure.path())?)?;
-        study["parameters"].as_object_mut().and_then(|parameters| parameters.remove("pitch")).ok_or("no pitch")?;
-        study["constants"]["pitch"] = pitch.into();
-        let found = Exhibit::read_with(figure, study.to_string())?.found()?;
+        // As text: the order of constants matters.
+        let [parameter, constants] = [r#", "pitch": {"from": -0.5, "to": 0.5, "steps": 65}"#, r#""constants": {"#];
+        let study = study.replacen(parameter, "", 1);
+        let study = study.replacen(constants, &format!("{constants}\"pitch\": {pitch:?}, "), 1);
+        let found = Exhibit::read_with(figure, study)?.found()?;
 
         let (along, across) = (bands(found.survey()?), map::bands_at(map, pitch));
         assert_eq!(along.len(), 3, "{along:?}");

@@ -29,7 +29,8 @@ pub struct Exhibit {
     figure: &'static Figure,
     text: String,
     description: Description,
-    robot: Robot,
+    /// As the file has it.
+    pub robot: Robot,
 }
 
 /// What a figure shows.
@@ -57,11 +58,6 @@ impl Exhibit {
         let description = Description::from_urdf(&read_to_string(format!("{ROBOTS}/{}.urdf", figure.robot))?)?;
         let robot = Robot::reduce(&description, &Reduction::default())?;
         Ok(Self { figure, text, description, robot })
-    }
-
-    /// The robot.
-    pub fn robot(&self) -> &Robot {
-        &self.robot
     }
 
     /// The regions of a study, or the outcomes of a state.

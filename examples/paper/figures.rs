@@ -38,16 +38,6 @@ pub struct Finding {
     pub agrees: Option<bool>,
 }
 
-impl Finding {
-    /// Whether it is what is claimed, in words.
-    pub fn agreement(&self) -> &'static str {
-        match self.agrees {
-            Some(true) => "They agree.",
-            Some(false) => "They differ.",
-            None => "The paper's numbers are lost: nothing to compare.",
-        }
-    }
-}
 /// A file of this directory, without its ending.
 pub enum Input {
     /// A study for `heelstrike sweep`.

@@ -29,12 +29,20 @@ fn main() -> Result<(), Box<dyn Error>> {
             let finding = (claim.check)(&found)?;
             println!("  paper:      {}", claim.words);
             println!("  heelstrike: {}", finding.words);
-            println!("  {}", finding.agreement());
+            println!("  {}", agreement(finding.agrees));
         }
         println!();
-        if let Some(svg) = picture::svg(&exhibit, &found)? {
+        if let Some(svg) = picture::of(&exhibit, &found)?.and_then(|picture| picture.svg()) {
             std::fs::write(directory.join(format!("{}.svg", figure.name)), svg)?;
         }
     }
     Ok(())
+}
+
+fn agreement(agrees: Option<bool>) -> &'static str {
+    match agrees {
+        Some(true) => "They agree.",
+        Some(false) => "They differ.",
+        None => "The paper's numbers are lost: nothing to compare.",
+    }
 }
