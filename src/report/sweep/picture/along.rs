@@ -295,4 +295,58 @@ mod tests {
         assert_eq!(shown(&curve(&|x| 1.0 / (1.001 - x))), Some((1.0 / 1.001, 1.5 / 0.251)));
         assert_eq!(shown(&curve(&|x| -1.0 / (0.001 + x))), Some((-1.5 / 0.251, -1.0 / 1.001)));
     }
+
+    /// Ten regions with six outcomes of two contacts each, all of them wavy.
+    fn crowd() -> (Survey, Vec<Course>) {
+        let modes = |outcome: usize| vec![Mode::ALL[outcome % 4], Mode::ALL[outcome / 4]];
+        let regime = |region: usize| Regime::Answered {
+            contacts: vec!["left_foot".into(), "right_foot".into()],
+            outcomes: (0..6).map(|outcome| modes(outcome + region)).collect(),
+            undecided: Vec::new(),
+        };
+        let region = |kind: usize| {
+            let (from, to) = (0.1 * kind as f64, 0.1 * (kind + 1) as f64);
+            Region { from, to, regime: regime(kind).into(), kind, refused: None }
+        };
+        let regions: Vec<Region> = (0..10).map(region).collect();
+        let wave = |x: f64, phase: usize| libm::sin(20.0 * x + phase as f64);
+        let motion = |x: f64, outcome: usize| {
+            let pair = |shift: usize| [wave(x, outcome + shift), wave(x, outcome + shift + 2)];
+            Motion { impulse: vec![pair(0), pair(1)], velocity_after: vec![pair(2), pair(3)] }
+        };
+        let place = |kind: usize, step: usize| {
+            let at = 0.1 * (kind as f64 + step as f64 / 500.0);
+            let outcomes = (0..6).map(|outcome| (modes(outcome + kind), motion(at, outcome))).collect();
+            Place { at, outcomes, explanation: None }
+        };
+        let course = |kind: usize| Course { places: (0..=500).map(|step| place(kind, step)).collect() };
+        let courses = (0..10).map(course).collect();
+        (Survey { regions, borders: Vec::new() }, courses)
+    }
+
+    #[test]
+    fn a_crowd_of_regions_and_outcomes_is_a_small_file() {
+        let (survey, courses) = crowd();
+        let x = Axis { range: Some((0.0, 1.0)), ..Axis::default() };
+        let picture = picture(x, &survey, &courses);
+        let lines: usize = picture.rows.iter().flatten().map(|panel| panel.shapes.len()).sum();
+        assert_eq!(lines, 4 * 2 * 60);
+        let svg = picture.svg().expect("a picture");
+        assert!(svg.len() < 500_000, "{} bytes", svg.len());
+        let told = picture.legend.entries.iter().filter(|entry| matches!(entry.key, Key::Line(_))).count();
+        assert_eq!(told, COMPONENTS.len() + 15, "each outcome once");
+    }
+
+    #[test]
+    fn what_is_zero_everywhere_is_told_in_place_of_a_panel() {
+        let (survey, mut courses) = crowd();
+        for (_, motion) in
+            courses.iter_mut().flat_map(|course| &mut course.places).flat_map(|place| &mut place.outcomes)
+        {
+            motion.velocity_after[1] = [0.0, 1e-17];
+        }
+        let picture = picture(Axis::default(), &survey, &courses);
+        let titles: Vec<&str> = picture.rows.iter().flatten().map(|panel| panel.title.as_str()).collect();
+        assert_eq!(titles, ["left_foot", "", "right_foot\nvelocity after is zero in every outcome"]);
+    }
 }
