@@ -1,10 +1,10 @@
 //! One parameter: panels below each other, for each contact its velocity after and its impulse.
 
-use super::{Kind, angles, colours};
-use crate::impact::{Mode, Motion};
+use super::style::{COMPONENTS, Styles};
+use super::{Kind, WIDTH, angles, colours, is_seen};
+use crate::impact::Motion;
 use crate::planar::Vector;
-use crate::report::picture::{Axis, Band, Colour, Dash, Entry, Key, Legend, Panel, Picture, Point, Shape, Stroke};
-use crate::report::words;
+use crate::report::picture::{Axis, Band, Colour, Legend, Panel, Picture, Point, Shape, Stroke};
 use crate::sweep::{Course, Place, Regime, Region, Survey};
 
 /// What is drawn of a contact.
@@ -20,12 +20,7 @@ const QUANTITIES: [Quantity; 2] = [
     Quantity { label: "impulse [N s]", name: "impulse", of: |motion| &motion.impulse },
 ];
 
-/// The components and their lines: where both are the same, the wider one is seen behind the other.
-const COMPONENTS: [(&str, Stroke); 2] =
-    [("tangential", Stroke::solid(Colour::Blue, 2.8)), ("normal", Stroke::solid(Colour::Vermilion, 1.6))];
-
-/// Inside of the axes \[px\].
-const WIDTH: f64 = 540.0;
+/// Height inside of the axes \[px\].
 const HEIGHT: f64 = 176.0;
 /// Without anything but the letters of regions.
 const STRIP: f64 = 30.0;
@@ -72,12 +67,6 @@ fn bands(survey: &Survey, kinds: &[Kind], look: impl Fn(&Kind) -> (String, Colou
         Band { from: region.from, to: region.to, letter, fill }
     };
     survey.regions.iter().map(band).collect()
-}
-
-/// Whether a region is wide enough for lines in it.
-fn is_seen(region: &Region, survey: &Survey) -> bool {
-    let range: f64 = survey.regions.iter().map(|region| region.to - region.from).sum();
-    WIDTH * (region.to - region.from) >= range
 }
 
 /// Every kind of region, in the order of letters.
@@ -193,99 +182,11 @@ fn shown(points: &[Point]) -> Option<(f64, f64)> {
     values.map(|value| (value, value)).reduce(|(low, high), (least, most)| (low.min(least), high.max(most)))
 }
 
-/// How the lines of each outcome are drawn.
-struct Styles<'a>(Vec<Style<'a>>);
-
-struct Style<'a> {
-    contacts: &'a [String],
-    modes: &'a [Mode],
-    /// Its own dashes; none where it needs none to be told from others, and is known by its region.
-    dash: Option<Dash>,
-    /// Of the first region in which it is valid.
-    colour: Colour,
-    /// The letters of the regions in which it is valid.
-    letters: Vec<String>,
-    /// Whether another outcome is valid beside it somewhere.
-    ambiguous: bool,
-    /// Whether its lines are seen anywhere.
-    seen: bool,
-}
-
-impl<'a> Styles<'a> {
-    /// Where some region is ambiguous, each outcome that is seen has its own dashes wherever it is valid; of more outcomes than there are
-    /// dashes only those of ambiguous regions have.
-    fn of(survey: &'a Survey, kinds: &[Kind]) -> Self {
-        let mut styles: Vec<Style> = Vec::new();
-        for region in &survey.regions {
-            let contacts = region.regime.contacts();
-            let Kind { letter, colour, .. } = &kinds[region.kind];
-            let outcomes = region.regime.outcomes().unwrap_or_default();
-            for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
-                let ambiguous = outcomes.len() > 1 && is_seen(region, survey);
-                match styles.iter_mut().find(|style| (style.contacts, style.modes) == (contacts, modes)) {
-                    Some(style) => {
-                        style.ambiguous |= ambiguous;
-                        style.seen |= is_seen(region, survey);
-                        if !style.letters.contains(letter) {
-                            style.letters.push(letter.clone());
-                        }
-                    }
-                    None => {
-                        let letters = vec![letter.clone()];
-                        styles.push(Style {
-                            contacts,
-                            modes,
-                            dash: None,
-                            colour: *colour,
-                            letters,
-                            ambiguous,
-                            seen: is_seen(region, survey),
-                        });
-                    }
-                }
-            }
-        }
-        let seen = styles.iter().filter(|style| style.seen).count();
-        let all = seen <= Dash::ALL.len() && styles.iter().any(|style| style.ambiguous);
-        let dashed = styles.iter_mut().filter(|style| style.ambiguous || all && style.seen);
-        dashed.zip(Dash::ALL.into_iter().cycle()).for_each(|(style, dash)| style.dash = Some(dash));
-        Self(styles)
-    }
-
-    fn dash(&self, contacts: &[String], modes: &[Mode]) -> Dash {
-        let own = self.0.iter().find(|style| (style.contacts, style.modes) == (contacts, modes));
-        own.and_then(|style| style.dash).unwrap_or(Dash::Solid)
-    }
-
-    /// Components, what angles there are, outcomes with the letters of their regions, regions without any.
-    fn legend(&self, kinds: &[Kind], angles: bool) -> Vec<Entry> {
-        let mut entries = Vec::new();
-        if !self.0.is_empty() {
-            entries.extend(COMPONENTS.map(|(name, stroke)| Entry { name: name.into(), key: Key::Line(stroke) }));
-        }
-        if angles {
-            entries.extend(angles::legend());
-        }
-        entries.extend(self.0.iter().map(|Style { contacts, modes, dash, colour, letters, .. }| {
-            let sentence = words::modes(contacts.iter().map(String::as_str), modes);
-            let line = |dash| Key::Line(Stroke { dash, ..Stroke::solid(Colour::Black, 1.6) });
-            let key = dash.map_or(Key::Fill(*colour), line);
-            Entry { name: format!("{}: {sentence}", letters.join(", ")), key }
-        }));
-        for Kind { letter, colour, happening } in kinds {
-            let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
-            let lines = if answered { happening.not_excluded() } else { happening.lines() };
-            if !lines.is_empty() {
-                entries.push(Entry { name: format!("{letter}: {}", lines.join("\n")), key: Key::Fill(*colour) });
-            }
-        }
-        entries
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::Mode;
+    use crate::report::picture::Key;
 
     #[test]
     fn a_curve_is_shown_whole_but_for_poles() {

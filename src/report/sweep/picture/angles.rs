@@ -18,7 +18,7 @@ const BETA: Stroke = Stroke::solid(Colour::Black, 1.0);
 const GAMMA: Stroke = Stroke::solid(Colour::Green, 2.4);
 
 /// Inside of the axes \[px\].
-const SIZE: (f64, f64) = (540.0, 220.0);
+const SIZE: (f64, f64) = (super::WIDTH, 220.0);
 /// Of a label's letters \[px\].
 const LETTERS: u32 = 12;
 
