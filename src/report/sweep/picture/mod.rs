@@ -1,21 +1,25 @@
 //! Studies as pictures.
 //!
 //! ```text
-//!     Survey --> Courses --[along]--> velocities after and impulses of each contact against the parameter, regions shaded
-//!                        --[angles]-> beta and gamma against the parameter, and what they cut
-//!     Map    --[map, place]---------> areas with letters in the plane of two parameters
+//!     Survey --> Courses --[along, style]--> velocities after and impulses of each contact, regions shaded
+//!                        --[angles, place]-> beta and gamma, and what they cut
+//!     Map    --[map, place]----------------> areas with letters in the plane of two parameters
 //! ```
 
 mod along;
 mod angles;
 mod map;
 mod place;
+mod style;
 
 use super::{Happening, letter};
 use crate::Error;
 use crate::report::ErrorObject;
 use crate::report::picture::{Axis, Colour, Picture};
-use crate::sweep::{Course, Findings, Model, Regime, Workers};
+use crate::sweep::{Course, Findings, Model, Regime, Region, Survey, Workers};
+
+/// How wide panels along a parameter are inside of their axes \[px\].
+const WIDTH: f64 = 540.0;
 
 /// What the findings of `model` look like; tells `workers` of [`work`] pieces of work.
 pub fn of(model: &Model, findings: &Findings, workers: Workers) -> Picture {
@@ -88,6 +92,12 @@ impl<'a> Kind<'a> {
     fn new(kind: usize, regime: &'a Regime, refused: Option<&'a Error>, colour: Colour) -> Self {
         Self { letter: letter(kind), colour, happening: Happening::of(regime, refused.map(ErrorObject::new)) }
     }
+}
+
+/// Whether a region is wide enough for lines in it.
+fn is_seen(region: &Region, survey: &Survey) -> bool {
+    let range: f64 = survey.regions.iter().map(|region| region.to - region.from).sum();
+    WIDTH * (region.to - region.from) >= range
 }
 
 /// A colour for each of `regimes`, the kinds in their order: neighbours, which `borders` part, differ in hue, and where that
