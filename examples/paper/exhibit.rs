@@ -66,9 +66,7 @@ impl Exhibit {
     /// A study or a state that is refused.
     pub fn found(&self) -> heelstrike::Result<Found> {
         match self.figure.input {
-            Input::Study(_) | Input::Explained(_) => {
-                self.study(|model, workers| Findings::of(model, workers)).map(Found::Regions)
-            }
+            Input::Study(_) | Input::Explained(_) => self.study(Findings::of).map(Found::Regions),
             Input::State(_) => self.outcomes(),
         }
     }
