@@ -115,7 +115,6 @@ fn the_pitch_map_agrees_with_sweeps_at_three_pitches() -> Result<(), Box<dyn Err
         // A line of the grid crosses all six curves; other points share their pitch with none.
         let lines = counted.iter().filter(|(_, count)| **count >= 6).map(|(bits, _)| f64::from_bits(*bits));
         let pitch = lines.min_by(|a, b| (a - near).abs().total_cmp(&(b - near).abs())).ok_or("no line of the grid")?;
-        // As text: the order of constants matters.
         let [parameter, constants] = [r#", "pitch": {"from": -0.5, "to": 0.5, "steps": 65}"#, r#""constants": {"#];
         let study = study.replacen(parameter, "", 1);
         let study = study.replacen(constants, &format!("{constants}\"pitch\": {pitch:?}, "), 1);
