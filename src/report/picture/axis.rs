@@ -2,6 +2,7 @@
 
 use super::font;
 use kuva::render::layout::TickFormat;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// An axis of a panel.
@@ -13,8 +14,12 @@ pub struct Axis {
     pub logarithmic: bool,
     /// From where to where it goes, of a logarithmic one outward to whole powers of ten; none for all that is drawn.
     pub range: Option<(f64, f64)>,
+    /// Where it has no range: what lies beyond these values does not widen it.
+    pub within: Option<(f64, f64)>,
     /// Whether it has neither ticks nor label, for another panel beside it has the same.
     pub bare: bool,
+    /// Whether it measures angles \[rad\] whose ticks are parts of pi.
+    pub in_pi: bool,
 }
 
 /// What an axis spans, in the numbers at its ticks: exponents, or multiples of a power of ten.
@@ -25,6 +30,7 @@ pub(super) struct Span {
     /// Between ticks.
     pub step: f64,
     logarithmic: bool,
+    in_pi: bool,
     /// A value is the number at its tick times ten to this.
     power: i32,
 }
@@ -33,13 +39,18 @@ pub(super) struct Span {
 const ROOM: f64 = 0.04;
 /// What a mark takes of a logarithmic axis.
 const MARK: f64 = 0.02;
-/// About how far ticks are apart \[px\].
+/// Values that agree to this part of them are the same.
+const ROUNDING: f64 = 1e-10;
+/// About how far ticks are apart \[px\], and into how many parts they divide a short axis.
 const PITCH: f64 = 75.0;
+const TICKS: f64 = 4.0;
 
 impl Span {
     /// Of an axis of this `length` \[px\] along which `values` lie.
     pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, length: f64) -> Self {
         let usable = values.filter(|value| value.is_finite() && (!axis.logarithmic || *value > 0.0));
+        let (lowest, highest) = axis.within.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let usable = usable.map(|value| value.max(lowest).min(highest));
         let extent = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
         let (least, most) = axis.range.unwrap_or_else(|| usable.fold((f64::INFINITY, f64::NEG_INFINITY), extent));
         let (least, most) = if least <= most { (least, most) } else { (1.0, 1.0) };
@@ -48,16 +59,27 @@ impl Span {
         }
         let room = if axis.range.is_some() { 0.0 } else { ROOM * (most - least) };
         let (mut low, mut high) = (least - room, most + room);
-        if low >= high {
+        // What differs by rounding alone is one value.
+        let same = axis.range.is_none() && most - least <= ROUNDING * least.abs().max(most.abs());
+        if low >= high || same {
             let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
             (low, high) = (low - room, high + room);
         }
         let largest = low.abs().max(high.abs());
-        let power = if (1e-2..1e5).contains(&largest) { 0 } else { libm::floor(libm::log10(largest)) as i32 };
-        let mut span = Self { low, high, step: 1.0, logarithmic: false, power };
+        let power =
+            if axis.in_pi || (1e-2..1e5).contains(&largest) { 0 } else { libm::floor(libm::log10(largest)) as i32 };
+        let mut span = Self { low, high, step: 1.0, logarithmic: false, in_pi: axis.in_pi, power };
         (span.low, span.high) = (span.shown(low), span.shown(high));
-        span.step = step((span.high - span.low) * PITCH / length);
+        span.set_step(length);
         span
+    }
+
+    fn set_step(&mut self, length: f64) {
+        if !self.logarithmic {
+            let least = (self.high - self.low) * PITCH.min(length / TICKS) / length;
+            // Halves of pi, or whole multiples.
+            self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
+        }
     }
 
     /// Of a logarithmic axis, in exponents.
@@ -71,13 +93,15 @@ impl Span {
             span if span <= 16.0 => 2.0,
             span => (span / 40.0).ceil() * 5.0,
         };
-        Self { low: (low / step).floor() * step, high: (high / step).ceil() * step, step, logarithmic: true, power: 0 }
+        let (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
+        Self { low, high, step, logarithmic: true, in_pi: false, power: 0 }
     }
 
     /// The number that stands at a value's tick.
     fn shown(&self, value: f64) -> f64 {
         match (self.logarithmic, self.power) {
             (true, _) => libm::log10(value),
+            _ if self.in_pi => value / PI,
             (false, 0) => value,
             (false, power) if power < -300 => value * 1e300 * libm::pow(10.0, f64::from(-power - 300)),
             (false, power) => value * libm::pow(10.0, f64::from(-power)),
@@ -107,9 +131,7 @@ impl Span {
 
     fn extend(&mut self, below: f64, above: f64, length: f64) {
         (self.low, self.high) = (self.low - below, self.high + above);
-        if !self.logarithmic {
-            self.step = step((self.high - self.low) * PITCH / length);
-        }
+        self.set_step(length);
     }
 
     /// How kuva writes a tick.
@@ -117,14 +139,24 @@ impl Span {
         if self.logarithmic {
             return TickFormat::Custom(Arc::new(power_of_ten));
         }
+        if self.in_pi {
+            return TickFormat::Custom(Arc::new(part_of_pi));
+        }
         let decimals = decimals(self.step);
         TickFormat::Custom(Arc::new(move |value| fixed(value, decimals)))
     }
 
-    /// The label, with the power of ten that the ticks leave out.
+    /// The label, with the power of ten that the ticks leave out in its unit.
     pub fn label(&self, label: &str) -> String {
         let label = font::printable(label);
-        if self.power == 0 { label } else { format!("{label} × {}", power_of_ten(f64::from(self.power))) }
+        if self.power == 0 {
+            return label;
+        }
+        let power = power_of_ten(f64::from(self.power));
+        match label.rsplit_once('[') {
+            Some((name, unit)) => format!("{name}[{power} {unit}"),
+            None => format!("{label} [{power}]"),
+        }
     }
 }
 
@@ -151,6 +183,18 @@ fn fixed(value: f64, decimals: usize) -> String {
         Some(rest) if rest.chars().all(|digit| matches!(digit, '0' | '.')) => rest.to_owned(),
         Some(rest) => format!("−{rest}"),
         None => text,
+    }
+}
+
+/// A multiple of half of pi, as in −π/2.
+fn part_of_pi(share: f64) -> String {
+    let halves = (2.0 * share).round();
+    let sign = if halves < 0.0 { "−" } else { "" };
+    let (whole, divisor) = if halves % 2.0 == 0.0 { (0.5 * halves.abs(), "") } else { (halves.abs(), "/2") };
+    match whole {
+        0.0 => "0".to_owned(),
+        1.0 => format!("{sign}π{divisor}"),
+        _ => format!("{sign}{whole}π{divisor}"),
     }
 }
 
@@ -196,16 +240,33 @@ mod tests {
     fn magnitudes_beside_one_move_into_the_label() {
         for (scale, power) in [(1e-7, "10⁻⁷"), (1e9, "10⁹"), (1e-310, "10⁻³¹⁰")] {
             let span = span((0.0, 4.0 * scale));
-            assert_eq!(span.label("p [N s]"), format!("p [N s] × {power}"));
+            assert_eq!(span.label("p [N s]"), format!("p [{power} N s]"));
+            assert_eq!(span.label("p"), format!("p [{power}]"));
             assert_eq!(span.step, 1.0);
             assert!((span.share(scale) - 0.25).abs() < 1e-9);
         }
     }
 
     #[test]
+    fn angles_are_parts_of_pi() {
+        let axis = Axis { range: Some((-PI, PI)), in_pi: true, ..Axis::default() };
+        let span = Span::new(&axis, std::iter::empty(), 320.0);
+        assert_eq!((span.low, span.high, span.step), (-1.0, 1.0, 0.5));
+        let ticks = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|at| span.format().format(at));
+        assert_eq!(ticks, ["−π", "−π/2", "0", "π/2", "π", "3π/2", "2π"]);
+    }
+
+    #[test]
+    fn a_spike_beyond_what_is_asked_for_widens_nothing() {
+        let axis = Axis { within: Some((-1.0, 1.0)), ..Axis::default() };
+        let span = Span::new(&axis, [-0.5, 0.5, 1e6].into_iter(), 400.0);
+        assert!((span.share(0.25) - 0.5).abs() < 1e-9 && span.share(1e6) > 1.0);
+    }
+
+    #[test]
     fn a_single_value_has_room_about_it() {
         for value in [0.0, -3.0, 1e-200] {
-            let span = Span::new(&Axis::default(), [value].into_iter(), 400.0);
+            let span = Span::new(&Axis::default(), [value, value * (1.0 + 1e-15)].into_iter(), 400.0);
             assert!((span.share(value) - 0.5).abs() < 1e-9);
         }
     }
