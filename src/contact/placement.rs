@@ -1,10 +1,10 @@
 //! Where the bodies are in the world.
 
 use super::point::{Circle, Point};
-use crate::dynamics::Workspace;
-use crate::plan::Plan;
+use crate::dynamics::{Workspace, kinematics};
+use crate::plan::{Plan, Posture};
 use crate::planar::{Rotation, Vector, scaled, sum};
-use crate::robot::Rim;
+use crate::robot::{Base, Rim, Robot};
 use parry2d::math::{Pose, Vector as ParryVector};
 
 /// Poses of all bodies.
@@ -26,18 +26,31 @@ impl Placement {
         Self { origins, turns: workspace.rotation.clone() }
     }
 
+    /// The bodies of `robot` at `position` (q).
+    pub fn of_robot(robot: &Robot, position: &[f64]) -> Self {
+        let plan = Plan::new(robot, &[], &[]);
+        let (mut posture, mut workspace) = (Posture::default(), Workspace::default());
+        posture.set(&plan, position);
+        kinematics(&plan, &posture, &mut workspace);
+        let base = match (robot.base, position) {
+            (Base::Floating, &[x, z, ..]) => [x, z],
+            _ => [0.0; 2],
+        };
+        Self::new(&plan, &workspace, base)
+    }
+
     /// The root's origin in the world \[m\].
     pub(super) fn base(&self) -> Vector<f64> {
         self.origins.first().copied().unwrap_or_default()
     }
 
     /// The world's point that is `local` in the frame of `body` \[m\].
-    pub(super) fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
+    pub fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
         sum(self.origins[body], self.turned(body, local))
     }
 
     /// A vector of a body's frame in the world's axes.
-    pub(super) fn turned(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
+    pub fn turned(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
         self.turns[body].apply(vector)
     }
 

@@ -53,6 +53,8 @@ pub const CONTACT_TOLERANCE: f64 = 1e-6;
 /// The answer for one state.
 #[derive(Debug, Clone)]
 pub struct Impact {
+    /// Where the bodies are.
+    pub placement: Placement,
     /// The closed contacts, in the order of all lists per contact.
     pub contacts: Vec<Contact>,
     /// Contact velocities before the impact, [tangential, normal] \[m/s\].
@@ -99,8 +101,7 @@ struct Answer {
 
 /// A state and its contact problem, not yet analysed.
 struct Before {
-    /// The root's origin \[m\].
-    base: Vector<f64>,
+    placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
     velocity: Vec<f64>,
     /// The foot of the stance.
@@ -201,7 +202,7 @@ impl<'r> Pipeline<'r> {
     fn answer(&mut self, state: &State) -> Result<Answer> {
         let scene = &state.scene;
         let Before {
-            base: _,
+            placement,
             velocity,
             foot,
             loops,
@@ -263,6 +264,7 @@ impl<'r> Pipeline<'r> {
             holds: None,
             left_out: self.left_out(scene, &contacts, problem.friction(), out_of_reach),
             analysis,
+            placement,
             contacts,
             notes,
         };
@@ -274,13 +276,10 @@ impl<'r> Pipeline<'r> {
     /// # Errors
     /// As [`Pipeline::impact`].
     pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
-        let Before { base, contacts, problem, .. } = self.before(state)?;
+        let Before { placement, contacts, problem, .. } = self.before(state)?;
         let clearance = match state.scene.contacts {
             Some(_) => Vec::new(),
-            None => {
-                let placement = Placement::new(&self.plan, &self.workspace, base);
-                contact::clearances(&self.feet, &placement, &Surface::new(&state.scene.ground))
-            }
+            None => contact::clearances(&self.feet, &placement, &Surface::new(&state.scene.ground)),
         };
         Ok(Unsolved { contacts, problem, clearance })
     }
@@ -305,7 +304,8 @@ impl<'r> Pipeline<'r> {
             }
             false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
         };
-        let (contacts, out_of_reach) = self.contacts(scene, base, &surface, &mut notes)?;
+        let placement = Placement::new(&self.plan, &self.workspace, base);
+        let (contacts, out_of_reach) = self.contacts(scene, &placement, &surface, &mut notes)?;
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
         self.points.clear();
@@ -328,7 +328,7 @@ impl<'r> Pipeline<'r> {
         self.answer_of_loops(&loops, &mut change);
         let problem = self.problem(scene, &contacts, &change)?;
         Ok(Before {
-            base,
+            placement,
             velocity,
             foot,
             loops,
@@ -488,18 +488,17 @@ impl<'r> Pipeline<'r> {
     fn contacts(
         &self,
         scene: &Scene,
-        base: Vector<f64>,
+        placement: &Placement,
         surface: &Surface,
         notes: &mut Vec<String>,
     ) -> Result<(Vec<Contact>, usize)> {
-        let placement = Placement::new(&self.plan, &self.workspace, base);
         let (named, tolerance) = (scene.contacts.as_deref(), self.tolerance());
-        let contacts = contact::detect(self.robot, &self.feet, named, (&placement, surface), tolerance)?;
+        let contacts = contact::detect(self.robot, &self.feet, named, (placement, surface), tolerance)?;
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;
         }
         if contacts.is_empty() && named.is_none() {
-            notes.push(match (contact::nearest(self.robot, &self.feet, &placement, surface), &scene.ground) {
+            notes.push(match (contact::nearest(self.robot, &self.feet, placement, surface), &scene.ground) {
                 (Some((link, height)), Ground::Slope(_)) => {
                     format!("nothing touches the ground: the lowest foot, {link}, is {height:?} m above it")
                 }
@@ -513,8 +512,8 @@ impl<'r> Pipeline<'r> {
         }
         let mut out_of_reach = 0;
         if named.is_none() {
-            out_of_reach = contact::out_of_reach(&self.feet, &placement, surface, tolerance);
-            let ends = contact::left_behind(self.robot, &self.feet, &placement, surface, tolerance);
+            out_of_reach = contact::out_of_reach(&self.feet, placement, surface, tolerance);
+            let ends = contact::left_behind(self.robot, &self.feet, placement, surface, tolerance);
             notes.extend(ends.into_iter().map(|(link, end)| {
                 format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
             }));

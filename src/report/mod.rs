@@ -6,11 +6,13 @@
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Survey ──> Sweep, samples ──> JSON, CSV, text              sweep
+//!     Robot, Impact ──> Drawing ──> JSON, picture                       drawing
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```
 
 mod holds;
 mod id;
+pub mod drawing;
 #[cfg(feature = "accuracy")]
 mod accuracy;
 mod inspection;
@@ -26,9 +28,11 @@ pub mod schema;
 mod table;
 mod text;
 mod touchdown;
+mod words;
 
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
+pub use drawing::Drawing;
 pub use holds::{Counterexample, Holds, StateFields};
 pub(crate) use id::short_id;
 pub use inspection::Inspection;

@@ -1,7 +1,6 @@
 //! The regions of a study for people.
 
-use super::super::Palette;
-use super::super::text::in_words;
+use super::super::{Palette, words};
 use super::{Happening, Sweep, Turn, Turns};
 use crate::sweep::Side;
 use std::fmt::Write;
@@ -49,7 +48,7 @@ impl Happening<'_> {
             return vec![format!("refused: {}", error.message)];
         }
         let contacts = self.contacts.unwrap_or_default();
-        let words = |modes: &Vec<_>| in_words(contacts.iter().map(String::as_str), modes);
+        let words = |modes: &Vec<_>| words::modes(contacts.iter().map(String::as_str), modes);
         let mut lines: Vec<String> = match self.outcomes.unwrap_or_default() {
             [] => vec!["no outcome".to_owned()],
             [only] if only.is_empty() => vec!["nothing touches the ground".to_owned()],

@@ -8,7 +8,7 @@ use super::holds::Holds;
 use super::list::list;
 use super::result::{Contact, Report};
 use super::table::{Table, is_residue, number, scale};
-use super::{Detail, Problem};
+use super::{Detail, Problem, words};
 use crate::Robot;
 use crate::impact::{Analysis, Friction, Mode, Region, Verdict};
 use crate::pipeline::Impact;
@@ -54,7 +54,7 @@ impl<'a> Subject<'a> {
             Axis::Slide { .. } => "m/s",
         });
         Self {
-            title: titled(&robot.name, &state.id),
+            title: words::titled(&robot.name, &state.id),
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
             units: base.iter().copied().chain(joints).collect(),
             analysis: impact.analysis.as_ref().ok(),
@@ -64,19 +64,11 @@ impl<'a> Subject<'a> {
     /// A contact problem without a robot.
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
         Self {
-            title: titled("contact problem", &problem.id),
+            title: words::titled("contact problem", &problem.id),
             friction: problem.contact.friction().iter().copied().map(Some).collect(),
             units: Vec::new(),
             analysis: Some(analysis),
         }
-    }
-}
-
-fn titled(name: &str, id: &Option<serde_json::Value>) -> String {
-    match id {
-        Some(serde_json::Value::String(id)) => format!("{name} ({id})"),
-        Some(id) => format!("{name} ({id})"),
-        None => name.to_owned(),
     }
 }
 
@@ -174,7 +166,7 @@ impl<'w> Writer<'w> {
     fn verdict(&mut self) -> std::fmt::Result {
         let Palette { strong, plain, .. } = *self.palette;
         let sentence = match (self.report.verdict, &self.report.outcomes) {
-            (Some(verdict), Some(outcomes)) => verdict_sentence(verdict, outcomes.len()),
+            (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes.len()),
             _ => "No outcomes are known.".to_owned(),
         };
         writeln!(self.out, "{strong}{sentence}{plain}")?;
@@ -277,14 +269,8 @@ impl<'w> Writer<'w> {
 
     /// `left_foot lifts off, right_foot sticks`.
     fn in_words(&self, modes: &[Mode]) -> String {
-        in_words(self.names(), modes)
+        words::modes(self.names(), modes)
     }
-}
-
-/// What each contact does, as in `left_foot lifts off, right_foot sticks`.
-pub(super) fn in_words<'n>(names: impl Iterator<Item = &'n str>, modes: &[Mode]) -> String {
-    let clauses = names.zip(modes).map(|(name, mode)| format!("{name} {}", verb(*mode)));
-    clauses.collect::<Vec<_>>().join(", ")
 }
 
 fn touching(contacts: &[Contact]) -> String {
@@ -295,38 +281,6 @@ fn touching(contacts: &[Contact]) -> String {
             let names: Vec<&str> = contacts[..contacts.len() - 1].iter().map(|contact| contact.name).collect();
             format!("{} and {} touch the ground.", names.join(", "), last.name)
         }
-    }
-}
-
-fn verdict_sentence(verdict: Verdict, outcomes: usize) -> String {
-    match verdict {
-        Verdict::Unique => "Exactly one outcome.".to_owned(),
-        Verdict::Ambiguous => format!("{} outcomes are equally valid.", counted(outcomes)),
-        // Regular contacts always have an outcome.
-        Verdict::None => {
-            "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on each \
-             other, or nothing that may move moves them."
-                .to_owned()
-        }
-        Verdict::Undecided => {
-            "Undecided: some sign was settled by no precision; what it leaves open is listed.".to_owned()
-        }
-        Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.".to_owned(),
-        Verdict::NoContact => "No contact: the ground gives no impulse.".to_owned(),
-    }
-}
-
-fn counted(number: usize) -> String {
-    const WORDS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
-    WORDS.get(number).map_or_else(|| number.to_string(), |word| (*word).to_owned())
-}
-
-fn verb(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Separate => "lifts off",
-        Mode::Stick => "sticks",
-        Mode::SlidePlus => "slides forward",
-        Mode::SlideMinus => "slides backward",
     }
 }
 

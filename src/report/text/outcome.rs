@@ -5,6 +5,7 @@ use super::Writer;
 use crate::impact::Mode;
 use crate::report::outcome::Outcome;
 use crate::report::table::{Table, number, scale};
+use crate::report::words;
 use std::fmt::Write;
 
 impl Writer<'_> {
@@ -102,12 +103,10 @@ impl Writer<'_> {
     }
 }
 
-/// `: margin 0.0130, index +1`, as far as there are any.
+/// `   (margin 0.0130, index +1)`, as far as there are any.
 pub(super) fn graded(outcome: &Outcome) -> String {
-    let margin = outcome.margin.map(|margin| format!("margin {}", number(margin)));
-    let index = outcome.index.map(|index| format!("index {index:+}"));
-    let grades: Vec<String> = margin.into_iter().chain(index).collect();
-    if grades.is_empty() { String::new() } else { format!("   ({})", grades.join(", ")) }
+    let grades = words::grades(outcome.margin, outcome.index);
+    if grades.is_empty() { grades } else { format!("   ({grades})") }
 }
 
 /// v after an outcome, base and joints.

@@ -1,0 +1,81 @@
+//! Collision shapes where they are.
+
+use crate::contact::Placement;
+use crate::planar::{Vector, dot, sum};
+use crate::robot::{FootShape, Rim};
+use serde::Serialize;
+
+/// A collision shape in the world.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub enum Outline {
+    /// A disc, or with radius 0 a point.
+    Disc {
+        /// Its centre \[m\].
+        centre: Vector<f64>,
+        /// Its radius \[m\].
+        radius: f64,
+    },
+    /// A polygon; its corners \[m\].
+    Polygon(Vec<Vector<f64>>),
+}
+
+/// Directions in which a round shape is touched to draw it.
+const DIRECTIONS: u32 = 48;
+
+impl Outline {
+    /// The outline of a shape that is rigid in the frame of `body`.
+    pub(super) fn of_shape(shape: &FootShape, placement: &Placement, body: usize) -> Self {
+        match (shape.corners(), shape.rim()) {
+            (&[centre], Rim::Circle { radius }) => Self::Disc { centre: placement.world(body, centre), radius },
+            (corners, rim) => {
+                let corners = if rim.bound() == 0.0 { corners.to_vec() } else { swept(corners, rim) };
+                let world: Vec<Vector<f64>> = corners.iter().map(|&corner| placement.world(body, corner)).collect();
+                Self::Polygon(world)
+            }
+        }
+    }
+
+    /// Points that it lies between.
+    pub(super) fn corners(&self) -> Vec<Vector<f64>> {
+        match self {
+            &Self::Disc { centre, radius } => {
+                [[-radius, 0.0], [radius, 0.0], [0.0, -radius], [0.0, radius]].map(|out| sum(centre, out)).to_vec()
+            }
+            Self::Polygon(corners) => corners.clone(),
+        }
+    }
+
+    /// The middle of what it spans.
+    pub(super) fn centre(&self) -> Vector<f64> {
+        match self {
+            Self::Disc { centre, .. } => *centre,
+            Self::Polygon(corners) => {
+                let share = 1.0 / corners.len().max(1) as f64;
+                corners.iter().fold([0.0; 2], |middle, corner| sum(middle, corner.map(|entry| entry * share)))
+            }
+        }
+    }
+
+    /// Changes every place.
+    pub(super) fn places(&mut self, change: impl FnMut(&mut Vector<f64>)) {
+        match self {
+            Self::Disc { centre, .. } => std::slice::from_mut(centre).iter_mut().for_each(change),
+            Self::Polygon(corners) => corners.iter_mut().for_each(change),
+        }
+    }
+}
+
+/// The corners with their rims as a polygon: its farthest point in each of many directions.
+fn swept(corners: &[Vector<f64>], rim: Rim) -> Vec<Vector<f64>> {
+    let mut polygon: Vec<Vector<f64>> = (0..DIRECTIONS)
+        .filter_map(|at| {
+            let (sin, cos) = libm::sincos(f64::from(at) * std::f64::consts::TAU / f64::from(DIRECTIONS));
+            let direction = [cos, sin];
+            let farthest = corners.iter().max_by(|a, b| dot(**a, direction).total_cmp(&dot(**b, direction)));
+            farthest.map(|&corner| sum(corner, rim.support(direction)))
+        })
+        .collect();
+    polygon.dedup();
+    polygon
+}

@@ -1,0 +1,91 @@
+//! Drawings of small robots, against what is known of them by hand.
+
+use super::*;
+use crate::pipeline::{Options, Pipeline};
+use crate::state::Defaults;
+
+/// A ball of 2 kg and 0.5 m, on it an arm of 1 m that ends in a point foot.
+const ARM: &str = r#"<robot name="arm">
+    <link name="ball">
+        <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+        <collision><geometry><sphere radius="0.5"/></geometry></collision>
+    </link>
+    <link name="arm">
+        <inertial><origin xyz="0 0 0.5"/><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+        <collision><origin xyz="0 0 1"/><geometry><sphere radius="0"/></geometry></collision>
+    </link>
+    <joint name="shoulder" type="continuous"><axis xyz="0 1 0"/><parent link="ball"/><child link="arm"/></joint>
+</robot>"#;
+
+fn drawn(state: &str) -> Drawing {
+    let robot = Robot::from_urdf(ARM).unwrap();
+    let state = State::from_json(state, &robot, &Defaults::default()).unwrap();
+    let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
+    Drawing::of_impact(&robot, &[], &state, &impact)
+}
+
+#[test]
+fn bodies_stand_where_the_state_puts_them() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let drawing = drawn(&format!(
+        r#"{{"position": {{"base": {{"x": 3, "z": 0.5}}, "joints": {{"shoulder": {quarter}}}}}, "friction": 1}}"#
+    ));
+    let [ball, arm] = &drawing.bodies[..] else { panic!("{drawing:?}") };
+    assert_eq!((ball.origin, ball.com, ball.last), ([3.0, 0.5], Some([3.0, 0.5]), false));
+    assert!(ball.bones.is_empty(), "the joint is at its centre");
+    // A positive angle tips up toward forward.
+    assert_eq!((arm.bones.as_slice(), arm.com, arm.last), (&[[4.0, 0.5]][..], Some([3.5, 0.5]), true));
+    assert_eq!(drawing.joints, [[3.0, 0.5]]);
+    assert_eq!(drawing.extent(), Extent { low: [2.5, 0.0], high: [4.0, 1.0] });
+    assert_eq!(drawing.contacts[0].point, [3.0, 0.0]);
+}
+
+#[test]
+fn the_longest_arrow_has_its_part_of_the_robots_size() {
+    let drawing = drawn(r#"{"position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -2}}, "friction": 1}"#);
+    assert_eq!(drawing.outcomes.len(), 1);
+    // The robot spans 1 m by 1.5 m; all of its 3 kg are stopped above the contact.
+    let size = libm::hypot(1.0, 1.5);
+    let [x, z] = drawing.outcomes[0].impulse[0];
+    assert!(x.abs() < 1e-12 && (z - 6.0).abs() < 1e-12, "{x} {z}");
+    assert!((drawing.impulse_scale * 6.0 - 0.3 * size).abs() < 1e-12);
+    assert!((drawing.velocity_scale * 2.0 - 0.3 * size).abs() < 1e-12);
+    assert_eq!(drawing.contacts[0].velocity_before, [0.0, -2.0]);
+}
+
+#[test]
+fn arrows_on_a_slope_are_in_the_worlds_axes() {
+    let slope = 0.25_f64;
+    let (sin, cos) = libm::sincos(slope);
+    let state = format!(
+        r#"{{"stance": "ball", "velocity": {{"base": {{"pitch": 0}}}}, "friction": 0, "ground": {{"slope": {slope}}},
+            "impulse": [{{"link": "ball", "offset": [0, 0, 0], "vector": [0, -3]}}]}}"#
+    );
+    let drawing = drawn(&state);
+    let [contact] = &drawing.contacts[..] else { panic!("{drawing:?}") };
+    assert!((contact.normal[0] + sin).abs() < 1e-12 && (contact.normal[1] - cos).abs() < 1e-12);
+    let [x, z] = drawing.outcomes[0].impulse[0];
+    assert!((x / z + libm::tan(slope)).abs() < 1e-9, "without friction it is along the normal: {x} {z}");
+    assert_eq!(drawing.applied[0].vector, [0.0, -3.0]);
+    let [left, right] = drawing.ground[..] else { panic!("{drawing:?}") };
+    assert!(((right[1] - left[1]) / (right[0] - left[0]) - libm::tan(slope)).abs() < 1e-4);
+}
+
+#[test]
+fn a_profile_ends_where_it_ends_and_is_cut_where_the_drawing_does() {
+    let state = r#"{"position": {"base": {"z": 0.5}}, "friction": 1,
+        "ground": {"profile": [[-900, 0], [0.5, 0], [0.6, -1]]}}"#;
+    let drawing = drawn(state);
+    let [left, edge, end] = drawing.ground[..] else { panic!("{drawing:?}") };
+    assert!(left[0] > -3.0 && left[1] == 0.0, "{left:?}");
+    assert_eq!((edge, end), ([0.5, 0.0], [0.6, -1.0]));
+}
+
+#[test]
+fn a_drawing_is_small() {
+    let drawing =
+        drawn(r#"{"position": {"base": {"x": 0.123456789, "z": 0.5}, "joints": {"shoulder": 1}}, "friction": 1}"#);
+    let json = serde_json::to_string(&drawing).unwrap();
+    assert!(json.contains(r#""origin":[0.12346,0.5]"#), "{json}");
+    assert!(json.len() < 1000, "{}", json.len());
+}
