@@ -38,6 +38,11 @@ impl PlotOptions {
         spare(self.plot.as_deref(), inputs)
     }
 
+    /// Whether a picture is asked for.
+    pub fn is_asked_for(&self) -> bool {
+        self.plot.is_some()
+    }
+
     /// Draws the picture, if one is asked for.
     ///
     /// # Errors

@@ -29,6 +29,13 @@ impl Progress {
         }))
     }
 
+    /// There are so many more pieces.
+    pub fn expect(&self, pieces: u64) {
+        if let Some(bar) = &self.0 {
+            bar.inc_length(pieces);
+        }
+    }
+
     /// One piece is done.
     pub fn step(&self) {
         if let Some(bar) = &self.0 {

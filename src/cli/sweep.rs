@@ -3,6 +3,7 @@
 use super::complaint::complain;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Output, spare};
+use super::picture::PlotOptions;
 use super::progress::Progress;
 use super::robot::{RobotOptions, caution};
 use super::{Answered, Failure, Outcome, input};
@@ -12,7 +13,7 @@ use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
 use heelstrike::report::Detail;
 use heelstrike::report::append_line;
-use heelstrike::report::sweep::{Regions, Sample, columns, letter};
+use heelstrike::report::sweep::{Regions, Sample, columns, letter, picture};
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
 use std::io::Write;
@@ -46,6 +47,8 @@ pub struct Args {
     /// Write to this file, which is replaced
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    plot: PlotOptions,
     /// Regions for people, regions and samples as JSON, or samples as CSV [default: by the output's ending, else text]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
@@ -84,6 +87,7 @@ const LARGEST: u64 = 64 << 20;
 const TOGETHER: usize = 4096;
 
 pub(super) fn run(args: &Args) -> Outcome {
+    args.plot.check()?;
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;
@@ -104,7 +108,9 @@ pub(super) fn run(args: &Args) -> Outcome {
     };
     model.readable().map_err(refuse)?;
     let inputs = [Some(&args.robot.robot), Some(&args.study), args.loops.loops.as_ref()];
-    spare(args.output.as_deref(), &inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    spare(args.output.as_deref(), &inputs)?;
+    args.plot.spare(&inputs)?;
 
     let threads = match args.threads {
         0 => available_parallelism().map_or(1, usize::from),
@@ -118,6 +124,10 @@ pub(super) fn run(args: &Args) -> Outcome {
     let findings = Findings::of(&model, workers);
     let regions = Regions::new(study.parameters(), &findings);
     let regimes = findings.regimes();
+    if args.plot.is_asked_for() {
+        progress.expect(picture::work(&model, &findings) as u64);
+        args.plot.draw(&picture::of(&model, &findings, workers))?;
+    }
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {
         Format::Text => {

@@ -4,11 +4,12 @@
 //!     JSON --[study]--> Study: parameters, expressions     point --[model, variation]--> Robot, State --[pipeline]--> Impact
 //!     Impact --[regime]--> which outcomes are valid        inequalities of all combinations --[hunt]--> where they may change
 //!     samples --[line]--> borders, bisected to 1e-12 of the range --[turn]--> which inequality of which contact is zero there
-//!     one parameter --[survey]--> Survey                   two parameters --[map, cell, chain]--> Map
+//!     one parameter --[survey]--> Survey --[course]--> Course    two parameters --[map, cell, chain]--> Map
 //! ```
 
 mod cell;
 mod chain;
+mod course;
 mod hunt;
 mod line;
 mod map;
@@ -19,8 +20,10 @@ mod regime;
 mod study;
 mod survey;
 mod turn;
+mod unit;
 mod variation;
 
+pub use course::{Course, Place};
 pub use line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stretches};
 pub use map::{Area, Curve, Map};
 pub use model::{Model, Solver, WATCHED_CONTACTS, Watched};

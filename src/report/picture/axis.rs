@@ -2,6 +2,7 @@
 
 use super::font;
 use kuva::render::layout::TickFormat;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// An axis of a panel.
@@ -15,6 +16,8 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
     /// Whether it has neither ticks nor label, for another panel beside it has the same.
     pub bare: bool,
+    /// Whether it measures angles \[rad\] whose ticks are parts of pi.
+    pub in_pi: bool,
 }
 
 /// What an axis spans, in the numbers at its ticks: exponents, or multiples of a power of ten.
@@ -25,6 +28,7 @@ pub(super) struct Span {
     /// Between ticks.
     pub step: f64,
     logarithmic: bool,
+    in_pi: bool,
     /// A value is the number at its tick times ten to this.
     power: i32,
 }
@@ -33,6 +37,8 @@ pub(super) struct Span {
 const ROOM: f64 = 0.04;
 /// What a mark takes of a logarithmic axis.
 const MARK: f64 = 0.02;
+/// Values that agree to this part of them are the same.
+const ROUNDING: f64 = 1e-10;
 /// About how far ticks are apart \[px\].
 const PITCH: f64 = 75.0;
 
@@ -48,16 +54,27 @@ impl Span {
         }
         let room = if axis.range.is_some() { 0.0 } else { ROOM * (most - least) };
         let (mut low, mut high) = (least - room, most + room);
-        if low >= high {
+        // What differs by rounding alone is one value.
+        let same = axis.range.is_none() && most - least <= ROUNDING * least.abs().max(most.abs());
+        if low >= high || same {
             let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
             (low, high) = (low - room, high + room);
         }
         let largest = low.abs().max(high.abs());
-        let power = if (1e-2..1e5).contains(&largest) { 0 } else { libm::floor(libm::log10(largest)) as i32 };
-        let mut span = Self { low, high, step: 1.0, logarithmic: false, power };
+        let power =
+            if axis.in_pi || (1e-2..1e5).contains(&largest) { 0 } else { libm::floor(libm::log10(largest)) as i32 };
+        let mut span = Self { low, high, step: 1.0, logarithmic: false, in_pi: axis.in_pi, power };
         (span.low, span.high) = (span.shown(low), span.shown(high));
-        span.step = step((span.high - span.low) * PITCH / length);
+        span.set_step(length);
         span
+    }
+
+    fn set_step(&mut self, length: f64) {
+        if !self.logarithmic {
+            let least = (self.high - self.low) * PITCH / length;
+            // Halves of pi, or whole multiples.
+            self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
+        }
     }
 
     /// Of a logarithmic axis, in exponents.
@@ -71,13 +88,15 @@ impl Span {
             span if span <= 16.0 => 2.0,
             span => (span / 40.0).ceil() * 5.0,
         };
-        Self { low: (low / step).floor() * step, high: (high / step).ceil() * step, step, logarithmic: true, power: 0 }
+        let (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
+        Self { low, high, step, logarithmic: true, in_pi: false, power: 0 }
     }
 
     /// The number that stands at a value's tick.
     fn shown(&self, value: f64) -> f64 {
         match (self.logarithmic, self.power) {
             (true, _) => libm::log10(value),
+            _ if self.in_pi => value / PI,
             (false, 0) => value,
             (false, power) if power < -300 => value * 1e300 * libm::pow(10.0, f64::from(-power - 300)),
             (false, power) => value * libm::pow(10.0, f64::from(-power)),
@@ -107,15 +126,16 @@ impl Span {
 
     fn extend(&mut self, below: f64, above: f64, length: f64) {
         (self.low, self.high) = (self.low - below, self.high + above);
-        if !self.logarithmic {
-            self.step = step((self.high - self.low) * PITCH / length);
-        }
+        self.set_step(length);
     }
 
     /// How kuva writes a tick.
     pub fn format(&self) -> TickFormat {
         if self.logarithmic {
             return TickFormat::Custom(Arc::new(power_of_ten));
+        }
+        if self.in_pi {
+            return TickFormat::Custom(Arc::new(part_of_pi));
         }
         let decimals = decimals(self.step);
         TickFormat::Custom(Arc::new(move |value| fixed(value, decimals)))
@@ -151,6 +171,18 @@ fn fixed(value: f64, decimals: usize) -> String {
         Some(rest) if rest.chars().all(|digit| matches!(digit, '0' | '.')) => rest.to_owned(),
         Some(rest) => format!("−{rest}"),
         None => text,
+    }
+}
+
+/// A multiple of half of pi, as in −π/2.
+fn part_of_pi(share: f64) -> String {
+    let halves = (2.0 * share).round();
+    let sign = if halves < 0.0 { "−" } else { "" };
+    let (whole, divisor) = if halves % 2.0 == 0.0 { (0.5 * halves.abs(), "") } else { (halves.abs(), "/2") };
+    match whole {
+        0.0 => "0".to_owned(),
+        1.0 => format!("{sign}π{divisor}"),
+        _ => format!("{sign}{whole}π{divisor}"),
     }
 }
 
@@ -200,6 +232,15 @@ mod tests {
             assert_eq!(span.step, 1.0);
             assert!((span.share(scale) - 0.25).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn angles_are_parts_of_pi() {
+        let axis = Axis { range: Some((-PI, PI)), in_pi: true, ..Axis::default() };
+        let span = Span::new(&axis, std::iter::empty(), 320.0);
+        assert_eq!((span.low, span.high, span.step), (-1.0, 1.0, 0.5));
+        let ticks = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|at| span.format().format(at));
+        assert_eq!(ticks, ["−π", "−π/2", "0", "π/2", "π", "3π/2", "2π"]);
     }
 
     #[test]

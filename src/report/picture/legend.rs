@@ -11,14 +11,14 @@ use kuva::render::render::Primitive;
 pub struct Legend {
     /// One after the other.
     pub entries: Vec<Entry>,
-    /// Whether they stand in rows below all panels, not in a column to the right of them.
+    /// Whether they stand below all panels, not in a column to the right of them.
     pub below: bool,
 }
 
 /// What a sign is.
 #[derive(Debug, Clone)]
 pub struct Entry {
-    /// In words.
+    /// In words; of several lines where it has line breaks, or no room for one.
     pub name: String,
     /// The sign.
     pub key: Key,
@@ -42,27 +42,38 @@ pub enum Key {
     },
 }
 
-/// Height of the font, and from one row to the next \[px\].
+/// Height of the font, from one row to the next, and from one line of an entry to the next \[px\].
 const SIZE: u32 = 12;
 const ROW: f64 = 20.0;
+const LINE: f64 = 16.0;
 /// Of a key, long enough for two periods of any dashes \[px\].
 const KEY: f64 = 36.0;
 /// From a key to its name, and from an entry to the next one in a row \[px\].
 const GAP: f64 = 8.0;
 const NEXT: f64 = 22.0;
 
+/// Where an entry is.
+struct Place {
+    at: Pixel,
+    lines: Vec<String>,
+}
+
 impl Legend {
     /// Where each entry is, and the size of all, in a picture whose panels are so wide \[px\].
-    fn places(&self, panels: f64, scale: f64) -> (Vec<Pixel>, Pixel) {
-        let room = if self.below { panels } else { 0.0 };
-        let (mut places, mut whole, mut x, mut y) = (Vec::new(), (0.0_f64, 0.0), 0.0, 0.0);
+    fn places(&self, panels: f64, scale: f64) -> (Vec<Place>, Pixel) {
+        let room = if self.below { panels } else { f64::INFINITY };
+        let (mut places, mut whole, mut x, mut y, mut row) = (Vec::new(), (0.0_f64, 0.0_f64), 0.0, 0.0, 0.0_f64);
         for entry in &self.entries {
-            let width = entry.key.width(scale) + GAP + font::width(&entry.name, SIZE);
-            if x > 0.0 && x + width > room {
-                (x, y) = (0.0, y + ROW);
+            let key = entry.key.width(scale) + GAP;
+            let lines = font::lines(&entry.name, SIZE, room - key);
+            let width = key + lines.iter().map(|line| font::width(line, SIZE)).fold(0.0, f64::max);
+            let height = ROW + LINE * lines.len().saturating_sub(1) as f64;
+            if x > 0.0 && (!self.below || x + width > room) {
+                (x, y, row) = (0.0, y + row, 0.0);
             }
-            places.push((x, y));
-            whole = (whole.0.max(x + width), y + ROW);
+            places.push(Place { at: (x, y), lines });
+            row = row.max(height);
+            whole = (whole.0.max(x + width), y + row);
             x += width + NEXT;
         }
         (places, whole)
@@ -75,13 +86,14 @@ impl Legend {
 
     /// Draws it with its upper left corner at `at`; a unit of the first panel's x axis takes `scale` \[px\].
     pub(super) fn draw(&self, at: Pixel, panels: f64, scale: f64, out: &mut Vec<Primitive>) {
-        for (entry, (x, y)) in self.entries.iter().zip(self.places(panels, scale).0) {
+        for (entry, Place { at: (x, y), lines }) in self.entries.iter().zip(self.places(panels, scale).0) {
             let (x, middle) = (at.0 + x, at.1 + y + 0.5 * ROW);
             let width = entry.key.width(scale);
             entry.key.draw((x, middle), width, out);
-            let baseline = middle + 0.5 * font::CAPITAL * f64::from(SIZE);
-            let beside = (x + width + GAP, baseline);
-            text(beside, &entry.name, SIZE, Anchor::Start, Colour::Black, false, out);
+            for (line, content) in lines.iter().enumerate() {
+                let baseline = middle + 0.5 * font::CAPITAL * f64::from(SIZE) + LINE * line as f64;
+                text((x + width + GAP, baseline), content, SIZE, Anchor::Start, Colour::Black, false, out);
+            }
         }
     }
 }

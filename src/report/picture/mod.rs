@@ -80,6 +80,11 @@ pub struct Band {
     pub fill: Colour,
 }
 
+/// How wide and how high a line of text is \[px\].
+pub fn text_size(text: &str, size: u32) -> Pixel {
+    (font::width(text, size), font::CAPITAL * f64::from(size))
+}
+
 /// What is about the whole picture \[px\].
 const EDGE: f64 = 12.0;
 /// Between panels, and between them and the legend \[px\].

@@ -113,6 +113,10 @@ pub enum Dash {
     Dotted,
     /// One and the other in turn.
     DashDot,
+    /// Very long ones.
+    Long,
+    /// A dash and two dots.
+    DashDotDot,
 }
 
 /// A mark at a point.
@@ -145,7 +149,7 @@ const HALF_HEAD: f64 = 3.6;
 
 impl Dash {
     /// All, the most different ones first.
-    pub const ALL: [Self; 4] = [Self::Solid, Self::Dashed, Self::Dotted, Self::DashDot];
+    pub const ALL: [Self; 6] = [Self::Solid, Self::Dashed, Self::Dotted, Self::DashDot, Self::Long, Self::DashDotDot];
 
     fn pattern(self) -> Option<String> {
         match self {
@@ -153,6 +157,8 @@ impl Dash {
             Self::Dashed => Some("8 4".into()),
             Self::Dotted => Some("2 3".into()),
             Self::DashDot => Some("9 3 2 3".into()),
+            Self::Long => Some("18 4".into()),
+            Self::DashDotDot => Some("9 3 2 3 2 3".into()),
         }
     }
 }

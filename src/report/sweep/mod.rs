@@ -3,9 +3,12 @@
 //! ```text
 //!     Survey --> Sweep {parameter, regions, borders, notes} --> head of the JSON, text
 //!     each sample --> Report --> "samples", rows of CSV
+//!     Findings --> Picture  picture
 //! ```
 
 mod map;
+#[cfg(feature = "plot")]
+pub mod picture;
 mod samples;
 mod text;
 

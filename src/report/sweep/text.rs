@@ -57,9 +57,15 @@ impl Happening<'_> {
         for more in lines.iter_mut().skip(1) {
             more.insert_str(0, "or ");
         }
-        let undecided = self.undecided.unwrap_or_default();
-        lines.extend(undecided.iter().map(|modes| format!("not excluded: {}", words(modes))));
+        lines.extend(self.not_excluded());
         lines
+    }
+
+    /// The combinations that no precision excludes, one a line.
+    pub fn not_excluded(&self) -> Vec<String> {
+        let contacts = self.contacts.unwrap_or_default();
+        let words = |modes: &Vec<_>| in_words(contacts.iter().map(String::as_str), modes);
+        self.undecided.unwrap_or_default().iter().map(|modes| format!("not excluded: {}", words(modes))).collect()
     }
 }
 

@@ -1,0 +1,119 @@
+//! Two parameters: areas of equal outcomes with their letters, and the borders between them.
+
+use super::Kind;
+use super::place::{Box, clear_of};
+use crate::planar::Vector;
+use crate::report::picture::{
+    Anchor, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
+};
+use crate::sweep::{Area, Map};
+
+/// Inside of the axes \[px\].
+const SIZE: Pixel = (540.0, 420.0);
+/// Of letters \[px\].
+const LETTERS: u32 = 15;
+/// A border's line.
+const BORDER: Stroke = Stroke::solid(Colour::Black, 1.0);
+/// From a letter to a small area that it belongs to.
+const LEADER: Stroke = Stroke::solid(Colour::Black, 0.7);
+/// How far a letter stands from borders at least \[px\].
+const CLEAR: f64 = 1.0;
+/// A letter of a small area stands at one of these distances \[px\], in one of so many directions.
+const AWAY: [f64; 4] = [26.0, 38.0, 52.0, 70.0];
+const DIRECTIONS: usize = 24;
+
+/// What the areas of a map look like.
+pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
+    let mut shapes: Vec<Shape> = Vec::new();
+    let mut entries = Vec::new();
+    for (index, area) in map.areas.iter().enumerate() {
+        let Kind { letter, colour, happening } = Kind::new(index, &area.regime, area.refused.as_ref());
+        let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
+        // The seam between two fills lies under the border's line.
+        shapes.push(Shape::Area { loops, fill: Some(colour), stroke: None });
+        entries.push(Entry { name: format!("{letter}: {}", happening.lines().join("\n")), key: Key::Fill(colour) });
+    }
+    for curve in &map.curves {
+        shapes.push(Shape::Line { points: curve.points.iter().map(|&[x, y]| (x, y)).collect(), stroke: BORDER });
+    }
+    shapes.extend(letters(&x, &y, map));
+    let panel = Panel { shapes, size: SIZE, ..Panel::new(x, y) };
+    Picture { title: String::new(), rows: vec![vec![panel]], legend: Legend { entries, below: true } }
+}
+
+/// The letters of all areas: within each part that has room for it, or beside the largest part, with a line to it.
+fn letters(x: &Axis, y: &Axis, map: &Map) -> Vec<Shape> {
+    let (Some(x), Some(y)) = (x.range, y.range) else { return Vec::new() };
+    let pixel = |[a, b]: Vector<f64>| (SIZE.0 * (a - x.0) / (x.1 - x.0), SIZE.1 * (b - y.0) / (y.1 - y.0));
+    let point = |(a, b): Pixel| -> Point { (x.0 + (x.1 - x.0) * a / SIZE.0, y.0 + (y.1 - y.0) * b / SIZE.1) };
+    let pixels = |points: &Vec<Vector<f64>>| points.iter().copied().map(pixel).collect();
+    let mut taken: Vec<Vec<Pixel>> = map.curves.iter().map(|curve| pixels(&curve.points)).collect();
+    let text = |index: usize, at: Pixel| {
+        let (letter, half) = lettered(index);
+        let label = Label {
+            at: point(at),
+            offset: (0.0, 0.0),
+            text: letter,
+            anchor: Anchor::Middle,
+            size: LETTERS,
+            colour: Colour::Black,
+            rim: true,
+        };
+        (Box { middle: at, half }, Shape::Text(label))
+    };
+    let mut shapes = Vec::new();
+    let mut small: Vec<(usize, &Area)> = Vec::new();
+    for (index, area) in map.areas.iter().enumerate() {
+        let middles = area.middles.iter().map(|(middle, _)| text(index, pixel(*middle)));
+        let fitting: Vec<_> =
+            middles.filter(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR).collect();
+        if fitting.is_empty() {
+            small.push((index, area));
+        }
+        for (text, shape) in fitting {
+            taken.push(outline(&text));
+            shapes.push(shape);
+        }
+    }
+    for (index, area) in small {
+        let Some(from) = deepest(area).map(pixel) else { continue };
+        let places = AWAY.into_iter().flat_map(|distance| {
+            (0..DIRECTIONS).map(move |step| {
+                let angle = step as f64 * std::f64::consts::TAU / DIRECTIONS as f64;
+                (from.0 + distance * libm::cos(angle), from.1 + distance * libm::sin(angle))
+            })
+        });
+        let free = places
+            .map(|at| text(index, at))
+            .find(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR + 2.0);
+        if let Some((text, shape)) = free {
+            let (dx, dy) = (from.0 - text.middle.0, from.1 - text.middle.1);
+            let share = 0.5 * f64::from(LETTERS) / libm::hypot(dx, dy);
+            let to = (text.middle.0 + share * dx, text.middle.1 + share * dy);
+            shapes.push(Shape::Line { points: vec![point(from), point(to)], stroke: LEADER });
+            shapes.push(shape);
+            taken.push(outline(&text));
+            taken.push(vec![from, to]);
+        }
+    }
+    shapes
+}
+
+/// An area's letter, and half its width and height \[px\].
+fn lettered(index: usize) -> (String, Pixel) {
+    let letter = super::letter(index);
+    let half = Box::half_of(&letter, LETTERS);
+    (letter, half)
+}
+
+/// The point of an area that is farthest from its edges.
+fn deepest(area: &Area) -> Option<Vector<f64>> {
+    let middle = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| *middle);
+    // An area between the lines of the grid has none: then a place on its edge.
+    middle.or_else(|| area.loops.first()?.first().copied())
+}
+
+fn outline(Box { middle: (x, y), half: (across, up) }: &Box) -> Vec<Pixel> {
+    let corner = |right: f64, high: f64| (x + right * across, y + high * up);
+    vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)]
+}

@@ -1,0 +1,69 @@
+//! Where texts have room between curves.
+
+use crate::report::picture::{Pixel, text_size};
+
+/// The rectangle that a text takes \[px\].
+#[derive(Debug, Clone, Copy)]
+pub struct Box {
+    /// Its middle.
+    pub middle: Pixel,
+    /// Half its width and height.
+    pub half: Pixel,
+}
+
+impl Box {
+    /// Half the width and height of a text in letters of this size, and a little about it.
+    pub fn half_of(text: &str, letters: u32) -> Pixel {
+        let (width, height) = text_size(text, letters);
+        (0.5 * width + 3.0, 0.5 * height + 3.0)
+    }
+
+    /// Whether it lies within a panel of this size.
+    pub fn is_within(&self, (width, height): Pixel) -> bool {
+        let ((x, y), (across, up)) = (self.middle, self.half);
+        across <= x && x <= width - across && up <= y && y <= height - up
+    }
+
+    /// How far a point is from it; 0 inside.
+    fn distance(&self, (x, y): Pixel) -> f64 {
+        let beyond = |at: f64, middle: f64, half: f64| ((at - middle).abs() - half).max(0.0);
+        libm::hypot(beyond(x, self.middle.0, self.half.0), beyond(y, self.middle.1, self.half.1))
+    }
+}
+
+/// A segment is looked at in pieces of this length \[px\].
+const PIECE: f64 = 2.0;
+
+/// How far curves are from a text \[px\].
+pub fn clear_of(text: &Box, curves: &[Vec<Pixel>]) -> f64 {
+    let reach = libm::hypot(text.half.0, text.half.1);
+    let mut least = f64::INFINITY;
+    for pair in curves.iter().flat_map(|curve| curve.windows(2)) {
+        let [a, b] = [pair[0], pair[1]];
+        let length = libm::hypot(b.0 - a.0, b.1 - a.1);
+        // No point of the segment is nearer than its ends are, less its length.
+        if libm::hypot(a.0 - text.middle.0, a.1 - text.middle.1) - length - reach > least {
+            continue;
+        }
+        let pieces = (length / PIECE).ceil().max(1.0);
+        for k in 0..=pieces as usize {
+            let share = k as f64 / pieces;
+            least = least.min(text.distance((a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1))));
+        }
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_distance_to_a_text_counts_from_its_edge() {
+        let text = Box { middle: (50.0, 50.0), half: (20.0, 5.0) };
+        assert_eq!(clear_of(&text, &[vec![(0.0, 70.0), (100.0, 70.0)]]), 15.0);
+        assert_eq!(clear_of(&text, &[vec![(50.0, 0.0), (50.0, 100.0)]]), 0.0);
+        assert_eq!(clear_of(&text, &[vec![(73.0, 59.0), (73.0, 59.0)]]), 5.0);
+        assert!(text.is_within((70.0, 55.0)) && !text.is_within((69.0, 55.0)));
+    }
+}

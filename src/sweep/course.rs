@@ -1,0 +1,175 @@
+//! What the outcomes of each region do along the parameter, at places so close that straight lines between them look smooth.
+//!
+//! ```text
+//!     Region --even places, its borders' inner sides included--> halved until the middle lies on the line --> Course
+//! ```
+
+use super::line::RESOLUTION;
+use super::model::{Model, Solver};
+use super::parallel::Workers;
+use super::regime::Regime;
+use super::survey::{Region, Survey};
+use crate::impact::{Analysis, Explanation, Mode, Motion, Outcome};
+use std::f64::consts::PI;
+
+/// The places of one region, ascending.
+#[derive(Debug, Clone)]
+pub struct Course {
+    /// Those at which the region's outcomes were found.
+    pub places: Vec<Place>,
+}
+
+/// The outcomes at one value of the parameter.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// The parameter.
+    pub at: f64,
+    /// Every outcome's modes and what it does, in the order of modes, which all places of a region share.
+    pub outcomes: Vec<(Vec<Mode>, Motion)>,
+    /// The paper's section 4 for each contact, where it was asked for and G is regular.
+    pub explanation: Option<Explanation>,
+}
+
+/// The whole range has so many even intervals, and a region at least so many.
+const EVEN: f64 = 160.0;
+const LEAST: f64 = 8.0;
+
+/// An interval is halved where its middle lies farther off the line than this part of the largest value.
+const STRAIGHT: f64 = 5e-4;
+
+/// How often an interval is halved at most.
+const HALVINGS: usize = 7;
+
+/// The largest contact velocity after and impulse of each contact in all places, by which deviations are measured.
+type Scales = Vec<[f64; 2]>;
+
+impl Course {
+    /// The courses of all regions that were found in `model`; tells `workers` of [`Course::work`] pieces of work.
+    pub fn of(model: &Model, survey: &Survey, workers: Workers) -> Vec<Self> {
+        let Some(parameter) = model.study.parameters().first() else { return Vec::new() };
+        let range = parameter.range();
+        let all: Vec<(usize, f64)> = survey
+            .regions
+            .iter()
+            .enumerate()
+            .flat_map(|(index, region)| even(region, range).into_iter().map(move |at| (index, at)))
+            .collect();
+        let begin = || Solver::new(model);
+        let places = workers.map(all.len(), begin, |solver, k| {
+            let (region, at) = all[k];
+            Place::of(solver, at, &survey.regions[region].regime)
+        });
+        let mut scales: Vec<Scales> = survey.regions.iter().map(|region| nothing(&region.regime)).collect();
+        for ((region, _), place) in all.iter().zip(&places) {
+            place.iter().for_each(|place| place.widen(&mut scales[*region]));
+        }
+        let more = workers.map(all.len(), begin, |solver, k| {
+            let mut found = Vec::new();
+            if let (Some(a), Some(Some(b))) = (&places[k], places.get(k + 1))
+                && all[k].0 == all[k + 1].0
+            {
+                let region = all[k].0;
+                between(solver, (a, b), &survey.regions[region].regime, &scales[region], HALVINGS, &mut found);
+            }
+            found
+        });
+        let mut courses = vec![Self { places: Vec::new() }; survey.regions.len()];
+        for (((region, _), place), more) in all.iter().zip(places).zip(more) {
+            courses[*region].places.extend(place.into_iter().chain(more));
+        }
+        courses
+    }
+
+    /// How many pieces of work the courses of a survey of `model` are.
+    pub fn work(model: &Model, survey: &Survey) -> usize {
+        let range = model.study.parameters().first().map_or(0.0, |parameter| parameter.range());
+        2 * survey.regions.iter().map(|region| even(region, range).len()).sum::<usize>()
+    }
+}
+
+/// Even places in a region, from one border to the other, of which it stays a little away.
+fn even(region: &Region, range: f64) -> Vec<f64> {
+    let width = region.to - region.from;
+    let inside = (RESOLUTION * range).min(0.25 * width);
+    let (from, to) = (region.from + inside, region.to - inside);
+    let count = (EVEN * width / range).ceil().max(LEAST);
+    (0..=count as usize).map(|k| from + (to - from) * (k as f64 / count)).collect()
+}
+
+fn nothing(regime: &Regime) -> Scales {
+    vec![[0.0; 2]; regime.contacts().len()]
+}
+
+/// The places that straight lines between two neighbours need in between.
+fn between(
+    solver: &mut Solver,
+    (a, b): (&Place, &Place),
+    regime: &Regime,
+    scales: &Scales,
+    halvings: usize,
+    found: &mut Vec<Place>,
+) {
+    let at = 0.5 * (a.at + b.at);
+    let Some(halvings) = halvings.checked_sub(1).filter(|_| a.at < at && at < b.at) else { return };
+    let Some(middle) = Place::of(solver, at, regime) else { return };
+    if middle.is_on_line(a, b, scales) {
+        return;
+    }
+    between(solver, (a, &middle), regime, scales, halvings, found);
+    let right = middle.clone();
+    found.push(middle);
+    between(solver, (&right, b), regime, scales, halvings, found);
+}
+
+impl Place {
+    /// The outcomes at `at`; none where they are not those of the regime.
+    fn of(solver: &mut Solver, at: f64, regime: &Regime) -> Option<Self> {
+        let answer = solver.impact(&[at]);
+        let same = Regime::of(&answer) == *regime;
+        let analysis: Analysis = answer.ok().filter(|_| same)?.analysis.ok()?;
+        let motion = |Outcome { modes, impulse, velocity_after, .. }| (modes, Motion { impulse, velocity_after });
+        let mut outcomes: Vec<(Vec<Mode>, Motion)> =
+            analysis.outcomes.into_iter().filter(|outcome| outcome.decided).map(motion).collect();
+        outcomes.sort_by(|(a, _), (b, _)| a.cmp(b));
+        Some(Self { at, outcomes, explanation: analysis.explanation })
+    }
+
+    /// Velocities and impulses: \[outcome\]\[contact\]\[velocity or impulse\]\[component\].
+    fn numbers(&self) -> impl Iterator<Item = impl Iterator<Item = [[f64; 2]; 2]>> {
+        let pair = |motion: &Motion, contact: usize| [motion.velocity_after[contact], motion.impulse[contact]];
+        self.outcomes.iter().map(move |(_, motion)| (0..motion.impulse.len()).map(move |contact| pair(motion, contact)))
+    }
+
+    fn widen(&self, scales: &mut Scales) {
+        for outcome in self.numbers() {
+            for (scale, pair) in scales.iter_mut().zip(outcome) {
+                for (scale, numbers) in scale.iter_mut().zip(pair) {
+                    *scale = numbers.iter().fold(*scale, |most, number| most.max(number.abs()));
+                }
+            }
+        }
+    }
+
+    /// Whether it lies on the straight line between its neighbours, as far as anybody sees.
+    fn is_on_line(&self, a: &Self, b: &Self, scales: &Scales) -> bool {
+        let ends = a.numbers().zip(b.numbers());
+        let straight = self.numbers().zip(ends).all(|(own, (a, b))| {
+            own.zip(a.zip(b)).zip(scales).all(|((own, (a, b)), scale)| {
+                (0..2).all(|kind| {
+                    let off = |axis: usize| own[kind][axis] - 0.5 * (a[kind][axis] + b[kind][axis]);
+                    (0..2).all(|axis| off(axis).abs() <= STRAIGHT * scale[kind])
+                })
+            })
+        });
+        let angles = |place: &Self| -> Vec<f64> {
+            place.explanation.iter().flat_map(|angles| angles.beta.iter().chain(&angles.gamma).copied()).collect()
+        };
+        let turns = angles(self).into_iter().zip(angles(a).into_iter().zip(angles(b)));
+        straight
+            && turns.into_iter().all(|(own, (a, b))| {
+                // From a full turn less: an angle goes on at -pi where it leaves pi.
+                let off = libm::remainder(own - a, 2.0 * PI) + libm::remainder(own - b, 2.0 * PI);
+                off.abs() <= STRAIGHT * 2.0 * PI
+            })
+    }
+}

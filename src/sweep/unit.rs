@@ -1,0 +1,83 @@
+//! The unit of a parameter, where the study tells it.
+//!
+//! ```text
+//!     a number of the state or the robot = +- parameter + what does not hang on it   ->   the parameter has its unit
+//! ```
+
+use super::model::{Model, Solver};
+use crate::Robot;
+use crate::description::{Description, Inertial};
+use crate::robot::{Axis, Base};
+use crate::scene::Ground;
+use crate::state::State;
+
+/// A unit and a number that has it.
+type Measured = (&'static str, f64);
+
+/// Differences of numbers that grow with a parameter agree to this part of its range.
+const SAME: f64 = 1e-9;
+
+impl Model<'_> {
+    /// The unit of a parameter; none where no number is the parameter but for its sign and what is added, or where such
+    /// numbers have several units.
+    pub fn unit(&self, parameter: usize) -> Option<&'static str> {
+        let range = self.study.parameters().get(parameter)?.range();
+        let [least, middle, most] = [0.0, 0.5, 1.0].map(|part| self.measured(parameter, part));
+        let (least, middle, most) = (least?, middle?, most?);
+        if least.len() != middle.len() || least.len() != most.len() {
+            return None;
+        }
+        let grows = |a: f64, b: f64, c: f64| {
+            ((c - a).abs() - range).abs() <= SAME * range && (b - 0.5 * (a + c)).abs() <= SAME * range
+        };
+        let numbers = least.iter().zip(&middle).zip(&most);
+        let mut units = numbers.filter(|((a, b), c)| grows(a.1, b.1, c.1)).map(|((a, _), _)| a.0);
+        let unit = units.next()?;
+        units.all(|other| other == unit).then_some(unit)
+    }
+
+    /// All numbers of robot and state where the parameter is at this part of its range, all others in the middle of theirs.
+    fn measured(&self, parameter: usize, part: f64) -> Option<Vec<Measured>> {
+        let place = |(index, other): (usize, &super::Parameter)| {
+            other.from + if index == parameter { part } else { 0.5 } * other.range()
+        };
+        let point: Vec<f64> = self.study.parameters().iter().enumerate().map(place).collect();
+        let description = self.study.describe(&self.study.names(&point), self.description).ok()?;
+        let mut all = of_robot(&description);
+        Solver::new(self).at(&point, |robot, state, _| all.extend(of_state(robot, &state))).ok()?;
+        Some(all)
+    }
+}
+
+fn of_robot(description: &Description) -> Vec<Measured> {
+    let inertial = |Inertial { origin, mass, inertia }: &Inertial| {
+        let moments = inertia.iter().flatten().flatten().map(|&moment| ("kg m²", moment));
+        let lengths = origin.xyz.map(|length| ("m", length));
+        moments.chain(lengths).chain([("kg", *mass)]).collect::<Vec<_>>()
+    };
+    let links = description.links.iter().flat_map(|link| link.inertial.iter().flat_map(inertial));
+    let joints = description.joints.iter().flat_map(|joint| joint.origin.xyz.map(|length| ("m", length)));
+    links.chain(joints).collect()
+}
+
+fn of_state(robot: &Robot, State { position, velocity, scene, .. }: &State) -> Vec<Measured> {
+    const LENGTH: (&str, &str) = ("m", "m/s");
+    const ANGLE: (&str, &str) = ("rad", "rad/s");
+    let base = match robot.base {
+        Base::Floating => [LENGTH, LENGTH, ANGLE].as_slice(),
+        Base::Fixed => &[],
+    };
+    let joints = robot.joints.iter().map(|joint| match joint.axis {
+        Axis::Turn { .. } => ANGLE,
+        Axis::Slide { .. } => LENGTH,
+    });
+    let units = || base.iter().copied().chain(joints.clone());
+    let positions = units().map(|(unit, _)| unit).zip(position.iter().copied());
+    let velocities = units().map(|(_, unit)| unit).zip(velocity.iter().copied());
+    let slope = match scene.ground {
+        Ground::Slope(slope) => Some(("rad", slope)),
+        Ground::Profile(_) => None,
+    };
+    let impulses = scene.impulses.iter().flat_map(|impulse| impulse.vector.map(|part| ("N s", part)));
+    positions.chain(velocities).chain(slope).chain(impulses).collect()
+}
