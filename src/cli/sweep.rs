@@ -3,7 +3,7 @@
 use super::complaint::complain;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Output, spare};
-use super::picture::PlotOptions;
+use super::page::PageOptions;
 use super::progress::Progress;
 use super::robot::{RobotOptions, caution};
 use super::{Answered, Failure, Outcome, input};
@@ -13,6 +13,7 @@ use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
 use heelstrike::report::Detail;
 use heelstrike::report::append_line;
+use heelstrike::report::page::{Page, Stops};
 use heelstrike::report::sweep::{Regions, Sample, columns, letter, picture};
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
@@ -48,7 +49,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    plot: PlotOptions,
+    plot: PageOptions,
     /// Regions for people, regions and samples as JSON, or samples as CSV [default: by the output's ending, else text]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
@@ -126,7 +127,13 @@ pub(super) fn run(args: &Args) -> Outcome {
     let regimes = findings.regimes();
     if args.plot.is_asked_for() {
         progress.expect(picture::work(&model, &findings) as u64);
-        args.plot.draw(&picture::of(&model, &findings, workers))?;
+        let picture = picture::of(&model, &findings, workers);
+        args.plot.picture().draw(&picture)?;
+        if args.plot.is_page() {
+            let stops = Stops::new(&model, &findings);
+            progress.expect(stops.count() as u64);
+            args.plot.write(&Page::of_study(&model, &findings, &stops, picture.render(), workers))?;
+        }
     }
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {

@@ -4,7 +4,7 @@ use super::{Kind, angles};
 use crate::impact::{Mode, Motion};
 use crate::planar::Vector;
 use crate::report::picture::{Axis, Band, Colour, Dash, Entry, Key, Legend, Panel, Picture, Point, Shape, Stroke};
-use crate::report::text::in_words;
+use crate::report::words;
 use crate::sweep::{Course, Place, Region, Survey};
 
 /// What is drawn of a contact.
@@ -195,7 +195,7 @@ impl<'a> Styles<'a> {
             entries.extend(angles::legend());
         }
         entries.extend(self.0.iter().map(|Style { contacts, modes, dash, letters }| {
-            let words = in_words(contacts.iter().map(String::as_str), modes);
+            let words = words::modes(contacts.iter().map(String::as_str), modes);
             let stroke = Stroke { dash: *dash, ..Stroke::solid(Colour::Black, 1.6) };
             Entry { name: format!("{}: {words}", letters.join(", ")), key: Key::Line(stroke) }
         }));
