@@ -14,6 +14,9 @@ use crate::state::State;
 /// A unit and a number that has it.
 type Measured = (&'static str, f64);
 
+/// Numbers are looked at at the ends of so many parts of the range, as far as the study can be read there.
+const PARTS: usize = 8;
+
 /// Differences of numbers that grow with a parameter agree to this part of its range.
 const SAME: f64 = 1e-9;
 
@@ -22,16 +25,24 @@ impl Model<'_> {
     /// numbers have several units.
     pub fn unit(&self, parameter: usize) -> Option<&'static str> {
         let range = self.study.parameters().get(parameter)?.range();
-        let [least, middle, most] = [0.0, 0.5, 1.0].map(|part| self.measured(parameter, part));
-        let (least, middle, most) = (least?, middle?, most?);
-        if least.len() != middle.len() || least.len() != most.len() {
+        let part = |k: usize| k as f64 / PARTS as f64;
+        let found = (0..=PARTS).filter_map(|k| Some((part(k), self.measured(parameter, part(k))?)));
+        let (parts, measured): (Vec<f64>, Vec<Vec<Measured>>) = found.unzip();
+        let (first, others) = measured.split_first()?;
+        // Two places cannot tell a line from a curve; robots of other structure have other numbers.
+        if others.len() < 2 || others.iter().any(|other| other.len() != first.len()) {
             return None;
         }
-        let grows = |a: f64, b: f64, c: f64| {
-            ((c - a).abs() - range).abs() <= SAME * range && (b - 0.5 * (a + c)).abs() <= SAME * range
+        let grows = |index: &usize| {
+            let is_line = |sign: f64| {
+                others.iter().zip(&parts[1..]).all(|(other, part)| {
+                    let expected = sign * (part - parts[0]) * range;
+                    (other[*index].1 - first[*index].1 - expected).abs() <= SAME * range
+                })
+            };
+            is_line(1.0) || is_line(-1.0)
         };
-        let numbers = least.iter().zip(&middle).zip(&most);
-        let mut units = numbers.filter(|((a, b), c)| grows(a.1, b.1, c.1)).map(|((a, _), _)| a.0);
+        let mut units = (0..first.len()).filter(grows).map(|index| first[index].0);
         let unit = units.next()?;
         units.all(|other| other == unit).then_some(unit)
     }

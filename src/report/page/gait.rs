@@ -183,11 +183,15 @@ impl Kind {
         }
     }
 
-    /// Behind the slider.
+    /// Behind the slider and under words.
     fn fill(self) -> Colour {
         match self {
-            Self::Answered(Verdict::NoImpact | Verdict::NoContact) => Colour::Pale,
-            _ => self.colour(),
+            Self::Answered(Verdict::Unique) => Colour::Tint(3),
+            Self::Answered(Verdict::Ambiguous) => Colour::Tint(1),
+            Self::Answered(Verdict::None | Verdict::Undecided) => Colour::Tint(5),
+            Self::Answered(Verdict::NoImpact) => Colour::Tint(2),
+            Self::Answered(Verdict::NoContact) => Colour::White,
+            Self::Refused => Colour::Grey,
         }
     }
 

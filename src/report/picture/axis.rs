@@ -14,6 +14,8 @@ pub struct Axis {
     pub logarithmic: bool,
     /// From where to where it goes, of a logarithmic one outward to whole powers of ten; none for all that is drawn.
     pub range: Option<(f64, f64)>,
+    /// Where it has no range: what lies beyond these values does not widen it.
+    pub within: Option<(f64, f64)>,
     /// Whether it has neither ticks nor label, for another panel beside it has the same.
     pub bare: bool,
     /// Whether it measures angles \[rad\] whose ticks are parts of pi.
@@ -39,13 +41,16 @@ const ROOM: f64 = 0.04;
 const MARK: f64 = 0.02;
 /// Values that agree to this part of them are the same.
 const ROUNDING: f64 = 1e-10;
-/// About how far ticks are apart \[px\].
+/// About how far ticks are apart \[px\], and into how many parts they divide a short axis.
 const PITCH: f64 = 75.0;
+const TICKS: f64 = 4.0;
 
 impl Span {
     /// Of an axis of this `length` \[px\] along which `values` lie.
     pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, length: f64) -> Self {
         let usable = values.filter(|value| value.is_finite() && (!axis.logarithmic || *value > 0.0));
+        let (lowest, highest) = axis.within.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let usable = usable.map(|value| value.max(lowest).min(highest));
         let extent = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
         let (least, most) = axis.range.unwrap_or_else(|| usable.fold((f64::INFINITY, f64::NEG_INFINITY), extent));
         let (least, most) = if least <= most { (least, most) } else { (1.0, 1.0) };
@@ -71,7 +76,7 @@ impl Span {
 
     fn set_step(&mut self, length: f64) {
         if !self.logarithmic {
-            let least = (self.high - self.low) * PITCH / length;
+            let least = (self.high - self.low) * PITCH.min(length / TICKS) / length;
             // Halves of pi, or whole multiples.
             self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
         }
@@ -150,10 +155,17 @@ impl Span {
         TickFormat::Custom(Arc::new(move |value| fixed(value, decimals)))
     }
 
-    /// The label, with the power of ten that the ticks leave out.
+    /// The label, with the power of ten that the ticks leave out in its unit.
     pub fn label(&self, label: &str) -> String {
         let label = font::printable(label);
-        if self.power == 0 { label } else { format!("{label} × {}", power_of_ten(f64::from(self.power))) }
+        if self.power == 0 {
+            return label;
+        }
+        let power = power_of_ten(f64::from(self.power));
+        match label.rsplit_once('[') {
+            Some((name, unit)) => format!("{name}[{power} {unit}"),
+            None => format!("{label} [{power}]"),
+        }
     }
 }
 
@@ -237,7 +249,8 @@ mod tests {
     fn magnitudes_beside_one_move_into_the_label() {
         for (scale, power) in [(1e-7, "10⁻⁷"), (1e9, "10⁹"), (1e-310, "10⁻³¹⁰")] {
             let span = span((0.0, 4.0 * scale));
-            assert_eq!(span.label("p [N s]"), format!("p [N s] × {power}"));
+            assert_eq!(span.label("p [N s]"), format!("p [{power} N s]"));
+            assert_eq!(span.label("p"), format!("p [{power}]"));
             assert_eq!(span.step, 1.0);
             assert!((span.share(scale) - 0.25).abs() < 1e-9);
         }
@@ -253,9 +266,16 @@ mod tests {
     }
 
     #[test]
+    fn a_spike_beyond_what_is_asked_for_widens_nothing() {
+        let axis = Axis { within: Some((-1.0, 1.0)), ..Axis::default() };
+        let span = Span::new(&axis, [-0.5, 0.5, 1e6].into_iter(), 400.0);
+        assert!((span.share(0.25) - 0.5).abs() < 1e-9 && span.share(1e6) > 1.0);
+    }
+
+    #[test]
     fn a_single_value_has_room_about_it() {
         for value in [0.0, -3.0, 1e-200] {
-            let span = Span::new(&Axis::default(), [value].into_iter(), 400.0);
+            let span = Span::new(&Axis::default(), [value, value * (1.0 + 1e-15)].into_iter(), 400.0);
             assert!((span.share(value) - 0.5).abs() < 1e-9);
         }
     }

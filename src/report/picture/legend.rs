@@ -11,7 +11,7 @@ use kuva::render::render::Primitive;
 pub struct Legend {
     /// One after the other.
     pub entries: Vec<Entry>,
-    /// Whether they stand below all panels, not in a column to the right of them.
+    /// Whether they stand in columns below all panels, not in a column to the right of them.
     pub below: bool,
 }
 
@@ -46,37 +46,54 @@ pub enum Key {
 const SIZE: u32 = 12;
 const ROW: f64 = 20.0;
 const LINE: f64 = 16.0;
-/// Of a key, long enough for two periods of any dashes \[px\].
+/// Of a key, long enough for two periods of most dashes \[px\].
 const KEY: f64 = 36.0;
-/// From a key to its name, and from an entry to the next one in a row \[px\].
+/// From a key to its name, and from a column to the next one \[px\].
 const GAP: f64 = 8.0;
 const NEXT: f64 = 22.0;
 
-/// Where an entry is.
+/// An entry's place and lines, and how much room it takes \[px\].
 struct Place {
     at: Pixel,
     lines: Vec<String>,
+    size: Pixel,
 }
 
 impl Legend {
-    /// Where each entry is, and the size of all, in a picture whose panels are so wide \[px\].
+    /// Where each entry is, and the size of all, in a picture whose panels are so wide \[px\]: in as many columns as fit.
     fn places(&self, panels: f64, scale: f64) -> (Vec<Place>, Pixel) {
         let room = if self.below { panels } else { f64::INFINITY };
-        let (mut places, mut whole, mut x, mut y, mut row) = (Vec::new(), (0.0_f64, 0.0_f64), 0.0, 0.0, 0.0_f64);
-        for entry in &self.entries {
-            let key = entry.key.width(scale) + GAP;
+        let key = self.key_width(scale) + GAP;
+        let place = |entry: &Entry| {
             let lines = font::lines(&entry.name, SIZE, room - key);
-            let width = key + lines.iter().map(|line| font::width(line, SIZE)).fold(0.0, f64::max);
+            let width = lines.iter().map(|line| font::width(line, SIZE)).fold(0.0, f64::max);
             let height = ROW + LINE * lines.len().saturating_sub(1) as f64;
-            if x > 0.0 && (!self.below || x + width > room) {
-                (x, y, row) = (0.0, y + row, 0.0);
+            Place { at: (0.0, 0.0), lines, size: (key + width, height) }
+        };
+        let mut places: Vec<Place> = self.entries.iter().map(place).collect();
+        let widths = |columns: usize| -> Vec<f64> {
+            let width = |column: usize| places.iter().skip(column).step_by(columns).map(|place| place.size.0);
+            (0..columns).map(|column| width(column).fold(0.0, f64::max)).collect()
+        };
+        let most = if self.below { places.len() } else { 1 };
+        let fits = |widths: &Vec<f64>| widths.iter().sum::<f64>() + NEXT * (widths.len() - 1) as f64 <= room;
+        let widths = (2..=most).rev().map(widths).find(fits).unwrap_or_else(|| widths(1));
+        let (mut y, mut right) = (0.0, 0.0_f64);
+        for row in places.chunks_mut(widths.len()) {
+            let mut x = 0.0;
+            for (place, width) in row.iter_mut().zip(&widths) {
+                place.at = (x, y);
+                right = right.max(x + place.size.0);
+                x += width + NEXT;
             }
-            places.push(Place { at: (x, y), lines });
-            row = row.max(height);
-            whole = (whole.0.max(x + width), y + row);
-            x += width + NEXT;
+            y += row.iter().map(|place| place.size.1).fold(0.0, f64::max);
         }
-        (places, whole)
+        (places, (right, y))
+    }
+
+    /// How wide keys are, so that all names begin behind them \[px\].
+    fn key_width(&self, scale: f64) -> f64 {
+        self.entries.iter().map(|entry| entry.key.width(scale)).fold(0.0, f64::max)
     }
 
     /// How much room it takes \[px\].
@@ -86,13 +103,13 @@ impl Legend {
 
     /// Draws it with its upper left corner at `at`; a unit of the first panel's x axis takes `scale` \[px\].
     pub(super) fn draw(&self, at: Pixel, panels: f64, scale: f64, out: &mut Vec<Primitive>) {
-        for (entry, Place { at: (x, y), lines }) in self.entries.iter().zip(self.places(panels, scale).0) {
+        let names = self.key_width(scale) + GAP;
+        for (entry, Place { at: (x, y), lines, .. }) in self.entries.iter().zip(self.places(panels, scale).0) {
             let (x, middle) = (at.0 + x, at.1 + y + 0.5 * ROW);
-            let width = entry.key.width(scale);
-            entry.key.draw((x, middle), width, out);
+            entry.key.draw((x, middle), entry.key.width(scale), out);
             for (line, content) in lines.iter().enumerate() {
                 let baseline = middle + 0.5 * font::CAPITAL * f64::from(SIZE) + LINE * line as f64;
-                text((x + width + GAP, baseline), content, SIZE, Anchor::Start, Colour::Black, false, out);
+                text((x + names, baseline), content, SIZE, Anchor::Start, Colour::Black, false, out);
             }
         }
     }

@@ -36,7 +36,8 @@ pub fn panels(survey: &Survey, courses: &[Course]) -> Vec<Panel> {
         }
     }
     let (Some(first), Some(last)) = (survey.regions.first(), survey.regions.last()) else { return Vec::new() };
-    names.into_iter().map(|name| panel(name, &runs(name, survey, courses), (first.from, last.to))).collect()
+    let borders: Vec<f64> = survey.borders.iter().map(|border| border.at).collect();
+    names.into_iter().map(|name| panel(name, &runs(name, survey, courses), (first.from, last.to), &borders)).collect()
 }
 
 /// What the lines of such panels mean.
@@ -80,7 +81,7 @@ fn runs(name: &str, survey: &Survey, courses: &[Course]) -> Vec<Vec<Angles>> {
     runs
 }
 
-fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64)) -> Panel {
+fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f64]) -> Panel {
     let mut shapes = Vec::new();
     for run in runs {
         let line = |turn: f64| -> Vec<Point> { run.iter().map(|angles| (angles.at, angles.beta + turn)).collect() };
@@ -90,15 +91,21 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64)) -> Panel {
     let gamma: Vec<Vec<Point>> = runs.iter().flat_map(|run| unbroken(run)).collect();
     let pixel = |(x, y): Point| (SIZE.0 * (x - from) / (to - from), SIZE.1 * (y + PI) / (2.0 * PI));
     let curve: Vec<Vec<Point>> = gamma.iter().map(|piece| piece.iter().map(|&point| pixel(point)).collect()).collect();
+    let walls = borders.iter().map(|&at| vec![pixel((at, -PI)), pixel((at, PI))]);
+    let all: Vec<Vec<Point>> = curve.iter().cloned().chain(walls).collect();
     shapes.extend(gamma.into_iter().map(|points| Shape::Line { points, stroke: GAMMA }));
-    for (region, words) in
-        [(Region::A, "A: lifts off"), (Region::B, "B: slides"), (Region::C, "C: stays"), (Region::E, "E: all three")]
-    {
+    for (region, words) in [
+        (Region::A, "lifts off (A)"),
+        (Region::B, "slides (B)"),
+        (Region::C, "stays (C)"),
+        (Region::E, "all three (E)"),
+    ] {
         let strips = |run: &Vec<Angles>| run.iter().map(|angles| strip(region, angles.beta, angles.at)).collect();
         let strips: Vec<Vec<(Point, Point)>> = runs.iter().map(strips).collect();
         let strips: Vec<Vec<(Point, Point)>> =
             strips.iter().map(|run| run.iter().map(|&(low, high)| (pixel(low), pixel(high))).collect()).collect();
-        if let Some((x, y)) = room(&strips, &curve, words) {
+        // Rather on a border than nowhere.
+        if let Some((x, y)) = room(&strips, &all, words).or_else(|| room(&strips, &curve, words)) {
             shapes.push(Shape::Text(Label {
                 at: (from + (to - from) * x / SIZE.0, 2.0 * PI * y / SIZE.1 - PI),
                 offset: (0.0, 0.0),
@@ -111,8 +118,7 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64)) -> Panel {
         }
     }
     let y = Axis { label: "angle [rad]".into(), range: Some((-PI, PI)), in_pi: true, ..Axis::default() };
-    let title =
-        format!("{name}\nwhat infinite friction does while all other contacts stick, by the paper's regions of γ");
+    let title = format!("{name}\nwith infinite friction, while all other contacts stick");
     Panel { title, shapes, size: SIZE, ..Panel::new(Axis::default(), y) }
 }
 
