@@ -57,7 +57,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         (Some(robot), Some(state)) => own(args, robot, state, budget)?,
         _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, budget)?,
     };
-    args.plot.draw(&accuracy.picture())?;
+    args.plot.draw(&accuracy.picture(), "no method has both a time and an error here")?;
     let mut output = args.output.open()?;
     match args.output.chosen().unwrap_or(Format::Text) {
         Format::Text => {

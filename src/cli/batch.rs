@@ -221,7 +221,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         header: header.as_ref(),
         columns: columns.as_ref(),
         touchdowns,
-        keyframes: args.plot.is_asked_for(),
+        keyframes: args.plot.is_asked(),
     };
     // Created before the work, so that it is not in vain.
     let summary = args.summary.as_deref().map(|path| File::create(path).map_err(|error| named(path, error)));
@@ -331,14 +331,11 @@ impl Args {
 
     /// Draws the margins or writes the page, if that is asked for.
     fn draw(&self, gait: &Gait, robot: &Robot) -> Result<(), Failure> {
-        if !self.plot.is_asked_for() {
+        if !self.plot.is_asked() {
             return Ok(());
         }
-        let picture = gait.picture(&robot.name);
-        if self.plot.is_page() {
-            return self.plot.write(&gait.page(&robot.name, picture.render()));
-        }
-        self.plot.picture().draw(&picture)
+        let page = |rendered| gait.page(&robot.name, rendered);
+        self.plot.draw(&gait.picture(&robot.name), "the input holds no states", page)
     }
 
     /// Writes the summary: for people where there is more than one state or it is asked for, and to its file.

@@ -1,14 +1,17 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
+use super::complaint::note;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Format, OutputOptions};
+use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::stream::{Answers, SUMMED_UP, answer_all};
-use super::{Outcome, input};
-use heelstrike::pipeline::Pipeline;
-use heelstrike::report::{Detail, Palette, Report, Subject, text};
+use super::{Failure, Outcome, input};
+use heelstrike::pipeline::{Impact, Pipeline};
+use heelstrike::report::{Detail, Palette, Picture, Report, Subject, drawing, text};
+use heelstrike::scene::NamedContact;
 use heelstrike::state::{Defaults, State};
-use heelstrike::{Error, Result, Robot};
+use heelstrike::{Error, Reason, Result, Robot};
 use std::path::PathBuf;
 
 /// Find every outcome of one state
@@ -17,6 +20,7 @@ use std::path::PathBuf;
 Examples:
   heelstrike impact urdf/ramone.urdf examples/ramone.json
   heelstrike impact urdf/ramone.urdf examples/ramone.json --explain
+  heelstrike impact urdf/minimalistic.urdf examples/minimalistic.json --plot outcomes.svg
   heelstrike impact urdf/block.urdf - --friction 0.5 --format json < examples/block.json")]
 pub struct Args {
     #[command(flatten)]
@@ -33,14 +37,18 @@ pub struct Args {
     #[command(flatten)]
     detail: DetailOptions,
     #[command(flatten)]
+    plot: PlotOptions,
+    #[command(flatten)]
     output: OutputOptions,
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
+    args.plot.check()?;
     let robot = args.robot.load()?;
+    let feet = args.robot.feet(&robot)?;
     let by_input = if input::is_ndjson(&args.state) { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(by_input);
-    let mut options = pipeline_options(&args.contacts, args.robot.feet(&robot)?, args.detail, &args.robot.reductions);
+    let mut options = pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions);
     if format == Format::Text && !args.detail.brief {
         // What is wrong with the other combinations is summed up for people also where they are not listed.
         options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
@@ -50,10 +58,21 @@ pub(super) fn run(args: &Args) -> Outcome {
         pipeline: Pipeline::new(&robot, options),
         defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
         detail: args.detail.detail(),
+        feet,
+        plot: args.plot.is_asked(),
+        picture: None,
     };
     let inputs = [Some(&args.robot.robot), Some(&args.state), args.loops.loops.as_ref()];
-    args.output.spare(&inputs.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
-    answer_all(&mut impacts, &args.state, format, &args.output)
+    let inputs: Vec<_> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    args.output.spare(&inputs)?;
+    args.plot.spare(&inputs)?;
+    let answered = answer_all(&mut impacts, &args.state, format, &args.output)?;
+    match &impacts.picture {
+        Some(picture) => args.plot.draw(picture, "the state has no place in the plane")?,
+        None if args.plot.is_asked() => note("no picture is drawn of a state that is refused"),
+        None => {}
+    }
+    Ok(answered)
 }
 
 struct Impacts<'r> {
@@ -61,14 +80,36 @@ struct Impacts<'r> {
     pipeline: Pipeline<'r>,
     defaults: Defaults,
     detail: Detail,
+    /// Beside the robot's own.
+    feet: Vec<NamedContact>,
+    /// Whether a picture is asked for, and the picture.
+    plot: bool,
+    picture: Option<Picture>,
+}
+
+impl Impacts<'_> {
+    fn draw(&mut self, state: &State, impact: &Impact) {
+        if self.plot {
+            self.picture = drawing::picture::impact(self.robot, &self.feet, state, impact);
+        }
+    }
 }
 
 impl Answers for Impacts<'_> {
     const WHAT: &'static str = "state";
 
+    fn check(&self, several: bool) -> std::result::Result<(), Failure> {
+        if !(several && self.plot) {
+            return Ok(());
+        }
+        let reason = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
+        Err(Failure::Usage(Error::new(reason).at("--plot").hint("give the states one by one")))
+    }
+
     fn json(&mut self, state: &str, out: &mut Vec<u8>) -> Result<Option<Error>> {
         let state = State::from_json(state, self.robot, &self.defaults)?;
         let impact = self.pipeline.impact(&state)?;
+        self.draw(&state, &impact);
         Report::of_state(self.robot, &state, &impact, self.detail)?.append_json(self.detail, out);
         Ok(impact.analysis.err())
     }
@@ -76,6 +117,7 @@ impl Answers for Impacts<'_> {
     fn text(&mut self, state: &str, palette: &Palette) -> Result<(String, Option<Error>)> {
         let state = State::from_json(state, self.robot, &self.defaults)?;
         let impact = self.pipeline.impact(&state)?;
+        self.draw(&state, &impact);
         let report = Report::of_state(self.robot, &state, &impact, self.detail)?;
         let text = text(&report, &Subject::of_state(self.robot, &state, &impact), self.detail, palette);
         Ok((text, impact.analysis.err()))

@@ -2,8 +2,10 @@
 
 use super::Failure;
 use super::output::{named, spare};
-use super::picture::PlotOptions;
+use super::picture::{PlotOptions, nothing_to_draw};
+use heelstrike::report::Picture;
 use heelstrike::report::page::Page;
+use heelstrike::report::picture::Rendered;
 use heelstrike::{Error, Reason};
 use std::path::{Path, PathBuf};
 
@@ -38,27 +40,37 @@ impl PageOptions {
     }
 
     /// Whether a picture or a page is asked for.
-    pub fn is_asked_for(&self) -> bool {
+    pub fn is_asked(&self) -> bool {
         self.plot.is_some()
     }
 
-    /// Whether it is a page.
+    /// Draws the picture, or writes the page that `page` makes around it, if one of both is asked for.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being written, and a picture that nothing can be drawn in, with why that may be.
+    pub fn draw(
+        &self,
+        picture: &Picture,
+        why_empty: &'static str,
+        page: impl FnOnce(Rendered) -> Page,
+    ) -> Result<(), Failure> {
+        match (self.plot.as_deref().filter(|plot| is_page(plot)), picture.render()) {
+            (Some(path), Some(rendered)) => {
+                std::fs::write(path, page(rendered).html()).map_err(|error| Failure::Output(named(path, error)))
+            }
+            (Some(_), None) => Err(nothing_to_draw(why_empty)),
+            (None, _) => self.picture().draw(picture, why_empty),
+        }
+    }
+
+    /// Whether a page is asked for.
     pub fn is_page(&self) -> bool {
         self.plot.as_deref().is_some_and(is_page)
     }
 
     /// Where a picture goes; nowhere where a page is asked for.
-    pub fn picture(&self) -> PlotOptions {
+    fn picture(&self) -> PlotOptions {
         PlotOptions::to(self.plot.clone().filter(|plot| !is_page(plot)))
-    }
-
-    /// Writes the page, if one is asked for.
-    ///
-    /// # Errors
-    /// Whatever keeps the file from being written.
-    pub fn write(&self, page: &Page) -> Result<(), Failure> {
-        let Some(path) = self.plot.as_deref().filter(|plot| is_page(plot)) else { return Ok(()) };
-        std::fs::write(path, page.html()).map_err(|error| Failure::Output(named(path, error)))
     }
 }
 

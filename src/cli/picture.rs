@@ -51,15 +51,15 @@ impl PlotOptions {
     }
 
     /// Whether a picture is asked for.
-    pub fn is_asked_for(&self) -> bool {
+    pub fn is_asked(&self) -> bool {
         self.plot.is_some()
     }
 
     /// Draws the picture, if one is asked for.
     ///
     /// # Errors
-    /// Whatever keeps the file from being written, and a picture that nothing can be drawn in.
-    pub fn draw(&self, picture: &Picture) -> Result<(), Failure> {
+    /// Whatever keeps the file from being written, and a picture that nothing can be drawn in, with why that may be.
+    pub fn draw(&self, picture: &Picture, why_empty: &'static str) -> Result<(), Failure> {
         let Some((path, ending)) = self.plot.as_deref().and_then(|path| Some((path, ending(path)?))) else {
             return Ok(());
         };
@@ -67,12 +67,15 @@ impl PlotOptions {
             Ending::Svg => picture.svg().map(String::into_bytes),
             Ending::Png => picture.png()?,
         };
-        let Some(bytes) = bytes else {
-            let reason = Reason::Unsupported("there is nothing to draw".into());
-            return Err(Error::new(reason).at("--plot").hint("no method has both a time and an error here").into());
-        };
+        let bytes = bytes.ok_or_else(|| nothing_to_draw(why_empty))?;
         std::fs::write(path, bytes).map_err(|error| Failure::Output(named(path, error)))
     }
+}
+
+/// The refusal of a picture that nothing can be drawn in.
+pub(super) fn nothing_to_draw(why: &'static str) -> Failure {
+    let reason = Reason::Unsupported("there is nothing to draw".into());
+    Error::new(reason).at("--plot").hint(why).into()
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use super::complaint::{complain, complain_within, note};
 use super::output::{Format, OutputOptions};
-use super::{Answered, Outcome, input};
+use super::{Answered, Failure, Outcome, input};
 use heelstrike::documents::{Document, documents, utf8};
 use heelstrike::report::{self, Palette, Refused};
 use heelstrike::state::State;
@@ -24,6 +24,14 @@ const TOLD: usize = 100;
 pub(super) trait Answers {
     /// What an object is, for messages.
     const WHAT: &'static str;
+
+    /// Refuses what cannot be done, before anything is answered; `_several` tells of more than one object.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`], naming the option.
+    fn check(&self, _several: bool) -> std::result::Result<(), Failure> {
+        Ok(())
+    }
 
     /// Appends the answer as one line of JSON; gives the error that stands in it beside the matrices, if any.
     fn json(&mut self, object: &str, out: &mut Vec<u8>) -> Result<Option<Error>>;
@@ -56,6 +64,7 @@ pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Forma
         return Err(Error::new(missing).in_file(name).hint("the input is empty").into());
     }
 
+    answers.check(documents(whole).nth(1).is_some())?;
     let mut output = options.open()?;
     let mut refused = 0;
     for (at, document) in documents(whole).enumerate() {

@@ -125,15 +125,13 @@ pub(super) fn run(args: &Args) -> Outcome {
     let findings = Findings::of(&model, workers);
     let regions = Regions::new(study.parameters(), &findings);
     let regimes = findings.regimes();
-    if args.plot.is_asked_for() {
+    if args.plot.is_asked() {
         progress.expect(picture::work(&model, &findings) as u64);
         let picture = picture::of(&model, &findings, workers);
-        args.plot.picture().draw(&picture)?;
-        if args.plot.is_page() {
-            let stops = Stops::new(&model, &findings);
-            progress.expect(stops.count() as u64);
-            args.plot.write(&Page::of_study(&model, &findings, &stops, picture.render(), workers))?;
-        }
+        let stops = Stops::new(&model, &findings);
+        progress.expect(if args.plot.is_page() { stops.count() as u64 } else { 0 });
+        let page = |rendered| Page::of_study(&model, &findings, &stops, rendered, workers);
+        args.plot.draw(&picture, "the study has no place on its axes", page)?;
     }
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {

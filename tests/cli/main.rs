@@ -12,6 +12,7 @@ use std::process::Stdio;
 mod accuracy;
 mod inspect;
 mod manners;
+mod picture;
 mod refusals;
 
 /// What a run left behind.

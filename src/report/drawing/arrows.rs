@@ -34,7 +34,7 @@ pub struct Effect {
 }
 
 /// The longest arrow, as a part of the robot's size.
-const LONGEST: f64 = 0.3;
+const LONGEST: f64 = 0.4;
 
 impl Drawing {
     /// Adds contacts, outcomes and applied impulses, drawn beside a robot of this size \[m\].

@@ -13,7 +13,7 @@ pub struct Extent {
 }
 
 /// How far the ground goes beyond the robot on either side, as a part of its size.
-const BESIDE: f64 = 0.4;
+const BESIDE: f64 = 2.0;
 
 impl Extent {
     /// About these points; of none a point at the origin.
@@ -33,7 +33,17 @@ impl Extent {
         libm::hypot(self.high[0] - self.low[0], self.high[1] - self.low[1])
     }
 
-    /// The ground's surface below a robot of this size, and somewhat beside it.
+    /// Whether a point lies in it.
+    pub(super) fn holds(self, point: Vector<f64>) -> bool {
+        (0..2).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
+    }
+
+    /// The same with `room` \[m\] on every side.
+    pub(super) fn widened(self, room: f64) -> Self {
+        Self { low: self.low.map(|entry| entry - room), high: self.high.map(|entry| entry + room) }
+    }
+
+    /// The ground's surface below a robot of this size, and well beside it.
     pub(super) fn surface(self, ground: &Ground, size: f64) -> Vec<Vector<f64>> {
         let (left, right) = (self.low[0] - BESIDE * size, self.high[0] + BESIDE * size);
         match ground {

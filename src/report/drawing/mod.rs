@@ -12,7 +12,7 @@ mod arrows;
 mod extent;
 mod outline;
 #[cfg(feature = "plot")]
-mod picture;
+pub mod picture;
 
 pub use arrows::{Arrow, Effect};
 pub use extent::Extent;
@@ -52,7 +52,7 @@ pub struct Drawing {
 pub struct Body {
     /// Its frame's origin, where its joint is.
     pub origin: Vector<f64>,
-    /// The ends of its bones, which all begin at its origin: the joints of its children, a foot, or its CoG.
+    /// The ends of its bones, which all begin at its origin: joints of its children, shapes, a CoG beside all of them.
     pub bones: Vec<Vector<f64>>,
     /// Its collision shapes.
     pub outlines: Vec<Outline>,
@@ -184,21 +184,21 @@ impl Drawing {
 }
 
 impl Body {
-    /// Adds a bone to the shapes of a body on which nothing hangs, and to the CoG of one that has no bone so far; `short` is
-    /// the length below which a bone shows nothing \[m\].
+    /// Adds bones to the shapes of a body that ends there, and to a CoG that lies on nothing that is drawn; `short` is the
+    /// length below which a bone shows nothing \[m\].
     fn grow_bones(&mut self, short: f64) {
         let origin = self.origin;
         let is_long = |end: &Vector<f64>| {
             let [x, z] = difference(*end, origin);
             libm::hypot(x, z) > short
         };
-        if self.last {
-            self.bones.extend(self.outlines.iter().map(Outline::centre));
-        }
         self.bones.retain(is_long);
-        if self.bones.is_empty() {
-            self.bones.extend(self.com.filter(is_long));
+        if self.last || self.bones.is_empty() {
+            self.bones.extend(self.outlines.iter().map(Outline::centre).filter(is_long));
         }
+        let drawn = self.bones.iter().copied().chain([origin]).chain(self.outlines.iter().flat_map(Outline::corners));
+        let drawn = Extent::of(drawn).widened(short);
+        self.bones.extend(self.com.filter(|&com| !drawn.holds(com)));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Axis, Page, Region, STILLS, Still};
 use crate::impact::{Mode, Verdict};
 use crate::report::ListedKeyframe;
-use crate::report::picture::{self, Colour, Entry, Key, Legend, Mark, Panel, Picture, Rendered, Shape, Stroke};
+use crate::report::picture::{self, Band, Colour, Entry, Key, Legend, Mark, Panel, Picture, Rendered, Shape, Stroke};
 use serde_json::Value;
 
 /// States in their order, at most [`STILLS`] of them: of more every second, third ... one is kept.
@@ -69,9 +69,10 @@ impl Gait {
         let axis = |label: &str| picture::Axis { label: label.into(), ..picture::Axis::default() };
         let label = if name == "time" { "time [s]" } else { name };
         let shapes = runs.iter().flat_map(Run::shapes).collect();
-        let panel = Panel { size: (640.0, 260.0), shapes, ..Panel::new(axis(label), axis("margin")) };
+        let bands = bands(&runs);
+        let panel = Panel { size: (640.0, 260.0), bands, shapes, ..Panel::new(axis(label), axis("margin")) };
         let told = |kind: &Kind| runs.iter().any(|run| run.kind() == *kind);
-        let entry = |kind: Kind| Entry { name: kind.words().into(), key: Key::Mark(kind.mark(), kind.colour()) };
+        let entry = |kind: Kind| Entry { name: kind.words().into(), key: Key::Fill(kind.fill()) };
         Picture {
             title: format!("{robot}: margins of all outcomes"),
             rows: vec![vec![panel]],
@@ -80,7 +81,7 @@ impl Gait {
     }
 
     /// The page; `rendered` is the picture.
-    pub fn page(&self, robot: &str, rendered: Option<Rendered>) -> Page {
+    pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
         let runs = self.runs(&order);
         let region = |run: &Run| Region {
@@ -106,6 +107,29 @@ impl Gait {
         let axes = vec![Axis { name: name.into(), values: order.clone() }];
         Page::new(format!("{robot}, state by state"), axes, regions, &stills, rendered, notes)
     }
+}
+
+/// So many bands are seen apart.
+const BANDS: usize = 400;
+
+/// A band for all neighbouring runs of one kind, if they can be seen apart.
+fn bands(runs: &[Run]) -> Vec<Band> {
+    let mut bands: Vec<(Kind, Band)> = Vec::new();
+    for run in runs {
+        let [Some(&from), Some(&to)] = [run.at.first(), run.at.last()] else { continue };
+        match bands.last_mut() {
+            Some((kind, band)) if *kind == run.kind() => band.to = to,
+            last => {
+                // Neighbours meet half way.
+                let from = last.map_or(from, |(_, band)| {
+                    band.to = 0.5 * (band.to + from);
+                    band.to
+                });
+                bands.push((run.kind(), Band { from, to, letter: String::new(), fill: run.kind().fill() }));
+            }
+        }
+    }
+    if bands.len() > BANDS { Vec::new() } else { bands.into_iter().map(|(_, band)| band).collect() }
 }
 
 /// The verdict, and the modes of all outcomes; nothing of what is refused.

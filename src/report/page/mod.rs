@@ -84,13 +84,12 @@ impl Page {
         axes: Vec<Axis>,
         regions: Vec<Region>,
         stills: &[Still],
-        rendered: Option<Rendered>,
+        Rendered { svg, windows }: Rendered,
         notes: Vec<String>,
     ) -> Self {
         let (mut parts, mut texts) = (Parts::default(), Texts::default());
         let scale = Scale::of(stills);
         let frames = stills.iter().map(|still| Frame::new(still, scale.unit, &mut parts, &mut texts)).collect();
-        let Rendered { svg, windows } = rendered.unwrap_or_default();
         let (parts, texts) = (parts.all, texts.all);
         Self { title, axes, regions, frames, parts, texts, scale, windows, notes, svg }
     }

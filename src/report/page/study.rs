@@ -90,14 +90,8 @@ fn special(parameter: &Parameter, survey: &Survey) -> Vec<f64> {
 }
 
 impl Page {
-    /// The page of a study: what was found, the stops, its picture if there is one; tells `workers` of each stop.
-    pub fn of_study(
-        model: &Model,
-        findings: &Findings,
-        stops: &Stops,
-        rendered: Option<Rendered>,
-        workers: Workers,
-    ) -> Self {
+    /// The page of a study: what was found, the stops, its picture; tells `workers` of each stop.
+    pub fn of_study(model: &Model, findings: &Findings, stops: &Stops, rendered: Rendered, workers: Workers) -> Self {
         let parameters = model.study.parameters();
         let begin = || Solver::new(model);
         let seen = workers.map(stops.count(), begin, |solver, index| look(model, solver, &stops.point(index)));

@@ -31,20 +31,43 @@ pub(super) fn visible(points: &[Pixel], (width, height): (f64, f64)) -> Vec<Vec<
     pieces.iter().map(|piece| thinned(piece)).collect()
 }
 
-/// A closed loop of `corners`, thinned out; where it leaves the panel, somewhere outside of it.
-pub(super) fn closed(corners: &[Pixel], (width, height): (f64, f64)) -> Vec<Pixel> {
+/// The part of the area within a closed loop of `corners` that lies within the panel, or just beyond: its corners.
+pub(super) fn enclosed(corners: &[Pixel], (width, height): (f64, f64)) -> Vec<Pixel> {
     let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
-    // A loop's ends are one point; halfway round it is split, so that each half is a curve with two ends.
+    // A loop's ends are one point; where it has gone half its way it is cut, so that each half is a curve with two ends.
     let (once, again) = rest.split_at(rest.len() / 2);
-    let mut half: Vec<Pixel> = std::iter::once(first).chain(once.iter().copied()).collect();
-    let turn = half.last().copied().unwrap_or(first);
-    let other: Vec<Pixel> = std::iter::once(turn).chain(again.iter().copied()).chain([first]).collect();
-    half = thinned(&half);
-    half.pop();
-    let mut other = thinned(&other);
-    other.pop();
-    let far = width + height;
-    half.into_iter().chain(other).map(|(x, y)| (x.clamp(-far, width + far), y.clamp(-far, height + far))).collect()
+    let turn = once.last().copied().unwrap_or(first);
+    let halves = [[&[first], once].concat(), [&[turn], again, &[first]].concat()];
+    let thin = halves.iter().flat_map(|half| {
+        let mut half = thinned(half);
+        half.pop();
+        half
+    });
+    // Where each side begins, how far a point is inside of it.
+    let sides: [fn(Pixel, f64, f64) -> f64; 4] = [
+        |(x, _), _, _| x + BEYOND,
+        |(x, _), width, _| width + BEYOND - x,
+        |(_, y), _, _| y + BEYOND,
+        |(_, y), _, height| height + BEYOND - y,
+    ];
+    sides.iter().fold(thin.collect(), |corners, side| cut(&corners, |point| side(point, width, height)))
+}
+
+/// The part of a polygon whose points are `inside` by zero or more (Sutherland and Hodgman 1974).
+fn cut(corners: &[Pixel], inside: impl Fn(Pixel) -> f64) -> Vec<Pixel> {
+    let mut kept = Vec::with_capacity(corners.len());
+    for (at, &to) in corners.iter().enumerate() {
+        let from = corners[(at + corners.len() - 1) % corners.len()];
+        let (before, after) = (inside(from), inside(to));
+        if (before < 0.0) != (after < 0.0) {
+            let share = before / (before - after);
+            kept.push((from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1)));
+        }
+        if after >= 0.0 {
+            kept.push(to);
+        }
+    }
+    kept
 }
 
 /// The part of a segment inside of the panel (Liang and Barsky 1984).
@@ -141,6 +164,17 @@ mod tests {
         assert_eq!(pieces[0][0], (0.0, 50.0));
         assert_eq!(pieces[0][1].1, 120.0);
         assert_eq!(pieces[1].last(), Some(&(120.0, 50.0)));
+    }
+
+    #[test]
+    fn an_area_is_cut_at_the_panel_and_keeps_its_corners_within() {
+        let square = [(10.0, 10.0), (90.0, 10.0), (90.0, 90.0), (10.0, 90.0)];
+        assert_eq!(enclosed(&square, (100.0, 100.0)), square);
+        let huge = [(50.0, 50.0), (1e9, 50.0), (1e9, 1e9), (50.0, 1e9)];
+        let mut corners = enclosed(&huge, (100.0, 100.0));
+        corners.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(corners, [(50.0, 50.0), (50.0, 120.0), (120.0, 50.0), (120.0, 120.0)]);
+        assert!(enclosed(&[(200.0, 0.0), (300.0, 0.0), (300.0, 50.0)], (100.0, 100.0)).is_empty());
     }
 
     #[test]

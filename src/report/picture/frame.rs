@@ -133,9 +133,10 @@ impl Frame {
     pub fn draw(&self, panel: &Panel, margins: Margins, at: Pixel, scene: &mut Scene) {
         let (width, height) = self.size;
         scene.add(group(at, None));
-        for (line, content) in panel.title_lines().iter().enumerate() {
-            let (size, colour) = if line == 0 { (TITLE, Colour::Black) } else { (TICK, Colour::Grey) };
-            let baseline = margins.top - 8.0 - LINE * (panel.title_lines().len() - 1 - line) as f64;
+        let title = panel.title_lines();
+        for (line, (content, is_first)) in title.iter().enumerate() {
+            let (size, colour) = if *is_first { (TITLE, Colour::Black) } else { (TICK, Colour::Grey) };
+            let baseline = margins.top - 8.0 - LINE * (title.len() - 1 - line) as f64;
             let middle = (margins.left + 0.5 * width, baseline);
             text(middle, content, size, Anchor::Middle, colour, false, &mut scene.elements);
         }
@@ -168,7 +169,8 @@ impl Frame {
             add_labels_and_title(scene, &computed, &layout);
         }
         scene.add(inside());
-        panel.shapes.iter().for_each(|shape| shape.draw(self, &mut scene.elements));
+        let mut taken = panel.shapes.iter().flat_map(|shape| shape.marked(self)).collect();
+        panel.shapes.iter().for_each(|shape| shape.draw(self, &mut taken, &mut scene.elements));
         self.letters(&panel.bands).iter().for_each(|letter| letter.draw(&mut scene.elements));
         scene.add(Primitive::GroupEnd);
         scene.add(Primitive::GroupEnd);
@@ -234,9 +236,12 @@ impl Letter<'_> {
 }
 
 impl Panel {
-    /// The title, broken where the panel ends.
-    fn title_lines(&self) -> Vec<String> {
-        font::lines(&self.title, TITLE, self.size.0)
+    /// The title, broken where the panel ends, and which lines belong to its first one.
+    fn title_lines(&self) -> Vec<(String, bool)> {
+        let (first, rest) = self.title.split_once('\n').unwrap_or((&self.title, ""));
+        let lines = |text, size| font::lines(text, size, self.size.0);
+        let first = lines(first, TITLE).into_iter().map(|line| (line, true));
+        first.chain(lines(rest, TICK).into_iter().map(|line| (line, false))).collect()
     }
 }
 

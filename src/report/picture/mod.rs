@@ -16,6 +16,7 @@ mod curve;
 mod font;
 mod frame;
 mod legend;
+mod names;
 mod number;
 mod png;
 mod shape;
@@ -50,7 +51,7 @@ pub struct Picture {
 /// Shapes over two axes.
 #[derive(Debug, Clone)]
 pub struct Panel {
-    /// Above it; its second line is smaller.
+    /// Above it; what comes after a line break is smaller.
     pub title: String,
     /// Below it.
     pub x: Axis,
@@ -87,7 +88,7 @@ pub fn text_size(text: &str, size: u32) -> Pixel {
 }
 
 /// A picture as SVG, and where its data are in it.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Rendered {
     /// The picture.
     pub svg: String,

@@ -2,6 +2,7 @@
 
 use super::colour::Colour;
 use super::frame::Frame;
+use super::names::{self, Place};
 use super::{Pixel, Point, curve, font, number};
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, TextAnchor};
@@ -48,7 +49,7 @@ pub enum Shape {
         /// Its outline.
         stroke: Option<Stroke>,
     },
-    /// An arrow with a head of fixed size; a shorter one is nothing but a head.
+    /// An arrow with a head of fixed size, of a short one a smaller head.
     Arrow {
         /// Its tail.
         from: Point,
@@ -59,6 +60,13 @@ pub enum Shape {
     },
     /// A text.
     Text(Label),
+    /// Names of points, which keep clear of each other.
+    Names {
+        /// Each point and its name.
+        names: Vec<(Point, String)>,
+        /// Whether a name stands rather below its point than above.
+        below: bool,
+    },
 }
 
 /// A text beside a point.
@@ -146,6 +154,10 @@ pub const MARK: f64 = 4.0;
 /// Of an arrow's head \[px\].
 const HEAD: f64 = 10.0;
 const HALF_HEAD: f64 = 3.6;
+/// About an arrow \[px\].
+const RIM: f64 = 0.8;
+/// The most that a head takes of a short arrow.
+const SHORT_HEAD: f64 = 0.6;
 
 impl Dash {
     /// All, the most different ones first.
@@ -179,11 +191,18 @@ impl Shape {
             &Self::Circle { centre: (x, y), radius, .. } => vec![(x - radius, y - radius), (x + radius, y + radius)],
             &Self::Arrow { from, to, .. } => vec![from, to],
             Self::Text(label) => vec![label.at],
+            Self::Names { names, .. } => names.iter().map(|(point, _)| *point).collect(),
         }
     }
 
-    /// Draws it into `out`.
-    pub(super) fn draw(&self, frame: &Frame, out: &mut Vec<Primitive>) {
+    /// Where it has marks, which no name may cover.
+    pub(super) fn marked(&self, frame: &Frame) -> Vec<Place> {
+        let Self::Marks { points, size, .. } = self else { return Vec::new() };
+        points.iter().filter_map(|&point| Some(Place::about(frame.place(point)?, *size))).collect()
+    }
+
+    /// Draws it into `out`; names keep clear of what is `taken`.
+    pub(super) fn draw(&self, frame: &Frame, taken: &mut Vec<Place>, out: &mut Vec<Primitive>) {
         match self {
             Self::Line { points, stroke } => {
                 let placed: Vec<Option<Pixel>> = points.iter().map(|&point| frame.place(point)).collect();
@@ -205,7 +224,7 @@ impl Shape {
             Self::Area { loops, fill, stroke } => {
                 let placed = |corners: &Vec<Point>| corners.iter().filter_map(|&corner| frame.place(corner)).collect();
                 let loops: Vec<Vec<Pixel>> = loops.iter().map(placed).collect();
-                let loops: Vec<Vec<Pixel>> = loops.iter().map(|corners| curve::closed(corners, frame.size)).collect();
+                let loops: Vec<Vec<Pixel>> = loops.iter().map(|corners| curve::enclosed(corners, frame.size)).collect();
                 let loops: Vec<&[Pixel]> = loops.iter().map(Vec::as_slice).collect();
                 out.push(path(&loops, true, *fill, *stroke));
             }
@@ -224,6 +243,7 @@ impl Shape {
                 let at = (x + label.offset.0, y - label.offset.1 + 0.5 * font::CAPITAL * f64::from(label.size));
                 text(at, &label.text, label.size, label.anchor, label.colour, label.rim, out);
             }
+            Self::Names { names, below } => names::draw(names, *below, frame, taken, out),
         }
     }
 }
@@ -278,16 +298,20 @@ pub(super) fn arrow(from: Pixel, to: Pixel, stroke: Stroke, out: &mut Vec<Primit
         return;
     }
     let (along, across) = ((dx / length, dy / length), (-dy / length, dx / length));
-    let head = HEAD.min(length);
+    let head = HEAD.min(SHORT_HEAD * length);
     let half = HALF_HEAD * head / HEAD;
     let base = (to.0 - head * along.0, to.1 - head * along.1);
-    if length > head {
-        // The shaft ends inside of the head.
-        let end = (base.0 + along.0, base.1 + along.1);
-        out.push(path(&[&[from, end]], false, None, Some(stroke)));
-    }
+    // The shaft ends inside of the head.
+    let end = (base.0 + 0.1 * head * along.0, base.1 + 0.1 * head * along.1);
     let side = |sign: f64| (base.0 + sign * half * across.0, base.1 + sign * half * across.1);
-    out.push(path(&[&[to, side(1.0), side(-1.0)]], true, Some(stroke.colour), None));
+    let (shaft, tip) = ([from, end], [to, side(1.0), side(-1.0)]);
+    // A white rim sets it off from what it lies on; between dashes that is to be seen.
+    if stroke.dash == Dash::Solid {
+        out.push(path(&[&shaft], false, None, Some(Stroke::solid(Colour::White, stroke.width + 2.0 * RIM))));
+    }
+    out.push(path(&[&tip], true, None, Some(Stroke::solid(Colour::White, 2.0 * RIM))));
+    out.push(path(&[&shaft], false, None, Some(stroke)));
+    out.push(path(&[&tip], true, Some(stroke.colour), None));
 }
 
 /// A path through pixels.

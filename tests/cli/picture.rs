@@ -1,0 +1,133 @@
+//! `impact --plot` and `inspect --plot`: pictures of robots as snapshots, always the same bytes and never large; what is not
+//! drawn and why.
+//!
+//! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
+
+use super::{Run, heelstrike, heelstrike_reads};
+use std::path::PathBuf;
+
+/// No SVG is larger \[bytes\].
+const LARGEST: usize = 500_000;
+
+/// A file of this test alone.
+fn file(name: &str) -> PathBuf {
+    let directory = std::env::temp_dir().join(format!("heelstrike-robots-{}", std::process::id()));
+    std::fs::create_dir_all(&directory).expect("a directory");
+    directory.join(name)
+}
+
+fn plotted(args: &[&str], name: &str) -> (Run, PathBuf) {
+    let path = file(name);
+    let run = heelstrike(&[args, &["--plot", path.to_str().expect("UTF-8")]].concat());
+    (run, path)
+}
+
+/// The SVG, drawn twice.
+fn svg(args: &[&str], name: &str) -> String {
+    let drawn = ["a", "b"].map(|time| {
+        let (run, path) = plotted(args, &format!("{name}_{time}.svg"));
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+        std::fs::read_to_string(path).expect("an SVG")
+    });
+    let [svg, again] = drawn;
+    assert_eq!(svg, again);
+    assert!(svg.len() < LARGEST, "{} bytes", svg.len());
+    svg.replace("><", ">\n<")
+}
+
+#[test]
+fn an_outcome_is_drawn_with_its_arrows() {
+    insta::assert_snapshot!("picture_ramone", svg(&["impact", "urdf/ramone.urdf", "examples/ramone.json"], "ramone"));
+}
+
+#[test]
+fn outcomes_stand_side_by_side() {
+    let svg = svg(&["impact", "urdf/minimalistic.urdf", "examples/minimalistic.json"], "minimalistic");
+    for title in ["1: left_leg lifts off", "2: left_leg sticks", "3: left_leg slides forward"] {
+        assert!(svg.contains(title), "{title}");
+    }
+    insta::assert_snapshot!("picture_minimalistic", svg);
+}
+
+#[test]
+fn a_profile_is_drawn_where_the_robot_is() {
+    insta::assert_snapshot!("picture_stairs", svg(&["impact", "urdf/ramone.urdf", "examples/stairs.json"], "stairs"));
+}
+
+#[test]
+fn loops_are_drawn_closed() {
+    insta::assert_snapshot!(
+        "picture_five_bar",
+        svg(&["impact", "urdf/five_bar.urdf", "examples/five_bar.json"], "loop")
+    );
+}
+
+#[test]
+fn a_robot_is_drawn_with_its_names() {
+    insta::assert_snapshot!("picture_inspect_ramone", svg(&["inspect", "urdf/ramone.urdf"], "inspect_ramone"));
+    insta::assert_snapshot!("picture_inspect_a1", svg(&["inspect", "tests/data/robots/a1/a1.urdf"], "inspect_a1"));
+}
+
+#[test]
+fn every_robot_can_be_drawn() {
+    let robots = ["h1/h1", "acrobot/Acrobot", "cartpole/cartpole", "upkie/upkie", "solo8/solo"];
+    for robot in robots {
+        let path = format!("tests/data/robots/{robot}.urdf");
+        let name = robot.replace('/', "_");
+        let svg = svg(&["inspect", &path], &name);
+        assert!(svg.contains("CoG, its area by mass"), "{robot}");
+    }
+}
+
+#[test]
+fn a_robot_in_the_air_has_the_ground_below_it_and_no_arrows() {
+    let state = r#"{"position": {"base": {"z": 0.8}}, "velocity": {"base": {"z": -1}}, "friction": 1}"#;
+    let path = file("air.svg");
+    let run = heelstrike_reads(&["impact", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")], state);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    let svg = std::fs::read_to_string(path).expect("an SVG");
+    assert!(svg.contains("nothing changes"), "{svg}");
+    assert!(svg.contains(r##"fill="#e4e4e4""##), "{svg}");
+    assert!(!svg.contains("velocity"), "{svg}");
+}
+
+#[test]
+fn of_a_refused_state_nothing_is_drawn() {
+    let path = file("refused.svg");
+    let args = ["impact", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")];
+    let run = heelstrike_reads(&args, r#"{"position": {"base": {"z": -1}}, "friction": 1}"#);
+    assert_eq!(run.status, 1);
+    assert!(run.stderr.ends_with("note: no picture is drawn of a state that is refused\n"), "{}", run.stderr);
+    assert!(!path.exists());
+}
+
+#[test]
+fn of_several_states_none_is_answered_where_a_picture_is_asked_for() {
+    let path = file("several.svg");
+    let args = ["impact", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")];
+    let run = heelstrike_reads(&args, r#"{"friction": 1} {"friction": 2}"#);
+    assert_eq!((run.status, run.stdout.as_str()), (2, ""));
+    assert_eq!(
+        run.stderr,
+        "error: --plot: a picture is drawn of one state, and several are given\nhint: give the states one by one\n"
+    );
+    assert!(!path.exists());
+}
+
+#[test]
+fn a_picture_does_not_replace_what_is_read() {
+    let path = file("robot.svg");
+    std::fs::copy("urdf/block.urdf", &path).expect("a copy");
+    let robot = path.to_str().expect("UTF-8");
+    let run = heelstrike(&["inspect", robot, "--plot", robot]);
+    assert_eq!(run.status, 1);
+    assert!(run.stderr.contains("is an input of this command"), "{}", run.stderr);
+    assert_eq!(std::fs::read(path).expect("the robot"), std::fs::read("urdf/block.urdf").expect("the robot"));
+}
+
+#[test]
+fn a_png_is_drawn_as_well() {
+    let (run, path) = plotted(&["inspect", "urdf/five_bar.urdf"], "five_bar.png");
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert_eq!(&std::fs::read(path).expect("a PNG")[..8], b"\x89PNG\r\n\x1a\n");
+}
