@@ -200,10 +200,10 @@ impl Kind {
         match self {
             Self::Answered(Verdict::Unique) => Colour::Blue,
             Self::Answered(Verdict::Ambiguous) => Colour::Vermilion,
-            Self::Answered(Verdict::None) => Colour::Black,
+            Self::Answered(Verdict::None) | Self::Refused => Colour::Black,
             Self::Answered(Verdict::Undecided) => Colour::Purple,
             Self::Answered(Verdict::NoImpact) => Colour::Green,
-            Self::Answered(Verdict::NoContact) | Self::Refused => Colour::Grey,
+            Self::Answered(Verdict::NoContact) | Self::Refused => Colour::Pale,
         }
     }
 
@@ -215,7 +215,7 @@ impl Kind {
             Self::Answered(Verdict::None | Verdict::Undecided) => Colour::Tint(5),
             Self::Answered(Verdict::NoImpact) => Colour::Tint(2),
             Self::Answered(Verdict::NoContact) => Colour::White,
-            Self::Refused => Colour::Grey,
+            Self::Refused => Colour::Pale,
         }
     }
 

@@ -149,11 +149,21 @@ class Robot {
     if (chosen !== null && drawn[chosen]) drawn.push(drawn[chosen]);
     shapes.push(...drawn);
     if (outcomes.length > 1) shapes.push(...tips.map(({ at: [x, y], numbers }) => svg("text", { x, y, dx: 5, dy: -4 }, [...numbers].join(", "))));
-    for (const { point, name } of pose.contacts) {
-      const [cx, cy] = this.at(point);
-      shapes.push(svg("circle", { class: "contact", cx, cy, r: 3.2 }), svg("text", { x: cx, y: cy + 17, "text-anchor": "middle" }, this.data.texts[name]));
-    }
-    return shapes;
+    const named = pose.contacts.map(({ point, name }) => ({ at: this.at(point), name: this.data.texts[name] }));
+    shapes.push(...named.map(({ at: [cx, cy] }) => svg("circle", { class: "contact", cx, cy, r: 3.2 })));
+    return [...shapes, ...this.names(named)];
+  }
+
+  /** Names below points; those of near points stand below each other. */
+  names(named) {
+    const rows = [];
+    return named.sort((a, b) => a.at[0] - b.at[0]).map(({ at: [x, y], name }) => {
+      const half = 3.6 * name.length;
+      const free = rows.findIndex((end) => end < x - half);
+      const row = free < 0 ? rows.length : free;
+      rows[row] = x + half;
+      return svg("text", { x, y: y + 17 + 14 * row, "text-anchor": "middle" }, name);
+    });
   }
 
   outcome(contacts, { impulse, after }, number, chosen, tips) {
