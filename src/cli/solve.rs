@@ -56,7 +56,7 @@ struct Problems {
 
 impl Problems {
     fn analyse(&mut self, problem: &Problem, explain: bool) -> Result<Analysis> {
-        let asked = Asked { explain, prove: self.prove, reductions: self.reductions };
+        let asked = Asked { explain: explain.into(), prove: self.prove, reductions: self.reductions };
         self.scratch.analyse(&problem.contact, &problem.contact, asked)
     }
 }

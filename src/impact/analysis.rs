@@ -29,20 +29,48 @@ use nalgebra::DMatrix;
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
 
+/// Which rejected combinations an analysis lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Explain<'a> {
+    /// None.
+    Nothing,
+    /// All, and the paper's section 4 for each contact.
+    Everything,
+    /// Those with these modes.
+    Only(&'a [Vec<Mode>]),
+}
+
+impl Explain<'_> {
+    /// Whether a combination is listed if it is rejected.
+    fn tells(self, modes: &[Mode]) -> bool {
+        match self {
+            Self::Nothing => false,
+            Self::Everything => true,
+            Self::Only(chosen) => chosen.iter().any(|chosen| chosen == modes),
+        }
+    }
+}
+
+impl From<bool> for Explain<'_> {
+    fn from(explain: bool) -> Self {
+        if explain { Self::Everything } else { Self::Nothing }
+    }
+}
+
 /// What an analysis is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Asked {
-    /// Every rejected combination, and the paper's section 4 for each contact.
-    pub explain: bool,
+pub struct Asked<'a> {
+    /// Which rejected combinations are listed.
+    pub explain: Explain<'a>,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
     /// What of the enumeration is left out where a problem does not need it.
     pub reductions: Reductions,
 }
 
-impl Default for Asked {
+impl Default for Asked<'_> {
     fn default() -> Self {
-        Self { explain: false, prove: true, reductions: Reductions::ALL }
+        Self { explain: Explain::Nothing, prove: true, reductions: Reductions::ALL }
     }
 }
 
@@ -61,7 +89,7 @@ pub struct Scratch {
 /// # Errors
 /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
 pub fn analyse(problem: &ContactProblem, explain: bool) -> Result<Analysis> {
-    Scratch::default().analyse(problem, problem, Asked { explain, ..Asked::default() })
+    Scratch::default().analyse(problem, problem, Asked { explain: explain.into(), ..Asked::default() })
 }
 
 impl Scratch {
@@ -69,7 +97,7 @@ impl Scratch {
     ///
     /// # Errors
     /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
-    pub fn analyse<S: Source>(&mut self, problem: &ContactProblem, source: &S, asked: Asked) -> Result<Analysis> {
+    pub fn analyse<S: Source>(&mut self, problem: &ContactProblem, source: &S, asked: Asked<'_>) -> Result<Analysis> {
         let contacts = problem.contacts();
         if contacts > CONTACT_LIMIT {
             return Err(Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
@@ -128,7 +156,11 @@ impl Scratch {
             rank,
             condition,
             no_slip_consistent: no_slip_consistent(&outcomes),
-            explanation: if asked.explain && rank == 2 * contacts { explanation(problem, scale) } else { None },
+            explanation: if asked.explain == Explain::Everything && rank == 2 * contacts {
+                explanation(problem, scale)
+            } else {
+                None
+            },
             outcomes,
             rejected: rejected.into_iter().map(|(_, rejection)| rejection).collect(),
             effort,
@@ -137,7 +169,7 @@ impl Scratch {
 }
 
 /// All combinations in f64.
-struct FirstLook<'a> {
+struct FirstLook<'a, 'f> {
     problem: &'a ContactProblem,
     scale: &'a Scale,
     bounds: &'a mut Bounds,
@@ -150,10 +182,10 @@ struct FirstLook<'a> {
     open: Vec<(usize, Vec<Mode>)>,
     /// Outcomes that f64 decides, but with few digits.
     coarse: Vec<(usize, Vec<Mode>)>,
-    found: Found,
+    found: Found<'f>,
 }
 
-impl Visitor<f64> for FirstLook<'_> {
+impl Visitor<f64> for FirstLook<'_, '_> {
     fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
         self.bounds.follow(tableau, self.problem.friction(), contact, source);
     }
@@ -166,7 +198,7 @@ impl Visitor<f64> for FirstLook<'_> {
             && !self.problem.friction().iter().any(|friction| friction.is_zero());
         self.labels.start(leaf.modes, self.problem.friction(), self.found.asked.reductions.frictionless);
         while let Some(modes) = self.labels.next() {
-            let reading = read_f64(leaf, modes, self.problem, self.scale, bound, self.found.asked.explain);
+            let reading = read_f64(leaf, modes, self.problem, self.scale, bound, self.found.asked.explain.tells(modes));
             match reading.sign {
                 Sign::Undecided => self.open.push((self.number, modes.to_vec())),
                 sign => {
@@ -190,16 +222,16 @@ const F64_SERVES: f64 = 1e4;
 const DIGITS: f64 = 1e-12;
 
 /// Combinations whose signs hang on more digits.
-struct Open<'a> {
+struct Open<'a, 'f> {
     problem: &'a ContactProblem,
     scale: &'a Scale,
     open: Vec<(usize, Vec<Mode>)>,
     /// Outcomes that were settled with fewer digits than an answer is expected to have.
     coarse: Vec<(usize, Vec<Mode>)>,
-    found: &'a mut Found,
+    found: &'a mut Found<'f>,
 }
 
-impl Question for Open<'_> {
+impl Question for Open<'_, '_> {
     fn ask<T: Ordered>(&mut self, exact: &ContactProblem<T>, layer: Layer) -> bool {
         let mut tableau = Tableau::<T>::new();
         tableau.load(exact);
@@ -218,7 +250,9 @@ impl Question for Open<'_> {
             }
             left -= 1;
             match T::freeing(|| combination(&mut tableau, exact, problem, scale, modes)) {
-                Ok(settled) if found.asked.explain && layer != Layer::Precise && settled.is_vague() => true,
+                Ok(settled) if found.asked.explain.tells(modes) && layer != Layer::Precise && settled.is_vague() => {
+                    true
+                }
                 Ok(settled) => {
                     if settled.error().is_some_and(|error| error > DIGITS) {
                         coarse.push((*number, modes.clone()));
@@ -235,14 +269,14 @@ impl Question for Open<'_> {
 }
 
 /// Outcomes whose numbers are worth more digits.
-struct Coarse<'a> {
+struct Coarse<'a, 'f> {
     problem: &'a ContactProblem,
     scale: &'a Scale,
     coarse: Vec<(usize, Vec<Mode>)>,
-    found: &'a mut Found,
+    found: &'a mut Found<'f>,
 }
 
-impl Question for Coarse<'_> {
+impl Question for Coarse<'_, '_> {
     fn ask<T: Ordered>(&mut self, exact: &ContactProblem<T>, _: Layer) -> bool {
         let mut tableau = Tableau::<T>::new();
         tableau.load(exact);
@@ -368,8 +402,8 @@ struct Numbered {
 }
 
 /// What has been found so far.
-struct Found {
-    asked: Asked,
+struct Found<'a> {
+    asked: Asked<'a>,
     outcomes: Vec<Numbered>,
     rejected: Vec<(usize, Rejection)>,
     effort: Effort,
@@ -377,14 +411,14 @@ struct Found {
     total: usize,
 }
 
-impl Default for Found {
+impl Default for Found<'_> {
     fn default() -> Self {
         let asked = Asked::default();
         Self { asked, outcomes: Vec::new(), rejected: Vec::new(), effort: Effort::default(), total: 0 }
     }
 }
 
-impl Found {
+impl Found<'_> {
     fn take(&mut self, number: usize, modes: &[Mode], problem: &ContactProblem, settled: Settled) {
         match settled {
             Settled::Regular { reading, index, motion, .. } => {
@@ -418,7 +452,7 @@ impl Found {
     ) {
         if reading.sign == Sign::Negative {
             let solved = !matches!(reading.because, Because::NothingHolds { .. });
-            let motion = (self.asked.explain && solved).then(motion);
+            let motion = (self.asked.explain.tells(modes) && solved).then(motion);
             self.reject(number, modes, reading.because, reading.margin, motion);
             return;
         }
@@ -497,7 +531,7 @@ impl Found {
     }
 
     fn reject(&mut self, number: usize, modes: &[Mode], because: Because, margin: Option<f64>, motion: Option<Motion>) {
-        if self.asked.explain {
+        if self.asked.explain.tells(modes) {
             let (margin, motion) = (margin.filter(|margin| margin.is_finite()), motion.filter(Motion::is_finite));
             self.rejected.push((number, Rejection { modes: modes.to_vec(), because, margin, motion }));
         }

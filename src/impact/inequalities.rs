@@ -11,6 +11,7 @@
 
 use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
+use super::mode::Mode;
 use super::problem::ContactProblem;
 use super::sign::slacks;
 
@@ -27,17 +28,22 @@ pub struct Inequalities {
 
 impl Inequalities {
     /// Those of `problem`; combinations and their inequalities are always in the same order as long as the frictions are
-    /// zero, finite or infinite as before. Numbers of a singular combination may be NaN or infinite.
+    /// zero, finite or infinite as before. Those of a combination that is singular up to rounding are all zero.
     pub fn of(problem: &ContactProblem) -> Self {
         let mut tableau = Tableau::<f64>::new();
         let mut labels = Labels::default();
         let mut all = Self::default();
         tableau.load(problem);
         tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
-            let determinant = leaf.pivots.iter().product::<f64>();
+            let determinant = match is_singular(leaf, problem) {
+                true => 0.0,
+                false => leaf.pivots.iter().product::<f64>(),
+            };
             labels.start(leaf.modes, problem.friction(), true);
             while let Some(modes) = labels.next() {
-                slacks(leaf, modes, problem.friction(), |slack| all.numerators.push(slack.number * determinant));
+                slacks(leaf, modes, problem.friction(), |slack| {
+                    all.numerators.push(if determinant == 0.0 { 0.0 } else { slack.number * determinant });
+                });
                 all.determinants.push(determinant);
                 all.ends.push(all.numerators.len());
             }
@@ -52,10 +58,29 @@ impl Inequalities {
     }
 }
 
+/// A pivot that has lost so many digits of what it is the difference of is zero but for rounding.
+const SINGULAR: f64 = 1e-10;
+
+/// Whether a pivot is zero up to rounding: contacts depend on each other, or an inequality is at a pole.
+fn is_singular(leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> bool {
+    let lost = |(contact, (&mode, &pivot)): (usize, (&Mode, &f64))| {
+        let entry = |row: usize, column: usize| problem.delassus(2 * contact + row, 2 * contact + column);
+        let friction = problem.friction()[contact];
+        let (a, b) = friction.pair();
+        let size = match mode {
+            Mode::Separate => return false,
+            Mode::Stick if !friction.is_zero() => entry(0, 0) * entry(1, 1),
+            _ => a * entry(0, 1).abs() + b * entry(1, 1),
+        };
+        pivot.abs() <= SINGULAR * size
+    };
+    leaf.modes.iter().zip(leaf.pivots).enumerate().any(lost)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::{Friction, Mode, analyse};
+    use crate::impact::{Friction, analyse};
 
     #[test]
     fn a_combination_is_valid_where_all_its_inequalities_have_the_sign_of_the_determinant() {

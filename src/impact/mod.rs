@@ -23,7 +23,7 @@ mod redundant;
 mod region;
 pub mod sign;
 
-pub use analysis::{Asked, CONTACT_LIMIT, Scratch, analyse};
+pub use analysis::{Asked, CONTACT_LIMIT, Explain, Scratch, analyse};
 pub use inequalities::Inequalities;
 pub use mode::{Friction, Mode};
 pub use outcome::{Analysis, Because, Border, Effort, Explanation, Motion, Outcome, Region, Rejection, Verdict, Zero};

@@ -19,7 +19,7 @@ use crate::dynamics::{
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
-use crate::impact::{Analysis, Asked, ContactProblem, Errors, Friction, Scratch};
+use crate::impact::{Analysis, Asked, ContactProblem, Errors, Explain, Friction, Mode, Scratch};
 use crate::plan::{Plan, Posture};
 use crate::planar::{Rotation, Vector, dot, scaled, sum};
 use crate::reductions::Reductions;
@@ -101,6 +101,7 @@ struct Answer {
 
 /// A state and its contact problem, not yet analysed.
 struct Before {
+    /// Where the bodies are.
     placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
     velocity: Vec<f64>,
@@ -178,11 +179,6 @@ impl<'r> Pipeline<'r> {
         }
     }
 
-    /// Changes up to how many contacts rejected combinations are listed, and gives what it was.
-    pub(crate) fn explain_up_to(&mut self, contacts: usize) -> usize {
-        std::mem::replace(&mut self.options.explain_up_to, contacts)
-    }
-
     /// Every outcome of one state.
     ///
     /// # Errors
@@ -191,15 +187,24 @@ impl<'r> Pipeline<'r> {
     /// [`Reason::Missing`] for a contact without friction or a stance without a foot, [`Reason::MatricesTooLarge`] for
     /// hundreds of contacts, [`Reason::NotFinite`] for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
-        let mut answer = self.answer(state)?;
+        let mut answer = self.answer(state, None)?;
         if let Some(uncertainty) = &state.uncertainty {
             answer.impact.holds = Some(self.holds(state, uncertainty, &answer));
         }
         Ok(answer.impact)
     }
 
-    /// As [`Pipeline::impact`], whatever the state's uncertainty is.
-    fn answer(&mut self, state: &State) -> Result<Answer> {
+    /// As [`Pipeline::impact`], whatever the state's uncertainty is; of all rejected combinations those with `chosen` modes
+    /// are listed.
+    ///
+    /// # Errors
+    /// As [`Pipeline::impact`].
+    pub fn impact_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Impact> {
+        self.answer(state, Some(chosen)).map(|answer| answer.impact)
+    }
+
+    /// As [`Pipeline::impact`], whatever the state's uncertainty is; with `chosen` modes of rejected combinations, if they are.
+    fn answer(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let Before {
             placement,
@@ -237,6 +242,7 @@ impl<'r> Pipeline<'r> {
         };
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
         let Options { no_proof, reductions, .. } = self.options;
+        let explain = chosen.map_or(explain.into(), Explain::Only);
         let asked = Asked { explain, prove: !no_proof, reductions };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);

@@ -87,7 +87,7 @@ impl Kept<'_, '_> {
     /// The proven answer at a point, if its contacts are the same.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let Answer { impact, foot, stance, resting } = self.pipeline.answer(&state).ok()?;
+        let Answer { impact, foot, stance, resting } = self.pipeline.answer(&state, None).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
                 let far = difference(one.centre, other.centre);

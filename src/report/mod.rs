@@ -5,8 +5,8 @@
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
-//!     Survey ──> Sweep, samples ──> JSON, CSV, text              sweep
 //!     Robot, Impact ──> Drawing ──> JSON, picture                       drawing
+//!     Survey ──> Sweep, samples ──> JSON, CSV, text                     sweep
 //!     Impacts ──> Keyframes, a Picture ──> Page ──> HTML                keyframe, page
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```

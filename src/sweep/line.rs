@@ -59,7 +59,7 @@ pub struct Stretch {
 /// The brackets of all borders between two places, ascending, to the `resolution`.
 ///
 /// Where the regimes of two places differ, the border between them is bisected, and every other regime that is met on the
-/// way likewise; where they are the same, the stretch between them is searched for hidden ones ([`suspects`]). So in the end
+/// way likewise; where they are the same, the stretch between them is searched for hidden ones (see `hunt`). So in the end
 /// every neighbouring pair of all places that were asked agrees, or brackets a border.
 pub fn brackets(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();

@@ -21,7 +21,7 @@ use crate::planar::Vector;
 use std::sync::Arc;
 
 /// Curves are traced through at least so many cells along each parameter.
-const CELLS: usize = 64;
+pub const CELLS: usize = 64;
 
 /// How far the outermost lines of the grid lie inside the ranges, as part of them: on their ends many studies are degenerate.
 const INSIDE: f64 = 1e-7;
@@ -37,6 +37,8 @@ pub struct Map {
     pub areas: Vec<Area>,
     /// The borders between them.
     pub curves: Vec<Curve>,
+    /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
+    pub dependent: bool,
 }
 
 /// Where one regime holds.
@@ -111,7 +113,7 @@ impl Map {
     /// The areas of `model`, whose study has two parameters; tells `workers` of [`Map::work`] pieces of work.
     pub fn of(model: &Model, workers: Workers) -> Self {
         let [first, second] = model.study.parameters() else {
-            return Self { areas: Vec::new(), curves: Vec::new() };
+            return Self { areas: Vec::new(), curves: Vec::new(), dependent: false };
         };
         let (xs, ys) = (lines(first), lines(second));
         let (nx, ny) = (xs.len(), ys.len());
@@ -175,17 +177,18 @@ impl Map {
             .collect();
         super::middle::find(&nodes, (&xs, &ys), &mut areas);
         let mut solver = begin();
+        let mut dependent = false;
         for area in &mut areas {
-            if let (Regime::Refused { .. }, Some((middle, _))) = (&*area.regime, area.middles.first()) {
-                area.refused = solver.explained(middle).err();
-            }
+            let Some((middle, _)) = area.middles.first() else { continue };
+            let (depends, refused) = solver.dependence(middle);
+            (area.refused, dependent) = (refused, dependent || depends);
         }
         let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
         let curves = chains(&segments).into_iter().filter_map(|chain| {
             let sides = [index(&chain.left)?, index(&chain.right)?];
             Some(Curve { sides, points: chain.points.into_iter().map(outward).collect(), turns: chain.turns })
         });
-        Self { curves: curves.collect(), areas }
+        Self { curves: curves.collect(), areas, dependent }
     }
 
     /// How many pieces of work a map of `model` has.

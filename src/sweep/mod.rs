@@ -25,7 +25,7 @@ mod variation;
 
 pub use course::{Course, Place};
 pub use line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stretches};
-pub use map::{Area, Curve, Map};
+pub use map::{Area, CELLS, Curve, Map};
 pub use model::{Model, Solver, WATCHED_CONTACTS, Watched};
 pub use parallel::Workers;
 pub use regime::Regime;

@@ -3,11 +3,11 @@
 use super::Study;
 use super::regime::Regime;
 use crate::description::Description;
-use crate::impact::{Analysis, Inequalities};
+use crate::impact::{Analysis, Inequalities, Mode};
 use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
 use crate::state::{Defaults, State};
-use crate::{Result, Robot};
+use crate::{Error, Result, Robot};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -34,6 +34,8 @@ pub struct Solver<'a> {
     model: &'a Model<'a>,
     /// For the robot as it is; none where the study varies it.
     pipeline: Option<Pipeline<'a>>,
+    /// Regimes that were met, each kept once.
+    known: Vec<Arc<Regime>>,
 }
 
 /// What is followed from point to point.
@@ -74,7 +76,7 @@ impl<'a> Solver<'a> {
     /// A solver for `model`.
     pub fn new(model: &'a Model<'a>) -> Self {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.options.clone()));
-        Self { model, pipeline }
+        Self { model, pipeline, known: Vec::new() }
     }
 
     /// Asks about the state at a point, as it is given there.
@@ -105,24 +107,33 @@ impl<'a> Solver<'a> {
         self.at(point, |_, state, pipeline| pipeline.impact(&State { uncertainty: None, ..state }))?
     }
 
-    /// The impact at a point, with every rejected combination.
+    /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
     ///
     /// # Errors
     /// Whatever refuses the point.
-    pub fn explained(&mut self, point: &[f64]) -> Result<(Vec<String>, Analysis)> {
-        let impact = self.at(point, |_, state, pipeline| {
-            let before = pipeline.explain_up_to(usize::MAX);
-            let impact = pipeline.impact(&State { uncertainty: None, ..state });
-            pipeline.explain_up_to(before);
-            impact
-        })??;
+    pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
+        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))??;
         let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
         Ok((names, impact.analysis?))
     }
 
+    /// Whether the contacts of a point depend on each other, and why it is refused, if it is.
+    pub(super) fn dependence(&mut self, point: &[f64]) -> (bool, Option<Error>) {
+        match self.explained(point, &[]) {
+            Ok((contacts, analysis)) => (analysis.rank < 2 * contacts.len(), None),
+            Err(error) => (false, Some(error)),
+        }
+    }
+
     /// What happens at a point.
     pub fn regime(&mut self, point: &[f64]) -> Arc<Regime> {
-        Arc::new(Regime::of(&self.impact(point)))
+        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, &[]));
+        let regime = Regime::of(&impact.and_then(|impact| impact));
+        if let Some(known) = self.known.iter().find(|known| ***known == regime) {
+            return Arc::clone(known);
+        }
+        self.known.push(Arc::new(regime));
+        Arc::clone(&self.known[self.known.len() - 1])
     }
 
     /// What is followed; none where the point is refused.

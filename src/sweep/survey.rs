@@ -15,6 +15,8 @@ pub struct Survey {
     pub regions: Vec<Region>,
     /// The border between each two of them.
     pub borders: Vec<Border>,
+    /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
+    pub dependent: bool,
 }
 
 /// A stretch of the parameter with one set of outcomes.
@@ -58,7 +60,7 @@ impl Survey {
     /// The regions of `model`, whose study has one parameter; tells `workers` of [`Survey::work`] pieces of work.
     pub fn of(model: &Model, workers: Workers) -> Self {
         let Some(parameter) = model.study.parameters().first() else {
-            return Self { regions: Vec::new(), borders: Vec::new() };
+            return Self { regions: Vec::new(), borders: Vec::new(), dependent: false };
         };
         let resolution = RESOLUTION * parameter.range();
         let begin = || Solver::new(model);
@@ -76,21 +78,23 @@ impl Survey {
 
         let mut solver = begin();
         let mut kinds: Vec<Arc<Regime>> = Vec::new();
+        let mut dependent = false;
         let mut region = |super::line::Stretch { from, to, regime }| {
             let kind = kinds.iter().position(|known| *known == regime).unwrap_or_else(|| {
                 kinds.push(Arc::clone(&regime));
                 kinds.len() - 1
             });
-            let refused = match *regime {
-                Regime::Refused { .. } => solver.explained(&[0.5 * (from + to)]).err(),
-                Regime::Answered { .. } => None,
-            };
+            let (depends, refused) = solver.dependence(&[0.5 * (from + to)]);
+            dependent |= depends;
             Region { from, to, regime, kind, refused }
         };
         let regions = stretches.into_iter().map(&mut region).collect();
-        let border =
-            |bracket: &Bracket| Border { at: bracket.at(), turns: Turns::at(&mut solver, bracket, |at| vec![at]) };
-        Self { regions, borders: brackets.iter().map(border).collect() }
+        let border = |solver: &mut Solver, index: usize| {
+            let bracket: &Bracket = &brackets[index];
+            Border { at: bracket.at(), turns: Turns::at(solver, bracket, |at| vec![at]) }
+        };
+        let quiet = Workers { done: &|| (), ..workers };
+        Self { regions, borders: quiet.map(brackets.len(), begin, border), dependent }
     }
 
     /// How many pieces of work a survey of `model` has.

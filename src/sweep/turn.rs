@@ -6,6 +6,7 @@
 
 use super::line::Bracket;
 use super::model::Solver;
+use super::regime::Regime;
 use crate::impact::{Analysis, Because, Mode};
 use crate::{Error, Result};
 use serde::Serialize;
@@ -103,8 +104,9 @@ pub struct Turns {
 impl Turns {
     /// What turns between the sides of a `bracket`, which `place` puts into the space of all parameters.
     pub fn at(solver: &mut Solver, bracket: &Bracket, place: impl Fn(f64) -> Vec<f64>) -> Self {
-        let below = solver.explained(&place(bracket.below.at));
-        let above = solver.explained(&place(bracket.above.at));
+        let outcomes = |regime: &Regime| regime.outcomes().unwrap_or_default().to_vec();
+        let below = solver.explained(&place(bracket.below.at), &outcomes(&bracket.above.regime));
+        let above = solver.explained(&place(bracket.above.at), &outcomes(&bracket.below.regime));
         Self::between(below, above)
     }
 

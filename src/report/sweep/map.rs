@@ -3,7 +3,7 @@
 use super::{ErrorObject, Happening, Turns, letter, not_guaranteed};
 use crate::planar::Vector;
 use crate::report::Palette;
-use crate::sweep::{Area, Curve, Map, Parameter};
+use crate::sweep::{Area, CELLS, Curve, Map, Parameter};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -69,11 +69,16 @@ impl<'a> MapSweep<'a> {
             points: &curve.points,
         };
         let contacts = map.areas.iter().map(|area| area.regime.contacts().len()).max().unwrap_or(0);
+        let mut notes = not_guaranteed(contacts, map.dependent);
+        notes.push(format!(
+            "curves are traced along the lines of a grid of at least {CELLS} by {CELLS} cells: an area that lies within one of its \
+             cells is not found"
+        ));
         Self {
             parameters: parameters.iter().map(|parameter| parameter.name.as_str()).collect(),
             regions: map.areas.iter().enumerate().map(region).collect(),
             borders: map.curves.iter().map(border).collect(),
-            notes: vec![not_guaranteed(contacts)],
+            notes,
             samples: parameters.iter().map(|parameter| parameter.steps).product(),
         }
     }

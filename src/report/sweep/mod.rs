@@ -153,7 +153,7 @@ impl<'a> Sweep<'a> {
             parameter: &parameter.name,
             regions: survey.regions.iter().map(region).collect(),
             borders: survey.borders.iter().map(border).collect(),
-            notes: vec![not_guaranteed(contacts)],
+            notes: not_guaranteed(contacts, survey.dependent),
             steps: parameter.steps,
         }
     }
@@ -193,18 +193,27 @@ pub fn letter(kind: usize) -> String {
     }
 }
 
-/// What a search of regions with so many contacts may have missed.
-pub fn not_guaranteed(contacts: usize) -> String {
+/// What a search of regions with so many contacts may have missed, and where contacts depend on each other.
+fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
+    let exact = "borders are exact, but that no region is missing is not guaranteed";
     if contacts > WATCHED_CONTACTS {
-        return format!(
-            "with more than {WATCHED_CONTACTS} contacts, regions between two samples of the same outcomes are not searched for: \
-             thinner ones than the distance of samples may be missing"
+        return vec![format!(
+            "{exact}: with more than {WATCHED_CONTACTS} contacts, regions that lie between two samples of the same outcomes are \
+             not searched for"
+        )];
+    }
+    let mut notes = vec![format!(
+        "{exact}: between two samples of the same outcomes a thinner region is found where an inequality of some combination \
+         turns or comes near zero, and missed where that happens more often than the samples show; more steps leave less \
+         room for it"
+    )];
+    if dependent {
+        notes.push(
+            "contacts depend on each other: combinations without a unique solution are not followed between samples"
+                .into(),
         );
     }
-    "borders are exact, the list of regions is not guaranteed: between two samples of the same outcomes a thinner region is \
-     found where an inequality of some combination turns or comes near zero, and missed where it oscillates more often than \
-     the samples show; more steps leave less room for that"
-        .to_owned()
+    notes
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The regions of a study for people.
 
-use super::super::{Palette, words};
+use super::super::Palette;
+use super::super::words;
 use super::{Happening, Sweep, Turn, Turns};
 use crate::sweep::Side;
 use std::fmt::Write;
