@@ -131,7 +131,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         let stops = Stops::new(&model, &findings);
         progress.expect(if args.plot.is_page() { stops.count() as u64 } else { 0 });
         let page = |rendered| Page::of_study(&model, &findings, &stops, rendered, workers);
-        args.plot.draw(&picture, "the study has no place on its axes", page)?;
+        args.plot.draw(&picture, "no region was found", page)?;
     }
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {

@@ -14,6 +14,7 @@ mod inspect;
 mod manners;
 mod picture;
 mod refusals;
+mod sweep_picture;
 
 /// What a run left behind.
 struct Run {

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 const LARGEST: usize = 500_000;
 
 /// A file of this test alone.
-fn file(name: &str) -> PathBuf {
+pub(super) fn file(name: &str) -> PathBuf {
     let directory = std::env::temp_dir().join(format!("heelstrike-robots-{}", std::process::id()));
     std::fs::create_dir_all(&directory).expect("a directory");
     directory.join(name)
@@ -23,7 +23,7 @@ fn plotted(args: &[&str], name: &str) -> (Run, PathBuf) {
 }
 
 /// The SVG, drawn twice.
-fn svg(args: &[&str], name: &str) -> String {
+pub(super) fn svg(args: &[&str], name: &str) -> String {
     let drawn = ["a", "b"].map(|time| {
         let (run, path) = plotted(args, &format!("{name}_{time}.svg"));
         assert_eq!((run.status, run.stderr.as_str()), (0, ""));

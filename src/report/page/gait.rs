@@ -203,7 +203,7 @@ impl Kind {
             Self::Answered(Verdict::None) | Self::Refused => Colour::Black,
             Self::Answered(Verdict::Undecided) => Colour::Purple,
             Self::Answered(Verdict::NoImpact) => Colour::Green,
-            Self::Answered(Verdict::NoContact) | Self::Refused => Colour::Pale,
+            Self::Answered(Verdict::NoContact) => Colour::Grey,
         }
     }
 

@@ -33,6 +33,9 @@ pub enum Colour {
 const TINTS: [&str; 8] = ["#EAF3FB", "#F3CFA8", "#E3F4E4", "#B4D2EA", "#FFF4CC", "#D6BCDA", "#FBE9EF", "#BAD6B0"];
 
 impl Colour {
+    /// How many different tints there are; those of even numbers are lighter than those of odd ones.
+    pub const TINTS: usize = TINTS.len();
+
     /// Colours for lines and marks, the most different ones first (Okabe and Ito 2008).
     pub const SERIES: [Self; 8] = [
         Self::Blue,

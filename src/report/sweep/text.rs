@@ -65,8 +65,8 @@ impl Happening<'_> {
     /// The combinations that no precision excludes, one a line.
     pub fn not_excluded(&self) -> Vec<String> {
         let contacts = self.contacts.unwrap_or_default();
-        let words = |modes: &Vec<_>| words::modes(contacts.iter().map(String::as_str), modes);
-        self.undecided.unwrap_or_default().iter().map(|modes| format!("not excluded: {}", words(modes))).collect()
+        let sentence = |modes: &Vec<_>| words::modes(contacts.iter().map(String::as_str), modes);
+        self.undecided.unwrap_or_default().iter().map(|modes| format!("not excluded: {}", sentence(modes))).collect()
     }
 }
 

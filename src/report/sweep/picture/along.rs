@@ -1,11 +1,11 @@
 //! One parameter: panels below each other, for each contact its velocity after and its impulse.
 
-use super::{Kind, angles};
-use crate::impact::{Mode, Motion};
+use super::style::{COMPONENTS, Styles};
+use super::{Kind, WIDTH, angles, colours, is_seen};
+use crate::impact::Motion;
 use crate::planar::Vector;
-use crate::report::picture::{Axis, Band, Colour, Dash, Entry, Key, Legend, Panel, Picture, Point, Shape, Stroke};
-use crate::report::words;
-use crate::sweep::{Course, Place, Region, Survey};
+use crate::report::picture::{Axis, Band, Colour, Legend, Panel, Picture, Point, Shape, Stroke};
+use crate::sweep::{Course, Place, Regime, Region, Survey};
 
 /// What is drawn of a contact.
 struct Quantity {
@@ -20,12 +20,7 @@ const QUANTITIES: [Quantity; 2] = [
     Quantity { label: "impulse [N s]", name: "impulse", of: |motion| &motion.impulse },
 ];
 
-/// The components and their lines: where both are the same, the wider one is seen behind the other.
-const COMPONENTS: [(&str, Stroke); 2] =
-    [("tangential", Stroke::solid(Colour::Blue, 2.8)), ("normal", Stroke::solid(Colour::Vermilion, 1.6))];
-
-/// Inside of the axes \[px\].
-const WIDTH: f64 = 540.0;
+/// Height inside of the axes \[px\].
 const HEIGHT: f64 = 176.0;
 /// Without anything but the letters of regions.
 const STRIP: f64 = 30.0;
@@ -40,7 +35,8 @@ const ZERO: f64 = 1e-12;
 
 /// What the regions of a survey look like, whose outcomes follow these courses.
 pub fn picture(x: Axis, survey: &Survey, courses: &[Course]) -> Picture {
-    let styles = Styles::of(survey);
+    let kinds = kinds(survey);
+    let styles = Styles::of(survey, &kinds);
     let whole = Whole { survey, courses, styles: &styles };
     let mut panels = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect::<Vec<_>>();
     if panels.is_empty() {
@@ -49,38 +45,45 @@ pub fn picture(x: Axis, survey: &Survey, courses: &[Course]) -> Picture {
     }
     for (index, panel) in panels.iter_mut().enumerate() {
         let letter = |kind: &Kind| if index == 0 { kind.letter.clone() } else { String::new() };
-        panel.bands = bands(survey, |kind| (letter(kind), kind.colour));
+        panel.bands = bands(survey, &kinds, |kind| (letter(kind), kind.colour));
     }
     let mut explained = angles::panels(survey, courses);
     let angles = !explained.is_empty();
     // These have letters of their own.
-    explained.iter_mut().for_each(|panel| panel.bands = bands(survey, |_| (String::new(), Colour::White)));
+    explained.iter_mut().for_each(|panel| panel.bands = bands(survey, &kinds, |_| (String::new(), Colour::White)));
     panels.extend(explained);
     let last = panels.len() - 1;
     for (index, panel) in panels.iter_mut().enumerate() {
         panel.x = Axis { bare: index < last, ..x.clone() };
     }
-    let legend = Legend { entries: styles.legend(survey, angles), below: true };
+    let legend = Legend { entries: styles.legend(&kinds, angles), below: true };
     Picture { title: String::new(), rows: panels.into_iter().map(|panel| vec![panel]).collect(), legend }
 }
 
 /// The regions, each with a letter and a colour.
-fn bands(survey: &Survey, look: impl Fn(&Kind) -> (String, Colour)) -> Vec<Band> {
+fn bands(survey: &Survey, kinds: &[Kind], look: impl Fn(&Kind) -> (String, Colour)) -> Vec<Band> {
     let band = |region: &Region| {
-        let (letter, fill) = look(&kind(region));
+        let (letter, fill) = look(&kinds[region.kind]);
         Band { from: region.from, to: region.to, letter, fill }
     };
     survey.regions.iter().map(band).collect()
 }
 
-/// Whether a region is wide enough for lines in it.
-fn is_seen(region: &Region, survey: &Survey) -> bool {
-    let range: f64 = survey.regions.iter().map(|region| region.to - region.from).sum();
-    WIDTH * (region.to - region.from) >= range
-}
-
-fn kind(region: &Region) -> Kind<'_> {
-    Kind::new(region.kind, &region.regime, region.refused.as_ref())
+/// Every kind of region, in the order of letters.
+fn kinds(survey: &Survey) -> Vec<Kind<'_>> {
+    let mut firsts: Vec<&Region> = Vec::new();
+    for region in &survey.regions {
+        if region.kind == firsts.len() {
+            firsts.push(region);
+        }
+    }
+    let regimes: Vec<&Regime> = firsts.iter().map(|region| &*region.regime).collect();
+    let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
+    firsts
+        .iter()
+        .zip(colours(&regimes, &borders))
+        .map(|(region, colour)| Kind::new(region.kind, &region.regime, region.refused.as_ref(), colour))
+        .collect()
 }
 
 /// Everything along the parameter.
@@ -151,7 +154,8 @@ impl<'a> Whole<'a> {
                         Some((place.at, (quantity.of)(motion).get(index)?[axis]))
                     };
                     let points: Vec<Point> = course.places.iter().filter_map(point).collect();
-                    ranges.extend(shown(&points));
+                    // Nobody sees a curve in a region that is but a line.
+                    ranges.extend(shown(&points).filter(|_| is_seen(region, self.survey)));
                     let stroke = Stroke { dash: self.styles.dash(contacts, modes), ..stroke };
                     shapes.push(Shape::Line { points, stroke });
                 }
@@ -178,102 +182,11 @@ fn shown(points: &[Point]) -> Option<(f64, f64)> {
     values.map(|value| (value, value)).reduce(|(low, high), (least, most)| (low.min(least), high.max(most)))
 }
 
-/// How the lines of each outcome are drawn.
-struct Styles<'a>(Vec<Style<'a>>);
-
-struct Style<'a> {
-    contacts: &'a [String],
-    modes: &'a [Mode],
-    /// Its own dashes; none where it needs none to be told from others, and is known by its region.
-    dash: Option<Dash>,
-    /// Of the first region in which it is valid.
-    colour: Colour,
-    /// The letters of the regions in which it is valid.
-    letters: Vec<String>,
-    /// Whether another outcome is valid beside it somewhere.
-    ambiguous: bool,
-    /// Whether its lines are seen anywhere.
-    seen: bool,
-}
-
-impl<'a> Styles<'a> {
-    /// Where some region is ambiguous, each outcome that is seen has its own dashes wherever it is valid; of more outcomes than there are
-    /// dashes only those of ambiguous regions have.
-    fn of(survey: &'a Survey) -> Self {
-        let mut styles: Vec<Style> = Vec::new();
-        for region in &survey.regions {
-            let contacts = region.regime.contacts();
-            let Kind { letter, colour, .. } = kind(region);
-            let outcomes = region.regime.outcomes().unwrap_or_default();
-            for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
-                let ambiguous = outcomes.len() > 1 && is_seen(region, survey);
-                match styles.iter_mut().find(|style| (style.contacts, style.modes) == (contacts, modes)) {
-                    Some(style) => {
-                        style.ambiguous |= ambiguous;
-                        style.seen |= is_seen(region, survey);
-                        if !style.letters.contains(&letter) {
-                            style.letters.push(letter.clone());
-                        }
-                    }
-                    None => {
-                        let letters = vec![letter.clone()];
-                        styles.push(Style {
-                            contacts,
-                            modes,
-                            dash: None,
-                            colour,
-                            letters,
-                            ambiguous,
-                            seen: is_seen(region, survey),
-                        });
-                    }
-                }
-            }
-        }
-        let seen = styles.iter().filter(|style| style.seen).count();
-        let all = seen <= Dash::ALL.len() && styles.iter().any(|style| style.ambiguous);
-        let dashed = styles.iter_mut().filter(|style| style.ambiguous || all && style.seen);
-        dashed.zip(Dash::ALL.into_iter().cycle()).for_each(|(style, dash)| style.dash = Some(dash));
-        Self(styles)
-    }
-
-    fn dash(&self, contacts: &[String], modes: &[Mode]) -> Dash {
-        let own = self.0.iter().find(|style| (style.contacts, style.modes) == (contacts, modes));
-        own.and_then(|style| style.dash).unwrap_or(Dash::Solid)
-    }
-
-    /// Components, what angles there are, outcomes with the letters of their regions, regions without any.
-    fn legend(&self, survey: &Survey, angles: bool) -> Vec<Entry> {
-        let mut entries = Vec::new();
-        if !self.0.is_empty() {
-            entries.extend(COMPONENTS.map(|(name, stroke)| Entry { name: name.into(), key: Key::Line(stroke) }));
-        }
-        if angles {
-            entries.extend(angles::legend());
-        }
-        entries.extend(self.0.iter().map(|Style { contacts, modes, dash, colour, letters, .. }| {
-            let words = words::modes(contacts.iter().map(String::as_str), modes);
-            let line = |dash| Key::Line(Stroke { dash, ..Stroke::solid(Colour::Black, 1.6) });
-            let key = dash.map_or(Key::Fill(*colour), line);
-            Entry { name: format!("{}: {words}", letters.join(", ")), key }
-        }));
-        let mut told = Vec::new();
-        for region in &survey.regions {
-            let Kind { letter, colour, happening } = kind(region);
-            let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
-            let lines = if answered { happening.not_excluded() } else { happening.lines() };
-            if !lines.is_empty() && !told.contains(&letter) {
-                entries.push(Entry { name: format!("{letter}: {}", lines.join("\n")), key: Key::Fill(colour) });
-                told.push(letter);
-            }
-        }
-        entries
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::Mode;
+    use crate::report::picture::Key;
 
     #[test]
     fn a_curve_is_shown_whole_but_for_poles() {
@@ -282,5 +195,59 @@ mod tests {
         assert_eq!(shown(&curve(&|x| x * x * x - 0.5)), Some((-0.5, 0.5)));
         assert_eq!(shown(&curve(&|x| 1.0 / (1.001 - x))), Some((1.0 / 1.001, 1.5 / 0.251)));
         assert_eq!(shown(&curve(&|x| -1.0 / (0.001 + x))), Some((-1.5 / 0.251, -1.0 / 1.001)));
+    }
+
+    /// Ten regions with six outcomes of two contacts each, all of them wavy.
+    fn crowd() -> (Survey, Vec<Course>) {
+        let modes = |outcome: usize| vec![Mode::ALL[outcome % 4], Mode::ALL[outcome / 4]];
+        let regime = |region: usize| Regime::Answered {
+            contacts: vec!["left_foot".into(), "right_foot".into()],
+            outcomes: (0..6).map(|outcome| modes(outcome + region)).collect(),
+            undecided: Vec::new(),
+        };
+        let region = |kind: usize| {
+            let (from, to) = (0.1 * kind as f64, 0.1 * (kind + 1) as f64);
+            Region { from, to, regime: regime(kind).into(), kind, refused: None }
+        };
+        let regions: Vec<Region> = (0..10).map(region).collect();
+        let wave = |x: f64, phase: usize| libm::sin(20.0 * x + phase as f64);
+        let motion = |x: f64, outcome: usize| {
+            let pair = |shift: usize| [wave(x, outcome + shift), wave(x, outcome + shift + 2)];
+            Motion { impulse: vec![pair(0), pair(1)], velocity_after: vec![pair(2), pair(3)] }
+        };
+        let place = |kind: usize, step: usize| {
+            let at = 0.1 * (kind as f64 + step as f64 / 500.0);
+            let outcomes = (0..6).map(|outcome| (modes(outcome + kind), motion(at, outcome))).collect();
+            Place { at, outcomes, explanation: None }
+        };
+        let course = |kind: usize| Course { places: (0..=500).map(|step| place(kind, step)).collect() };
+        let courses = (0..10).map(course).collect();
+        (Survey { regions, borders: Vec::new() }, courses)
+    }
+
+    #[test]
+    fn a_crowd_of_regions_and_outcomes_is_a_small_file() {
+        let (survey, courses) = crowd();
+        let x = Axis { range: Some((0.0, 1.0)), ..Axis::default() };
+        let picture = picture(x, &survey, &courses);
+        let lines: usize = picture.rows.iter().flatten().map(|panel| panel.shapes.len()).sum();
+        assert_eq!(lines, 4 * 2 * 60);
+        let svg = picture.svg().expect("a picture");
+        assert!(svg.len() < 500_000, "{} bytes", svg.len());
+        let told = picture.legend.entries.iter().filter(|entry| matches!(entry.key, Key::Line(_))).count();
+        assert_eq!(told, COMPONENTS.len() + 15, "each outcome once");
+    }
+
+    #[test]
+    fn what_is_zero_everywhere_is_told_in_place_of_a_panel() {
+        let (survey, mut courses) = crowd();
+        for (_, motion) in
+            courses.iter_mut().flat_map(|course| &mut course.places).flat_map(|place| &mut place.outcomes)
+        {
+            motion.velocity_after[1] = [0.0, 1e-17];
+        }
+        let picture = picture(Axis::default(), &survey, &courses);
+        let titles: Vec<&str> = picture.rows.iter().flatten().map(|panel| panel.title.as_str()).collect();
+        assert_eq!(titles, ["left_foot", "", "right_foot\nvelocity after is zero in every outcome"]);
     }
 }

@@ -18,7 +18,7 @@ const BETA: Stroke = Stroke::solid(Colour::Black, 1.0);
 const GAMMA: Stroke = Stroke::solid(Colour::Green, 2.4);
 
 /// Inside of the axes \[px\].
-const SIZE: (f64, f64) = (540.0, 220.0);
+const SIZE: (f64, f64) = (super::WIDTH, 220.0);
 /// Of a label's letters \[px\].
 const LETTERS: u32 = 12;
 
@@ -184,4 +184,43 @@ fn room(strips: &[Vec<(Point, Point)>], curve: &[Vec<Point>], text: &str) -> Opt
         }
     }
     best.map(|(_, point)| point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(gammas: &[f64]) -> Vec<Angles> {
+        gammas.iter().enumerate().map(|(at, &gamma)| Angles { at: at as f64, beta: 0.0, gamma }).collect()
+    }
+
+    #[test]
+    fn an_angle_that_wraps_leaves_at_the_edge_and_enters_at_the_other_one() {
+        let pieces = unbroken(&run(&[3.0, PI - 0.05, 0.15 - PI, -2.8]));
+        assert_eq!(pieces.len(), 2);
+        let ends = [pieces[0][2], pieces[1][0]];
+        assert!((ends[0].0 - 1.25).abs() < 1e-12 && ends[0].0 == ends[1].0, "{ends:?}");
+        assert_eq!([ends[0].1, ends[1].1], [PI, -PI]);
+        let back = unbroken(&run(&[-3.1, 3.1]));
+        assert_eq!([back[0][1].1, back[1][0].1], [-PI, PI]);
+    }
+
+    #[test]
+    fn an_angle_that_jumps_has_no_line_across() {
+        let pieces = unbroken(&run(&[0.1, 0.2, 2.0, 2.1]));
+        assert_eq!(pieces, [[(0.0, 0.1), (1.0, 0.2)], [(2.0, 2.0), (3.0, 2.1)]]);
+    }
+
+    #[test]
+    fn strips_share_out_the_whole_turn() {
+        for beta in [-1.2, -0.3, 0.3, 1.2] {
+            let strips = [Region::A, Region::B, Region::C, Region::E].map(|region| strip(region, beta, 0.0));
+            let widths: f64 = strips.iter().map(|((_, low), (_, high))| high - low).sum();
+            assert!((widths - 2.0 * PI).abs() < 1e-12, "{beta}");
+            assert!(strips.iter().all(|((_, low), (_, high))| low < high && -PI <= *low && *high <= PI), "{beta}");
+        }
+        // Each the mirror image of the other: gamma against pi - gamma.
+        assert_eq!(strip(Region::B, -0.3, 0.0), ((0.0, PI - 0.3), (0.0, PI)));
+        assert_eq!(strip(Region::B, 0.3, 0.0), ((0.0, 0.0), (0.0, 0.3)));
+    }
 }

@@ -1,12 +1,12 @@
 //! Two parameters: areas of equal outcomes with their letters, and the borders between them.
 
-use super::Kind;
-use super::place::{Box, clear_of};
+use super::place::{Box, clear_of, freest};
+use super::{Kind, colours};
 use crate::planar::Vector;
 use crate::report::picture::{
     Anchor, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
 };
-use crate::sweep::{Area, Map};
+use crate::sweep::{Area, Map, Regime};
 
 /// Inside of the axes \[px\].
 const SIZE: Pixel = (540.0, 420.0);
@@ -26,8 +26,10 @@ const DIRECTIONS: usize = 24;
 pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
     let mut shapes: Vec<Shape> = Vec::new();
     let mut entries = Vec::new();
-    for (index, area) in map.areas.iter().enumerate() {
-        let Kind { letter, colour, happening } = Kind::new(index, &area.regime, area.refused.as_ref());
+    let regimes: Vec<&Regime> = map.areas.iter().map(|area| &*area.regime).collect();
+    let borders: Vec<[usize; 2]> = map.curves.iter().map(|curve| curve.sides).collect();
+    for ((index, area), colour) in map.areas.iter().enumerate().zip(colours(&regimes, &borders)) {
+        let Kind { letter, happening, .. } = Kind::new(index, &area.regime, area.refused.as_ref(), colour);
         let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
         // The seam between two fills lies under the border's line.
         shapes.push(Shape::Area { loops, fill: Some(colour), stroke: None });
@@ -64,7 +66,8 @@ fn letters(x: &Axis, y: &Axis, map: &Map) -> Vec<Shape> {
     let mut shapes = Vec::new();
     let mut small: Vec<(usize, &Area)> = Vec::new();
     for (index, area) in map.areas.iter().enumerate() {
-        let middles = area.middles.iter().map(|(middle, _)| text(index, pixel(*middle)));
+        let half = lettered(index).1;
+        let middles = area.middles.iter().map(|(middle, _)| text(index, freest(pixel(*middle), half, &taken)));
         let fitting: Vec<_> =
             middles.filter(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR).collect();
         if fitting.is_empty() {
@@ -116,4 +119,71 @@ fn deepest(area: &Area) -> Option<Vector<f64>> {
 fn outline(Box { middle: (x, y), half: (across, up) }: &Box) -> Vec<Pixel> {
     let corner = |right: f64, high: f64| (x + right * across, y + high * up);
     vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::Mode;
+    use crate::sweep::{Curve, Turns};
+
+    /// Strips between wavy borders, with as many points as a study of 400 by 400 samples has.
+    fn strips(widths: &[f64]) -> Map {
+        let edge = |x: f64, step: usize| {
+            let y = step as f64 / 1600.0;
+            [x + if (0.01..0.99).contains(&x) { 0.004 * libm::sin(60.0 * y) } else { 0.0 }, y]
+        };
+        let line = |x: f64| -> Vec<Vector<f64>> { (0..=1600).map(|step| edge(x, step)).collect() };
+        let (mut areas, mut curves, mut x) = (Vec::new(), Vec::new(), 0.0);
+        for (index, width) in widths.iter().enumerate() {
+            let outcomes = vec![vec![Mode::ALL[index % 4], Mode::ALL[index / 4 % 4]]];
+            let contacts = vec!["left_foot".into(), "right_foot".into()];
+            let regime = Regime::Answered { contacts, outcomes, undecided: Vec::new() };
+            let back = line(x).into_iter().rev();
+            let loops = vec![line(x + width).into_iter().chain(back).collect()];
+            let middles = vec![(edge(x + 0.5 * width, 800), 0.5 * width)];
+            areas.push(Area { regime: regime.into(), loops, middles, refused: None });
+            if index > 0 {
+                curves.push(Curve { sides: [index - 1, index], points: line(x), turns: Turns::default() });
+            }
+            x += width;
+        }
+        Map { areas, curves }
+    }
+
+    fn axes() -> [Axis; 2] {
+        [(); 2].map(|()| Axis { range: Some((0.0, 1.0)), ..Axis::default() })
+    }
+
+    #[test]
+    fn a_map_of_many_points_is_a_small_file() {
+        let svg = picture(axes(), &strips(&[0.0625; 16])).svg().expect("a picture");
+        assert!(svg.len() < 500_000, "{} bytes", svg.len());
+    }
+
+    #[test]
+    fn a_letter_without_room_stands_beside_its_area_with_a_line_to_it() {
+        let widths = [0.5, 0.01, 0.49];
+        let map = strips(&widths);
+        let shapes = letters(&axes()[0], &axes()[1], &map);
+        let texts: Vec<(&str, Point)> = shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Text(label) => Some((label.text.as_str(), label.at)),
+                _ => None,
+            })
+            .collect();
+        let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["A", "C", "B"]);
+        assert!((0.0..0.5).contains(&texts[0].1.0) && (0.51..1.0).contains(&texts[1].1.0));
+        let leaders: Vec<&Vec<Point>> = shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Line { points, .. } => Some(points),
+                _ => None,
+            })
+            .collect();
+        let [leader] = leaders[..] else { panic!("one small area") };
+        assert!((leader[0].0 - 0.505).abs() < 0.006, "{leader:?}");
+    }
 }

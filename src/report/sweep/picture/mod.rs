@@ -1,21 +1,25 @@
 //! Studies as pictures.
 //!
 //! ```text
-//!     Survey --> Courses --[along]--> velocities after and impulses of each contact against the parameter, regions shaded
-//!                        --[angles]-> beta and gamma against the parameter, and what they cut
-//!     Map    --[map, place]---------> areas with letters in the plane of two parameters
+//!     Survey --> Courses --[along, style]--> velocities after and impulses of each contact, regions shaded
+//!                        --[angles, place]-> beta and gamma, and what they cut
+//!     Map    --[map, place]----------------> areas with letters in the plane of two parameters
 //! ```
 
 mod along;
 mod angles;
 mod map;
 mod place;
+mod style;
 
 use super::{Happening, letter};
 use crate::Error;
 use crate::report::ErrorObject;
 use crate::report::picture::{Axis, Colour, Picture};
-use crate::sweep::{Course, Findings, Model, Regime, Workers};
+use crate::sweep::{Course, Findings, Model, Regime, Region, Survey, Workers};
+
+/// How wide panels along a parameter are inside of their axes \[px\].
+const WIDTH: f64 = 540.0;
 
 /// What the findings of `model` look like; tells `workers` of [`work`] pieces of work.
 pub fn of(model: &Model, findings: &Findings, workers: Workers) -> Picture {
@@ -85,13 +89,35 @@ struct Kind<'a> {
 }
 
 impl<'a> Kind<'a> {
-    fn new(kind: usize, regime: &'a Regime, refused: Option<&'a Error>) -> Self {
-        let colour = match regime {
-            Regime::Answered { .. } => Colour::Tint(kind),
-            Regime::Refused { .. } => Colour::Pale,
-        };
+    fn new(kind: usize, regime: &'a Regime, refused: Option<&'a Error>, colour: Colour) -> Self {
         Self { letter: letter(kind), colour, happening: Happening::of(regime, refused.map(ErrorObject::new)) }
     }
+}
+
+/// Whether a region is wide enough for lines in it.
+fn is_seen(region: &Region, survey: &Survey) -> bool {
+    let range: f64 = survey.regions.iter().map(|region| region.to - region.from).sum();
+    WIDTH * (region.to - region.from) >= range
+}
+
+/// A colour for each of `regimes`, the kinds in their order: neighbours, which `borders` part, differ in hue, and where that
+/// can be in lightness.
+fn colours(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Colour> {
+    let mut tints: Vec<Option<usize>> = Vec::new();
+    for (kind, regime) in regimes.iter().enumerate() {
+        let neighbour =
+            |&[a, b]: &[usize; 2]| if a == kind { tints.get(b) } else { tints.get(a).filter(|_| b == kind) };
+        let neighbours: Vec<usize> = borders.iter().filter_map(neighbour).copied().flatten().collect();
+        let count = |same: &dyn Fn(&usize) -> bool| neighbours.iter().filter(|&tint| same(tint)).count();
+        let cost = |tint: &usize| {
+            let used = tints.iter().flatten().filter(|&other| other == tint).count();
+            (count(&|other| other == tint), count(&|other| other % 2 == tint % 2), used, *tint)
+        };
+        let answered = matches!(regime, Regime::Answered { .. });
+        let tint = answered.then(|| (0..Colour::TINTS).min_by_key(cost)).flatten();
+        tints.push(tint);
+    }
+    tints.into_iter().map(|tint| tint.map_or(Colour::Pale, Colour::Tint)).collect()
 }
 
 #[cfg(test)]
@@ -102,5 +128,19 @@ mod tests {
     fn names_of_greek_letters_become_letters_where_they_stand_alone() {
         let names = ["alpha", "delta_alpha", "left_hip_angle", "alphabet", "mu", "l_1"].map(with_greek_letters);
         assert_eq!(names, ["α", "δ_α", "left_hip_angle", "alphabet", "μ", "l_1"]);
+    }
+
+    #[test]
+    fn neighbours_never_have_one_colour() {
+        let regime = Regime::Answered { contacts: Vec::new(), outcomes: Vec::new(), undecided: Vec::new() };
+        let regimes = [&regime; 20];
+        // Each kind borders on the one before it, and on the one that would have its colour, were they dealt out in turn.
+        let borders: Vec<[usize; 2]> =
+            (1..20).map(|kind| [kind - 1, kind]).chain((8..20).map(|k| [k, k - 8])).collect();
+        let colours = colours(&regimes, &borders);
+        assert_eq!(colours.len(), 20);
+        for [a, b] in borders {
+            assert_ne!(colours[a], colours[b], "{a} and {b}");
+        }
     }
 }

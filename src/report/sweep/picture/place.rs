@@ -1,6 +1,7 @@
 //! Where texts have room between curves.
 
 use crate::report::picture::{Pixel, text_size};
+use std::f64::consts::TAU;
 
 /// The rectangle that a text takes \[px\].
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +55,35 @@ pub fn clear_of(text: &Box, curves: &[Vec<Pixel>]) -> f64 {
     least
 }
 
+/// A text that has so much room on all sides is well placed \[px\].
+const ENOUGH: f64 = 12.0;
+/// A text is moved so often, by so much at most \[px\], into one of so many directions.
+const MOVES: usize = 60;
+const STEP: f64 = 4.0;
+const DIRECTIONS: usize = 8;
+
+/// Where about `start` a text of this half size has the most room, without a curve in between.
+pub fn freest(start: Pixel, half: Pixel, curves: &[Vec<Pixel>]) -> Pixel {
+    let room = |middle: Pixel| clear_of(&Box { middle, half }, curves);
+    let (mut middle, mut best) = (start, room(start));
+    for _ in 0..MOVES {
+        if best >= ENOUGH {
+            break;
+        }
+        let step = STEP.min(0.9 * clear_of(&Box { middle, half: (0.0, 0.0) }, curves));
+        let moved = (0..DIRECTIONS).map(|direction| {
+            let angle = direction as f64 * TAU / DIRECTIONS as f64;
+            (middle.0 + step * libm::cos(angle), middle.1 + step * libm::sin(angle))
+        });
+        let freer = moved.map(|at| (room(at), at)).max_by(|(a, _), (b, _)| a.total_cmp(b));
+        match freer.filter(|(room, _)| *room > best) {
+            Some((room, at)) => (middle, best) = (at, room),
+            None => break,
+        }
+    }
+    middle
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,5 +95,13 @@ mod tests {
         assert_eq!(clear_of(&text, &[vec![(50.0, 0.0), (50.0, 100.0)]]), 0.0);
         assert_eq!(clear_of(&text, &[vec![(73.0, 59.0), (73.0, 59.0)]]), 5.0);
         assert!(text.is_within((70.0, 55.0)) && !text.is_within((69.0, 55.0)));
+    }
+
+    #[test]
+    fn a_text_moves_away_from_the_nearer_wall_and_through_none() {
+        let walls = [0.0, 30.0, 100.0].map(|x| vec![(x, -100.0), (x, 100.0)]);
+        let (x, _) = freest((9.0, 0.0), (5.0, 5.0), &walls);
+        assert!((x - 15.0).abs() < STEP, "{x}");
+        assert_eq!(freest((60.0, 0.0), (5.0, 5.0), &walls), (60.0, 0.0));
     }
 }
