@@ -55,7 +55,7 @@ pub fn found(page: &Path, window: (u32, u32), script: &str) -> Option<Value> {
     let dom = dumped(&browser, &driven, &profile, window);
     let (_, rest) = dom.split_once(r#"<pre id="found">"#).unwrap_or_else(|| panic!("the script failed:\n{dom}"));
     let (found, _) = rest.split_once("</pre>").expect("its end");
-    let found = serde_json::from_str(&decoded(found)).expect("JSON");
+    let found: Value = serde_json::from_str(&decoded(found)).expect("JSON");
     assert_eq!(found["wrong"], serde_json::json!([]));
     assert_eq!(found["loaded"], 0);
     Some(found)

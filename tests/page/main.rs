@@ -88,7 +88,11 @@ fn hostile() -> (String, PathBuf) {
 #[test]
 fn the_data_of_a_small_study() {
     let (page, _) = swept("urdf/minimalistic.urdf", &study("small.json", &near_a_border()), "small.html");
-    let data = data(&page);
+    let mut data = data(&page);
+    // What is found beside a border hangs on the last digits of its place.
+    let samples = [0, 5, 8].map(|sample| data["frames"][sample].take());
+    data["frames"] = json!(samples);
+    data["axes"][0]["values"].take();
     // A line each.
     let listed = |value: &Value| match value {
         Value::Array(entries) => entries.iter().map(|entry| format!("\n  {entry}")).collect::<String>(),
@@ -147,9 +151,9 @@ fn names_stay_names() {
 #[test]
 fn four_hundred_samples_of_ramone_are_small() {
     let text = std::fs::read_to_string("examples/paper/ramone.json").expect("the study");
-    let mut dense: Value = serde_json::from_str(&text).expect("JSON");
-    dense["parameters"]["alpha"]["steps"] = json!(400);
-    let (page, _) = swept("urdf/ramone_paper.urdf", &study("dense.json", &dense), "dense.html");
+    let dense = file("dense.json");
+    std::fs::write(&dense, text.replace(r#""steps": 50"#, r#""steps": 400"#)).expect("written");
+    let (page, _) = swept("urdf/ramone_paper.urdf", &dense, "dense.html");
     assert!(page.len() < LARGEST, "{} bytes", page.len());
     let data = data(&page);
     assert_eq!(data["frames"].as_array().map(Vec::len), Some(400 + 3 * 7));

@@ -84,12 +84,8 @@ impl Gait {
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
         let runs = self.runs(&order);
-        let region = |run: &Run| Region {
-            name: run.kind().words().into(),
-            fill: run.kind().fill().hex(),
-            lines: Vec::new(),
-            borders: Vec::new(),
-        };
+        let region =
+            |run: &Run| Region { name: run.kind().words().into(), fill: run.kind().fill().hex(), borders: Vec::new() };
         let numbers = runs.iter().enumerate().flat_map(|(number, run)| vec![number; run.states.len()]);
         let still = |(state, region): (&ListedKeyframe, usize)| {
             let line = format!("line {}", state.line);

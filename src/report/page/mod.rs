@@ -62,8 +62,6 @@ struct Region {
     name: String,
     /// The colour of its part of the track.
     fill: &'static str,
-    /// What happens in it, a line each.
-    lines: Vec<String>,
     /// Where it ends, and what turns there.
     borders: Vec<[String; 2]>,
 }

@@ -145,7 +145,6 @@ fn along(sweep: &Sweep, survey: &Survey) -> (Vec<Region>, Vec<String>) {
     let region = |(at, region): (usize, &crate::report::sweep::Region)| Region {
         name: region.letter.clone(),
         fill: fill(survey.regions[at].kind, survey.regions[at].refused.is_some()),
-        lines: region.happening.lines(),
         borders: [
             at.checked_sub(1).map(|below| border(below, "below")),
             (at < sweep.borders.len()).then(|| border(at, "above")),
@@ -174,7 +173,7 @@ fn areas(sweep: &MapSweep, map: &Map) -> (Vec<Region>, Vec<String>) {
             }
         }
         let fill = fill(at, map.areas[at].refused.is_some());
-        Region { name: region.letter.clone(), fill, lines: region.happening.lines(), borders }
+        Region { name: region.letter.clone(), fill, borders }
     };
     (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes.clone())
 }
