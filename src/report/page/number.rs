@@ -39,7 +39,7 @@ mod tests {
     fn numbers_are_as_short_as_a_screen_is_small() {
         let unit = unit(1.3);
         assert_eq!(
-            [0.1 + 0.2, -1e-9, 1234.567_89].map(|value| format!("{}", to_unit(value, unit))),
+            [0.1 + 0.2, -1e-9, 1234.56789].map(|value| format!("{}", to_unit(value, unit))),
             ["0.3", "0", "1234.5679"]
         );
         assert_eq!(to_unit(123_456.0, super::unit(5e6)), 123_500.0);
