@@ -60,10 +60,22 @@ impl Names {
     }
 }
 
+/// The functions that an expression can call.
+pub(crate) const FUNCTIONS: [&str; 32] = [
+    "sqrt", "cbrt", "abs", "sign", "exp", "ln", "log2", "log10", "log", "sin", "cos", "tan", "asin", "acos", "atan",
+    "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "floor", "ceil", "round", "trunc", "pow", "hypot",
+    "min", "max", "clamp", "fact",
+];
+
 /// Whether an expression can use it: letters, digits and underscores, no digit first.
 pub(crate) fn is_name(text: &str) -> bool {
     let letter = |c: char| c.is_ascii_alphabetic() || c == '_';
     text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
+}
+
+/// The names that an expression is made of, those of functions as well.
+pub(crate) fn names_in(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|piece| is_name(piece))
 }
 
 #[cfg(test)]
@@ -122,6 +134,28 @@ mod tests {
         }
         fault(&"(".repeat(100_000));
         fault(&"-".repeat(100_000));
+    }
+
+    #[test]
+    fn functions_are_those_that_are_offered() {
+        let unknown = |name: &str| {
+            let error = names().evaluate(&format!("{name}()"));
+            error.is_err_and(|fault| fault.unknown.is_some())
+        };
+        assert!(!FUNCTIONS.into_iter().any(unknown));
+        assert!(unknown("sine"));
+    }
+
+    #[test]
+    fn places_count_characters() {
+        let fault = |text: &str| names().evaluate(text).expect_err(text);
+        assert_eq!(fault("a - \u{3b1}").before, 4);
+        assert_eq!(fault("sin(a) * (off + lenght)").before, 16);
+    }
+
+    #[test]
+    fn names_are_told_from_numbers() {
+        assert_eq!(names_in("2*a_1 + sin(b)/1e3-1e-c").collect::<Vec<_>>(), ["a_1", "sin", "b", "c"]);
     }
 
     #[test]

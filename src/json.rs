@@ -13,7 +13,7 @@ mod syntax;
 
 pub(crate) use read::id_in;
 
-use crate::expression::{Fault, Names};
+use crate::expression::{FUNCTIONS, Fault, Names};
 use crate::{Error, Reason, Result};
 use serde_json::Number;
 use std::borrow::Cow;
@@ -213,14 +213,17 @@ impl<'n> Node<'n> {
             None => error,
         };
         let Some(unknown) = fault.unknown else { return error };
-        let known: Vec<&str> = names.iter().collect();
-        let nearest = error.did_you_mean(&unknown, known.iter().copied());
-        match nearest.remedy() {
-            Some(_) => nearest,
-            None => nearest.hint(format!(
-                "parameters and constants are {}; pi, e and functions such as sin and atan2 are known, too",
-                known.join(", ")
-            )),
+        if FUNCTIONS.contains(&unknown.as_str()) {
+            return error.hint(format!("{unknown} is a function, as in {unknown}(1)"));
+        }
+        let nearest = error.did_you_mean(&unknown, names.iter().chain(FUNCTIONS));
+        match (nearest.remedy(), names.iter().collect::<Vec<_>>()) {
+            (Some(_), _) => nearest,
+            (None, known) if known.is_empty() => {
+                nearest.hint("only pi, e and functions such as sin and atan2 are known here")
+            }
+            (None, known) => nearest
+                .hint(format!("known here are {}, beside pi, e and functions such as sin and atan2", known.join(", "))),
         }
     }
 

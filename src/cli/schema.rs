@@ -5,7 +5,7 @@ use super::{Answered, Outcome};
 use heelstrike::report::schema;
 use std::io::Write;
 
-/// Write the JSON Schema of a state, a result, a problem or a report on accuracy
+/// Write the JSON Schema of a state, a result, a problem, a study, its sweep or a report on accuracy
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -26,6 +26,10 @@ enum Document {
     Result,
     /// What `solve` reads
     Problem,
+    /// What `sweep` reads
+    Study,
+    /// What `sweep` writes as JSON
+    Sweep,
     /// What `accuracy` writes as JSON
     Accuracy,
 }
@@ -35,6 +39,8 @@ pub(super) fn run(args: &Args) -> Outcome {
         Document::State => schema::state(),
         Document::Result => schema::result(),
         Document::Problem => schema::problem(),
+        Document::Study => schema::study(),
+        Document::Sweep => schema::sweep(),
         Document::Accuracy => schema::accuracy(),
     };
     let mut output = Output::open(None)?;

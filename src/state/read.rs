@@ -153,7 +153,11 @@ pub(crate) fn friction(node: Node) -> Result<Friction> {
         Some(_) if !node.takes_expressions() => {
             Err(node.expected("a number or \"infinite\"").did_you_mean(node.text()?, ["infinite"]))
         }
-        _ => node.number_from_zero("friction").map(Friction::Finite),
+        Some(text) => {
+            let number = node.number_from_zero("friction").map_err(|error| error.did_you_mean(text, ["infinite"]));
+            number.map(Friction::Finite)
+        }
+        None => node.number_from_zero("friction").map(Friction::Finite),
     }
 }
 

@@ -12,6 +12,9 @@ use std::sync::Arc;
 /// Borders are bisected to this part of the parameter's range.
 pub const RESOLUTION: f64 = 1e-12;
 
+/// How often a stretch is searched, each time between the borders that were found the time before.
+const SEARCHES: usize = 3;
+
 /// What is asked along a line of parameters.
 pub trait Landscape {
     /// What happens at a place.
@@ -64,14 +67,34 @@ pub struct Stretch {
 pub fn brackets(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     bisect(line, a, b, resolution, &mut found);
-    let mut all = Vec::new();
-    let mut before = a.clone();
-    for bracket in found {
-        all.extend(hidden(line, &before, &bracket.below, resolution));
-        before = bracket.above.clone();
-        all.push(bracket);
+    search_between(line, a, b, found, resolution, SEARCHES)
+}
+
+/// The brackets `found` between two places, and those that the stretches between them hide. A stretch where some were hidden
+/// is searched anew between these, since other contacts may be closed there.
+fn search_between(
+    line: &mut impl Landscape,
+    a: &Point,
+    b: &Point,
+    found: Vec<Bracket>,
+    resolution: f64,
+    searches: usize,
+) -> Vec<Bracket> {
+    if searches == 0 {
+        return found;
     }
-    all.extend(hidden(line, &before, b, resolution));
+    let begins: Vec<Point> = std::iter::once(a).chain(found.iter().map(|bracket| &bracket.above)).cloned().collect();
+    let ends: Vec<Point> = found.iter().map(|bracket| &bracket.below).chain([b]).cloned().collect();
+    let mut all = Vec::new();
+    let mut borders = found.into_iter();
+    for (from, to) in begins.iter().zip(&ends) {
+        let inner = hidden(line, from, to, resolution);
+        all.extend(match inner.is_empty() {
+            true => inner,
+            false => search_between(line, from, to, inner, resolution, searches - 1),
+        });
+        all.extend(borders.next());
+    }
     all
 }
 
@@ -208,6 +231,38 @@ mod tests {
         // Between 0.4 and 0.5 the number is negative, positive, negative, positive.
         let numbers = |x: f64| vec![(x - 0.41) * (x - 0.410_01) * (x - 0.48)];
         near(&borders(numbers), &[0.41, 0.410_01, 0.48]);
+    }
+
+    /// The foot is down between two samples; while it is, it sticks, but for a thin stretch.
+    struct Stepping;
+
+    const THIN: [f64; 2] = [0.4512, 0.451_201];
+
+    impl Landscape for Stepping {
+        fn regime(&mut self, at: f64) -> Arc<Regime> {
+            match (0.41..0.49).contains(&at) {
+                true if THIN[0] < at && at < THIN[1] => regime(Mode::SlidePlus),
+                true => regime(Mode::Stick),
+                false => Arc::new(Regime::Answered { contacts: vec![], outcomes: vec![vec![]], undecided: Vec::new() }),
+            }
+        }
+
+        fn watched(&mut self, at: f64) -> Option<Watched> {
+            let down = (0.41..0.49).contains(&at);
+            let (contacts, numerators) = match down {
+                true => (vec!["foot".to_owned()], vec![at - THIN[0], THIN[1] - at]),
+                false => (Vec::new(), Vec::new()),
+            };
+            let inequalities = Inequalities { determinants: vec![1.0], ends: vec![numerators.len()], numerators };
+            Some(Watched { contacts, inequalities, clearance: vec![(at - 0.41) * (at - 0.49)] })
+        }
+    }
+
+    #[test]
+    fn a_thin_region_among_contacts_that_no_sample_has_is_found() {
+        let ends = [0.4, 0.5].map(|at| Point { at, regime: Stepping.regime(at) });
+        let found = brackets(&mut Stepping, &ends[0], &ends[1], RESOLUTION);
+        near(&found.iter().map(Bracket::at).collect::<Vec<_>>(), &[0.41, THIN[0], THIN[1], 0.49]);
     }
 
     #[test]

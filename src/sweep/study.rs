@@ -2,7 +2,7 @@
 
 use super::variation;
 use crate::description::Description;
-use crate::expression::{Names, is_name};
+use crate::expression::{Names, is_name, names_in};
 use crate::json::{Node, Value};
 use crate::state::{Defaults, State, read};
 use crate::{Error, Reason, Result, Robot};
@@ -13,6 +13,9 @@ const FIELDS: [&str; 4] = ["parameters", "constants", "state", "robot"];
 
 /// The most samples of all parameters together.
 const SAMPLE_LIMIT: usize = 10_000_000;
+
+/// The most constants; a study has some ten.
+const CONSTANT_LIMIT: usize = 256;
 
 /// A study of one or two parameters.
 #[derive(Debug, Clone)]
@@ -70,8 +73,9 @@ impl<'t> Study<'t> {
         }
         let with_constants = Node::root_with(&tree, text, &constants);
         let field = with_constants.fields("field")?.find(|field| field.key() == "parameters");
-        let field =
-            field.ok_or_else(|| missing(root, "parameters", "{\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}"))?;
+        let field = field.ok_or_else(|| {
+            missing(root, "parameters", "as in \"parameters\": {\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}")
+        })?;
         let parameters =
             field.fields("parameter")?.map(|entry| parameter(entry, &constants)).collect::<Result<Vec<_>>>()?;
         if !(1..=2).contains(&parameters.len()) {
@@ -132,21 +136,50 @@ impl<'t> Study<'t> {
     }
 }
 
-/// Each constant may be an expression of those before it.
+/// Each constant may be an expression of the others, in whatever order they stand: many writers of JSON sort names.
 fn read_constants(tree: &Value, text: &str, constants: &mut Names) -> Result<()> {
     let plain = Node::root(tree, text);
-    let names: Vec<String> = match plain.fields("field")?.find(|field| field.key() == "constants") {
-        Some(field) => field.fields("constant")?.map(|entry| name(entry)).collect::<Result<_>>()?,
-        None => Vec::new(),
-    };
-    for (at, name) in names.iter().enumerate() {
-        let before = constants.clone();
-        let root = Node::root_with(tree, text, &before);
+    let Some(field) = plain.fields("field")?.find(|field| field.key() == "constants") else { return Ok(()) };
+    let mut open: Vec<String> = field.fields("constant")?.map(name).collect::<Result<_>>()?;
+    if open.len() > CONSTANT_LIMIT {
+        return Err(field.refuse(Reason::TooMany { what: "constants", limit: CONSTANT_LIMIT }));
+    }
+    while !open.is_empty() {
+        let known = constants.clone();
+        let root = Node::root_with(tree, text, &known);
         let Some(field) = root.fields("field")?.find(|field| field.key() == "constants") else { break };
-        let Some(entry) = field.fields("constant")?.nth(at) else { break };
-        constants.set(name, entry.number()?);
+        let needs = |entry: &Node, names: &[String]| {
+            entry.as_text().is_some_and(|text| names_in(text).any(|used| names.iter().any(|name| name == used)))
+        };
+        let mut later = Vec::new();
+        for entry in field.fields("constant")?.filter(|entry| open.iter().any(|name| name == entry.key())) {
+            match needs(&entry, &open) {
+                true => later.push(entry.key().to_owned()),
+                false => {
+                    constants.set(entry.key(), entry.number().map_err(|error| beside_parameters(plain, entry, error))?)
+                }
+            }
+        }
+        if later.len() == open.len() {
+            let reason = format!("each of these constants needs another one, or itself: {}", later.join(", "));
+            return Err(field.refuse(Reason::Inconsistent(reason)).hint("give one of them a number"));
+        }
+        open = later;
     }
     Ok(())
+}
+
+/// The refusal of a constant, which may be that it needs a parameter.
+fn beside_parameters(root: Node, entry: Node, error: Error) -> Error {
+    let parameters = root.fields("field").ok().and_then(|mut fields| fields.find(|field| field.key() == "parameters"));
+    let Some(field) = parameters else { return error };
+    let Ok(mut parameters) = field.fields("parameter") else { return error };
+    let text = entry.as_text().unwrap_or_default();
+    match parameters.find(|parameter| names_in(text).any(|used| used == parameter.key())) {
+        Some(parameter) => error
+            .hint(format!("{} is a parameter, and constants do not vary: write it into the state", parameter.key())),
+        None => error,
+    }
 }
 
 /// `{"from", "to", "steps"}`.
@@ -174,7 +207,12 @@ fn parameter(entry: Node, constants: &Names) -> Result<Parameter> {
         let reason = Reason::Inconsistent(format!("the range from {from:?} to {to:?} is empty or endless"));
         return Err(entry.refuse(reason).hint("\"from\" has to be less than \"to\""));
     }
-    Ok(Parameter { name, from, to, steps })
+    let parameter = Parameter { name, from, to, steps };
+    if parameter.sample(1) <= from || parameter.sample(steps - 2) >= to {
+        let reason = format!("the range from {from:?} to {to:?} has no room for {steps} different samples");
+        return Err(entry.refuse(Reason::Inconsistent(reason)).hint("take fewer of them, or a wider range"));
+    }
+    Ok(parameter)
 }
 
 fn samples(part: Node) -> Result<usize> {
@@ -208,12 +246,20 @@ mod tests {
     }
 
     #[test]
-    fn constants_are_expressions_of_those_before_them() {
-        let text = r#"{"constants": {"l": 2, "h": "l/4"}, "parameters": {"a": {"from": "-h", "to": "pi", "steps": 3}}, "state": {}}"#;
+    fn constants_are_expressions_of_each_other_in_any_order() {
+        let text = r#"{"constants": {"h": "l/4", "l": "2*one", "one": 1}, "parameters": {"a": {"from": "-h", "to": "pi", "steps": 3}}, "state": {}}"#;
         let study = Study::from_json(text).expect("a study");
         let [parameter] = study.parameters() else { panic!("one") };
         assert_eq!((parameter.from, parameter.to, parameter.steps), (-0.5, std::f64::consts::PI, 3));
         assert_eq!((parameter.sample(0), parameter.sample(2)), (-0.5, std::f64::consts::PI));
+    }
+
+    #[test]
+    fn constants_that_need_each_other_are_refused() {
+        let of = |constants: &str| refused(&format!("{{\"constants\": {constants}, \"state\": {{}}}}"));
+        let circle = "1:2: constants: each of these constants needs another one, or itself";
+        assert_eq!(of(r#"{"a": "b", "c": 1, "b": "2*a + c"}"#), format!("{circle}: a, b"));
+        assert_eq!(of(r#"{"a": "sin(a)"}"#), format!("{circle}: a"));
     }
 
     #[test]

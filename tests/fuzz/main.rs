@@ -16,6 +16,7 @@ mod open;
 mod problem;
 mod robot;
 mod state;
+mod study;
 mod watch;
 
 /// The longest input \[bytes\].

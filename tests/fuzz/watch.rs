@@ -62,6 +62,11 @@ fn spent(start: Instant) -> Duration {
 
 /// Runs the case that `text` tells within the bounds, and tells it where it panics.
 pub fn watched<T>(text: &str, run: impl FnOnce() -> T) -> T {
+    watched_for(SLOW, text, run)
+}
+
+/// The same for a case that may take so long of a processor.
+pub fn watched_for<T>(slow: Duration, text: &str, run: impl FnOnce() -> T) -> T {
     let (thread, start) = (thread::current().id(), Instant::now());
     let before = spent(start);
     running().push(Case { thread, start, text: text.to_owned() });
@@ -72,6 +77,6 @@ pub fn watched<T>(text: &str, run: impl FnOnce() -> T) -> T {
         println!("this panics:\n{text}");
         resume_unwind(panic)
     });
-    assert!(taken < SLOW, "takes {taken:?}:\n{text}");
+    assert!(taken < slow, "takes {taken:?}:\n{text}");
     told
 }

@@ -11,6 +11,7 @@ mod files;
 mod limits;
 mod robots;
 mod states;
+mod studies;
 mod tables;
 
 /// Class, input and the whole refusal: line, column, place, reason and, after a bar, the remedy.

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 use validator::is_valid;
 
+mod studies;
 mod validator;
 
 fn robot() -> Robot {
@@ -206,6 +207,7 @@ fn every_example_is_valid() {
     };
     check(&schema::state(), "examples", 7);
     check(&schema::problem(), "examples/problems", 3);
+    check(&schema::study(), "examples/paper", 2);
 }
 
 #[test]
@@ -279,11 +281,13 @@ fn the_command_prints_the_schemas_and_no_other() {
         ("state", schema::state()),
         ("result", schema::result()),
         ("problem", schema::problem()),
+        ("study", schema::study()),
+        ("sweep", schema::sweep()),
         ("accuracy", schema::accuracy()),
     ] {
         let printed: Value = serde_json::from_str(&written(&["schema", name], "")).expect("JSON");
         assert_eq!(printed, expected);
         assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");
     }
-    assert_eq!(written(&["schema", "study"], ""), "");
+    assert_eq!(written(&["schema", "gait"], ""), "");
 }

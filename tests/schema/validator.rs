@@ -35,6 +35,12 @@ fn holds(root: &Value, schema: &Value, value: &Value) -> bool {
         "uniqueItems" => value
             .as_array()
             .is_none_or(|entries| entries.iter().enumerate().all(|(at, entry)| !entries[..at].contains(entry))),
+        "minProperties" => value.as_object().is_none_or(|object| object.len() as f64 >= number_of(argument)),
+        "maxProperties" => value.as_object().is_none_or(|object| object.len() as f64 <= number_of(argument)),
+        "propertyNames" => value
+            .as_object()
+            .is_none_or(|object| object.keys().all(|key| holds(root, argument, &Value::from(key.as_str())))),
+        "pattern" => value.as_str().is_none_or(|text| matches(argument, text)),
         "required" => value
             .as_object()
             .is_none_or(|object| list(argument).iter().all(|name| object.contains_key(name.as_str().expect("a name")))),
@@ -66,6 +72,13 @@ fn is_of_kind(value: &Value, kind: &Value) -> bool {
         "object" => value.is_object(),
         unknown => panic!("no kind of value: {unknown}"),
     }
+}
+
+/// Whether the text has the one pattern that the schemas use.
+fn matches(pattern: &Value, text: &str) -> bool {
+    assert_eq!(pattern, "^[A-Za-z_][A-Za-z0-9_]*$");
+    let letter = |c: char| c == '_' || c.is_ascii_alphabetic();
+    text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
 }
 
 fn list(argument: &Value) -> &[Value] {

@@ -1,4 +1,4 @@
-//! What the readers of states and problems accept, as types that a schema can be derived from.
+//! What the readers of states, problems and studies accept, as types that a schema can be derived from.
 //!
 //! Nothing is read into these types; `tests/schema` compares them with the readers field by field.
 #![expect(dead_code, reason = "the schemas are all that is wanted of them")]
@@ -7,6 +7,65 @@ use super::Id;
 use schemars::JsonSchema;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
+
+/// What is varied, and the state and the robot that vary with it.
+#[derive(JsonSchema)]
+pub(super) struct Study {
+    /// One or two parameters by name.
+    #[schemars(extend("minProperties" = 1, "maxProperties" = 2, "propertyNames" = {"pattern": NAME}))]
+    parameters: BTreeMap<String, Parameter>,
+    /// Numbers by name, which may need each other in any order.
+    #[schemars(extend("propertyNames" = {"pattern": NAME}))]
+    constants: Option<BTreeMap<String, f64>>,
+    /// The state.
+    state: State,
+    /// What of the robot's file is other than there.
+    robot: Option<Variation>,
+}
+
+/// What an expression can use as a name.
+const NAME: &str = "^[A-Za-z_][A-Za-z0-9_]*$";
+
+/// A number that is varied; of parameters it knows nothing, of constants all.
+#[derive(JsonSchema)]
+struct Parameter {
+    /// Its least value.
+    from: f64,
+    /// Its greatest value.
+    to: f64,
+    /// How many samples are taken, both ends included.
+    #[schemars(range(min = 2, max = 10_000_000))]
+    steps: u64,
+}
+
+/// Numbers of a robot.
+#[derive(JsonSchema)]
+struct Variation {
+    /// By link.
+    links: Option<BTreeMap<String, LinkVariation>>,
+    /// By joint.
+    joints: Option<BTreeMap<String, JointVariation>>,
+}
+
+/// Numbers of a link.
+#[derive(JsonSchema)]
+struct LinkVariation {
+    /// Its mass [kg].
+    mass: Option<NotNegative>,
+    /// Its CoG in the link's frame [m].
+    com: Option<[f64; 3]>,
+    /// Its moment of inertia about the CoG and the plane's normal [kg m^2].
+    inertia: Option<NotNegative>,
+    /// The radius of its round collision shapes [m].
+    radius: Option<NotNegative>,
+}
+
+/// Numbers of a joint.
+#[derive(JsonSchema)]
+struct JointVariation {
+    /// The place of its frame in the parent's [m].
+    origin: Option<[f64; 3]>,
+}
 
 /// A state just before the impact; what is left out is 0.
 #[derive(JsonSchema)]

@@ -1,15 +1,17 @@
 //! JSON Schema (draft 2020-12) of what is read and written.
 //!
-//! A result's schema is derived from the very structs that are written. States and problems are read by hand, so that each
+//! A result's schema is derived from the very structs that are written. States, problems and studies are read by hand, so that each
 //! refusal has its place; `inputs` mirrors what those readers accept, and a test holds the two together.
 //!
 //! The schemas are closed: a field that they do not name is none, as the strict readers have it.
 
+mod expressions;
 mod inputs;
 
 use super::NamedVelocities;
 use super::holds::{Holds, StateFields};
 use super::result::{Brief, Refused, Report};
+use super::sweep::{MapSweep, RefusedSample, Sweep};
 use super::touchdown::CarriedFields;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
@@ -29,6 +31,18 @@ pub fn state() -> Value {
 /// The schema of a contact problem that is given as matrices.
 pub fn problem() -> Value {
     schema_of::<inputs::Problem>(SchemaSettings::draft2020_12().for_deserialize())
+}
+
+/// The schema of a study; every number of it but an id may be an expression.
+pub fn study() -> Value {
+    let mut schema = schema_of::<inputs::Study>(SchemaSettings::draft2020_12().for_deserialize());
+    expressions::allow(&mut schema);
+    schema
+}
+
+/// The schema of what `sweep` writes.
+pub fn sweep() -> Value {
+    schema_of::<SweepWhole>(SchemaSettings::draft2020_12().for_serialize())
 }
 
 /// The schema of a line of results: a result, one in brief, or a refusal.
@@ -51,6 +65,46 @@ enum ResultLine<'a> {
     Whole(Box<Report<'a>>),
     Brief(Brief<'a>),
     Refused(Refused<'a>),
+}
+
+/// What is found along one parameter, or over two.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(title = "Sweep")]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+enum SweepWhole<'a> {
+    Along(WithSamples<'a, Sweep<'a>>),
+    Map(WithSamples<'a, MapSweep<'a>>),
+}
+
+/// Regions, and the samples behind them.
+#[derive(JsonSchema)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+struct WithSamples<'a, T> {
+    #[serde(flatten)]
+    regions: T,
+    /// In the order of the parameters, the last of which changes fastest.
+    samples: Vec<SampleWhole<'a>>,
+}
+
+/// The parameters' values under their names, and the result there.
+#[derive(JsonSchema)]
+#[schemars(rename = "Sample", extend("additionalProperties" = {"type": "number"}))]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+struct SampleWhole<'a> {
+    /// As of `impact`, or why there is none.
+    result: SampleResult<'a>,
+}
+
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+enum SampleResult<'a> {
+    Whole(Box<Report<'a>>),
+    Brief(Brief<'a>),
+    Refused(RefusedSample<'a>),
 }
 
 /// What the user calls a state or a problem.

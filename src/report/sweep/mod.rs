@@ -13,6 +13,8 @@ mod samples;
 mod text;
 
 pub use map::{MapBorder, MapRegion, MapSweep};
+#[cfg(feature = "schema")]
+pub(super) use samples::RefusedSample;
 pub use samples::{Sample, columns};
 
 use super::{ErrorObject, Palette};

@@ -24,7 +24,9 @@ pub struct Sample<'a> {
 
 /// What is written of a refused sample.
 #[derive(Serialize)]
-struct RefusedSample<'a> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::report) struct RefusedSample<'a> {
+    /// Why.
     error: ErrorObject<'a>,
 }
 

@@ -1,0 +1,93 @@
+//! Runs `heelstrike sweep` on a study and reads what it writes.
+
+use assert_cmd::Command;
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+/// What is written as JSON, as far as the tests read it.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Sweep {
+    pub regions: Vec<Region>,
+    pub borders: Vec<Border>,
+    pub samples: Vec<Value>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+pub struct Region {
+    pub letter: String,
+    pub from: f64,
+    pub to: f64,
+    pub contacts: Option<Vec<String>>,
+    pub outcomes: Option<Vec<Vec<String>>>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+pub struct Border {
+    pub at: f64,
+    pub turns: Vec<Turn>,
+    #[serde(default)]
+    pub opening: Vec<String>,
+    #[serde(default)]
+    pub closing: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+pub struct Turn {
+    pub contact: String,
+    pub inequality: String,
+    pub modes: Vec<String>,
+    pub valid: String,
+}
+
+/// What a run of the command leaves.
+pub struct Run {
+    pub status: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+/// Runs `heelstrike sweep ROBOT -` with more arguments; the study goes to standard input.
+pub fn run(robot: &str, study: &Value, arguments: &[&str]) -> Run {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.args(["sweep", robot, "-"]).args(arguments).write_stdin(study.to_string());
+    let output = command.timeout(Duration::from_secs(300)).output().expect("the binary starts");
+    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+    Run { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+/// The regions, borders and samples of a study that is answered everywhere.
+pub fn sweep(robot: &str, study: &Value) -> Sweep {
+    let Run { status, stdout, stderr } = run(robot, study, &["--format", "json"]);
+    assert_eq!(status, Some(0), "{study}\n{stderr}");
+    serde_json::from_str(&stdout).unwrap_or_else(|error| panic!("{error}: {stdout}"))
+}
+
+impl Sweep {
+    /// Where each region begins, and its outcomes.
+    pub fn begins(&self) -> Vec<(f64, BTreeSet<String>)> {
+        self.regions.iter().map(|region| (region.from, region.set())).collect()
+    }
+}
+
+impl Region {
+    /// The outcomes as a set, each with its modes joined by slashes.
+    pub fn set(&self) -> BTreeSet<String> {
+        self.outcomes.iter().flatten().map(|modes| modes.join("/")).collect()
+    }
+}
+
+/// Checks where the regions begin, the first one aside, to `within`, and the set of outcomes of each, in which a bar parts
+/// the outcomes.
+pub fn assert_begins(place: &str, sweep: &Sweep, expected: &[(f64, &str)], within: f64) {
+    let found = sweep.begins();
+    let told: Vec<String> = found.iter().map(|(from, set)| format!("{from:?} {set:?}")).collect();
+    assert_eq!(found.len(), expected.len(), "{place}: {told:#?}");
+    for (at, ((from, set), (begin, outcomes))) in found.iter().zip(expected).enumerate() {
+        let should: BTreeSet<String> = outcomes.split('|').map(str::to_owned).collect();
+        assert_eq!(*set, should, "{place}, region {at} from {from}");
+        let off = (from - begin).abs();
+        assert!(at == 0 || off <= within, "{place}, region {at}: {from} instead of {begin}, off by {off:.1e}");
+    }
+}
