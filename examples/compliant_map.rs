@@ -3,7 +3,7 @@
 
 use heelstrike::accuracy::compliant::{Biped, Map, NEAR};
 use heelstrike::impact::{Friction, Mode};
-use heelstrike::report::picture::{Axis, Colour, Entry, Key, Legend, Mark, Panel, Picture, Shape, Stroke};
+use heelstrike::report::picture::{Arrangement, Axis, Colour, Entry, Key, Legend, Mark, Panel, Picture, Shape, Stroke};
 use std::error::Error;
 use std::fmt::Write;
 
@@ -81,6 +81,6 @@ fn picture(map: &Map) -> Picture {
     Picture {
         title: "Minimalistic biped at α = 1.4, overdamped contact".into(),
         rows: vec![vec![Panel { shapes: shapes.chain([line]).collect(), ..Panel::new(x, y) }]],
-        legend: Legend { entries, below: false },
+        legend: Legend { entries, arrangement: Arrangement::Beside },
     }
 }

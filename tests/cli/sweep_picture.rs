@@ -103,14 +103,14 @@ fn what_is_refused_is_grey_and_told() {
     assert_eq!(run.status, 1, "{}", run.stderr);
     let svg = std::fs::read_to_string(path).expect("an SVG");
     assert!(svg.contains(">A: refused: restitution must be between 0 and 1"), "{svg}");
-    assert!(svg.contains("#E4E4E4"));
+    assert!(svg.contains("#e4e4e4"));
 }
 
 #[test]
 fn where_nothing_touches_the_regions_alone_are_drawn() {
     let air = study(
         "air.json",
-        r#"{"parameters": {"h": {"from": 5, "to": 6, "steps": 3}}, "state": {"position": {"base": {"z": "h"}}, "friction": 1}}"#,
+        r#"{"parameters": {"h": {"from": 5, "to": 6, "steps": 3}}, "state": {"position": {"base": {"z": "h"}, "joints": {"hip": 0.5}}, "friction": 1}}"#,
     );
     let svg = svg(&["sweep", "urdf/minimalistic.urdf", &air], "sweep_air");
     assert_eq!((count(&svg, "A: nothing touches the ground"), count(&svg, "h [m]")), (1, 1));

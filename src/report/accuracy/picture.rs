@@ -2,7 +2,7 @@
 
 use super::{Accuracy, name_of};
 use crate::accuracy::{Errors, Factorization, Method, Study};
-use crate::report::picture::{Axis, Colour, Entry, Key, Legend, MARK, Mark, Panel, Picture, Point, Shape};
+use crate::report::picture::{Arrangement, Axis, Colour, Entry, Key, Legend, MARK, Mark, Panel, Picture, Point, Shape};
 
 /// Marks by which cases are told from each other; where there are more cases they are not.
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
@@ -59,7 +59,7 @@ impl Accuracy {
         ];
         let range = span_of(&panels);
         panels.iter_mut().for_each(|panel| panel.y.range = range);
-        Picture { title, rows: vec![panels], legend: Legend { entries: legend, below: false } }
+        Picture { title, rows: vec![panels], legend: Legend { entries: legend, arrangement: Arrangement::Beside } }
     }
 }
 

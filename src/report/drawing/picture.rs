@@ -5,7 +5,9 @@ use crate::contact::Placement;
 use crate::impact::outcome::Outcome;
 use crate::pipeline::Impact;
 use crate::planar::{Vector, scaled, sum};
-use crate::report::picture::{Axis, Colour, Dash, Entry, Key, Legend, Mark, Panel, Picture, Point, Shape, Stroke};
+use crate::report::picture::{
+    Arrangement, Axis, Colour, Dash, Entry, Key, Legend, Mark, Panel, Picture, Point, Shape, Stroke,
+};
 use crate::report::table::number;
 use crate::report::words;
 use crate::robot::Robot;
@@ -58,7 +60,7 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     Some(Picture {
         title: format!("{}: {sentence}", words::titled(&robot.name, &state.id)),
         rows: panels.chunks(COLUMNS).map(<[Panel]>::to_vec).collect(),
-        legend: Legend { entries: drawing.legend(), below: true },
+        legend: Legend { entries: drawing.legend(), arrangement: Arrangement::Rows },
     })
 }
 
@@ -103,7 +105,7 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     Picture {
         title: format!("{}: {} bodies, {joints} joints, {} kg", robot.name, robot.bodies.len(), number(robot.mass())),
         rows: vec![vec![panel]],
-        legend: Legend { entries: entries.into_iter().filter_map(entry).collect(), below: true },
+        legend: Legend { entries: entries.into_iter().filter_map(entry).collect(), arrangement: Arrangement::Rows },
     }
 }
 

@@ -11,8 +11,20 @@ use kuva::render::render::Primitive;
 pub struct Legend {
     /// One after the other.
     pub entries: Vec<Entry>,
-    /// Whether they stand in columns below all panels, not in a column to the right of them.
-    pub below: bool,
+    /// Where they stand.
+    pub arrangement: Arrangement,
+}
+
+/// Where a legend stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Arrangement {
+    /// In a column to the right of all panels.
+    #[default]
+    Beside,
+    /// Below all panels, one entry behind the other, in as few rows as they need.
+    Rows,
+    /// Below all panels, in as many columns as fit.
+    Columns,
 }
 
 /// What a sign is.
@@ -60,40 +72,36 @@ struct Place {
 }
 
 impl Legend {
-    /// Where each entry is, and the size of all, in a picture whose panels are so wide \[px\]: in as many columns as fit.
+    /// Where each entry is, and the size of all, in a picture whose panels are so wide \[px\].
     fn places(&self, panels: f64, scale: f64) -> (Vec<Place>, Pixel) {
-        let room = if self.below { panels } else { f64::INFINITY };
-        let key = self.key_width(scale) + GAP;
+        let room = if self.arrangement == Arrangement::Beside { f64::INFINITY } else { panels };
         let place = |entry: &Entry| {
+            let key = self.key_width(entry, scale) + GAP;
             let lines = font::lines(&entry.name, SIZE, room - key);
             let width = lines.iter().map(|line| font::width(line, SIZE)).fold(0.0, f64::max);
             let height = ROW + LINE * lines.len().saturating_sub(1) as f64;
             Place { at: (0.0, 0.0), lines, size: (key + width, height) }
         };
         let mut places: Vec<Place> = self.entries.iter().map(place).collect();
-        let widths = |columns: usize| -> Vec<f64> {
-            let width = |column: usize| places.iter().skip(column).step_by(columns).map(|place| place.size.0);
-            (0..columns).map(|column| width(column).fold(0.0, f64::max)).collect()
-        };
-        let most = if self.below { places.len() } else { 1 };
-        let fits = |widths: &Vec<f64>| widths.iter().sum::<f64>() + NEXT * (widths.len() - 1) as f64 <= room;
-        let widths = (2..=most).rev().map(widths).find(fits).unwrap_or_else(|| widths(1));
-        let (mut y, mut right) = (0.0, 0.0_f64);
-        for row in places.chunks_mut(widths.len()) {
-            let mut x = 0.0;
-            for (place, width) in row.iter_mut().zip(&widths) {
-                place.at = (x, y);
-                right = right.max(x + place.size.0);
-                x += width + NEXT;
+        let size = match self.arrangement {
+            Arrangement::Beside => in_columns(&mut places, 1),
+            Arrangement::Rows => in_rows(&mut places, room),
+            Arrangement::Columns => {
+                let fits =
+                    |count: &usize| widths(&places, *count).iter().sum::<f64>() + NEXT * (count - 1) as f64 <= room;
+                let columns = (2..=places.len()).rev().find(fits).unwrap_or(1);
+                in_columns(&mut places, columns)
             }
-            y += row.iter().map(|place| place.size.1).fold(0.0, f64::max);
-        }
-        (places, (right, y))
+        };
+        (places, size)
     }
 
-    /// How wide keys are, so that all names begin behind them \[px\].
-    fn key_width(&self, scale: f64) -> f64 {
-        self.entries.iter().map(|entry| entry.key.width(scale)).fold(0.0, f64::max)
+    /// How much room the key of an entry has \[px\]: in columns that of the widest, so that all names begin behind them.
+    fn key_width(&self, entry: &Entry, scale: f64) -> f64 {
+        match self.arrangement {
+            Arrangement::Columns => self.entries.iter().map(|entry| entry.key.width(scale)).fold(0.0, f64::max),
+            Arrangement::Beside | Arrangement::Rows => entry.key.width(scale),
+        }
     }
 
     /// How much room it takes \[px\].
@@ -103,16 +111,53 @@ impl Legend {
 
     /// Draws it with its upper left corner at `at`; a unit of the first panel's x axis takes `scale` \[px\].
     pub(super) fn draw(&self, at: Pixel, panels: f64, scale: f64, out: &mut Vec<Primitive>) {
-        let names = self.key_width(scale) + GAP;
         for (entry, Place { at: (x, y), lines, .. }) in self.entries.iter().zip(self.places(panels, scale).0) {
             let (x, middle) = (at.0 + x, at.1 + y + 0.5 * ROW);
+            let names = x + self.key_width(entry, scale) + GAP;
             entry.key.draw((x, middle), entry.key.width(scale), out);
             for (line, content) in lines.iter().enumerate() {
                 let baseline = middle + 0.5 * font::CAPITAL * f64::from(SIZE) + LINE * line as f64;
-                text((x + names, baseline), content, SIZE, Anchor::Start, Colour::Black, false, out);
+                text((names, baseline), content, SIZE, Anchor::Start, Colour::Black, false, out);
             }
         }
     }
+}
+
+/// The widths of so many columns.
+fn widths(places: &[Place], columns: usize) -> Vec<f64> {
+    let width = |column: usize| places.iter().skip(column).step_by(columns).map(|place| place.size.0);
+    (0..columns).map(|column| width(column).fold(0.0, f64::max)).collect()
+}
+
+/// Puts entries into so many columns, row by row, and gives the size of all.
+fn in_columns(places: &mut [Place], columns: usize) -> Pixel {
+    let widths = widths(places, columns);
+    let (mut right, mut y) = (0.0_f64, 0.0);
+    for row in places.chunks_mut(columns) {
+        let mut x = 0.0;
+        for (place, width) in row.iter_mut().zip(&widths) {
+            place.at = (x, y);
+            right = right.max(x + place.size.0);
+            x += width + NEXT;
+        }
+        y += row.iter().map(|place| place.size.1).fold(0.0, f64::max);
+    }
+    (right, y)
+}
+
+/// Puts entries one behind the other, in rows of at most `room`, and gives the size of all.
+fn in_rows(places: &mut [Place], room: f64) -> Pixel {
+    let (mut x, mut y, mut row, mut right) = (0.0, 0.0, 0.0_f64, 0.0_f64);
+    for place in places {
+        if x > 0.0 && x + place.size.0 > room {
+            (x, y, row) = (0.0, y + row, 0.0);
+        }
+        place.at = (x, y);
+        row = row.max(place.size.1);
+        right = right.max(x + place.size.0);
+        x += place.size.0 + NEXT;
+    }
+    (right, y + row)
 }
 
 impl Key {

@@ -23,7 +23,7 @@ mod shape;
 
 pub use axis::Axis;
 pub use colour::Colour;
-pub use legend::{Entry, Key, Legend};
+pub use legend::{Arrangement, Entry, Key, Legend};
 pub use shape::{Anchor, Dash, Label, MARK, Mark, Shape, Stroke};
 
 use crate::Result;
@@ -157,7 +157,8 @@ impl Picture {
         let title = font::lines(&self.title, TITLE, panels.0);
         let above = EDGE + title.len() as f64 * 1.4 * f64::from(TITLE);
         let legend = self.legend.size(panels.0, scale);
-        let (width, height) = match (self.legend.entries.is_empty(), self.legend.below) {
+        let below = self.legend.arrangement != Arrangement::Beside;
+        let (width, height) = match (self.legend.entries.is_empty(), below) {
             (true, _) => panels,
             (false, true) => (panels.0.max(legend.0), panels.1 + GAP + legend.1),
             (false, false) => (panels.0 + GAP + legend.0, panels.1.max(legend.1 + GAP)),
@@ -182,7 +183,7 @@ impl Picture {
             y += row_margins.top + row_height + row_margins.bottom + GAP;
         }
         let first_margins = across.first().map_or(0.0, |(margins, _)| margins.left);
-        let at = if self.legend.below {
+        let at = if below {
             (EDGE + if legend.0 + first_margins <= panels.0 { first_margins } else { 0.0 }, above + panels.1 + GAP)
         } else {
             (EDGE + panels.0 + GAP, above + GAP)

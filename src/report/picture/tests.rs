@@ -10,7 +10,11 @@ fn marks(points: Vec<Point>) -> Picture {
     let shapes = vec![Shape::Marks { points, mark: Mark::Circle, colour: Colour::Blue, size: MARK }];
     let panel = Panel { shapes, ..Panel::new(axis("time [s]", true), axis("error", true)) };
     let entry = Entry { name: "f64".into(), key: Key::Mark(Mark::Circle, Colour::Blue) };
-    Picture { title: "title".into(), rows: vec![vec![panel]], legend: Legend { entries: vec![entry], below: false } }
+    Picture {
+        title: "title".into(),
+        rows: vec![vec![panel]],
+        legend: Legend { entries: vec![entry], arrangement: Arrangement::Beside },
+    }
 }
 
 #[test]
@@ -105,7 +109,7 @@ fn figure() -> Picture {
     Picture {
         title: "Everything at once".into(),
         rows: vec![vec![upper, map], vec![lower]],
-        legend: Legend { entries: entries.collect(), below: true },
+        legend: Legend { entries: entries.collect(), arrangement: Arrangement::Rows },
     }
 }
 

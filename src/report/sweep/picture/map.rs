@@ -4,7 +4,7 @@ use super::place::{Box, clear_of, freest};
 use super::{Kind, colours};
 use crate::planar::Vector;
 use crate::report::picture::{
-    Anchor, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
+    Anchor, Arrangement, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
 };
 use crate::sweep::{Area, Map, Regime};
 
@@ -40,7 +40,11 @@ pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
     }
     shapes.extend(letters(&x, &y, map));
     let panel = Panel { shapes, size: SIZE, ..Panel::new(x, y) };
-    Picture { title: String::new(), rows: vec![vec![panel]], legend: Legend { entries, below: true } }
+    Picture {
+        title: String::new(),
+        rows: vec![vec![panel]],
+        legend: Legend { entries, arrangement: Arrangement::Columns },
+    }
 }
 
 /// The letters of all areas: within each part that has room for it, or beside the largest part, with a line to it.
@@ -148,7 +152,7 @@ mod tests {
             }
             x += width;
         }
-        Map { areas, curves }
+        Map { areas, curves, dependent: false }
     }
 
     fn axes() -> [Axis; 2] {
