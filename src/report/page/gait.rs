@@ -3,7 +3,9 @@
 use super::{Axis, Page, Region, STILLS, Still};
 use crate::impact::{Mode, Verdict};
 use crate::report::ListedKeyframe;
-use crate::report::picture::{self, Band, Colour, Entry, Key, Legend, Mark, Panel, Picture, Rendered, Shape, Stroke};
+use crate::report::picture::{
+    self, Arrangement, Band, Colour, Entry, Key, Legend, Mark, Panel, Picture, Rendered, Shape, Stroke,
+};
 use serde_json::Value;
 
 /// States in their order, at most [`STILLS`] of them: of more every second, third ... one is kept.
@@ -76,7 +78,10 @@ impl Gait {
         Picture {
             title: format!("{robot}: margins of all outcomes"),
             rows: vec![vec![panel]],
-            legend: Legend { entries: Kind::ALL.into_iter().filter(told).map(entry).collect(), below: true },
+            legend: Legend {
+                entries: Kind::ALL.into_iter().filter(told).map(entry).collect(),
+                arrangement: Arrangement::Rows,
+            },
         }
     }
 
