@@ -19,22 +19,29 @@ const BESIDE: f64 = 4.0 * RESOLUTION;
 pub struct Stops {
     /// The values of each parameter; a page stops at each combination.
     values: Vec<Vec<f64>>,
-    /// Every so manieth sample is among them.
-    every: usize,
+    /// For each parameter, of how many samples one is among them.
+    every: Vec<usize>,
 }
 
 impl Stops {
     /// Those of a study and what was found in it.
     pub fn new(model: &Model, findings: &Findings) -> Self {
         let parameters = model.study.parameters();
-        let each = STILLS as f64;
-        let most = if parameters.len() > 1 { libm::sqrt(each) } else { each };
-        let steps = parameters.iter().map(|parameter| parameter.steps).max().unwrap_or(1);
-        let whole: usize = parameters.iter().map(|parameter| parameter.steps).product();
-        let every = if whole <= STILLS { 1 } else { steps.div_ceil(most as usize) };
-        let mut values: Vec<Vec<f64>> = parameters.iter().map(|parameter| samples(parameter, every)).collect();
-        if let (Findings::Along(survey), [values]) = (findings, &mut values[..]) {
-            values.extend(special(&parameters[0], survey));
+        let mut every = vec![1; parameters.len()];
+        let stops = |every: &[usize]| -> Vec<usize> {
+            parameters.iter().zip(every).map(|(parameter, every)| (parameter.steps - 1).div_ceil(*every) + 1).collect()
+        };
+        let mut counts = stops(&every);
+        while counts.iter().product::<usize>() > STILLS {
+            // That of most stops, one by one.
+            let longest = if counts.first() < counts.last() { counts.len() - 1 } else { 0 };
+            every[longest] += 1;
+            counts = stops(&every);
+        }
+        let samples = parameters.iter().zip(&every).map(|(parameter, &every)| samples(parameter, every));
+        let mut values: Vec<Vec<f64>> = samples.collect();
+        if let (Findings::Along(survey), [parameter], [values]) = (findings, parameters, &mut values[..]) {
+            values.extend(special(parameter, survey));
             values.sort_unstable_by(f64::total_cmp);
             values.dedup();
         }
@@ -62,17 +69,16 @@ impl Stops {
         point
     }
 
-    fn note(&self) -> Option<String> {
-        let nth = |every| match every {
-            2 => "second".to_owned(),
-            3 => "third".to_owned(),
-            every => format!("{every}th"),
-        };
-        (self.every > 1).then(|| format!("this page stops at every {} sample of each parameter", nth(self.every)))
+    /// What is left out, if anything is.
+    fn note(&self, parameters: &[Parameter]) -> Option<String> {
+        let thinned = parameters.iter().zip(&self.every).filter(|(_, every)| **every > 1);
+        let told: Vec<String> =
+            thinned.map(|(parameter, every)| format!("one of {every} samples of {}", parameter.name)).collect();
+        (!told.is_empty()).then(|| format!("this page stops at {}", told.join(" and ")))
     }
 }
 
-/// Every so manieth sample, and the last one.
+/// One of so many samples, and the last one.
 fn samples(parameter: &Parameter, every: usize) -> Vec<f64> {
     let last = parameter.steps - 1;
     (0..last).step_by(every).chain([last]).map(|index| parameter.sample(index)).collect()
@@ -102,7 +108,12 @@ impl Page {
         let region = |index: usize, regime: &Regime| match findings {
             Findings::Along(survey) => {
                 let at = stops.point(index)[0];
-                Some(survey.regions.partition_point(|region| region.to <= at).min(survey.regions.len() - 1))
+                Some(
+                    survey
+                        .regions
+                        .partition_point(|region| region.to <= at)
+                        .min(survey.regions.len().saturating_sub(1)),
+                )
             }
             Findings::Map(map) => map.areas.iter().position(|area| *area.regime == *regime),
         };
@@ -116,7 +127,7 @@ impl Page {
         let title = format!("{} against {}", model.robot.name, names.join(" and "));
         let axis = |(name, values): (&&str, &Vec<f64>)| Axis { name: (*name).to_owned(), values: values.clone() };
         let axes = names.iter().zip(&stops.values).map(axis).collect();
-        Self::new(title, axes, regions, &stills, rendered, stops.note().into_iter().chain(notes).collect())
+        Self::new(title, axes, regions, &stills, rendered, stops.note(parameters).into_iter().chain(notes).collect())
     }
 }
 
