@@ -28,9 +28,9 @@ use std::thread::available_parallelism;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  heelstrike sweep urdf/minimalistic.urdf examples/paper/minimalistic.json
-  heelstrike sweep urdf/ramone_paper.urdf examples/paper/ramone.json -o ramone.json --plot ramone.svg
-  heelstrike sweep urdf/pdw.urdf examples/paper/inertia_map.json --plot map.png")]
+  heelstrike sweep urdf/minimalistic.urdf examples/paper/figure_7.json
+  heelstrike sweep urdf/ramone_paper.urdf examples/paper/table_1.json -o ramone.json --plot ramone.svg
+  heelstrike sweep urdf/pdw.urdf examples/paper/inertia_map_0.4.json --plot map.png")]
 pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,

@@ -12,8 +12,8 @@
 use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
 use super::mode::Mode;
-use super::problem::ContactProblem;
-use super::sign::slacks;
+use super::problem::{ContactProblem, Errors};
+use super::sign::{Scale, slacks};
 
 /// The inequalities of all combinations of one problem.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -22,6 +22,8 @@ pub struct Inequalities {
     pub determinants: Vec<f64>,
     /// N of every inequality, those of one combination after the other.
     pub numerators: Vec<f64>,
+    /// Whether the slack of each is zero up to rounding.
+    pub negligible: Vec<bool>,
     /// Where the numerators of each combination end.
     pub ends: Vec<usize>,
 }
@@ -34,6 +36,8 @@ impl Inequalities {
         let mut labels = Labels::default();
         let mut all = Self::default();
         tableau.load(problem);
+        let mut scale = Scale::default();
+        scale.measure(problem, Errors { delassus: 0.0, velocity: None });
         tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
             let determinant = match is_singular(leaf, problem) {
                 true => 0.0,
@@ -42,7 +46,10 @@ impl Inequalities {
             labels.start(leaf.modes, problem.friction(), true);
             while let Some(modes) = labels.next() {
                 slacks(leaf, modes, problem.friction(), |slack| {
+                    let friction = problem.friction()[slack.contact];
+                    let scaled = slack.number / scale.speed * scale.factor(slack.kind, slack.contact, friction);
                     all.numerators.push(if determinant == 0.0 { 0.0 } else { slack.number * determinant });
+                    all.negligible.push(determinant == 0.0 || scaled.abs() < NEGLIGIBLE);
                 });
                 all.determinants.push(determinant);
                 all.ends.push(all.numerators.len());
@@ -57,6 +64,9 @@ impl Inequalities {
         start..self.ends[combination]
     }
 }
+
+/// A slack of this size, free of units, may be a zero that rounding and a bad condition have left.
+const NEGLIGIBLE: f64 = 1e-10;
 
 /// A pivot that has lost so many digits of what it is the difference of is zero but for rounding.
 const SINGULAR: f64 = 1e-10;

@@ -5,7 +5,7 @@
 //!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> places to ask
 //! ```
 //!
-//! Combinations that one clearly violated inequality excludes on the whole interval are not followed. Nothing here decides
+//! Combinations that one clearly violated inequality excludes, on the whole interval or beside a zero, are not followed there. Nothing here decides
 //! anything: wherever a zero may be, the regime itself is asked for. What N does between the five points beyond what its
 //! fourth differences tell is not seen; that is the part that is not guaranteed.
 
@@ -21,6 +21,12 @@ const FINE: usize = 32;
 const SMOOTH: f64 = 0.05;
 const HALVINGS: usize = 5;
 
+/// A least |N| is looked for where the quartic comes as near to zero as this part of the numbers.
+const NEAR: f64 = 0.05;
+
+/// What f64 leaves of a zero, as part of the numbers.
+const ROUNDING: f64 = 1e-9;
+
 /// The most places that are asked in one interval.
 const MOST: usize = 200;
 
@@ -33,11 +39,57 @@ enum Curve {
 }
 
 impl Curve {
+    /// Whether it is zero up to rounding.
+    fn is_negligible(self, watched: &Watched) -> bool {
+        match self {
+            Self::Numerator(at) => watched.inequalities.negligible.get(at).is_some_and(|&negligible| negligible),
+            Self::Determinant(_) | Self::Clearance(_) => false,
+        }
+    }
+
+    fn values(self, nodes: &[Watched]) -> [f64; NODES] {
+        std::array::from_fn(|k| self.value(&nodes[k]))
+    }
+
     fn value(self, watched: &Watched) -> f64 {
         match self {
             Self::Determinant(at) => watched.inequalities.determinants[at],
             Self::Numerator(at) => watched.inequalities.numerators[at],
             Self::Clearance(at) => watched.clearance[at],
+        }
+    }
+}
+
+/// A curve and the combination that it belongs to.
+#[derive(Debug, Clone, Copy)]
+struct Followed {
+    curve: Curve,
+    combination: Option<usize>,
+}
+
+impl Followed {
+    /// Whether other inequalities clearly exclude its combination at both of two places, given between 0 and 4.
+    fn is_excluded(self, nodes: &[Watched], places: [f64; 2]) -> bool {
+        let Some(combination) = self.combination else { return false };
+        // The sign that a curve clearly has at both places, or 0.
+        let sign = |curve: Curve| {
+            let values = curve.values(nodes);
+            let room = 2.0 * fourth_difference(&values).abs() + ROUNDING * largest(&values);
+            let [a, b] = places.map(|place| quartic(&values, place));
+            if a > room && b > room {
+                1
+            } else if a < -room && b < -room {
+                -1
+            } else {
+                0
+            }
+        };
+        let determinant = sign(Curve::Determinant(combination));
+        let numerators = nodes[0].inequalities.of_combination(combination).map(Curve::Numerator);
+        let signs: Vec<i32> = numerators.filter(|&curve| curve != self.curve).map(sign).collect();
+        match determinant {
+            0 => signs.contains(&1) && signs.contains(&-1),
+            determinant => signs.contains(&-determinant),
         }
     }
 }
@@ -74,10 +126,13 @@ fn look(
         found.extend((1..NODES - 1).map(|k| place(k as f64)));
         return;
     }
-    let curves: Vec<(Curve, [f64; NODES])> = followed(&nodes)
+    let curves: Vec<(Followed, [f64; NODES])> = followed(&nodes)
         .into_iter()
-        .map(|curve| (curve, std::array::from_fn(|k| curve.value(&nodes[k]))))
-        .filter(|(_, values)| values.iter().all(|value| value.is_finite()) && !is_clear(values))
+        .map(|followed| (followed, followed.curve.values(&nodes)))
+        .filter(|(followed, values)| {
+            let known = values.iter().all(|value| value.is_finite());
+            known && !is_clear(values) && !nodes.iter().all(|node| followed.curve.is_negligible(node))
+        })
         .collect();
     let rough = curves.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
     if rough && halvings > 0 && b - a > resolution {
@@ -89,20 +144,25 @@ fn look(
     }
     let mut zeros = Vec::new();
     let mut touches = Vec::new();
-    for (curve, values) in &curves {
+    for (followed, values) in &curves {
+        let curve = followed.curve;
         let mut real =
             |x: f64| watch(x).filter(|watched| alike(watched)).map_or(f64::NAN, |watched| curve.value(&watched));
-        let fine: Vec<f64> = (0..=FINE).map(|k| quartic(values, k as f64 * (NODES - 1) as f64 / FINE as f64)).collect();
-        let at = |k: usize| place(k as f64 * (NODES - 1) as f64 / FINE as f64);
+        let node = |k: usize| k as f64 * (NODES - 1) as f64 / FINE as f64;
+        let at = |k: usize| place(node(k));
+        let fine: Vec<f64> = (0..=FINE).map(|k| quartic(values, node(k))).collect();
+        let near_zero = NEAR * largest(values) + 2.0 * fourth_difference(values).abs();
         for k in 0..FINE {
-            if (fine[k] < 0.0) != (fine[k + 1] < 0.0) {
+            let turns = (fine[k] < 0.0) != (fine[k + 1] < 0.0);
+            if turns && !followed.is_excluded(&nodes, [node(k), node(k + 1)]) {
                 zeros.push(zero(&mut real, at(k), at(k + 1), resolution));
             }
         }
         for k in 1..FINE {
             let [before, here, after] = [fine[k - 1], fine[k], fine[k + 1]];
-            let least = here.abs() <= before.abs() && here.abs() <= after.abs();
-            if least && (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0) {
+            let least = here.abs() <= before.abs() && here.abs() <= after.abs() && here.abs() <= near_zero;
+            let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
+            if least && same && !followed.is_excluded(&nodes, [node(k - 1), node(k + 1)]) {
                 let sign = if here < 0.0 { -1.0 } else { 1.0 };
                 let bottom = least_place(&mut |x| sign * real(x), at(k - 1), at(k + 1), resolution);
                 touches.push(bottom);
@@ -124,10 +184,11 @@ fn look(
 }
 
 /// The curves of all combinations that no inequality clearly excludes.
-fn followed(nodes: &[Watched]) -> Vec<Curve> {
-    let all = |curve: Curve| -> [f64; NODES] { std::array::from_fn(|k| curve.value(&nodes[k])) };
+fn followed(nodes: &[Watched]) -> Vec<Followed> {
+    let all = |curve: Curve| curve.values(nodes);
     let inequalities = &nodes[0].inequalities;
-    let mut curves: Vec<Curve> = (0..nodes[0].clearance.len()).map(Curve::Clearance).collect();
+    let clearance = (0..nodes[0].clearance.len()).map(Curve::Clearance);
+    let mut curves: Vec<Followed> = clearance.map(|curve| Followed { curve, combination: None }).collect();
     for combination in 0..inequalities.ends.len() {
         let determinant = all(Curve::Determinant(combination));
         let numerators = inequalities.of_combination(combination);
@@ -139,10 +200,9 @@ fn followed(nodes: &[Watched]) -> Vec<Curve> {
             if numerators.clone().any(violated) {
                 continue;
             }
-        } else {
-            curves.push(Curve::Determinant(combination));
         }
-        curves.extend(numerators.map(Curve::Numerator));
+        let own = std::iter::once(Curve::Determinant(combination)).chain(numerators.map(Curve::Numerator));
+        curves.extend(own.map(|curve| Followed { curve, combination: Some(combination) }));
     }
     curves
 }
@@ -251,7 +311,8 @@ mod tests {
     /// One combination with these inequalities, det A = 1.
     fn watched(numerators: &[f64]) -> Option<Watched> {
         let ends = vec![numerators.len()];
-        let inequalities = Inequalities { determinants: vec![1.0], numerators: numerators.to_vec(), ends };
+        let inequalities =
+            Inequalities { determinants: vec![1.0], numerators: numerators.to_vec(), ends, ..Inequalities::default() };
         Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
     }
 

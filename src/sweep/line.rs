@@ -182,7 +182,12 @@ mod tests {
 
         fn watched(&mut self, at: f64) -> Option<Watched> {
             let numerators = (self.0)(at);
-            let inequalities = Inequalities { determinants: vec![1.0], ends: vec![numerators.len()], numerators };
+            let inequalities = Inequalities {
+                determinants: vec![1.0],
+                ends: vec![numerators.len()],
+                numerators,
+                ..Inequalities::default()
+            };
             Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
         }
     }
@@ -253,7 +258,12 @@ mod tests {
                 true => (vec!["foot".to_owned()], vec![at - THIN[0], THIN[1] - at]),
                 false => (Vec::new(), Vec::new()),
             };
-            let inequalities = Inequalities { determinants: vec![1.0], ends: vec![numerators.len()], numerators };
+            let inequalities = Inequalities {
+                determinants: vec![1.0],
+                ends: vec![numerators.len()],
+                numerators,
+                ..Inequalities::default()
+            };
             Some(Watched { contacts, inequalities, clearance: vec![(at - 0.41) * (at - 0.49)] })
         }
     }

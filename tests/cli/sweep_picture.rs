@@ -6,7 +6,7 @@
 use super::heelstrike;
 use super::picture::{file, svg};
 
-const MINIMALISTIC: [&str; 3] = ["sweep", "urdf/minimalistic.urdf", "examples/paper/minimalistic.json"];
+const MINIMALISTIC: [&str; 3] = ["sweep", "urdf/minimalistic.urdf", "examples/paper/figures_3_and_6.json"];
 
 /// A study in a file of this test alone.
 fn study(name: &str, text: &str) -> String {
@@ -33,7 +33,7 @@ fn velocities_and_impulses_are_drawn_by_region() {
 
 #[test]
 fn every_outcome_of_the_paper_s_ramone_has_its_own_dashes() {
-    let svg = svg(&["sweep", "urdf/ramone_paper.urdf", "examples/paper/ramone.json"], "sweep_ramone");
+    let svg = svg(&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"], "sweep_ramone");
     for words in ["A, E: left_foot lifts off", "B, E: left_foot slides forward", "C, E: left_foot sticks"] {
         assert_eq!(count(&svg, &format!("{words}, right_foot sticks")), 1, "{words}");
     }

@@ -110,7 +110,7 @@ fn check(bytes: &[u8]) -> bool {
     let mut choices = Choices::new(bytes);
     let text = match choices.below(16) {
         0 => choices.rest().to_vec(),
-        1..4 => choices.mutated(include_str!("../../examples/paper/minimalistic.json"), &WORDS),
+        1..4 => choices.mutated(include_str!("../../examples/paper/figures_3_and_6.json"), &WORDS),
         4 => choices.mutated(FULL, &WORDS),
         _ => study_of(&BIPED.1, &mut choices).into_bytes(),
     };

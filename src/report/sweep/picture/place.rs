@@ -25,17 +25,17 @@ impl Box {
         across <= x && x <= width - across && up <= y && y <= height - up
     }
 
-    /// How far a point is from it; 0 inside.
+    /// How far a point is from its edge; negative inside.
     fn distance(&self, (x, y): Pixel) -> f64 {
-        let beyond = |at: f64, middle: f64, half: f64| ((at - middle).abs() - half).max(0.0);
-        libm::hypot(beyond(x, self.middle.0, self.half.0), beyond(y, self.middle.1, self.half.1))
+        let (across, up) = ((x - self.middle.0).abs() - self.half.0, (y - self.middle.1).abs() - self.half.1);
+        if across > 0.0 || up > 0.0 { libm::hypot(across.max(0.0), up.max(0.0)) } else { across.max(up) }
     }
 }
 
 /// A segment is looked at in pieces of this length \[px\].
 const PIECE: f64 = 2.0;
 
-/// How far curves are from a text \[px\].
+/// How far curves are from a text \[px\]; negative where they run into it.
 pub fn clear_of(text: &Box, curves: &[Vec<Pixel>]) -> f64 {
     let reach = libm::hypot(text.half.0, text.half.1);
     let mut least = f64::INFINITY;
@@ -92,9 +92,16 @@ mod tests {
     fn the_distance_to_a_text_counts_from_its_edge() {
         let text = Box { middle: (50.0, 50.0), half: (20.0, 5.0) };
         assert_eq!(clear_of(&text, &[vec![(0.0, 70.0), (100.0, 70.0)]]), 15.0);
-        assert_eq!(clear_of(&text, &[vec![(50.0, 0.0), (50.0, 100.0)]]), 0.0);
+        assert_eq!(clear_of(&text, &[vec![(50.0, 0.0), (50.0, 100.0)]]), -5.0);
         assert_eq!(clear_of(&text, &[vec![(73.0, 59.0), (73.0, 59.0)]]), 5.0);
         assert!(text.is_within((70.0, 55.0)) && !text.is_within((69.0, 55.0)));
+    }
+
+    #[test]
+    fn a_text_moves_to_where_a_wedge_has_room_for_it() {
+        let wedge = [vec![(0.0, 0.0), (200.0, 40.0)], vec![(0.0, 0.0), (200.0, -40.0)]];
+        let (x, y) = freest((40.0, 0.0), (6.0, 6.0), &wedge);
+        assert!(clear_of(&Box { middle: (x, y), half: (6.0, 6.0) }, &wedge) > 1.0, "{x} {y}");
     }
 
     #[test]

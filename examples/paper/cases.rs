@@ -1,0 +1,47 @@
+//! What one state's outcomes, and the combinations of modes that are none, say of a claim.
+
+use crate::along::Modes;
+use crate::exhibit::Found;
+use crate::figures::Finding;
+use heelstrike::impact::Mode;
+use heelstrike::planar::Vector;
+
+fn name(modes: &[Mode]) -> String {
+    modes.iter().map(ToString::to_string).collect::<Vec<_>>().join("/")
+}
+
+/// The outcomes are these.
+pub fn outcomes(found: &Found, expected: &[Modes]) -> Result<Finding, String> {
+    let outcomes: Vec<String> = found.analysis()?.outcomes.iter().map(|outcome| name(&outcome.modes)).collect();
+    Ok(Finding { agrees: Some(outcomes == expected), words: outcomes.join(" or ") })
+}
+
+/// One of the paper's cases with the trailing foot's velocity after \[m/s\] and impulse \[N s\], each tangential and normal.
+pub type Case = (Modes, Vector<f64>, Vector<f64>);
+
+/// The cases have these numbers in parts of `unit`, to one of the last of three digits; `valid` alone is an outcome.
+pub fn cases(found: &Found, unit: f64, expected: &[Case], valid: Modes) -> Result<Finding, String> {
+    const LAST_DIGIT: f64 = 1e-3;
+    let analysis = found.analysis()?;
+    let outcomes = analysis.outcomes.iter().map(|outcome| {
+        (name(&outcome.modes), outcome.velocity_after.first().copied(), outcome.impulse.first().copied())
+    });
+    let rejected = analysis.rejected.iter().filter_map(|rejection| {
+        let motion = rejection.motion.as_ref()?;
+        Some((name(&rejection.modes), motion.velocity_after.first().copied(), motion.impulse.first().copied()))
+    });
+    let all: Vec<_> = outcomes.chain(rejected).collect();
+    let mut agrees = matches!(&analysis.outcomes[..], [only] if name(&only.modes) == valid);
+    let mut words = Vec::new();
+    for (modes, velocity, impulse) in expected {
+        let of_case = all.iter().find(|(listed, ..)| listed == modes);
+        let Some((_, Some(c), Some(l))) = of_case else { return Err(format!("{modes} has no numbers")) };
+        let [c, l] = [c, l].map(|vector| vector.map(|value| value / unit));
+        let near = |is: Vector<f64>, printed: &Vector<f64>| {
+            is.iter().zip(printed).all(|(is, printed)| (is - printed).abs() <= LAST_DIGIT)
+        };
+        agrees &= near(c, velocity) && near(l, impulse);
+        words.push(format!("{modes} c = ({:.3}, {:.3}), L = ({:.3}, {:.3})", c[0], c[1], l[0], l[1]));
+    }
+    Ok(Finding { words: words.join("; "), agrees: Some(agrees) })
+}

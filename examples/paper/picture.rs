@@ -1,0 +1,18 @@
+//! What a figure looks like.
+
+use crate::exhibit::{Exhibit, Found};
+use heelstrike::Result;
+use heelstrike::report::{Picture, drawing, sweep};
+
+/// Curves and regions of a study, or the robot in its pose with every outcome; none where there is nothing to draw.
+///
+/// # Errors
+/// A study that is refused.
+pub fn of(exhibit: &Exhibit, found: &Found) -> Result<Option<Picture>> {
+    match found {
+        Found::Regions(findings) => {
+            exhibit.study(|model, workers| sweep::picture::of(model, findings, workers)).map(Some)
+        }
+        Found::Outcomes(of) => Ok(drawing::picture::impact(&exhibit.robot, &[], &of.0, &of.1)),
+    }
+}
