@@ -30,7 +30,7 @@ use std::thread::available_parallelism;
 Examples:
   heelstrike sweep urdf/minimalistic.urdf examples/paper/figure_7.json
   heelstrike sweep urdf/ramone_paper.urdf examples/paper/table_1.json -o ramone.json --plot ramone.svg
-  heelstrike sweep urdf/pdw.urdf examples/paper/inertia_map_0.4.json --plot map.png")]
+  heelstrike sweep urdf/pdw.urdf examples/paper/inertia_map_0.4.json --plot map.html")]
 pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,

@@ -79,7 +79,7 @@ fn keys_and_slider_move_the_robot_and_the_cursor() {
 #[test]
 fn outcomes_are_those_of_the_tool() {
     let robot = "urdf/minimalistic.urdf";
-    let example = "examples/paper/minimalistic.json";
+    let example = "examples/paper/figures_3_and_6.json";
     let (_, path) = page(&["sweep", robot, example], "", "outcomes.html");
     let (_, json, _) = heelstrike(&["sweep", robot, example, "--format", "json"], "");
     let sweep: Value = serde_json::from_str(&json).expect("JSON");
@@ -250,7 +250,7 @@ fn hostile_names_are_shown_and_not_run() {
 
 #[test]
 fn pages_fit_into_narrow_and_wide_windows() {
-    let (_, path) = page(&["sweep", "urdf/ramone_paper.urdf", "examples/paper/ramone.json"], "", "fits.html");
+    let (_, path) = page(&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"], "", "fits.html");
     let script = r##"
         press("End", "PageDown");
         const inside = (element) => { const { left, right } = element.getBoundingClientRect(); return left >= 0 && right <= innerWidth; };

@@ -150,7 +150,7 @@ fn names_stay_names() {
 
 #[test]
 fn four_hundred_samples_of_ramone_are_small() {
-    let text = std::fs::read_to_string("examples/paper/ramone.json").expect("the study");
+    let text = std::fs::read_to_string("examples/paper/table_1.json").expect("the study");
     let dense = file("dense.json");
     std::fs::write(&dense, text.replace(r#""steps": 50"#, r#""steps": 400"#)).expect("written");
     let (page, _) = swept("urdf/ramone_paper.urdf", &dense, "dense.html");
@@ -238,7 +238,7 @@ fn other_commands_say_who_writes_pages() {
         assert!(told.contains("interactive pages are written by `sweep` and `batch`"), "{told}");
     }
     for args in
-        [&["sweep", "urdf/ramone_paper.urdf", "examples/paper/ramone.json"][..], &["batch", "urdf/ramone.urdf", "-"]]
+        [&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"][..], &["batch", "urdf/ramone.urdf", "-"]]
     {
         let (status, out, told) = heelstrike(&[args, &["--plot", "report.htm"]].concat(), "");
         assert_eq!((status, out.as_str()), (2, ""), "{args:?}");
