@@ -24,7 +24,7 @@ use crate::error::Location;
 use crate::excerpt::Excerpt;
 use crate::impact::{Analysis, Friction, Mode, Outcome, Verdict};
 use crate::pipeline::{Options, Pipeline};
-use crate::report::{self, CarriedFields, Detail, Refused, Report, short_id};
+use crate::report::{self, CarriedFields, Detail, Keyframe, ListedKeyframe, Refused, Report, short_id};
 use crate::scene::ByLink;
 use crate::state::{Defaults, State};
 use crate::table::{Carried, Columns, Header, Rows};
@@ -49,6 +49,8 @@ pub struct Question<'r> {
     pub columns: Option<&'r Columns>,
     /// How touchdowns are found, where they alone are answered.
     pub touchdowns: Option<(At, Touching)>,
+    /// Whether states are kept as a page shows them.
+    pub keyframes: bool,
 }
 
 /// Answers records in memory that it keeps.
@@ -74,6 +76,17 @@ enum Text<'a> {
     Record(&'a [u8]),
     /// What was kept of it.
     Kept(Option<&'a Excerpt>),
+}
+
+impl Around<'_> {
+    /// The time of the state, where its input tells it \[s\].
+    fn time(&self, header: Option<&Header>) -> Option<f64> {
+        let column = || {
+            let (_, text) = self.carried?.by_name(header?).find(|(name, _)| *name == "time")?;
+            text.trim().parse().ok().filter(|time: &f64| time.is_finite())
+        };
+        self.touchdown.map(|landing| landing.time).or_else(column)
+    }
 }
 
 impl Text<'_> {
@@ -160,6 +173,9 @@ impl<'q> Batch<'q> {
             report.carried = carried.filter(|fields: &Vec<_>| !fields.is_empty()).map(CarriedFields);
             report.append_json(detail, &mut block.out);
         }
+        self.keep(state.id.as_ref(), around, block, || {
+            Keyframe::of_impact(robot, &self.question.options.feet, state, &impact)
+        });
         match &impact.analysis {
             Ok(analysis) => {
                 let needed = self.friction_needed(state, analysis);
@@ -174,12 +190,22 @@ impl<'q> Batch<'q> {
 
     /// Appends a refusal.
     fn refuse(&self, error: Error, id: Option<Value>, around: Around<'_>, block: &mut Block) {
+        self.keep(id.as_ref(), around, block, || Keyframe::refused(error.clone()));
         let refused = Refused::new(id, around.line, &error);
         match self.question.columns {
             Some(columns) => columns.append_refused(&refused, around.carried, &mut block.out),
             None => report::append_line(&mut block.out, &refused),
         }
         block.refuse(error, around);
+    }
+
+    /// Keeps a state as a page shows it, if that is asked for.
+    fn keep(&self, id: Option<&Value>, around: Around<'_>, block: &mut Block, keyframe: impl FnOnce() -> Keyframe) {
+        if self.question.keyframes {
+            let id = id.cloned().map(short_id);
+            let time = around.time(self.question.header);
+            block.keyframes.push(ListedKeyframe { line: around.line, id, time, keyframe: keyframe() });
+        }
     }
 
     /// The error with the remedy for the form of the input.

@@ -11,6 +11,7 @@
 use super::Summary;
 use crate::Error;
 use crate::excerpt::Excerpt;
+use crate::report::ListedKeyframe;
 use std::io;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
@@ -49,6 +50,8 @@ pub struct Block {
     pub refused: Vec<Refusal>,
     /// What is to be said of these records at the end; see [`Summary::merge`].
     pub summary: Summary,
+    /// The states as a page shows them, if that is asked for.
+    pub keyframes: Vec<ListedKeyframe>,
 }
 
 /// A refused record.

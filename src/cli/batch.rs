@@ -4,6 +4,7 @@ use super::complaint::note;
 use super::delivery::Delivery;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, from_zero, pipeline_options};
 use super::output::{named, spare};
+use super::page::PageOptions;
 use super::progress::Progress;
 use super::robot::RobotOptions;
 use super::{Answered, Failure, Outcome, input};
@@ -11,6 +12,7 @@ use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
 use heelstrike::error::Location;
 use heelstrike::excerpt::Excerpt;
+use heelstrike::report::page::Gait;
 use heelstrike::scene::NamedContact;
 use heelstrike::state::Defaults;
 use heelstrike::table::{Columns, Header, Rates};
@@ -60,6 +62,8 @@ pub struct Args {
     /// Write the summary to this file as JSON, too
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     summary: Option<PathBuf>,
+    #[command(flatten)]
+    plot: PageOptions,
     /// What refused states mean for the exit status: 1, or 0 with "ok"
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Refused::Fail, help_heading = "Output")]
     refused: Refused,
@@ -165,10 +169,12 @@ impl RecordingOptions {
 }
 
 pub(super) fn run(args: &Args) -> Outcome {
+    args.plot.check()?;
     let inputs = [Some(&args.robot.robot), Some(&args.states), args.loops.loops.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     spare(args.output.as_deref(), &inputs)?;
     args.summary.as_deref().map_or(Ok(()), |summary| spare(Some(summary), &inputs))?;
+    args.plot.spare(&inputs)?;
     if args.summary.as_deref() == Some(Path::new("-")) {
         let reason =
             "standard output holds the results alone, and standard error has the summary for people".to_owned();
@@ -215,6 +221,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         header: header.as_ref(),
         columns: columns.as_ref(),
         touchdowns,
+        keyframes: args.plot.is_asked(),
     };
     // Created before the work, so that it is not in vain.
     let summary = args.summary.as_deref().map(|path| File::create(path).map_err(|error| named(path, error)));
@@ -229,10 +236,12 @@ pub(super) fn run(args: &Args) -> Outcome {
     let dropped = Mutex::new(Dropped::default());
     args.answer(&question, chunks, thresholds, &dropped, &mut delivery)?;
     let told = std::mem::take(&mut delivery.summary);
+    let gait = std::mem::take(&mut delivery.gait);
     drop(delivery);
     drop(progress);
     header.as_ref().inspect(|header| tell_of_columns(header, &dropped));
     args.tell(&told, summary, thresholds)?;
+    args.draw(&gait, &robot)?;
     Ok(if told.refused == 0 || args.refused == Refused::Ok { Answered::All } else { Answered::NotAll })
 }
 
@@ -318,6 +327,15 @@ impl Args {
             Broken::Input(error) => Failure::Refused(input::cannot_read(&self.states, &error)),
             Broken::Output(error) => Failure::Output(error),
         })
+    }
+
+    /// Draws the margins or writes the page, if that is asked for.
+    fn draw(&self, gait: &Gait, robot: &Robot) -> Result<(), Failure> {
+        if !self.plot.is_asked() {
+            return Ok(());
+        }
+        let page = |rendered| gait.page(&robot.name, rendered);
+        self.plot.draw(&gait.picture(&robot.name), "the input holds no states", page)
     }
 
     /// Writes the summary: for people where there is more than one state or it is asked for, and to its file.

@@ -4,6 +4,7 @@ use super::complaint::complain_at;
 use super::progress::Progress;
 use super::{Failure, status};
 use heelstrike::batch::{Block, Refusal, Sink, Summary};
+use heelstrike::report::page::Gait;
 use std::io::{self, ErrorKind, Write};
 
 /// So many refusals are told on standard error; all stand in the output.
@@ -17,6 +18,8 @@ pub(super) struct Delivery<'a, W> {
     progress: &'a Progress,
     /// What is known of all states so far.
     pub summary: Summary,
+    /// The states that a page shows, if that is asked for.
+    pub gait: Gait,
     refused: u64,
     /// Lines that the output has taken.
     lines: usize,
@@ -25,7 +28,7 @@ pub(super) struct Delivery<'a, W> {
 impl<'a, W: Write> Delivery<'a, W> {
     /// Answers to `input` go to `output`, which does not buffer: so it is known what was written.
     pub fn new(output: W, input: &'a str, progress: &'a Progress) -> Self {
-        Self { output, input, progress, summary: Summary::default(), refused: 0, lines: 0 }
+        Self { output, input, progress, summary: Summary::default(), gait: Gait::default(), refused: 0, lines: 0 }
     }
 
     /// Writes the line that names the columns.
@@ -82,6 +85,7 @@ impl<W: Write> Sink for Delivery<'_, W> {
         // What is answered stands before the complaint also where both go to one terminal.
         block.refused.into_iter().for_each(|refusal| self.complain(refusal));
         self.summary.merge(block.summary);
+        block.keyframes.into_iter().for_each(|keyframe| self.gait.push(keyframe));
         Ok(())
     }
 

@@ -15,6 +15,7 @@ mod man;
 mod meshes;
 mod options;
 mod output;
+mod page;
 mod picture;
 mod progress;
 mod robot;

@@ -2,6 +2,7 @@
 
 use super::Failure;
 use super::output::{named, spare};
+use super::page::is_page;
 use heelstrike::report::Picture;
 use heelstrike::{Error, Reason};
 use std::path::{Path, PathBuf};
@@ -16,6 +17,11 @@ pub(super) struct PlotOptions {
 }
 
 impl PlotOptions {
+    /// To this file, if there is one.
+    pub fn to(plot: Option<PathBuf>) -> Self {
+        Self { plot }
+    }
+
     /// Refuses an ending that is neither svg nor png, before any work is done.
     ///
     /// # Errors
@@ -25,7 +31,13 @@ impl PlotOptions {
             None | Some(Some(_)) => Ok(()),
             Some(None) => {
                 let reason = Reason::Unsupported("a picture is written as .svg or .png".into());
-                Err(Failure::Usage(Error::new(reason).at("--plot").hint("name a file that ends in .svg or .png")))
+                let hint = match self.plot.as_deref().is_some_and(is_page) {
+                    true => {
+                        "name a file that ends in .svg or .png; interactive pages are written by `sweep` and `batch`"
+                    }
+                    false => "name a file that ends in .svg or .png",
+                };
+                Err(Failure::Usage(Error::new(reason).at("--plot").hint(hint)))
             }
         }
     }
@@ -55,12 +67,15 @@ impl PlotOptions {
             Ending::Svg => picture.svg().map(String::into_bytes),
             Ending::Png => picture.png()?,
         };
-        let Some(bytes) = bytes else {
-            let reason = Reason::Unsupported("there is nothing to draw".into());
-            return Err(Error::new(reason).at("--plot").hint(why_empty).into());
-        };
+        let bytes = bytes.ok_or_else(|| nothing_to_draw(why_empty))?;
         std::fs::write(path, bytes).map_err(|error| Failure::Output(named(path, error)))
     }
+}
+
+/// The refusal of a picture that nothing can be drawn in.
+pub(super) fn nothing_to_draw(why: &'static str) -> Failure {
+    let reason = Reason::Unsupported("there is nothing to draw".into());
+    Error::new(reason).at("--plot").hint(why).into()
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -3,7 +3,7 @@
 use super::complaint::complain;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Output, spare};
-use super::picture::PlotOptions;
+use super::page::PageOptions;
 use super::progress::Progress;
 use super::robot::{RobotOptions, caution};
 use super::{Answered, Failure, Outcome, input};
@@ -13,6 +13,7 @@ use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
 use heelstrike::report::Detail;
 use heelstrike::report::append_line;
+use heelstrike::report::page::{Page, Stops};
 use heelstrike::report::sweep::{Regions, Sample, columns, letter, picture};
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
@@ -29,7 +30,7 @@ use std::thread::available_parallelism;
 Examples:
   heelstrike sweep urdf/minimalistic.urdf examples/paper/figure_7.json
   heelstrike sweep urdf/ramone_paper.urdf examples/paper/table_1.json -o ramone.json --plot ramone.svg
-  heelstrike sweep urdf/pdw.urdf examples/paper/inertia_map_0.4.json --plot map.png")]
+  heelstrike sweep urdf/pdw.urdf examples/paper/inertia_map_0.4.json --plot map.html")]
 pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,
@@ -48,7 +49,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    plot: PlotOptions,
+    plot: PageOptions,
     /// Regions for people, regions and samples as JSON, or samples as CSV [default: by the output's ending, else text]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
@@ -126,7 +127,11 @@ pub(super) fn run(args: &Args) -> Outcome {
     let regimes = findings.regimes();
     if args.plot.is_asked() {
         progress.expect(picture::work(&model, &findings) as u64);
-        args.plot.draw(&picture::of(&model, &findings, workers), "no region was found")?;
+        let picture = picture::of(&model, &findings, workers);
+        let stops = Stops::new(&model, &findings);
+        progress.expect(if args.plot.is_page() { stops.count() as u64 } else { 0 });
+        let page = |rendered| Page::of_study(&model, &findings, &stops, rendered, workers);
+        args.plot.draw(&picture, "no region was found", page)?;
     }
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {

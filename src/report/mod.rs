@@ -7,6 +7,7 @@
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Robot, Impact ──> Drawing ──> JSON, picture                       drawing
 //!     Survey ──> Sweep, samples ──> JSON, CSV, text                     sweep
+//!     Impacts ──> Keyframes, a Picture ──> Page ──> HTML                keyframe, page
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```
 
@@ -16,8 +17,11 @@ pub mod drawing;
 #[cfg(feature = "accuracy")]
 mod accuracy;
 mod inspection;
+mod keyframe;
 mod list;
 mod outcome;
+#[cfg(feature = "plot")]
+pub mod page;
 #[cfg(feature = "plot")]
 pub mod picture;
 mod problem;
@@ -36,6 +40,7 @@ pub use drawing::Drawing;
 pub use holds::{Counterexample, Holds, StateFields};
 pub(crate) use id::short_id;
 pub use inspection::Inspection;
+pub use keyframe::{Answer, Keyframe, ListedKeyframe, Pose};
 pub use outcome::{AtZero, Border, NamedVelocities, Outcome, OutcomeInBrief};
 #[cfg(feature = "plot")]
 pub use picture::Picture;

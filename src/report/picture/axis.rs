@@ -108,6 +108,15 @@ impl Span {
         }
     }
 
+    /// The values at its beginning and at its end.
+    pub fn ends(&self) -> (f64, f64) {
+        let value = |shown: f64| match self.logarithmic {
+            true => libm::pow(10.0, shown),
+            false => shown * libm::pow(10.0, f64::from(self.power)),
+        };
+        (value(self.low), value(self.high))
+    }
+
     /// Where on the axis a value is, 0 at its beginning and 1 at its end; of what has no place not finite.
     pub fn share(&self, value: f64) -> f64 {
         (self.shown(value) - self.low) / (self.high - self.low)

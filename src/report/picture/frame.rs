@@ -3,7 +3,7 @@
 use super::axis::Span;
 use super::colour::Colour;
 use super::shape::{Anchor, Stroke, path, text};
-use super::{Band, Panel, Pixel, Point, font};
+use super::{Band, Panel, Pixel, Point, Window, font};
 use kuva::render::axis::{add_axes_and_grid, add_labels_and_title};
 use kuva::render::layout::{ComputedLayout, Layout};
 use kuva::render::render::{Primitive, Scene};
@@ -68,6 +68,11 @@ impl Frame {
     pub fn place(&self, (x, y): Point) -> Option<Pixel> {
         let at = (self.size.0 * self.x.share(x), self.size.1 * (1.0 - self.y.share(y)));
         (at.0.is_finite() && at.1.is_finite()).then_some(at)
+    }
+
+    /// The inside of the axes, with its upper left corner there.
+    pub fn window(&self, corner: Pixel) -> Window {
+        Window { corner, size: self.size, x: self.x.ends(), y: self.y.ends() }
     }
 
     /// Whether a pixel is inside of the axes.

@@ -30,6 +30,7 @@ use crate::Result;
 use frame::{Frame, Margins};
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::Scene;
+use serde::Serialize;
 
 /// A point in the coordinates of a panel's axes.
 pub type Point = (f64, f64);
@@ -86,6 +87,28 @@ pub fn text_size(text: &str, size: u32) -> Pixel {
     (font::width(text, size), font::CAPITAL * f64::from(size))
 }
 
+/// A picture as SVG, and where its data are in it.
+#[derive(Debug, Clone)]
+pub struct Rendered {
+    /// The picture.
+    pub svg: String,
+    /// The inside of each panel that is drawn, row by row.
+    pub windows: Vec<Window>,
+}
+
+/// The inside of a panel's axes in the picture: what a cursor needs to know.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Window {
+    /// Its upper left corner \[px\].
+    pub corner: Pixel,
+    /// Its width and height \[px\].
+    pub size: Pixel,
+    /// What its x axis has at its left and right end.
+    pub x: (f64, f64),
+    /// What its y axis has at its lower and upper end.
+    pub y: (f64, f64),
+}
+
 /// What is about the whole picture \[px\].
 const EDGE: f64 = 12.0;
 /// Between panels, and between them and the legend \[px\].
@@ -111,6 +134,11 @@ impl Panel {
 impl Picture {
     /// As SVG; none where nothing can be drawn.
     pub fn svg(&self) -> Option<String> {
+        self.render().map(|rendered| rendered.svg)
+    }
+
+    /// As SVG, with the places of its panels; none where nothing can be drawn.
+    pub fn render(&self) -> Option<Rendered> {
         let rows: Vec<Vec<(&Panel, Frame)>> =
             self.rows.iter().map(|row| drawn(row)).filter(|row| !row.is_empty()).collect();
         let (_, first) = rows.first()?.first()?;
@@ -142,12 +170,14 @@ impl Picture {
             let middle = (EDGE + 0.5 * panels.0, baseline);
             shape::text(middle, content, TITLE, Anchor::Middle, Colour::Black, false, &mut scene.elements);
         }
+        let mut windows = Vec::new();
         let mut y = above;
         for (row, (row_margins, row_height)) in rows.iter().zip(&down) {
             let mut x = EDGE;
             for ((panel, frame), (margins, column_width)) in row.iter().zip(&across) {
                 let margins = Margins { top: row_margins.top, bottom: row_margins.bottom, ..*margins };
                 frame.draw(panel, margins, (x, y), &mut scene);
+                windows.push(frame.window((x + margins.left, y + margins.top)));
                 x += margins.left + column_width + margins.right + GAP;
             }
             y += row_margins.top + row_height + row_margins.bottom + GAP;
@@ -159,7 +189,7 @@ impl Picture {
             (EDGE + panels.0 + GAP, above + GAP)
         };
         self.legend.draw(at, panels.0, scale, &mut scene.elements);
-        Some(number::shortened(&SvgBackend::new().render_scene(&scene)))
+        Some(Rendered { svg: number::shortened(&SvgBackend::new().render_scene(&scene)), windows })
     }
 
     /// As PNG, twice as large as the SVG says; none where nothing can be drawn.

@@ -1,0 +1,65 @@
+// What happens: verdict, outcomes, notes, and what turns at the next borders.
+
+/** A number in as many digits as people read. */
+function digits(value) {
+  if (value === null || value === undefined) return "–";
+  const text = Math.abs(value) >= 1e-4 && Math.abs(value) < 1e6 ? Number(value.toPrecision(4)).toString() : value.toExponential(2);
+  return value === 0 ? "0" : text.replaceAll("-", "−");
+}
+
+class Answer {
+  /** `choose` takes the number of an outcome. */
+  constructor(element, data, choose) {
+    this.element = element;
+    this.data = data;
+    this.choose = choose;
+  }
+
+  show(frame, chosen) {
+    const { texts, regions } = this.data;
+    const region = regions[frame.region];
+    const kept = this.element.contains(document.activeElement) ? document.activeElement.dataset.outcome : null;
+    const sentence = html("p", { className: "sentence" });
+    if (region) {
+      const badge = html("span", { className: "badge" }, region.name);
+      badge.style.background = region.fill;
+      sentence.append(badge);
+    }
+    sentence.append(texts[frame.sentence]);
+    if (frame.proven !== undefined) sentence.append(frame.proven ? " Proven." : " Not proven.");
+    this.element.replaceChildren(sentence);
+    if (frame.pose?.contacts.length) this.element.append(html("div", { className: "wide" }, this.table(frame, chosen)));
+    for (const note of frame.notes ?? []) this.element.append(html("p", {}, `Note: ${texts[note]}`));
+    if (region?.borders.length) {
+      const entry = ([where, what]) => [html("dt", {}, where), html("dd", {}, what)];
+      this.element.append(html("dl", {}, ...region.borders.flatMap(entry)));
+    }
+    if (kept) this.element.querySelector(`button[data-outcome="${kept}"]`)?.focus();
+  }
+
+  table({ pose: { contacts }, outcomes }, chosen) {
+    const head = (text, span) => html("th", { scope: "col", colSpan: span }, text);
+    const table = html("table", {}, html("thead", {}, html("tr", {},
+      head("contact", 1), head("impulse t, n [N s]", 2), head("velocity after t, n [m/s]", 2))));
+    outcomes.forEach((outcome, number) => {
+      const body = html("tbody", { className: chosen === null || chosen === number ? "" : "faded" }, html("tr", {}, this.outcome(outcome, number, chosen)));
+      contacts.forEach(({ name }, contact) => {
+        const cells = [...outcome.impulse[contact], ...outcome.after[contact]].map((entry) => html("td", {}, digits(entry)));
+        body.append(html("tr", {}, html("td", {}, this.data.texts[name]), ...cells));
+      });
+      table.append(body);
+    });
+    return table;
+  }
+
+  outcome({ words, marks = [], margin, index, energy_loss }, number, chosen) {
+    const { texts } = this.data;
+    const button = html("button", { type: "button", onclick: () => this.choose(chosen === number ? null : number) }, String(number + 1));
+    button.dataset.outcome = number + 1;
+    button.setAttribute("aria-pressed", chosen === number);
+    button.setAttribute("aria-label", `Show outcome ${number + 1} alone`);
+    const sign = index === null ? "–" : index > 0 ? "+1" : "−1";
+    const grades = [`margin ${digits(margin)}`, `index ${sign}`, `${digits(energy_loss)} J lost`, ...marks.map((mark) => texts[mark])];
+    return html("th", { scope: "rowgroup", className: "outcome", colSpan: 5 }, button, ` ${texts[words]}`, html("br"), html("small", {}, grades.join(", ")));
+  }
+}

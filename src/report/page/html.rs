@@ -1,0 +1,49 @@
+//! The page as HTML: the template with its style, plots, data and program in their places.
+
+use super::Page;
+
+const TEMPLATE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+/// In the order in which they need each other.
+const PROGRAM: [&str; 5] = [
+    include_str!("robot.js"),
+    include_str!("plots.js"),
+    include_str!("answer.js"),
+    include_str!("slider.js"),
+    include_str!("page.js"),
+];
+
+impl Page {
+    /// One file that needs nothing else.
+    pub fn html(&self) -> String {
+        let parts: [(&str, &str); 6] = [
+            ("{title}", &escaped(&self.title)),
+            ("{style}", STYLE),
+            ("{heading}", &escaped(&self.title)),
+            ("{plots}", &self.svg),
+            ("{data}", &self.data()),
+            ("{program}", &PROGRAM.concat()),
+        ];
+        let (mut html, mut rest) = (String::new(), TEMPLATE);
+        for (place, content) in parts {
+            // What is put in is not looked at again, whatever it holds.
+            let (before, after) = rest.split_once(place).unwrap_or((rest, ""));
+            html += before;
+            html += content;
+            rest = after;
+        }
+        html + rest
+    }
+
+    /// The data as JSON in which no sign means anything to HTML.
+    fn data(&self) -> String {
+        // Writing into memory cannot fail.
+        let json = serde_json::to_string(self).unwrap_or_default();
+        json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
+    }
+}
+
+/// As text of HTML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

@@ -1,0 +1,82 @@
+// All together: where the page is, and what moves it.
+
+{
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const { axes, frames, regions, texts } = data;
+  const here = axes.map(() => 0);
+  let chosen = null;
+
+  /** The still at these stops; that of the last axis changes fastest. */
+  const still = (stops) => frames[stops.reduce((index, stop, axis) => index * axes[axis].values.length + stop, 0)];
+
+  const robot = new Robot(document.getElementById("scene"), document.getElementById("key"), data);
+  const answer = new Answer(document.getElementById("answer"), data, (outcome) => choose(outcome));
+  const plots = new Plots(document.getElementById("plots"), data, (values) => go(axes.map(({ values: all }, axis) => nearest(all, values[axis]))));
+  const sliders = axes.map((_, axis) => new Slider(document.getElementById("control"), data, axis, (stop) => go(here.with(axis, stop))));
+
+  function nearest(all, value) {
+    return all.reduce((best, at, stop) => (Math.abs(at - value) < Math.abs(all[best] - value) ? stop : best), 0);
+  }
+
+  function go(stops) {
+    stops.forEach((stop, axis) => { here[axis] = Math.min(axes[axis].values.length - 1, Math.max(0, stop)); });
+    const outcomes = still(here).outcomes.length;
+    if (chosen !== null && chosen >= outcomes) chosen = null;
+    show();
+  }
+
+  function choose(outcome) {
+    chosen = outcome !== null && outcome < still(here).outcomes.length ? outcome : null;
+    show();
+  }
+
+  function show() {
+    const frame = still(here);
+    const region = regions[frame.region];
+    const words = `${region ? `region ${region.name}, ` : ""}${texts[frame.sentence]}`;
+    sliders.forEach((slider, axis) => slider.show(here[axis], frame.name ?? "", words));
+    robot.show(frame, chosen);
+    answer.show(frame, chosen);
+    plots.show(axes.map(({ values }, axis) => values[here[axis]]));
+    document.getElementById("scene").setAttribute("aria-label", `The robot: ${words}`);
+    const outcomes = frame.outcomes.map((outcome, number) => `${number + 1}: ${texts[outcome.words]}`);
+    document.getElementById("status").textContent = [words, ...outcomes].join(" ");
+  }
+
+  /** The next stop along the first axis on the other side of a border, or the last one. */
+  function border(way) {
+    const { region } = still(here);
+    const last = axes[0].values.length - 1;
+    let stop = here[0];
+    while (stop + way >= 0 && stop + way <= last) {
+      stop += way;
+      if (still(here.with(0, stop)).region !== region) break;
+    }
+    return here.with(0, stop);
+  }
+
+  const along = (axis, way) => here.with(axis, here[axis] + way);
+  const upright = axes.length - 1;
+  const keys = {
+    ArrowLeft: () => go(along(0, -1)),
+    ArrowRight: () => go(along(0, 1)),
+    ArrowDown: () => go(along(upright, -1)),
+    ArrowUp: () => go(along(upright, 1)),
+    PageUp: () => go(border(1)),
+    PageDown: () => go(border(-1)),
+    Home: () => go(here.with(0, 0)),
+    End: () => go(here.with(0, axes[0].values.length - 1)),
+    Escape: () => choose(null),
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const action = keys[event.key] ?? (/^[0-9]$/.test(event.key) ? () => choose(event.key === "0" ? null : Number(event.key) - 1) : null);
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+
+  const signs = "t is along the ground, n away from it; slide forward is along t";
+  for (const note of [signs, ...data.notes]) document.getElementById("notes").append(html("p", {}, `Note: ${note}.`));
+  show();
+}

@@ -1,0 +1,225 @@
+// The robot where it is, with an arrow for each impulse and velocity.
+
+/** An element of SVG with these attributes. */
+function svg(name, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children);
+  return element;
+}
+
+/** An element of HTML with these properties. */
+function html(name, properties = {}, ...children) {
+  const element = Object.assign(document.createElement(name), properties);
+  element.append(...children);
+  return element;
+}
+
+/** The greatest of 1, 2, 5, 10 ... that is not greater. */
+function round(most) {
+  const unit = 10 ** Math.floor(Math.log10(most));
+  return unit * [5, 2, 1].find((times) => times * unit <= most * (1 + 1e-9));
+}
+
+/** An arrow on the screen; it ends at `to`, with a head. */
+function arrow(kind, from, to) {
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const length = Math.hypot(dx, dy);
+  if (!(length > 0.5)) return svg("g");
+  const [ux, uy] = [dx / length, dy / length];
+  const head = Math.min(kind.startsWith("impulse") ? 12 : 10, length);
+  const neck = [to[0] - head * ux, to[1] - head * uy];
+  const half = 0.38 * head;
+  const corners = [to, [neck[0] - half * uy, neck[1] + half * ux], [neck[0] + half * uy, neck[1] - half * ux]];
+  return svg("g", { class: `arrow ${kind}` },
+    svg("line", { x1: from[0], y1: from[1], x2: neck[0], y2: neck[1] }),
+    svg("polygon", { class: "head", points: corners.map((corner) => corner.join(",")).join(" ") }));
+}
+
+/** Draws stills into an SVG element, all on one scale; a unit of the drawing is a pixel of the screen. */
+class Robot {
+  /** Parts of the drawing's height: an arrow of the usual length, and the longest one. */
+  static USUAL = 0.24;
+  static LONGEST = 0.48;
+  /** Parts of its height that are free on either side of the robot, above and below. */
+  static ROOM = { side: 0.18, above: 0.06, below: 0.27 };
+
+  constructor(element, key, data) {
+    this.element = element;
+    this.legend = key;
+    this.data = data;
+    this.shown = [data.frames[0], null];
+    new ResizeObserver(() => this.fit()).observe(element);
+    this.fit();
+  }
+
+  /** Takes the size that the element has on the screen. */
+  fit() {
+    const [width, height] = [this.element.clientWidth || 620, this.element.clientHeight || 400];
+    this.element.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    const { low, high, impulse, velocity } = this.data.scale;
+    const { side, above, below } = Robot.ROOM;
+    const fits = [(width - 2 * side * height) / (high[0] - low[0]), (height * (1 - above - below)) / (high[1] - low[1])];
+    this.zoom = Math.min(...fits.filter(Number.isFinite));
+    if (!Number.isFinite(this.zoom)) this.zoom = height;
+    this.middle = [width / 2, (height * (1 + above - below)) / 2];
+    this.length = { impulse: (Robot.USUAL * height) / impulse, velocity: (Robot.USUAL * height) / velocity };
+    this.longest = Robot.LONGEST * height;
+    this.key();
+    this.show(...this.shown);
+  }
+
+  /** Shows a still; `chosen` is an outcome's number, or null for all of them. */
+  show(frame, chosen) {
+    this.shown = [frame, chosen];
+    this.element.replaceChildren();
+    const { pose } = frame;
+    if (!pose) {
+      const text = svg("text", { class: "refusal", x: "50%", y: "50%", "text-anchor": "middle" }, "This state is refused.");
+      this.element.append(text);
+      return;
+    }
+    const { low, high, follows } = this.data.scale;
+    const centre = [0, 1].map((axis) => (low[axis] + high[axis]) / 2 + (follows[axis] ? pose.middle[axis] : 0));
+    this.at = ([x, z]) => [this.middle[0] + (x - centre[0]) * this.zoom, this.middle[1] - (z - centre[1]) * this.zoom];
+    this.element.append(...this.ground(pose.ground), ...pose.bodies.map((body) => this.part(body)), ...this.skeleton(pose), ...this.contacts(frame, chosen));
+  }
+
+  /** The ground; a straight one goes on to both sides. */
+  ground(surface) {
+    if (surface.length < 2) return [];
+    const points = surface.map(this.at);
+    if (points.length === 2) {
+      const [[x0, y0], [x1, y1]] = points;
+      const slope = (y1 - y0) / (x1 - x0);
+      points.splice(0, 2, ...[-1000, 4000].map((x) => [x, y0 + slope * (x - x0)]));
+    }
+    const line = points.map((point) => point.join(",")).join(" ");
+    const depth = Math.max(...points.map((point) => point[1]), 0) + 3000;
+    const soil = `${points[0][0]},${depth} ${line} ${points.at(-1)[0]},${depth}`;
+    return [svg("polygon", { class: "soil", points: soil }), svg("polyline", { class: "surface", points: line })];
+  }
+
+  /** The collision shapes and the CoG of a body. */
+  part([number, x, z, cos, sin]) {
+    const { outlines, com, mass, last } = this.data.parts[number];
+    const [left, top] = this.at([x, z]);
+    const [c, s] = [this.zoom * cos, this.zoom * sin];
+    const group = svg("g", { class: "body", transform: `matrix(${c} ${-s} ${-s} ${-c} ${left} ${top})` });
+    const kind = last ? "part last" : "part";
+    for (const outline of outlines) {
+      if (Array.isArray(outline)) {
+        group.append(svg("polygon", { class: kind, points: outline.map((corner) => corner.join(",")).join(" ") }));
+      } else if (outline.radius > 0) {
+        group.append(svg("circle", { class: kind, cx: outline.centre[0], cy: outline.centre[1], r: outline.radius }));
+      } else {
+        group.append(svg("circle", { class: "tip", cx: outline.centre[0], cy: outline.centre[1], r: 4 / this.zoom }));
+      }
+    }
+    if (com) {
+      const radius = 2 + 6 * Math.sqrt(mass / this.data.scale.mass);
+      group.append(svg("circle", { class: "com", cx: com[0], cy: com[1], r: radius / this.zoom, "vector-effect": "non-scaling-stroke" }));
+    }
+    return group;
+  }
+
+  skeleton({ bones, joints }) {
+    const bone = ([x, z, toX, toZ]) => {
+      const [[x1, y1], [x2, y2]] = [this.at([x, z]), this.at([toX, toZ])];
+      return svg("line", { class: "bone", x1, y1, x2, y2 });
+    };
+    const joint = (point) => {
+      const [cx, cy] = this.at(point);
+      return svg("circle", { class: "joint", cx, cy, r: 3.6 });
+    };
+    return [...bones.map(bone), ...joints.map(joint)];
+  }
+
+  /** Contacts and arrows, on top those of the chosen outcome. */
+  contacts({ pose, outcomes }, chosen) {
+    const shapes = [];
+    for (const { point, normal, before } of pose.contacts) {
+      const [x1, y1] = this.at(point);
+      const [x2, y2] = [x1 + 34 * normal[0], y1 - 34 * normal[1]];
+      shapes.push(svg("line", { class: "normal", x1, y1, x2, y2 }), this.vector("before", "velocity", point, before));
+    }
+    for (const { point, vector } of pose.applied ?? []) shapes.push(this.vector("applied", "impulse", point, vector));
+    const tips = [];
+    const drawn = outcomes.map((outcome, number) => this.outcome(pose.contacts, outcome, number, chosen, tips));
+    if (chosen !== null && drawn[chosen]) drawn.push(drawn[chosen]);
+    shapes.push(...drawn);
+    if (outcomes.length > 1) shapes.push(...tips.map(({ at: [x, y], numbers }) => svg("text", { x, y, dx: 5, dy: -4 }, [...numbers].join(", "))));
+    const named = pose.contacts.map(({ point, name }) => ({ at: this.at(point), name: this.data.texts[name] }));
+    shapes.push(...named.map(({ at: [cx, cy] }) => svg("circle", { class: "contact", cx, cy, r: 3.2 })));
+    return [...shapes, ...this.names(named)];
+  }
+
+  /** Names below points; those of near points stand below each other. */
+  names(named) {
+    const rows = [];
+    return named.sort((a, b) => a.at[0] - b.at[0]).map(({ at: [x, y], name }) => {
+      const half = 3.6 * name.length;
+      const free = rows.findIndex((end) => end < x - half);
+      const row = free < 0 ? rows.length : free;
+      rows[row] = x + half;
+      return svg("text", { x, y: y + 17 + 14 * row, "text-anchor": "middle" }, name);
+    });
+  }
+
+  outcome(contacts, { impulse, after }, number, chosen, tips) {
+    const group = svg("g", { class: chosen === null || chosen === number ? "effect" : "effect faded", "data-outcome": number + 1 });
+    contacts.forEach(({ point, normal: [nx, nz] }, contact) => {
+      // The tangent is the normal turned clockwise.
+      const world = ([t, n]) => [t * nz + n * nx, n * nz - t * nx];
+      for (const [kind, vector] of [["impulse", impulse[contact]], ["velocity", after[contact]]]) {
+        const drawn = this.vector(kind, kind, point, world(vector));
+        group.append(drawn);
+        if (!drawn.tip) continue;
+        // Arrows that end near each other have one label.
+        const near = tips.find(({ at: [x, y] }) => Math.hypot(x - drawn.tip[0], y - drawn.tip[1]) < 16);
+        if (near) near.numbers.add(number + 1);
+        else tips.push({ at: drawn.tip, numbers: new Set([number + 1]) });
+      }
+    });
+    return group;
+  }
+
+  /** A vector at a point of the world; one that is too long is cut, which its dashes show. */
+  vector(kind, unit, point, [x, z]) {
+    const from = this.at(point);
+    const length = Math.hypot(x, z) * this.length[unit];
+    if (!(length > 0) || !Number.isFinite(length)) return svg("g");
+    const part = Math.min(1, this.longest / length) * this.length[unit];
+    const tip = [from[0] + part * x, from[1] - part * z];
+    const drawn = arrow(length > this.longest ? `${kind} cut` : kind, from, tip);
+    if (length > 4) drawn.tip = tip;
+    return drawn;
+  }
+
+  /** What the arrows are, each with one of a round length. */
+  key() {
+    const { frames, scale: { impulse, velocity } } = this.data;
+    const some = (chosen) => frames.some((frame) => frame.pose && chosen(frame));
+    const entries = [
+      ["impulse", "impulse", impulse, "N s", "impulse of the ground", some((frame) => frame.outcomes.some((outcome) => outcome.impulse.some(moves)))],
+      ["applied", "impulse", impulse, "N s", "applied impulse", some((frame) => frame.pose.applied)],
+      ["velocity", "velocity", velocity, "m/s", "velocity after", some((frame) => frame.outcomes.some((outcome) => outcome.after.some(moves)))],
+      ["before", "velocity", velocity, "m/s", "velocity before", some((frame) => frame.pose.contacts.some((contact) => moves(contact.before)))],
+    ];
+    this.legend.replaceChildren();
+    for (const [kind, unit, usual, name, words, drawn] of entries) {
+      if (!drawn || !(usual > 0)) continue;
+      const value = round(0.9 * usual);
+      const length = value * this.length[unit];
+      const sign = svg("svg", { width: length, height: 12, "aria-hidden": true }, arrow(kind, [0, 6], [length, 6]));
+      this.legend.append(html("span", {}, sign, `${words}, ${Number(value.toPrecision(1))} ${name}`));
+    }
+    const isCut = (usual) => ([x, z]) => Math.hypot(x, z) * Robot.USUAL > usual * Robot.LONGEST;
+    const cut = ({ outcomes }) => outcomes.some((outcome) => outcome.impulse.some(isCut(impulse)) || outcome.after.some(isCut(velocity)));
+    if (some(cut)) this.legend.append(html("span", {}, "dash-dotted: longer than drawn"));
+  }
+}
+
+function moves([t, n]) {
+  return t !== 0 || n !== 0;
+}

@@ -1,0 +1,117 @@
+//! A headless Chromium: a copy of a page with a script at its end, and what that script found.
+//!
+//! ```text
+//!     page + listener + script --> file --chromium --dump-dom--> DOM --> what the script gave to found(), as JSON
+//! ```
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What the variable is called that names a browser which must be there.
+const VARIABLE: &str = "HEELSTRIKE_BROWSER";
+
+/// Longer than any page takes, on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Stands before the page's own script: keeps errors, and whatever the page's policy forbids, as a request would be.
+const LISTENER: &str = r#"<script>
+    const wrong = [];
+    addEventListener("error", (event) => wrong.push(String(event.message)));
+    addEventListener("securitypolicyviolation", (event) => wrong.push(`${event.violatedDirective} ${event.blockedURI}`));
+    for (const kind of ["error", "warn"]) console[kind] = (...what) => wrong.push(what.join(" "));
+    globalThis.alert = (what) => wrong.push(`alert ${what}`);
+</script>"#;
+
+/// Stands at the page's end, before the test's script.
+const TOOLS: &str = r#"
+    const one = (selector) => document.querySelector(selector);
+    const all = (selector) => [...document.querySelectorAll(selector)];
+    const press = (...keys) => keys.forEach((key) => (document.activeElement ?? document.body).dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true })));
+    const slide = (axis, stop) => { const input = one(`#axis${axis}`); input.value = stop; input.dispatchEvent(new Event("input", { bubbles: true })); };
+    const middle = (element) => { const box = element.getBoundingClientRect(); return box.left + box.width / 2; };
+    const text = (selector) => one(selector)?.textContent ?? null;
+    const found = (what) => {
+        const all = JSON.stringify({ ...what, wrong, loaded: performance.getEntriesByType("resource").length });
+        const place = document.createElement("pre");
+        place.id = "found";
+        place.textContent = encodeURIComponent(all);
+        document.body.append(place);
+    };
+"#;
+
+/// What `script` finds in the page of this file, in a window of this size; none, which is told, where there is no browser.
+pub fn found(page: &Path, window: (u32, u32), script: &str) -> Option<Value> {
+    let browser = browser()?;
+    let html = std::fs::read_to_string(page).expect("a page");
+    let html = html.replacen("<head>", &format!("<head>{LISTENER}"), 1);
+    let (html, end) = html.rsplit_once("</body>").expect("a body");
+    let name = page.file_stem().and_then(|name| name.to_str()).expect("a name");
+    let number = std::thread::current().id();
+    let driven = page.with_file_name(format!("{name}-{number:?}-driven.html"));
+    std::fs::write(&driven, format!("{html}<script>{{{TOOLS}{script}}}</script></body>{end}")).expect("written");
+    let profile = page.with_file_name(format!("{name}-{number:?}-profile"));
+    let dom = dumped(&browser, &driven, &profile, window);
+    let (_, rest) = dom.split_once(r#"<pre id="found">"#).unwrap_or_else(|| panic!("the script failed:\n{dom}"));
+    let (found, _) = rest.split_once("</pre>").expect("its end");
+    let found: Value = serde_json::from_str(&decoded(found)).expect("JSON");
+    assert_eq!(found["wrong"], serde_json::json!([]));
+    assert_eq!(found["loaded"], 0);
+    Some(found)
+}
+
+/// The browser's name.
+fn browser() -> Option<String> {
+    if let Some(name) = std::env::var(VARIABLE).ok().filter(|name| !name.is_empty()) {
+        assert!(runs(&name), "{VARIABLE} names {name}, which does not run");
+        return Some(name);
+    }
+    let known = ["chromium", "chromium-browser", "google-chrome"];
+    let browser = known.into_iter().find(|name| runs(name)).map(str::to_owned);
+    if browser.is_none() {
+        eprintln!("skipped: none of {known:?} is installed; {VARIABLE}=NAME makes that an error");
+    }
+    browser
+}
+
+fn runs(name: &str) -> bool {
+    let mut command = Command::new(name);
+    let command = command.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
+
+/// The document as it is when the script has run.
+fn dumped(browser: &str, page: &Path, profile: &Path, (width, height): (u32, u32)) -> String {
+    let mut child = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-extensions"])
+        .args(["--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=5000", "--dump-dom"])
+        .arg(format!("--window-size={width},{height}"))
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .arg(format!("file://{}", page.display()))
+        .stdin(Stdio::null())
+        .stdout(Stdio::from(std::fs::File::create(page.with_extension("dom")).expect("a file")))
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the browser starts");
+    let start = Instant::now();
+    while child.try_wait().expect("a child").is_none() {
+        if start.elapsed() > PATIENCE {
+            child.kill().expect("it ends");
+            panic!("the browser did not end");
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::fs::read_to_string(page.with_extension("dom")).expect("UTF-8")
+}
+
+/// What `encodeURIComponent` was given.
+fn decoded(text: &str) -> String {
+    let mut bytes = Vec::new();
+    let mut rest = text.bytes();
+    while let Some(byte) = rest.next() {
+        let digit = |byte: Option<u8>| byte.and_then(|byte| char::from(byte).to_digit(16)).expect("a digit") as u8;
+        bytes.push(if byte == b'%' { digit(rest.next()) << 4 | digit(rest.next()) } else { byte });
+    }
+    String::from_utf8(bytes).expect("UTF-8")
+}

@@ -1,0 +1,264 @@
+//! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
+
+use super::browser::found;
+use super::{data, heelstrike, hostile, near_a_border, page, study, swept};
+use serde_json::{Value, json};
+
+const WINDOW: (u32, u32) = (1280, 800);
+
+/// Numbers of a list.
+fn numbers(list: &Value) -> Vec<f64> {
+    let entries = list.as_array().expect("a list").iter();
+    // As the page writes them.
+    let number = |entry: &Value| match entry {
+        Value::String(text) => text.replace('−', "-").parse().expect("a number"),
+        entry => entry.as_f64().expect("a number"),
+    };
+    entries.map(number).collect()
+}
+
+fn close(a: f64, b: f64, tolerance: f64) -> bool {
+    (a - b).abs() <= tolerance
+}
+
+#[test]
+fn keys_and_slider_move_the_robot_and_the_cursor() {
+    let (_, path) = swept("urdf/minimalistic.urdf", &study("keys.json", &near_a_border()), "keys.html");
+    let script = r##"
+        const seen = () => ({
+            stop: Number(one("#axis0").value), alpha: Number(text("output")), told: one("#axis0").getAttribute("aria-valuetext"),
+            hip: one(".joint").getAttribute("cy"), badge: text(".badge"), cursors: all("line.cursor").map(middle),
+        });
+        const steps = {};
+        const then = (name, act) => { act(); steps[name] = seen(); };
+        then("start", () => {});
+        then("right", () => press("ArrowRight"));
+        then("left", () => press("ArrowLeft"));
+        then("before", () => press("ArrowLeft"));
+        then("border", () => press("PageUp"));
+        then("back", () => press("PageDown"));
+        then("end", () => press("End"));
+        then("behind", () => press("ArrowUp"));
+        then("slide", () => slide(0, 2));
+        then("home", () => press("Home"));
+        // The shaded parts of a panel, from left to right.
+        const boxes = all("#plots g[clip-path]").map((group) => group.querySelector("path").getBoundingClientRect());
+        found({ steps, regions: boxes.map(({ left, right }) => [left, right]), windows: all("line.cursor").length });
+    "##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    let steps = &found["steps"];
+    let step = |name: &str, of: &str| steps[name][of].as_f64().expect("a number");
+    let stops =
+        [("start", 0.0), ("right", 1.0), ("left", 0.0), ("before", 0.0), ("end", 8.0), ("behind", 8.0), ("slide", 2.0)];
+    for (name, stop) in stops {
+        assert_eq!(step(name, "stop"), stop, "{name}");
+    }
+    assert_eq!((step("home", "alpha"), step("end", "alpha")), (0.5, 0.55));
+    let border = std::f64::consts::FRAC_PI_6;
+    assert!(0.0 < step("border", "alpha") - border && step("border", "alpha") - border < 1e-12);
+    assert!(0.0 < border - step("back", "alpha") && border - step("back", "alpha") < 1e-12);
+    assert_eq!((&steps["back"]["badge"], &steps["border"]["badge"]), (&json!("A"), &json!("B")));
+    let told = steps["border"]["told"].as_str().expect("words");
+    assert!(told.ends_with(", region B, Exactly one outcome."), "{told}");
+    // Legs that spread lower the hip, which on the screen is a greater y.
+    let hip = |name: &str| steps[name]["hip"].as_str().and_then(|y| y.parse::<f64>().ok()).expect("a number");
+    assert!(hip("start") < hip("slide") && hip("slide") < hip("end"));
+    assert_eq!(hip("start"), hip("home"));
+
+    // Region A begins at the first sample and ends at the border: so do its shading and the cursor.
+    let regions: Vec<Vec<f64>> = serde_json::from_value(found["regions"].clone()).expect("numbers");
+    for (name, side) in [("start", 0), ("back", 1), ("border", 1)] {
+        let cursors = numbers(&steps[name]["cursors"]);
+        assert!(cursors.len() >= 2, "a cursor in each panel");
+        for cursor in cursors {
+            assert!(close(cursor, regions[0][side], 0.6), "{name}: {cursor}, {regions:?}");
+        }
+    }
+}
+
+#[test]
+fn outcomes_are_those_of_the_tool() {
+    let robot = "urdf/minimalistic.urdf";
+    let example = "examples/paper/figures_3_and_6.json";
+    let (_, path) = page(&["sweep", robot, example], "", "outcomes.html");
+    let (_, json, _) = heelstrike(&["sweep", robot, example, "--format", "json"], "");
+    let sweep: Value = serde_json::from_str(&json).expect("JSON");
+    let samples = sweep["samples"].as_array().expect("samples");
+    // Three outcomes.
+    let sample = &samples[45];
+    let outcomes = sample["result"]["outcomes"].as_array().expect("outcomes");
+    assert_eq!(outcomes.len(), 3);
+    let script = format!(
+        r##"
+        const alpha = {};
+        press("Home");
+        while (Number(text("output")) < alpha) press("ArrowRight");
+        const shown = () => all("tbody").map((body) => ({{
+            words: body.querySelector("th").textContent, faded: body.className, pressed: body.querySelector("button").getAttribute("aria-pressed"),
+            numbers: [...body.querySelectorAll("tr:not(:first-child)")].map((row) => [...row.cells].slice(1).map((cell) => cell.textContent)),
+        }}));
+        const everything = shown();
+        press("2");
+        const second = shown();
+        const effects = all(".effect").map((effect) => effect.getAttribute("class"));
+        press("9");
+        const none = shown();
+        one("button[data-outcome='3']").click();
+        const third = shown();
+        found({{ alpha: Number(text("output")), sentence: text(".sentence"), everything, second, none, third, effects, status: text("#status") }});
+        "##,
+        sample["alpha"]
+    );
+    let Some(found) = found(&path, WINDOW, &script) else { return };
+    assert_eq!(found["alpha"], sample["alpha"]);
+    assert_eq!(found["sentence"], "DThree outcomes are equally valid. Proven.");
+    let shown = found["everything"].as_array().expect("outcomes");
+    assert_eq!(shown.len(), 3);
+    let verbs =
+        [("separate", "lifts off"), ("stick", "sticks"), ("slide+", "slides forward"), ("slide-", "slides backward")];
+    for (outcome, shown) in outcomes.iter().zip(shown) {
+        let words = shown["words"].as_str().expect("words");
+        for (contact, mode) in ["left_leg", "right_leg"].iter().zip(outcome["modes"].as_array().expect("modes")) {
+            let (_, verb) = verbs.iter().find(|(known, _)| mode == known).expect("a mode");
+            assert!(words.contains(&format!("{contact} {verb}")), "{words}, {outcome}");
+        }
+        let (_, margin) = words.split_once("margin ").expect("a margin");
+        let margin: f64 = margin.split(',').next().and_then(|margin| margin.parse().ok()).expect("a number");
+        assert!(close(margin, outcome["margin"].as_f64().expect("a number"), 1e-3 * margin));
+        let index = if outcome["index"] == 1 { "index +1" } else { "index −1" };
+        assert!(words.contains(index), "{words}");
+        for contact in 0..2 {
+            let row = numbers(&shown["numbers"][contact]);
+            let told = [numbers(&outcome["impulse"][contact]), numbers(&outcome["velocity_after"][contact])].concat();
+            for (shown, told) in row.iter().zip(&told) {
+                assert!(close(*shown, *told, 1e-3 * told.abs()), "{row:?} {told:?}");
+            }
+        }
+    }
+    let pressed = |name: &str| -> Vec<bool> {
+        found[name].as_array().expect("outcomes").iter().map(|outcome| outcome["pressed"] == "true").collect()
+    };
+    assert_eq!(pressed("everything"), [false; 3]);
+    assert_eq!(pressed("second"), [false, true, false]);
+    assert_eq!(pressed("none"), [false; 3], "there is no ninth outcome");
+    assert_eq!(pressed("third"), [false, false, true]);
+    // The one that is chosen is drawn last.
+    assert_eq!(found["effects"], json!(["effect faded", "effect faded", "effect"]));
+    assert!(found["status"].as_str().expect("a text").contains("3: left_leg slides forward, right_leg sticks"));
+}
+
+#[test]
+fn a_map_is_walked_in_both_directions() {
+    let mut grid = near_a_border();
+    grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 5});
+    grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
+    let (_, path) = swept("urdf/minimalistic.urdf", &study("map.json", &grid), "map.html");
+    let script = r##"
+        const seen = () => [Number(all("output")[0].textContent), Number(all("output")[1].textContent), text(".badge")];
+        const dot = () => { const { left, right, top, bottom } = one("circle.cursor").getBoundingClientRect(); return [(left + right) / 2, (top + bottom) / 2]; };
+        const start = [...seen(), ...dot()];
+        press("ArrowUp");
+        const up = [...seen(), ...dot()];
+        press("End", "PageDown");
+        const beyond = seen();
+        press("End", "ArrowUp", "ArrowUp", "ArrowUp", "ArrowUp");
+        const last = [...seen(), ...dot()];
+        // A click beside the middle of the map.
+        const [x, y] = [start[3] + 0.52 * (last[3] - start[3]), start[4] + 0.48 * (last[4] - start[4])];
+        one("#plots svg").dispatchEvent(new PointerEvent("pointerdown", { clientX: x, clientY: y, buttons: 1, bubbles: true }));
+        const clicked = [...seen(), ...dot()];
+        slide(1, 0);
+        found({ start, up, beyond, last, clicked, slid: seen() });
+    "##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    let pair = |name: &str| (found[name][0].as_f64(), found[name][1].as_f64());
+    assert_eq!(pair("start"), (Some(0.5), Some(-2.0)));
+    assert_eq!(pair("up"), (Some(0.5), Some(-1.75)));
+    assert_eq!(pair("beyond"), (Some(0.5), Some(-1.75)), "the region on the other side of the border");
+    assert_eq!(pair("last"), (Some(0.55), Some(-1.0)));
+    assert_eq!(pair("clicked"), (Some(0.525), Some(-1.5)));
+    assert_eq!(pair("slid"), (Some(0.525), Some(-2.0)));
+    assert_ne!(found["start"][2], found["last"][2], "two regions");
+    let at = |name: &str, axis: usize| found[name][3 + axis].as_f64().expect("a number");
+    assert!(at("last", 0) > at("start", 0) && at("last", 1) < at("start", 1), "the second parameter goes up");
+    assert!(close(at("clicked", 0), 0.5 * (at("start", 0) + at("last", 0)), 0.6));
+    assert!(close(at("up", 1), at("start", 1) + 0.25 * (at("last", 1) - at("start", 1)), 0.6));
+}
+
+#[test]
+fn a_gait_is_walked_from_impact_to_impact() {
+    let walk =
+        ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9"];
+    let (_, path) = page(&walk, "", "walk.html");
+    let script = r##"
+        const seen = () => ({ time: Number(text("output")), name: text(".name"), badge: text(".badge"), words: text("th.outcome"), x: middle(one(".contact")) });
+        const list = [seen()];
+        for (let k = 0; k < 3; k += 1) { press("PageUp"); list.push(seen()); }
+        press("End");
+        found({ list, end: seen(), track: all(".track span").length });
+    "##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    assert_eq!(found["list"][2]["name"], "gait/050, line 52");
+    assert_eq!(found["list"][2]["badge"], "unique");
+    let words = found["list"][2]["words"].as_str().expect("words");
+    assert!(words.contains("left_foot lifts off, right_foot sticks") && words.contains("margin 0.517"), "{words}");
+    assert_eq!(found["list"][1]["badge"], "no impact");
+    assert_eq!(found["end"]["name"], "gait/101, line 103");
+    assert!(close(found["end"]["time"].as_f64().expect("a time"), 0.7624, 1e-4), "{}", found["end"]);
+}
+
+#[test]
+fn what_is_refused_says_why() {
+    let height = json!({
+        "parameters": {"z": {"from": 0.3, "to": 0.6, "steps": 4}},
+        "state": {"position": {"base": {"z": "z"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5}
+    });
+    let study = study("refused.json", &height);
+    let args = ["sweep", "urdf/ramone.urdf", study.to_str().expect("UTF-8"), "--contact-tolerance", "0.01"];
+    let (_, path) = page(&args, "", "refused.html");
+    let script = r##"
+        const refused = { scene: one("#scene").textContent, sentence: text(".sentence"), bodies: all(".body").length };
+        press("End");
+        found({ refused, answered: { sentence: text(".sentence"), bodies: all(".body").length } });
+    "##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    assert_eq!(
+        (&found["refused"]["scene"], &found["refused"]["bodies"]),
+        (&json!("This state is refused."), &json!(0))
+    );
+    let sentence = found["refused"]["sentence"].as_str().expect("a sentence");
+    assert!(
+        sentence.starts_with("ARefused: link \"left_foot\" is ") && sentence.contains("hint: raise the base"),
+        "{sentence}"
+    );
+    assert_eq!(found["answered"]["bodies"], 5);
+}
+
+#[test]
+fn hostile_names_are_shown_and_not_run() {
+    let (page, path) = hostile();
+    let script = r##"found({ heading: text("h1"), title: document.title, name: text(".name"), words: text("th.outcome"), labels: all("#scene text").map((label) => label.textContent), scripts: all("script").length });"##;
+    let Some(found) = found(&path, WINDOW, script) else { return };
+    let title = data(&page)["title"].clone();
+    assert_eq!((&found["heading"], &found["title"]), (&title, &title));
+    assert_eq!(found["name"], format!("{}, line 1", super::HOSTILE));
+    assert_eq!(found["labels"], json!([super::HOSTILE]));
+    assert!(found["words"].as_str().expect("words").contains(&format!("{} sticks", super::HOSTILE)));
+    // Those of the page, and two of the test.
+    assert_eq!(found["scripts"], 4);
+}
+
+#[test]
+fn pages_fit_into_narrow_and_wide_windows() {
+    let (_, path) = page(&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"], "", "fits.html");
+    let script = r##"
+        press("End", "PageDown");
+        const inside = (element) => { const { left, right } = element.getBoundingClientRect(); return left >= 0 && right <= innerWidth; };
+        found({ width: document.documentElement.scrollWidth, window: innerWidth, inside: ["#axis0", "#scene", "#answer", "#plots svg", ".track"].map((part) => inside(one(part))) });
+    "##;
+    for window in [(390, 844), (1280, 800)] {
+        let Some(found) = found(&path, window, script) else { return };
+        assert_eq!(found["inside"], json!([true, true, true, true, true]), "{window:?}");
+        assert!(found["width"].as_f64() <= found["window"].as_f64(), "{found}");
+    }
+}

@@ -1,0 +1,247 @@
+//! Interactive pages of `sweep` and `batch`: what stands in the file (here), and what it does in a browser (`live`, driven
+//! through `browser`).
+//!
+//! Where no Chromium is found the browser's tests say so and pass; HEELSTRIKE_BROWSER names one that must be there.
+
+mod browser;
+mod live;
+
+use assert_cmd::Command;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// The largest page of 400 samples of RAMone \[bytes\].
+const LARGEST: usize = 3_000_000;
+
+/// A file of these tests alone.
+fn file(name: &str) -> PathBuf {
+    let directory = std::env::temp_dir().join(format!("heelstrike-page-{}", std::process::id()));
+    std::fs::create_dir_all(&directory).expect("a directory");
+    directory.join(name)
+}
+
+/// Runs the binary: exit status, standard output and standard error.
+fn heelstrike(args: &[&str], stdin: &str) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    let output = command.args(args).write_stdin(stdin).output().expect("the command runs");
+    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+    (output.status.code().expect("no signal"), text(output.stdout), text(output.stderr))
+}
+
+/// The page that a command writes, and where it is.
+fn page(args: &[&str], stdin: &str, name: &str) -> (String, PathBuf) {
+    let path = file(name);
+    let run = heelstrike(&[args, &["--plot", path.to_str().expect("UTF-8")]].concat(), stdin);
+    assert!(path.exists(), "{}", run.2);
+    (std::fs::read_to_string(&path).expect("UTF-8"), path)
+}
+
+/// The page's data.
+fn data(page: &str) -> Value {
+    let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).expect("data");
+    let (data, _) = rest.split_once("</script>").expect("their end");
+    serde_json::from_str(data).expect("JSON")
+}
+
+/// A study as a file.
+fn study(name: &str, study: &Value) -> PathBuf {
+    let path = file(name);
+    std::fs::write(&path, study.to_string()).expect("written");
+    path
+}
+
+/// The minimalistic biped beside its border at pi / 6, where its trailing foot stops sliding.
+fn near_a_border() -> Value {
+    json!({
+        "parameters": {"alpha": {"from": 0.5, "to": 0.55, "steps": 3}},
+        "state": {
+            "position": {"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}},
+            "velocity": {"base": {"pitch": -1.0}},
+            "stance": "left_leg",
+            "friction": "infinite"
+        }
+    })
+}
+
+fn swept(robot: &str, study: &Path, name: &str) -> (String, PathBuf) {
+    page(&["sweep", robot, study.to_str().expect("UTF-8")], "", name)
+}
+
+/// A robot whose link and study whose parameter do their best to leave their places.
+const HOSTILE: &str = "</script><script>alert(1)</script><!--";
+
+fn hostile() -> (String, PathBuf) {
+    let escaped = HOSTILE.replace('<', "&lt;").replace('>', "&gt;");
+    let urdf = format!(
+        r#"<robot name="{escaped}"><link name="{escaped}">
+            <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+            <collision><geometry><sphere radius="0.5"/></geometry></collision></link></robot>"#
+    );
+    let robot = file("hostile.urdf");
+    std::fs::write(&robot, urdf).expect("written");
+    let state =
+        json!({"id": HOSTILE, "position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1}}, "friction": 1});
+    let states = format!("{state}\n{}\n", json!({"id": "{data}", "position": {"base": {"z": 0.5, "{program}": 1}}}));
+    page(&["batch", robot.to_str().expect("UTF-8"), "-"], &states, "hostile.html")
+}
+
+#[test]
+fn the_data_of_a_small_study() {
+    let (page, _) = swept("urdf/minimalistic.urdf", &study("small.json", &near_a_border()), "small.html");
+    let mut data = data(&page);
+    // What is found beside a border hangs on the last digits of its place.
+    let samples = [0, 5, 8].map(|sample| data["frames"][sample].take());
+    data["frames"] = json!(samples);
+    data["axes"][0]["values"].take();
+    // A line each.
+    let listed = |value: &Value| match value {
+        Value::Array(entries) => entries.iter().map(|entry| format!("\n  {entry}")).collect::<String>(),
+        value => format!(" {value}"),
+    };
+    let lines = data.as_object().expect("an object").iter().map(|(name, value)| format!("{name}:{}\n", listed(value)));
+    insta::assert_snapshot!("small", lines.collect::<String>());
+}
+
+#[test]
+fn a_page_stops_at_samples_and_within_every_region() {
+    let (page, _) = swept("urdf/minimalistic.urdf", &study("stops.json", &near_a_border()), "stops.html");
+    let data = data(&page);
+    let stops: Vec<f64> = serde_json::from_value(data["axes"][0]["values"].clone()).expect("numbers");
+    let border = std::f64::consts::FRAC_PI_6;
+    // Three samples, and both sides and the middle of two regions.
+    assert_eq!(stops.len(), 9);
+    assert!(stops.is_sorted());
+    for sample in [0.5, 0.525, 0.55] {
+        assert!(stops.contains(&sample), "{stops:?}");
+    }
+    let beside: Vec<f64> = stops.iter().map(|stop| stop - border).filter(|beside| beside.abs() < 1e-12).collect();
+    assert!(matches!(beside[..], [below, above] if below < 0.0 && above > 0.0), "{beside:?}");
+    let regions: Vec<i64> =
+        data["frames"].as_array().expect("stills").iter().filter_map(|still| still["region"].as_i64()).collect();
+    assert_eq!(regions, [0, 0, 0, 0, 1, 1, 1, 1, 1]);
+}
+
+#[test]
+fn nothing_is_loaded() {
+    let (page, _) = swept("urdf/minimalistic.urdf", &study("alone.json", &near_a_border()), "alone.html");
+    assert!(page.contains(r#"content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'""#));
+    let named = page.matches("://").count();
+    let spaces = page.matches(r#""http://www.w3.org/2000/svg""#).count();
+    assert_eq!(named, spaces, "every address is the name of SVG's space");
+    for loading in ["src=", "url(http", "@import", "import(", "fetch(", "XMLHttpRequest", "eval(", "<link", "<base"] {
+        assert!(!page.contains(loading), "{loading}");
+    }
+}
+
+#[test]
+fn names_stay_names() {
+    let (page, _) = hostile();
+    // The data and the program.
+    assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (2, 2));
+    // That of the plots, which says who drew them.
+    assert_eq!(page.matches("<!--").count(), 1);
+    let data = data(&page);
+    assert_eq!(data["title"], format!("{HOSTILE}, state by state"));
+    assert_eq!(data["frames"][0]["name"], format!("{HOSTILE}, line 1"));
+    // What is put into the template is not taken for it.
+    assert_eq!(data["frames"][1]["name"], "{data}, line 2");
+    assert!(data["texts"].to_string().contains("{program}"));
+}
+
+#[test]
+fn four_hundred_samples_of_ramone_are_small() {
+    let text = std::fs::read_to_string("examples/paper/table_1.json").expect("the study");
+    let dense = file("dense.json");
+    std::fs::write(&dense, text.replace(r#""steps": 50"#, r#""steps": 400"#)).expect("written");
+    let (page, _) = swept("urdf/ramone_paper.urdf", &dense, "dense.html");
+    assert!(page.len() < LARGEST, "{} bytes", page.len());
+    let data = data(&page);
+    assert_eq!(data["frames"].as_array().map(Vec::len), Some(400 + 3 * 7));
+    assert_eq!(data["parts"].as_array().map(Vec::len), Some(5), "a rigid body has one shape");
+}
+
+#[test]
+fn two_parameters_make_a_grid_that_is_thinned_where_it_is_too_fine() {
+    let grid = |steps: usize| {
+        let mut grid = near_a_border();
+        grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 2});
+        grid["parameters"]["alpha"]["steps"] = json!(steps);
+        grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
+        let (page, _) = swept("urdf/minimalistic.urdf", &study("grid.json", &grid), "grid.html");
+        data(&page)
+    };
+    let axis = |data: &Value, axis: usize| data["axes"][axis]["values"].as_array().expect("numbers").clone();
+    let few = grid(4);
+    assert_eq!((axis(&few, 0).len(), axis(&few, 1).len()), (4, 2));
+    assert_eq!(few["frames"].as_array().map(Vec::len), Some(8));
+    let many = grid(2600);
+    // The longer one is thinned, to its last sample.
+    assert_eq!((axis(&many, 0).len(), axis(&many, 1).len()), (1301, 2));
+    assert_eq!((&axis(&many, 0)[0], axis(&many, 0).last()), (&json!(0.5), Some(&json!(0.55))));
+    assert_eq!(many["notes"][0], "this page stops at one of 2 samples of alpha");
+}
+
+#[test]
+fn a_long_batch_is_thinned_evenly_and_says_so() {
+    let state = |line: usize| format!("{}\n", json!({"id": line, "position": {"base": {"z": 3}}, "friction": 1}));
+    let states: String = (1..=5001).map(state).collect();
+    let (page, _) = page(&["batch", "urdf/ramone.urdf", "-", "--brief"], &states, "long.html");
+    let data = data(&page);
+    let lines: Vec<f64> = serde_json::from_value(data["axes"][0]["values"].clone()).expect("numbers");
+    assert_eq!(lines, (0..2501).map(|k| f64::from(2 * k + 1)).collect::<Vec<_>>());
+    assert_eq!(data["notes"], json!(["this page shows one of every 2 of the 5001 states"]));
+}
+
+#[test]
+fn a_batch_writes_the_same_results_beside_its_page() {
+    let args = ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6"];
+    let (_, alone, _) = heelstrike(&args, "");
+    let path = file("same.html");
+    let run = |threads| {
+        let page = ["--threads", threads, "--plot", path.to_str().expect("UTF-8")];
+        let (_, beside, _) = heelstrike(&[&args[..], &page].concat(), "");
+        assert_eq!(alone, beside);
+        std::fs::read(&path).expect("a page")
+    };
+    assert_eq!(run("1"), run("4"));
+}
+
+#[test]
+fn a_batch_draws_its_margins_as_svg() {
+    let args =
+        ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9"];
+    let path = file("walk.svg");
+    let (status, ..) = heelstrike(&[&args[..], &["--plot", path.to_str().expect("UTF-8")]].concat(), "");
+    assert_eq!(status, 0);
+    insta::assert_snapshot!("walk", std::fs::read_to_string(&path).expect("an SVG").replace("><", ">\n<"));
+}
+
+#[test]
+fn a_page_of_nothing_is_refused() {
+    let path = file("nothing.html");
+    let (status, _, told) =
+        heelstrike(&["batch", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")], "");
+    assert_eq!(status, 1);
+    assert_eq!(told, "error: --plot: there is nothing to draw\nhint: the input holds no states\n");
+    assert!(!path.exists());
+}
+
+#[test]
+fn other_commands_say_who_writes_pages() {
+    for args in [
+        &["impact", "urdf/ramone.urdf", "examples/ramone.json"][..],
+        &["inspect", "urdf/ramone.urdf"],
+        &["accuracy", "--case", "massless", "--time", "0"],
+    ] {
+        let (status, out, told) = heelstrike(&[args, &["--plot", "report.html"]].concat(), "");
+        assert_eq!((status, out.as_str()), (2, ""), "{args:?}");
+        assert!(told.contains("interactive pages are written by `sweep` and `batch`"), "{told}");
+    }
+    for args in
+        [&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"][..], &["batch", "urdf/ramone.urdf", "-"]]
+    {
+        let (status, out, told) = heelstrike(&[args, &["--plot", "report.htm"]].concat(), "");
+        assert_eq!((status, out.as_str()), (2, ""), "{args:?}");
+        assert!(told.contains("an interactive page as .html"), "{told}");
+    }
+}
