@@ -216,6 +216,9 @@ impl<'n> Node<'n> {
         if FUNCTIONS.contains(&unknown.as_str()) {
             return error.hint(format!("{unknown} is a function, as in {unknown}(1)"));
         }
+        if unknown == "log" {
+            return error.hint("write ln or log10: log is the one to some and the other to others");
+        }
         let nearest = error.did_you_mean(&unknown, names.iter().chain(FUNCTIONS));
         match (nearest.remedy(), names.iter().collect::<Vec<_>>()) {
             (Some(_), _) => nearest,
