@@ -50,7 +50,7 @@ pub struct Area {
     pub loops: Vec<Vec<Vector<f64>>>,
     /// For each connected part a point well inside of it, and how far that is from its edge as part of the ranges.
     pub middles: Vec<(Vector<f64>, f64)>,
-    /// The refusal at such a point, where states are refused.
+    /// Where states are refused: why, as at such a point or beside a border.
     pub refused: Option<Error>,
 }
 
@@ -188,7 +188,16 @@ impl Map {
             let sides = [index(&chain.left)?, index(&chain.right)?];
             Some(Curve { sides, points: chain.points.into_iter().map(outward).collect(), turns: chain.turns })
         });
-        Self { curves: curves.collect(), areas, dependent }
+        let curves: Vec<Curve> = curves.collect();
+        for Curve { sides, turns, .. } in &curves {
+            for (side, refused) in sides.iter().zip([&turns.refused_below, &turns.refused_above]) {
+                let area = &mut areas[*side];
+                if area.regime.outcomes().is_none() && area.refused.is_none() {
+                    area.refused.clone_from(refused);
+                }
+            }
+        }
+        Self { curves, areas, dependent }
     }
 
     /// How many pieces of work a map of `model` has.

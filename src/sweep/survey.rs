@@ -1,6 +1,6 @@
 //! The regions of a study of one parameter, with what turns between them.
 
-use super::line::{Bracket, Landscape, Point, RESOLUTION, brackets, stretches};
+use super::line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stretches};
 use super::model::{Model, Solver, Watched};
 use super::parallel::Workers;
 use super::regime::Regime;
@@ -30,7 +30,7 @@ pub struct Region {
     pub regime: Arc<Regime>,
     /// Which of all different regimes it has, counted from 0 in the order of their first region.
     pub kind: usize,
-    /// The refusal at its middle, where it is refused.
+    /// Where it is refused: why, as at its middle.
     pub refused: Option<Error>,
 }
 
@@ -79,16 +79,22 @@ impl Survey {
         let mut solver = begin();
         let mut kinds: Vec<Arc<Regime>> = Vec::new();
         let mut dependent = false;
-        let mut region = |super::line::Stretch { from, to, regime }| {
+        let mut region = |(index, Stretch { from, to, regime }): (usize, Stretch)| {
             let kind = kinds.iter().position(|known| *known == regime).unwrap_or_else(|| {
                 kinds.push(Arc::clone(&regime));
                 kinds.len() - 1
             });
             let (depends, refused) = solver.dependence(&[0.5 * (from + to)]);
             dependent |= depends;
+            // Its middle may lie in a thinner region that was not found; its beginning was asked.
+            let begin = index.checked_sub(1).map_or(parameter.from, |border| brackets[border].above.at);
+            let refused = match *regime {
+                Regime::Answered { .. } => None,
+                Regime::Refused { .. } => refused.or_else(|| solver.dependence(&[begin]).1),
+            };
             Region { from, to, regime, kind, refused }
         };
-        let regions = stretches.into_iter().map(&mut region).collect();
+        let regions = stretches.into_iter().enumerate().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {
             let bracket: &Bracket = &brackets[index];
             Border { at: bracket.at(), turns: Turns::at(solver, bracket, |at| vec![at]) }

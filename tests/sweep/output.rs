@@ -109,6 +109,19 @@ fn refused_samples_stand_in_their_place_and_the_rest_goes_on() {
 }
 
 #[test]
+fn a_refused_region_with_an_answered_middle_says_why_it_is_refused() {
+    // The root has a value above 0.6, and within 1e-7 of 0.3, the middle of what is below.
+    let study = json!({
+        "parameters": {"p": {"from": 0, "to": 1, "steps": 4}},
+        "state": {"position": {"base": {"z": "1 + sqrt(max(p - 0.6, 1e-14 - (p - 0.3)^2))"}}, "friction": 1},
+    });
+    let Run { status, stdout, stderr } = run("urdf/block.urdf", &study, &["--format", "text"]);
+    assert_eq!(status, Some(1), "{stdout}");
+    assert!(stderr.contains("the expression has no value"), "{stderr}");
+    assert!(stdout.contains("A  0 .. 0.6  refused: the expression has no value"), "{stdout}");
+}
+
+#[test]
 fn tables_have_the_parameter_and_the_region_beside_the_columns_of_batch() {
     let mut study = straight(None);
     study["parameters"]["alpha"]["steps"] = json!(4);

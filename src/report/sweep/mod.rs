@@ -69,10 +69,10 @@ pub struct Region<'a> {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Happening<'a> {
-    /// Names of the closed contacts; absent beside an `error`.
+    /// Names of the closed contacts; absent where states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<&'a [String]>,
-    /// The modes of every outcome; absent beside an `error`.
+    /// The modes of every outcome; absent where states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<&'a [Vec<Mode>]>,
     /// Combinations that no precision excludes; absent where everything is decided.

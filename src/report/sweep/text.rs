@@ -48,9 +48,10 @@ impl Happening<'_> {
         if let Some(error) = &self.error {
             return vec![format!("refused: {}", error.message)];
         }
+        let Some(outcomes) = self.outcomes else { return vec!["refused".to_owned()] };
         let contacts = self.contacts.unwrap_or_default();
         let words = |modes: &Vec<_>| words::modes(contacts.iter().map(String::as_str), modes);
-        let mut lines: Vec<String> = match self.outcomes.unwrap_or_default() {
+        let mut lines: Vec<String> = match outcomes {
             [] => vec!["no outcome".to_owned()],
             [only] if only.is_empty() => vec!["nothing touches the ground".to_owned()],
             outcomes => outcomes.iter().map(words).collect(),
