@@ -18,9 +18,11 @@
 //!     poses + ground --[contact]--> closed contacts
 //!     G, c, friction, restitution --[impact]--> every outcome, verdict
 //!     Plan + a box of states --[uncertain]--> whether its outcomes are all the same
-//!     all of it --[pipeline]--> Impact --[report]--> JSON, text
+//!     all of it --[pipeline]--> Impact --[report]--> JSON, text, drawing of the robot
 //!     CSV --[table]--> many states, bases in 3-D --[spatial]--> in the plane; results --[table]--> CSV
 //!     states of a recording --[touchdown]--> those in which a foot strikes
+//!     Study of one or two parameters, numbers by [expression] --[sweep]--> regions, borders --[report]--> JSON, CSV, text, picture
+//!     states along a parameter or a gait --[report::page]--> interactive page
 //! ```
 //!
 //! # The impact
