@@ -14,7 +14,7 @@ use heelstrike::report::{Accuracy, Compliant, append_line};
 use heelstrike::state::State;
 use heelstrike::{Error, Reason, Robot};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Show error against run time, for a robot's state or for a suite of stiff and extreme cases
@@ -53,6 +53,9 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Outcome {
     let budget = Budget { time: Duration::from_millis(args.time), ..Budget::default() };
     args.plot.check()?;
+    let inputs: Vec<&Path> = [&args.robot, &args.state].into_iter().flatten().map(PathBuf::as_path).collect();
+    args.output.spare(&inputs)?;
+    args.plot.claim(&inputs, args.output.output.as_deref())?;
     let accuracy = match (&args.robot, &args.state) {
         (Some(robot), Some(state)) => own(args, robot, state, budget)?,
         _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, budget)?,
@@ -78,9 +81,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     }
 }
 
-fn own(args: &Args, robot: &std::path::Path, state: &std::path::Path, budget: Budget) -> Result<Accuracy, Failure> {
-    args.output.spare(&[robot, state])?;
-    args.plot.spare(&[robot, state])?;
+fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accuracy, Failure> {
     let robot = RobotOptions::of_file(robot).load()?;
     let name = input::name(state);
     let bytes = input::bytes_up_to(state, LARGEST)?;

@@ -3,7 +3,7 @@
 use super::complaint::note;
 use super::delivery::Delivery;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, from_zero, pipeline_options};
-use super::output::{named, spare};
+use super::output::{apart, named, spare};
 use super::page::PageOptions;
 use super::progress::Progress;
 use super::robot::RobotOptions;
@@ -174,16 +174,17 @@ pub(super) fn run(args: &Args) -> Outcome {
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     spare(args.output.as_deref(), &inputs)?;
     args.summary.as_deref().map_or(Ok(()), |summary| spare(Some(summary), &inputs))?;
-    args.plot.spare(&inputs)?;
     if args.summary.as_deref() == Some(Path::new("-")) {
         let reason =
             "standard output holds the results alone, and standard error has the summary for people".to_owned();
         return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).at("--summary").hint("name a file")));
     }
-    if args.output.is_some() && args.output == args.summary {
-        let reason = "results and summary would be written to the same file".to_owned();
-        return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).at("--summary").hint("name two files")));
+    let (output, summary) = (args.output.as_deref(), args.summary.as_deref());
+    apart([("results", output), ("summary", summary)], "--summary")?;
+    if summary.is_some() {
+        apart([("summary", summary), ("picture", args.plot.path())], "--plot")?;
     }
+    args.plot.claim(&inputs, output)?;
     let robot = args.robot.load()?;
     let feet = args.robot.feet(&robot)?;
     let name = input::name(&args.states);

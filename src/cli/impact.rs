@@ -65,7 +65,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     let inputs = [Some(&args.robot.robot), Some(&args.state), args.loops.loops.as_ref()];
     let inputs: Vec<_> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     args.output.spare(&inputs)?;
-    args.plot.spare(&inputs)?;
+    args.plot.claim(&inputs, args.output.output.as_deref())?;
     let answered = answer_all(&mut impacts, &args.state, format, &args.output)?;
     match &impacts.picture {
         Some(picture) => args.plot.draw(picture, "the state has no place in the plane")?,

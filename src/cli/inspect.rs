@@ -29,7 +29,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     let feet = args.robot.feet(&robot)?;
     let inspection = Inspection::new(&robot, &feet);
     args.output.spare(&[&args.robot.robot])?;
-    args.plot.spare(&[&args.robot.robot])?;
+    args.plot.claim(&[&args.robot.robot], args.output.output.as_deref())?;
     if args.plot.is_asked() {
         args.plot.draw(&drawing::picture::robot(&robot, &feet), "the robot has no place in the plane")?;
     }

@@ -1,8 +1,9 @@
 //! Standard output or a file, as text or JSON.
 
+use super::Failure;
 use heelstrike::report::Palette;
-use heelstrike::{Error, Reason, Result};
-use std::fs::File;
+use heelstrike::{Error, Reason};
+use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -50,7 +51,7 @@ impl OutputOptions {
     ///
     /// # Errors
     /// [`Reason::Io`], naming the file.
-    pub fn spare(&self, inputs: &[&Path]) -> Result<()> {
+    pub fn spare(&self, inputs: &[&Path]) -> heelstrike::Result<()> {
         spare(self.output.as_deref(), inputs)
     }
 }
@@ -59,7 +60,7 @@ impl OutputOptions {
 ///
 /// # Errors
 /// [`Reason::Io`], naming the file.
-pub(super) fn spare(output: Option<&Path>, inputs: &[&Path]) -> Result<()> {
+pub(super) fn spare(output: Option<&Path>, inputs: &[&Path]) -> heelstrike::Result<()> {
     let output = output.unwrap_or(Path::new("-"));
     let Some(written) = file_of(output, io::stdout()) else { return Ok(()) };
     if inputs.iter().all(|input| file_of(input, io::stdin()).as_ref() != Some(&written)) {
@@ -68,6 +69,43 @@ pub(super) fn spare(output: Option<&Path>, inputs: &[&Path]) -> Result<()> {
     let reason = Reason::Io("is an input of this command, and the output would replace it".into());
     let name = if output == Path::new("-") { "<stdout>".to_owned() } else { output.display().to_string() };
     Err(Error::new(reason).in_file(name).hint("write to another file"))
+}
+
+/// Refuses two outputs that are one file, under whatever names; `option` is that of the second, which none is no file.
+///
+/// # Errors
+/// [`Failure::Usage`], naming the option.
+pub(super) fn apart(
+    [(what, one), (other_what, other)]: [(&str, Option<&Path>); 2],
+    option: &'static str,
+) -> Result<(), Failure> {
+    let (one, Some(other)) = (one.unwrap_or(Path::new("-")), other) else { return Ok(()) };
+    let same_name = one != Path::new("-") && std::path::absolute(one).ok() == std::path::absolute(other).ok();
+    let same_file = file_of(one, io::stdout()).is_some_and(|file| file_of(other, io::stdout()) == Some(file));
+    if !same_name && !same_file {
+        return Ok(());
+    }
+    let reason = Reason::Inconsistent(format!("{what} and {other_what} would be written to the same file"));
+    Err(Failure::Usage(Error::new(reason).at(option).hint("name two files")))
+}
+
+/// Tries whether a file can be written, before the work whose results it is for, and leaves it as it is; what is neither
+/// a file nor a directory is not tried.
+///
+/// # Errors
+/// Whatever keeps it from being written.
+pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
+    let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
+    let known = std::fs::metadata(path).ok();
+    // A pipe's reader would take a trial for the end.
+    if known.as_ref().is_some_and(|known| !known.is_file() && !known.is_dir()) {
+        return Ok(());
+    }
+    OpenOptions::new().append(true).create(true).open(path).map_err(|error| named(path, error))?;
+    match known {
+        Some(_) => Ok(()),
+        None => std::fs::remove_file(path).map_err(|error| named(path, error)),
+    }
 }
 
 /// Device and number of the file of that name, of `standard` for `-`; none of devices and pipes, which nothing replaces.

@@ -1,7 +1,7 @@
 //! `--plot` of commands that write an interactive page, too.
 
 use super::Failure;
-use super::output::{named, spare};
+use super::output::named;
 use super::picture::{PlotOptions, nothing_to_draw};
 use heelstrike::report::Picture;
 use heelstrike::report::page::Page;
@@ -31,12 +31,17 @@ impl PageOptions {
         Err(Failure::Usage(Error::new(reason).at("--plot").hint("name a file that ends in .svg, .png or .html")))
     }
 
-    /// Refuses to write over what is being read.
+    /// As [`PlotOptions::claim`].
     ///
     /// # Errors
-    /// [`Reason::Io`], naming the file.
-    pub fn spare(&self, inputs: &[&Path]) -> heelstrike::Result<()> {
-        spare(self.plot.as_deref(), inputs)
+    /// As there.
+    pub fn claim(&self, inputs: &[&Path], results: Option<&Path>) -> Result<(), Failure> {
+        PlotOptions::to(self.plot.clone()).claim(inputs, results)
+    }
+
+    /// The file.
+    pub fn path(&self) -> Option<&Path> {
+        self.plot.as_deref()
     }
 
     /// Whether a picture or a page is asked for.

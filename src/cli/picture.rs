@@ -1,7 +1,7 @@
 //! `--plot`: pictures as SVG or PNG.
 
 use super::Failure;
-use super::output::{named, spare};
+use super::output::{apart, named, spare, writable};
 use super::page::is_page;
 use heelstrike::report::Picture;
 use heelstrike::{Error, Reason};
@@ -42,12 +42,16 @@ impl PlotOptions {
         }
     }
 
-    /// Refuses to draw over what is being read.
+    /// Refuses, before any work is done, a file that is being read, one that the `results` go to, and one that cannot be
+    /// written.
     ///
     /// # Errors
-    /// [`Reason::Io`], naming the file.
-    pub fn spare(&self, inputs: &[&Path]) -> heelstrike::Result<()> {
-        spare(self.plot.as_deref(), inputs)
+    /// [`Failure::Refused`], [`Failure::Usage`] and [`Failure::Output`].
+    pub fn claim(&self, inputs: &[&Path], results: Option<&Path>) -> Result<(), Failure> {
+        let plot = self.plot.as_deref();
+        spare(plot, inputs)?;
+        apart([("results", results), ("picture", plot)], "--plot")?;
+        Ok(writable(plot)?)
     }
 
     /// Whether a picture is asked for.

@@ -2,7 +2,7 @@
 
 use super::complaint::complain;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
-use super::output::{Output, spare};
+use super::output::{Output, spare, writable};
 use super::page::PageOptions;
 use super::progress::Progress;
 use super::robot::{RobotOptions, caution};
@@ -11,10 +11,9 @@ use clap::ValueEnum;
 use heelstrike::Error;
 use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
-use heelstrike::report::Detail;
-use heelstrike::report::append_line;
 use heelstrike::report::page::{Page, Stops};
 use heelstrike::report::sweep::{Regions, Sample, columns, letter, picture};
+use heelstrike::report::{Detail, append_line};
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
 use std::io::Write;
@@ -111,7 +110,8 @@ pub(super) fn run(args: &Args) -> Outcome {
     let inputs = [Some(&args.robot.robot), Some(&args.study), args.loops.loops.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     spare(args.output.as_deref(), &inputs)?;
-    args.plot.spare(&inputs)?;
+    args.plot.claim(&inputs, args.output.as_deref())?;
+    writable(args.output.as_deref())?;
 
     let threads = match args.threads {
         0 => available_parallelism().map_or(1, usize::from),

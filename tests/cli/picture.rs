@@ -126,6 +126,42 @@ fn a_picture_does_not_replace_what_is_read() {
 }
 
 #[test]
+fn a_picture_and_the_results_are_two_files() {
+    let (name, again) = (file("both.svg"), file(".").join("both.svg"));
+    let (name, again) = (name.to_str().expect("UTF-8"), again.to_str().expect("UTF-8"));
+    for command in [
+        &["inspect", "urdf/block.urdf"][..],
+        &["impact", "urdf/ramone.urdf", "examples/ramone.json"],
+        &["sweep", "urdf/minimalistic.urdf", "examples/paper/figure_7.json"],
+        &["batch", "urdf/ramone.urdf", "examples/ramone.json"],
+        &["accuracy", "--case", "massless", "--time", "0"],
+    ] {
+        let run = heelstrike(&[command, &["-o", name, "--plot", again]].concat());
+        let told = "error: --plot: results and picture would be written to the same file\nhint: name two files\n";
+        assert_eq!((run.status, run.stdout.as_str(), run.stderr.as_str()), (2, "", told), "{command:?}");
+    }
+    let run = heelstrike(&["batch", "urdf/ramone.urdf", "-", "--summary", name, "--plot", again]);
+    assert!(run.status == 2 && run.stderr.contains("summary and picture"), "{}", run.stderr);
+    assert!(!file("both.svg").exists());
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_told_before_the_work() {
+    let path = file("no_such_directory").join("x.svg");
+    let path = path.to_str().expect("UTF-8");
+    for command in [
+        &["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.ndjson", "--plot"][..],
+        &["sweep", "urdf/minimalistic.urdf", "examples/paper/figure_7.json", "--plot"],
+        &["sweep", "urdf/minimalistic.urdf", "examples/paper/figure_7.json", "-o"],
+    ] {
+        let run = heelstrike(&[command, &[path]].concat());
+        assert_eq!((run.status, run.stdout.as_str()), (1, ""), "{command:?}");
+        assert!(run.stderr.starts_with("error: the output cannot be written: "), "{}", run.stderr);
+        assert!(run.stderr.contains("no_such_directory"), "{}", run.stderr);
+    }
+}
+
+#[test]
 fn a_png_is_drawn_as_well() {
     let (run, path) = plotted(&["inspect", "urdf/five_bar.urdf"], "five_bar.png");
     assert_eq!(run.status, 0, "{}", run.stderr);
