@@ -6,6 +6,7 @@ use super::parallel::Workers;
 use super::regime::Regime;
 use super::turn::Turns;
 use crate::Error;
+use crate::impact::Verdict;
 use std::sync::Arc;
 
 /// All regions along one parameter.
@@ -30,6 +31,8 @@ pub struct Region {
     pub regime: Arc<Regime>,
     /// Which of all different regimes it has, counted from 0 in the order of their first region.
     pub kind: usize,
+    /// The verdict at its middle; none where it is refused.
+    pub verdict: Option<Verdict>,
     /// The refusal at its middle, where it is refused.
     pub refused: Option<Error>,
 }
@@ -84,9 +87,9 @@ impl Survey {
                 kinds.push(Arc::clone(&regime));
                 kinds.len() - 1
             });
-            let (depends, refused) = solver.dependence(&[0.5 * (from + to)]);
-            dependent |= depends;
-            Region { from, to, regime, kind, refused }
+            let inner = solver.inner(&[0.5 * (from + to)]);
+            dependent |= inner.dependent;
+            Region { from, to, regime, kind, verdict: inner.verdict, refused: inner.refused }
         };
         let regions = stretches.into_iter().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {

@@ -1,5 +1,6 @@
 //! One parameter: panels below each other, for each contact its velocity after and its impulse.
 
+use super::super::Happening;
 use super::style::{COMPONENTS, Styles};
 use super::{Kind, WIDTH, angles, fills_along, is_seen};
 use crate::impact::Motion;
@@ -80,7 +81,9 @@ fn kinds(survey: &Survey) -> Vec<Kind<'_>> {
     firsts
         .iter()
         .zip(fills_along(survey))
-        .map(|(region, colour)| Kind::new(region.kind, &region.regime, region.refused.as_ref(), colour))
+        .map(|(region, colour)| {
+            Kind::new(region.kind, Happening::of(&region.regime, region.verdict, region.refused.as_ref()), colour)
+        })
         .collect()
 }
 
@@ -210,7 +213,7 @@ mod tests {
         };
         let region = |kind: usize| {
             let (from, to) = (0.1 * kind as f64, 0.1 * (kind + 1) as f64);
-            Region { from, to, regime: regime(kind).into(), kind, refused: None }
+            Region { from, to, regime: regime(kind).into(), kind, verdict: None, refused: None }
         };
         let regions: Vec<Region> = (0..10).map(region).collect();
         let wave = |x: f64, phase: usize| libm::sin(20.0 * x + phase as f64);

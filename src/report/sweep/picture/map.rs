@@ -1,5 +1,6 @@
 //! Two parameters: areas of equal outcomes with their letters, and the borders between them.
 
+use super::super::Happening;
 use super::place::{Box, clear_of, freest};
 use super::{Kind, fills_of_map};
 use crate::planar::Vector;
@@ -27,7 +28,8 @@ pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
     let mut shapes: Vec<Shape> = Vec::new();
     let mut entries = Vec::new();
     for ((index, area), colour) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
-        let Kind { letter, happening, .. } = Kind::new(index, &area.regime, area.refused.as_ref(), colour);
+        let Kind { letter, happening, .. } =
+            Kind::new(index, Happening::of(&area.regime, area.verdict, area.refused.as_ref()), colour);
         let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
         // The seam between two fills lies under the border's line.
         shapes.push(Shape::Area { loops, fill: Some(colour), stroke: None });
@@ -145,7 +147,7 @@ mod tests {
             let back = line(x).into_iter().rev();
             let loops = vec![line(x + width).into_iter().chain(back).collect()];
             let middles = vec![(edge(x + 0.5 * width, 800), 0.5 * width)];
-            areas.push(Area { regime: regime.into(), loops, middles, refused: None });
+            areas.push(Area { regime: regime.into(), loops, middles, verdict: None, refused: None });
             if index > 0 {
                 curves.push(Curve { sides: [index - 1, index], points: line(x), turns: Turns::default() });
             }

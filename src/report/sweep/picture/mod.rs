@@ -13,8 +13,6 @@ mod place;
 mod style;
 
 use super::{Happening, letter};
-use crate::Error;
-use crate::report::ErrorObject;
 use crate::report::picture::{Axis, Colour, Picture};
 use crate::sweep::{Course, Findings, Map, Model, Regime, Region, Survey, Workers};
 
@@ -89,8 +87,8 @@ struct Kind<'a> {
 }
 
 impl<'a> Kind<'a> {
-    fn new(kind: usize, regime: &'a Regime, refused: Option<&'a Error>, colour: Colour) -> Self {
-        Self { letter: letter(kind), colour, happening: Happening::of(regime, refused.map(ErrorObject::new)) }
+    fn new(kind: usize, happening: Happening<'a>, colour: Colour) -> Self {
+        Self { letter: letter(kind), colour, happening }
     }
 }
 
