@@ -81,7 +81,7 @@ pub fn stance(
 /// ground, in the order of the links and within a link along t of a plane, along x of a profile.
 ///
 /// # Errors
-/// [`Reason::Penetration`] for a foot that is deeper than the tolerance.
+/// [`Reason::Penetration`] for the deepest of the feet that are deeper than the tolerance.
 pub fn detect(
     robot: &Robot,
     feet: &Feet,
@@ -114,11 +114,17 @@ fn detected(
     }
     let tolerance = tolerance + rounding;
     let mut contacts: Vec<Contact> = Vec::new();
+    let mut deepest: Option<(usize, Sunk)> = None;
     for foot in feet.iter() {
-        let found = surface.touching(foot, placement, tolerance, rounding)?;
-        let touches = found.map_err(|Sunk { depth, remedy }| {
-            Error::new(Reason::Penetration { link: robot.links[foot.link].name.clone(), depth, tolerance }).hint(remedy)
-        })?;
+        let touches = match surface.touching(foot, placement, tolerance, rounding)? {
+            Ok(touches) => touches,
+            Err(sunk) => {
+                if deepest.as_ref().is_none_or(|(_, other)| sunk.depth > other.depth) {
+                    deepest = Some((foot.link, sunk));
+                }
+                continue;
+            }
+        };
         for touch in touches {
             let contact = Contact::of_touch(foot.link, placement, touch);
             // Shapes of a link may share a corner; it is one point all the same.
@@ -126,6 +132,10 @@ fn detected(
                 contacts.push(contact);
             }
         }
+    }
+    if let Some((link, Sunk { depth, remedy })) = deepest {
+        let link = robot.links[link].name.clone();
+        return Err(Error::new(Reason::Penetration { link, depth, tolerance }).hint(remedy));
     }
     contacts.sort_by(|a, b| a.link.cmp(&b.link).then(surface.along(a.point).total_cmp(&surface.along(b.point))));
     Ok(contacts)

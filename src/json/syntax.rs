@@ -26,6 +26,8 @@ pub(super) fn refusal(text: &str, error: &serde_json::Error) -> Error {
         refused = refused.hint("the text ends too early: is it whole?");
     } else if ["NaN", "Infinity", "-Infinity"].iter().any(|word| rest.starts_with(word.as_bytes())) {
         refused = refused.hint("JSON has no NaN and no infinity; numbers are finite");
+    } else if rest.starts_with(b"//") || rest.starts_with(b"/*") || rest.starts_with(b"#") {
+        refused = refused.hint("JSON has no comments: leave it out");
     }
 
     let mut reader = serde_json::Deserializer::from_str(text);

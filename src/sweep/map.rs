@@ -17,6 +17,7 @@ use super::regime::Regime;
 use super::study::Parameter;
 use super::turn::Turns;
 use crate::Error;
+use crate::impact::Verdict;
 use crate::planar::Vector;
 use std::sync::Arc;
 
@@ -50,6 +51,8 @@ pub struct Area {
     pub loops: Vec<Vec<Vector<f64>>>,
     /// For each connected part a point well inside of it, and how far that is from its edge as part of the ranges.
     pub middles: Vec<(Vector<f64>, f64)>,
+    /// The verdict at such a point; none where states are refused.
+    pub verdict: Option<Verdict>,
     /// Where states are refused: why, as at such a point or beside a border.
     pub refused: Option<Error>,
 }
@@ -172,7 +175,7 @@ impl Map {
             .filter_map(|regime| {
                 let mut loops = loops(&segments, &frame, &regime);
                 loops.iter_mut().flatten().for_each(|point| *point = outward(*point));
-                (!loops.is_empty()).then_some(Area { regime, loops, middles: Vec::new(), refused: None })
+                (!loops.is_empty()).then_some(Area { regime, loops, middles: Vec::new(), verdict: None, refused: None })
             })
             .collect();
         super::middle::find(&nodes, (&xs, &ys), &mut areas);
@@ -180,8 +183,9 @@ impl Map {
         let mut dependent = false;
         for area in &mut areas {
             let Some((middle, _)) = area.middles.first() else { continue };
-            let (depends, refused) = solver.dependence(middle);
-            (area.refused, dependent) = (refused, dependent || depends);
+            let inner = solver.inner(middle);
+            (area.verdict, area.refused) = (inner.verdict, inner.refused);
+            dependent |= inner.dependent;
         }
         let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
         let curves = chains(&segments).into_iter().filter_map(|chain| {

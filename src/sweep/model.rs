@@ -3,7 +3,7 @@
 use super::Study;
 use super::regime::Regime;
 use crate::description::Description;
-use crate::impact::{Analysis, Inequalities, Mode};
+use crate::impact::{Analysis, Inequalities, Mode, Verdict};
 use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
 use crate::state::{Defaults, State};
@@ -47,6 +47,17 @@ pub struct Watched {
     pub inequalities: Inequalities,
     /// How far each foot is above the contact tolerance \[m\].
     pub clearance: Vec<f64>,
+}
+
+/// What a point shows of the region that it lies in.
+#[derive(Debug, Clone)]
+pub(super) struct Inner {
+    /// Whether its contacts depend on each other.
+    pub dependent: bool,
+    /// The answer in one word; none where it is refused.
+    pub verdict: Option<Verdict>,
+    /// Why it is refused, if it is.
+    pub refused: Option<Error>,
 }
 
 /// The inequalities of up to this many contacts are followed: 4^n combinations.
@@ -117,11 +128,13 @@ impl<'a> Solver<'a> {
         Ok((names, impact.analysis?))
     }
 
-    /// Whether the contacts of a point depend on each other, and why it is refused, if it is.
-    pub(super) fn dependence(&mut self, point: &[f64]) -> (bool, Option<Error>) {
+    /// What a point shows of the region that it lies in.
+    pub(super) fn inner(&mut self, point: &[f64]) -> Inner {
         match self.explained(point, &[]) {
-            Ok((contacts, analysis)) => (analysis.rank < 2 * contacts.len(), None),
-            Err(error) => (false, Some(error)),
+            Ok((contacts, analysis)) => {
+                Inner { dependent: analysis.rank < 2 * contacts.len(), verdict: Some(analysis.verdict), refused: None }
+            }
+            Err(error) => Inner { dependent: false, verdict: None, refused: Some(error) },
         }
     }
 

@@ -97,6 +97,17 @@ impl<'t> Study<'t> {
         &self.parameters
     }
 
+    /// Parameters that no expression of the state or the robot names: nothing changes with them.
+    pub fn unused(&self) -> Vec<&str> {
+        let mut texts = Vec::new();
+        if let Value::Object(fields) = &self.tree {
+            let read = fields.iter().filter(|(key, _)| matches!(key.as_ref(), "state" | "robot"));
+            read.for_each(|(_, value)| texts_in(value, &mut texts));
+        }
+        let names = self.parameters.iter().map(|parameter| parameter.name.as_str());
+        names.filter(|name| !texts.iter().any(|text| names_in(text).any(|used| used == *name))).collect()
+    }
+
     /// Whether the robot itself is varied.
     pub fn varies_the_robot(&self) -> bool {
         let root = Node::root(&self.tree, self.text);
@@ -233,6 +244,16 @@ fn name(entry: Node) -> Result<String> {
     Err(entry.refuse_name(name, Reason::Inconsistent(reason)).hint("take letters, digits and _, no digit first"))
 }
 
+/// All strings in a value that are no keys.
+fn texts_in<'v>(value: &'v Value, texts: &mut Vec<&'v str>) {
+    match value {
+        Value::Text(text) => texts.push(text),
+        Value::List(entries) => entries.iter().for_each(|entry| texts_in(entry, texts)),
+        Value::Object(fields) => fields.iter().for_each(|(_, value)| texts_in(value, texts)),
+        Value::Null | Value::Bool | Value::Number(_) => {}
+    }
+}
+
 fn missing(node: Node, what: &str, hint: &str) -> Error {
     node.refuse(Reason::Missing(format!("\"{what}\""))).hint(hint)
 }
@@ -243,6 +264,13 @@ mod tests {
 
     fn refused(text: &str) -> String {
         Study::from_json(text).expect_err(text).to_string()
+    }
+
+    #[test]
+    fn a_parameter_that_nothing_names_is_told() {
+        let text = r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 2}, "b": {"from": 0, "to": 1, "steps": 2}},
+            "state": {"position": {"base": {"z": "sin(2*a)"}}, "stance": "leg_b"}}"#;
+        assert_eq!(Study::from_json(text).expect("a study").unused(), ["b"]);
     }
 
     #[test]

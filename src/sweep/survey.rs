@@ -6,6 +6,7 @@ use super::parallel::Workers;
 use super::regime::Regime;
 use super::turn::Turns;
 use crate::Error;
+use crate::impact::Verdict;
 use std::sync::Arc;
 
 /// All regions along one parameter.
@@ -30,6 +31,8 @@ pub struct Region {
     pub regime: Arc<Regime>,
     /// Which of all different regimes it has, counted from 0 in the order of their first region.
     pub kind: usize,
+    /// The verdict at its middle; none where it is refused.
+    pub verdict: Option<Verdict>,
     /// Where it is refused: why, as at its middle.
     pub refused: Option<Error>,
 }
@@ -84,15 +87,13 @@ impl Survey {
                 kinds.push(Arc::clone(&regime));
                 kinds.len() - 1
             });
-            let (depends, refused) = solver.dependence(&[0.5 * (from + to)]);
-            dependent |= depends;
-            // Its middle may lie in a thinner region that was not found; its beginning was asked.
+            // The middle may lie in a thinner region that was not found; the beginning was asked.
             let begin = index.checked_sub(1).map_or(parameter.from, |border| brackets[border].above.at);
-            let refused = match *regime {
-                Regime::Answered { .. } => None,
-                Regime::Refused { .. } => refused.or_else(|| solver.dependence(&[begin]).1),
-            };
-            Region { from, to, regime, kind, refused }
+            let middle = 0.5 * (from + to);
+            let at = if solver.regime(&[middle]) == regime { middle } else { begin };
+            let inner = solver.inner(&[at]);
+            dependent |= inner.dependent;
+            Region { from, to, regime, kind, verdict: inner.verdict, refused: inner.refused }
         };
         let regions = stretches.into_iter().enumerate().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {

@@ -6,7 +6,8 @@
 
 use super::{Axis, Page, Region, STILLS, Still};
 use crate::report::Keyframe;
-use crate::report::picture::{Colour, Rendered};
+use crate::report::picture::Rendered;
+use crate::report::sweep::picture::{fills_along, fills_of_map};
 use crate::report::sweep::{MapSweep, Sweep};
 use crate::state::State;
 use crate::sweep::{Findings, Map, Model, Parameter, RESOLUTION, Regime, Solver, Survey, Workers};
@@ -153,9 +154,10 @@ fn along(sweep: &Sweep, survey: &Survey) -> (Vec<Region>, Vec<String>) {
         let sides = [&sweep.regions[at].letter, &sweep.regions[at + 1].letter];
         [format!("{side}, at {:?}", border.at), border.turns.in_words(sides)]
     };
+    let fills = fills_along(survey);
     let region = |(at, region): (usize, &crate::report::sweep::Region)| Region {
         name: region.letter.clone(),
-        fill: fill(survey.regions[at].kind, survey.regions[at].refused.is_some()),
+        fill: fills.get(survey.regions[at].kind).map_or("", |fill| fill.hex()),
         borders: [
             at.checked_sub(1).map(|below| border(below, "below")),
             (at < sweep.borders.len()).then(|| border(at, "above")),
@@ -169,6 +171,7 @@ fn along(sweep: &Sweep, survey: &Survey) -> (Vec<Region>, Vec<String>) {
 
 /// Regions of two parameters.
 fn areas(sweep: &MapSweep, map: &Map) -> (Vec<Region>, Vec<String>) {
+    let fills = fills_of_map(map);
     let region = |(at, region): (usize, &crate::report::sweep::MapRegion)| {
         let mut borders: Vec<[String; 2]> = Vec::new();
         for border in &sweep.borders {
@@ -183,13 +186,8 @@ fn areas(sweep: &MapSweep, map: &Map) -> (Vec<Region>, Vec<String>) {
                 borders.push(told);
             }
         }
-        let fill = fill(at, map.areas[at].refused.is_some());
+        let fill = fills.get(at).map_or("", |fill| fill.hex());
         Region { name: region.letter.clone(), fill, borders }
     };
     (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes.clone())
-}
-
-/// The colour of regions of this letter, counted from 0.
-fn fill(kind: usize, refused: bool) -> &'static str {
-    if refused { Colour::Pale.hex() } else { Colour::Tint(kind).hex() }
 }

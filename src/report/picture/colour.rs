@@ -30,7 +30,10 @@ pub enum Colour {
 }
 
 /// Light and less light in turn.
-const TINTS: [&str; 8] = ["#EAF3FB", "#F3CFA8", "#E3F4E4", "#B4D2EA", "#FFF4CC", "#D6BCDA", "#FBE9EF", "#BAD6B0"];
+const TINTS: [&str; 14] = [
+    "#EAF3FB", "#F3CFA8", "#E3F4E4", "#B4D2EA", "#FFF4CC", "#D6BCDA", "#FBE9EF", "#BAD6B0", "#E4F7F8", "#E8BDB6",
+    "#F3EEFB", "#D9CF9E", "#F7EEE2", "#A9D4D2",
+];
 
 impl Colour {
     /// How many different tints there are; those of even numbers are lighter than those of odd ones.

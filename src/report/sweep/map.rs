@@ -1,6 +1,6 @@
 //! The regions of a study of two parameters.
 
-use super::{ErrorObject, Happening, Turns, letter, not_guaranteed};
+use super::{Happening, Turns, letter, not_guaranteed};
 use crate::planar::Vector;
 use crate::report::Palette;
 use crate::sweep::{Area, CELLS, Curve, Map, Parameter};
@@ -59,7 +59,7 @@ impl<'a> MapSweep<'a> {
         let whole: f64 = parameters.iter().map(Parameter::range).product();
         let region = |(kind, area): (usize, &'a Area)| MapRegion {
             letter: letter(kind),
-            happening: Happening::of(&area.regime, area.refused.as_ref().map(ErrorObject::new)),
+            happening: Happening::of(&area.regime, area.verdict, area.refused.as_ref()),
             share: area.loops.iter().map(|points| surface(points)).sum::<f64>() / whole,
             loops: &area.loops,
         };
@@ -70,10 +70,12 @@ impl<'a> MapSweep<'a> {
         };
         let contacts = map.areas.iter().map(|area| area.regime.contacts().len()).max().unwrap_or(0);
         let mut notes = not_guaranteed(contacts, map.dependent);
-        notes.push(format!(
+        if contacts > 0 {
+            notes.push(format!(
             "curves are traced along the lines of a grid of at least {CELLS} by {CELLS} cells: an area that lies within one of its \
              cells is not found"
-        ));
+            ));
+        }
         Self {
             parameters: parameters.iter().map(|parameter| parameter.name.as_str()).collect(),
             regions: map.areas.iter().enumerate().map(region).collect(),

@@ -18,7 +18,8 @@ pub(super) use samples::RefusedSample;
 pub use samples::{Sample, columns};
 
 use super::{ErrorObject, Palette};
-use crate::impact::Mode;
+use crate::Error;
+use crate::impact::{Mode, Verdict};
 use crate::sweep::{self, Findings, Inequality, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
 use serde::Serialize;
 
@@ -72,6 +73,9 @@ pub struct Happening<'a> {
     /// Names of the closed contacts; absent where states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<&'a [String]>,
+    /// The answer in one word, as at its middle; absent where states are refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
     /// The modes of every outcome; absent where states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<&'a [Vec<Mode>]>,
@@ -147,7 +151,7 @@ impl<'a> Sweep<'a> {
             letter: letter(region.kind),
             from: region.from,
             to: region.to,
-            happening: Happening::of(&region.regime, region.refused.as_ref().map(ErrorObject::new)),
+            happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
         };
         let border = |border: &'a sweep::Border| Border { at: border.at, turns: Turns::new(&border.turns) };
         let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
@@ -162,14 +166,14 @@ impl<'a> Sweep<'a> {
 }
 
 impl<'a> Happening<'a> {
-    /// That of a regime, and why it is refused, if it is.
-    fn of(regime: &'a Regime, error: Option<ErrorObject<'a>>) -> Self {
+    /// That of a regime with the verdict inside of it, and why it is refused, if it is.
+    fn of(regime: &'a Regime, verdict: Option<Verdict>, refused: Option<&'a Error>) -> Self {
         let undecided = match regime {
             Regime::Answered { undecided, .. } if !undecided.is_empty() => Some(&undecided[..]),
             _ => None,
         };
         let (contacts, outcomes) = (regime.outcomes().map(|_| regime.contacts()), regime.outcomes());
-        Self { contacts, outcomes, undecided, error }
+        Self { contacts, verdict, outcomes, undecided, error: refused.map(ErrorObject::new) }
     }
 }
 
@@ -197,6 +201,9 @@ pub fn letter(kind: usize) -> String {
 
 /// What a search of regions with so many contacts may have missed, and where contacts depend on each other.
 fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
+    if contacts == 0 {
+        return Vec::new();
+    }
     let exact = "borders are exact, but that no region is missing is not guaranteed";
     if contacts > WATCHED_CONTACTS {
         return vec![format!(

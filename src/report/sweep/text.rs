@@ -3,6 +3,7 @@
 use super::super::Palette;
 use super::super::words;
 use super::{Happening, Sweep, Turn, Turns};
+use crate::impact::Verdict;
 use crate::sweep::Side;
 use std::fmt::Write;
 
@@ -56,6 +57,9 @@ impl Happening<'_> {
             [only] if only.is_empty() => vec!["nothing touches the ground".to_owned()],
             outcomes => outcomes.iter().map(words).collect(),
         };
+        if let (Some(Verdict::NoImpact), [only]) = (self.verdict, &mut lines[..]) {
+            only.push_str(" (no impact)");
+        }
         for more in lines.iter_mut().skip(1) {
             more.insert_str(0, "or ");
         }

@@ -102,7 +102,7 @@ impl<'w> Writer<'w> {
         self.verdict()?;
         let outcomes = self.report.outcomes.as_deref().unwrap_or_default();
         if detail.brief {
-            for (at, outcome) in outcomes.iter().enumerate() {
+            for (at, outcome) in outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.modes.is_empty()) {
                 let border = if outcome.border.is_some() { ", on a border" } else { "" };
                 let family = if outcome.family { ", the end of a family" } else { "" };
                 let words = self.in_words(outcome.modes);

@@ -1,11 +1,12 @@
 //! One parameter: panels below each other, for each contact its velocity after and its impulse.
 
+use super::super::Happening;
 use super::style::{COMPONENTS, Styles};
-use super::{Kind, WIDTH, angles, colours, is_seen};
+use super::{Kind, WIDTH, angles, fills_along, is_seen};
 use crate::impact::Motion;
 use crate::planar::Vector;
 use crate::report::picture::{Arrangement, Axis, Band, Colour, Legend, Panel, Picture, Point, Shape, Stroke};
-use crate::sweep::{Course, Place, Regime, Region, Survey};
+use crate::sweep::{Course, Place, Region, Survey};
 
 /// What is drawn of a contact.
 struct Quantity {
@@ -77,12 +78,12 @@ fn kinds(survey: &Survey) -> Vec<Kind<'_>> {
             firsts.push(region);
         }
     }
-    let regimes: Vec<&Regime> = firsts.iter().map(|region| &*region.regime).collect();
-    let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
     firsts
         .iter()
-        .zip(colours(&regimes, &borders))
-        .map(|(region, colour)| Kind::new(region.kind, &region.regime, region.refused.as_ref(), colour))
+        .zip(fills_along(survey))
+        .map(|(region, colour)| {
+            Kind::new(region.kind, Happening::of(&region.regime, region.verdict, region.refused.as_ref()), colour)
+        })
         .collect()
 }
 
@@ -187,6 +188,7 @@ mod tests {
     use super::*;
     use crate::impact::Mode;
     use crate::report::picture::Key;
+    use crate::sweep::Regime;
 
     #[test]
     fn a_curve_is_shown_whole_but_for_poles() {
@@ -211,7 +213,7 @@ mod tests {
         };
         let region = |kind: usize| {
             let (from, to) = (0.1 * kind as f64, 0.1 * (kind + 1) as f64);
-            Region { from, to, regime: regime(kind).into(), kind, refused: None }
+            Region { from, to, regime: regime(kind).into(), kind, verdict: None, refused: None }
         };
         let regions: Vec<Region> = (0..10).map(region).collect();
         let wave = |x: f64, phase: usize| libm::sin(20.0 * x + phase as f64);

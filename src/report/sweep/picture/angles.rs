@@ -94,12 +94,9 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
     let walls = borders.iter().map(|&at| vec![pixel((at, -PI)), pixel((at, PI))]);
     let all: Vec<Vec<Point>> = curve.iter().cloned().chain(walls).collect();
     shapes.extend(gamma.into_iter().map(|points| Shape::Line { points, stroke: GAMMA }));
-    for (region, words) in [
-        (Region::A, "lifts off (A)"),
-        (Region::B, "slides (B)"),
-        (Region::C, "stays (C)"),
-        (Region::E, "all three (E)"),
-    ] {
+    for (region, words) in
+        [(Region::A, "lifts off"), (Region::B, "slides"), (Region::C, "stays"), (Region::E, "all three")]
+    {
         let strips = |run: &Vec<Angles>| run.iter().map(|angles| strip(region, angles.beta, angles.at)).collect();
         let strips: Vec<Vec<(Point, Point)>> = runs.iter().map(strips).collect();
         let strips: Vec<Vec<(Point, Point)>> =

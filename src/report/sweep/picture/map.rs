@@ -1,12 +1,13 @@
 //! Two parameters: areas of equal outcomes with their letters, and the borders between them.
 
+use super::super::Happening;
 use super::place::{Box, clear_of, freest};
-use super::{Kind, colours};
+use super::{Kind, fills_of_map};
 use crate::planar::Vector;
 use crate::report::picture::{
     Anchor, Arrangement, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
 };
-use crate::sweep::{Area, Map, Regime};
+use crate::sweep::{Area, Map};
 
 /// Inside of the axes \[px\].
 const SIZE: Pixel = (540.0, 420.0);
@@ -26,10 +27,9 @@ const DIRECTIONS: usize = 24;
 pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
     let mut shapes: Vec<Shape> = Vec::new();
     let mut entries = Vec::new();
-    let regimes: Vec<&Regime> = map.areas.iter().map(|area| &*area.regime).collect();
-    let borders: Vec<[usize; 2]> = map.curves.iter().map(|curve| curve.sides).collect();
-    for ((index, area), colour) in map.areas.iter().enumerate().zip(colours(&regimes, &borders)) {
-        let Kind { letter, happening, .. } = Kind::new(index, &area.regime, area.refused.as_ref(), colour);
+    for ((index, area), colour) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
+        let Kind { letter, happening, .. } =
+            Kind::new(index, Happening::of(&area.regime, area.verdict, area.refused.as_ref()), colour);
         let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
         // The seam between two fills lies under the border's line.
         shapes.push(Shape::Area { loops, fill: Some(colour), stroke: None });
@@ -129,6 +129,7 @@ fn outline(Box { middle: (x, y), half: (across, up) }: &Box) -> Vec<Pixel> {
 mod tests {
     use super::*;
     use crate::impact::Mode;
+    use crate::sweep::Regime;
     use crate::sweep::{Curve, Turns};
 
     /// Strips between wavy borders, with as many points as a study of 400 by 400 samples has.
@@ -146,7 +147,7 @@ mod tests {
             let back = line(x).into_iter().rev();
             let loops = vec![line(x + width).into_iter().chain(back).collect()];
             let middles = vec![(edge(x + 0.5 * width, 800), 0.5 * width)];
-            areas.push(Area { regime: regime.into(), loops, middles, refused: None });
+            areas.push(Area { regime: regime.into(), loops, middles, verdict: None, refused: None });
             if index > 0 {
                 curves.push(Curve { sides: [index - 1, index], points: line(x), turns: Turns::default() });
             }

@@ -13,10 +13,8 @@ mod place;
 mod style;
 
 use super::{Happening, letter};
-use crate::Error;
-use crate::report::ErrorObject;
 use crate::report::picture::{Axis, Colour, Picture};
-use crate::sweep::{Course, Findings, Model, Regime, Region, Survey, Workers};
+use crate::sweep::{Course, Findings, Map, Model, Regime, Region, Survey, Workers};
 
 /// How wide panels along a parameter are inside of their axes \[px\].
 const WIDTH: f64 = 540.0;
@@ -89,8 +87,8 @@ struct Kind<'a> {
 }
 
 impl<'a> Kind<'a> {
-    fn new(kind: usize, regime: &'a Regime, refused: Option<&'a Error>, colour: Colour) -> Self {
-        Self { letter: letter(kind), colour, happening: Happening::of(regime, refused.map(ErrorObject::new)) }
+    fn new(kind: usize, happening: Happening<'a>, colour: Colour) -> Self {
+        Self { letter: letter(kind), colour, happening }
     }
 }
 
@@ -98,6 +96,25 @@ impl<'a> Kind<'a> {
 fn is_seen(region: &Region, survey: &Survey) -> bool {
     let range: f64 = survey.regions.iter().map(|region| region.to - region.from).sum();
     WIDTH * (region.to - region.from) >= range
+}
+
+/// The colour of every kind of region along a parameter, in the order of letters.
+pub(crate) fn fills_along(survey: &Survey) -> Vec<Colour> {
+    let mut firsts: Vec<&Regime> = Vec::new();
+    for region in &survey.regions {
+        if region.kind == firsts.len() {
+            firsts.push(&region.regime);
+        }
+    }
+    let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
+    colours(&firsts, &borders)
+}
+
+/// The colour of every area of a map, in the order of letters.
+pub(crate) fn fills_of_map(map: &Map) -> Vec<Colour> {
+    let regimes: Vec<&Regime> = map.areas.iter().map(|area| &*area.regime).collect();
+    let borders: Vec<[usize; 2]> = map.curves.iter().map(|curve| curve.sides).collect();
+    colours(&regimes, &borders)
 }
 
 /// A colour for each of `regimes`, the kinds in their order: neighbours, which `borders` part, differ in hue, and where that
