@@ -203,3 +203,27 @@ fn curves_and_areas_are_labelled_with_what_turns_and_what_holds() {
         }
     });
 }
+
+/// Where the velocity of a block's only contact passes zero on a circle, its area is known.
+#[test]
+fn an_island_has_its_size() {
+    for (radius, room) in [(0.03_f64, 2e-2), (0.1, 5e-3), (0.4, 1e-3)] {
+        let study = format!(
+            "{{\"parameters\": {{\"h\": {{\"from\": -1, \"to\": 1, \"steps\": 20}}, \"g\": {{\"from\": -1, \"to\": 1, \"steps\": 20}}}}, \
+             \"state\": {{\"friction\": 0.9, \"velocity\": {{\"base\": {{\"x\": 0.5, \
+             \"z\": \"(h - 0.15)^2 + (g - 0.25)^2 - {radius}^2\"}}}}}}}}"
+        );
+        with(include_str!("../urdf/block.urdf"), &study, |model| {
+            let map = map(model);
+            let inside = |area: &&Area| winding(area, [0.15, 0.25]) == 1;
+            let island = map.areas.iter().find(inside).expect("an island");
+            let points = &island.loops[0];
+            let next = points.iter().cycle().skip(1);
+            let size: f64 = points.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum();
+            let whole = std::f64::consts::PI * radius * radius;
+            assert!((size / whole - 1.0).abs() < room, "{radius}: {size} of {whole}");
+            let off = points.iter().map(|p| ((p[0] - 0.15).hypot(p[1] - 0.25) - radius).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-8, "{radius}");
+        });
+    }
+}

@@ -1,6 +1,6 @@
 //! `heelstrike sweep`: outcomes against one or two parameters.
 
-use super::complaint::complain;
+use super::complaint::{complain, note};
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Output, spare, writable};
 use super::page::PageOptions;
@@ -8,7 +8,6 @@ use super::progress::Progress;
 use super::robot::{RobotOptions, caution};
 use super::{Answered, Failure, Outcome, input};
 use clap::ValueEnum;
-use heelstrike::Error;
 use heelstrike::documents::utf8;
 use heelstrike::excerpt::Excerpt;
 use heelstrike::report::page::{Page, Stops};
@@ -16,6 +15,7 @@ use heelstrike::report::sweep::{Regions, Sample, columns, letter, picture};
 use heelstrike::report::{Detail, append_line};
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
+use heelstrike::{Error, Reason};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
@@ -70,12 +70,22 @@ enum Format {
 }
 
 impl Format {
-    fn of(args: &Args) -> Self {
+    /// What is asked for by option or by the output's ending.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for an ending that means something else.
+    fn of(args: &Args) -> Result<Self, Failure> {
         let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
-        args.format.unwrap_or(match ending {
-            Some("csv") => Self::Csv,
-            Some("json" | "ndjson" | "jsonl") => Self::Json,
-            _ => Self::Text,
+        let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {
+            Some("csv") => Some(Self::Csv),
+            Some("json" | "ndjson" | "jsonl") => Some(Self::Json),
+            None | Some("" | "txt") => Some(Self::Text),
+            Some(_) => None,
+        };
+        args.format.or(by_ending).ok_or_else(|| {
+            let reason = Reason::Unsupported("a study is written as .json, .csv or .txt".into());
+            let hint = "name a file with one of these endings, or say --format; pictures and pages go to --plot";
+            Failure::Usage(Error::new(reason).at("--output").hint(hint))
         })
     }
 }
@@ -107,6 +117,9 @@ pub(super) fn run(args: &Args) -> Outcome {
         defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
     };
     model.readable().map_err(refuse)?;
+    for name in study.unused() {
+        note(&format!("nothing in the state or the robot depends on {name}"));
+    }
     let inputs = [Some(&args.robot.robot), Some(&args.study), args.loops.loops.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     spare(args.output.as_deref(), &inputs)?;
@@ -117,7 +130,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         0 => available_parallelism().map_or(1, usize::from),
         threads => threads.into(),
     };
-    let format = Format::of(args);
+    let format = Format::of(args)?;
     let pieces = Findings::work(&model) + if format == Format::Text { 0 } else { Sample::count(&model) };
     let progress = Progress::of(pieces as u64);
     let done = || progress.step();

@@ -96,8 +96,7 @@ impl Surface {
                 let deep = touches.iter().map(|touch| -touch.gap).find(|&depth| depth > tolerance);
                 Ok(deep.map_or(Ok(touches), |depth| {
                     let remedy = format!(
-                        "raise the base by {depth:?} m, or with a stance correct the pose, or accept it by a greater \
-                         --contact-tolerance"
+                        "raise the base by {depth:?} m, correct the pose, or accept it by a greater --contact-tolerance"
                     );
                     Err(Sunk { depth, remedy })
                 }))

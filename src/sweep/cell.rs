@@ -1,6 +1,6 @@
 //! The borders within one cell of the plane of two parameters.
 
-use super::line::{Bracket, Point, brackets, stretches};
+use super::line::{Bracket, Point, RESOLUTION, brackets, stretches};
 use super::map::{Along, place};
 use super::model::Solver;
 use super::regime::Regime;
@@ -11,6 +11,13 @@ use std::sync::Arc;
 /// How often a cell is quartered, and how many cells come of one at most.
 const QUARTERINGS: usize = 9;
 const MOST_CELLS: usize = 400;
+
+/// How far a curve may be from its chord, as part of the ranges, and to what its points between crossings are bisected.
+const SEEN: f64 = 5e-5;
+const FOUND: f64 = 1e-9;
+
+/// How often a chord is halved.
+const BENDS: usize = 6;
 
 /// Where a cell is halved: beside its middle, which may be a special place.
 const HALF: f64 = 0.506_17;
@@ -211,7 +218,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         let pairs = pairs(&entries, alike).or_else(|| pairs(&entries, |_, _| true));
         if let Some(pairs) = pairs {
             for [a, b] in pairs {
-                self.segments.push(segment(&entries[a], entries[b].point));
+                self.bend(segment(&entries[a], entries[b].point), BENDS);
             }
         } else if quarterings < QUARTERINGS && self.cells < MOST_CELLS {
             for quarter in self.quarters(&cell) {
@@ -221,6 +228,56 @@ impl<'s, 'm> Trace<'s, 'm> {
             let middle = cell.middle();
             self.segments.extend(entries.iter().map(|entry| segment(entry, middle)));
         }
+    }
+
+    /// Adds a segment, with points of the border between its ends as long as it is not straight.
+    fn bend(&mut self, chord: Segment, bends: usize) {
+        match self.off_chord(&chord).filter(|_| bends > 0) {
+            None => self.segments.push(chord),
+            Some(middle) => {
+                let first = Segment { to: middle, ..chord.clone() };
+                self.bend(first, bends - 1);
+                self.bend(Segment { from: middle, ..chord }, bends - 1);
+            }
+        }
+    }
+
+    /// The point of the border beside a chord's middle, where it is farther from it than is seen and can be found.
+    fn off_chord(&mut self, chord: &Segment) -> Option<Vector<f64>> {
+        let ranges = self.resolution.map(|resolution| resolution / RESOLUTION);
+        let along = [0, 1].map(|axis| (chord.to[axis] - chord.from[axis]) / ranges[axis]);
+        let length = libm::hypot(along[0], along[1]);
+        if length < SEEN {
+            return None;
+        }
+        // To the chord's left, in units of the ranges.
+        let beside = |off: f64| {
+            let left = [-along[1] / length, along[0] / length];
+            [0, 1].map(|axis| 0.5 * (chord.from[axis] + chord.to[axis]) + off * left[axis] * ranges[axis])
+        };
+        let solver = &mut *self.solver;
+        let mut regime = |off: f64| solver.regime(&beside(off));
+        let mut reach = SEEN;
+        if regime(reach) == chord.left && regime(-reach) == chord.right {
+            return None;
+        }
+        while reach < 0.5 * length {
+            reach = (4.0 * reach).min(0.5 * length);
+            let (mut left, mut right) = (reach, -reach);
+            if regime(left) == chord.left && regime(right) == chord.right {
+                while left - right > FOUND {
+                    let middle = 0.5 * (left + right);
+                    match regime(middle) {
+                        found if found == chord.left => left = middle,
+                        found if found == chord.right => right = middle,
+                        // Something else lies between: these two do not meet here.
+                        _ => return None,
+                    }
+                }
+                return Some(beside(0.5 * (left + right)));
+            }
+        }
+        None
     }
 
     /// The quarters of a cell; only the lines that part them are searched anew.

@@ -39,6 +39,16 @@ enum Curve {
 }
 
 impl Curve {
+    /// Whether it is the same curve in `watched` as in `node`: inequalities belong to a set of contacts, heights of feet to none.
+    fn is_in(self, watched: &Watched, node: &Watched) -> bool {
+        match self {
+            Self::Clearance(at) => at < watched.clearance.len(),
+            Self::Determinant(_) | Self::Numerator(_) => {
+                watched.inequalities.ends == node.inequalities.ends && watched.contacts == node.contacts
+            }
+        }
+    }
+
     /// Whether it is zero up to rounding.
     fn is_negligible(self, watched: &Watched) -> bool {
         match self {
@@ -146,8 +156,9 @@ fn look(
     let mut touches = Vec::new();
     for (followed, values) in &curves {
         let curve = followed.curve;
-        let mut real =
-            |x: f64| watch(x).filter(|watched| alike(watched)).map_or(f64::NAN, |watched| curve.value(&watched));
+        let mut real = |x: f64| {
+            watch(x).filter(|watched| curve.is_in(watched, &nodes[0])).map_or(f64::NAN, |watched| curve.value(&watched))
+        };
         let node = |k: usize| k as f64 * (NODES - 1) as f64 / FINE as f64;
         let at = |k: usize| place(node(k));
         let fine: Vec<f64> = (0..=FINE).map(|k| quartic(values, node(k))).collect();
@@ -158,17 +169,19 @@ fn look(
                 zeros.push(zero(&mut real, at(k), at(k + 1), resolution));
             }
         }
-        for k in 1..FINE {
-            let [before, here, after] = [fine[k - 1], fine[k], fine[k + 1]];
+        for k in 0..=FINE {
+            // Also at an end, beside which rounding may hide that a zero has just been passed.
+            let [last, next] = [k.saturating_sub(1), (k + 1).min(FINE)];
+            let [before, here, after] = [fine[last], fine[k], fine[next]];
             let least = here.abs() <= before.abs() && here.abs() <= after.abs() && here.abs() <= near_zero;
             let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
-            if least && same && !followed.is_excluded(&nodes, [node(k - 1), node(k + 1)]) {
+            if least && same && !followed.is_excluded(&nodes, [node(last), node(next)]) {
                 let sign = if here < 0.0 { -1.0 } else { 1.0 };
-                let bottom = least_place(&mut |x| sign * real(x), at(k - 1), at(k + 1), resolution);
+                let bottom = least_place(&mut |x| sign * real(x), at(last), at(next), resolution);
                 touches.push(bottom);
                 if sign * real(bottom) < 0.0 {
-                    zeros.push(zero(&mut real, at(k - 1), bottom, resolution));
-                    zeros.push(zero(&mut real, bottom, at(k + 1), resolution));
+                    zeros.push(zero(&mut real, at(last), bottom, resolution));
+                    zeros.push(zero(&mut real, bottom, at(next), resolution));
                 }
             }
         }
@@ -177,9 +190,13 @@ fn look(
         }
     }
     zeros.sort_by(f64::total_cmp);
+    if !zeros.is_empty() {
+        // An end of the interval may be a zero up to rounding, whose sign tells nothing.
+        zeros.insert(0, a);
+        zeros.push(b);
+    }
     found.extend(zeros.windows(2).filter(|pair| pair[1] - pair[0] > resolution).map(|pair| 0.5 * (pair[0] + pair[1])));
     found.extend(touches);
-    // A lone zero of the same regime on both sides touches the border at most; beside it nothing changes for good.
     found.extend(zeros);
 }
 
@@ -241,7 +258,7 @@ fn quartic(values: &[f64; NODES], x: f64) -> f64 {
     sum
 }
 
-/// A zero of `f` between `a` and `b`, where its sign differs; the middle where it does not.
+/// A zero of `f` between `a` and `b`, where its sign differs; the middle where it does not, and a place where it is no number.
 fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
     let (mut at_a, mut at_b) = (f(a), f(b));
     if (at_a < 0.0) == (at_b < 0.0) {
@@ -259,7 +276,7 @@ fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64)
             break;
         }
         let at_x = f(x);
-        if at_x == 0.0 {
+        if at_x == 0.0 || at_x.is_nan() {
             return x;
         }
         if (at_x < 0.0) == (at_a < 0.0) {
@@ -275,16 +292,17 @@ fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64)
     0.5 * (a + b)
 }
 
-/// Where `f` is least between `a` and `b` (golden section), or any place where it is negative.
+/// Where `f` is least between `a` and `b` (golden section), or any place where it is negative or no number: there the scene
+/// is another one.
 fn least_place(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let (mut left, mut right) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
     let (mut at_left, mut at_right) = (f(left), f(right));
     for _ in 0..60 {
-        if at_left < 0.0 {
+        if at_left < 0.0 || at_left.is_nan() {
             return left;
         }
-        if at_right < 0.0 {
+        if at_right < 0.0 || at_right.is_nan() {
             return right;
         }
         if b - a <= resolution {

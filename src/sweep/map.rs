@@ -6,7 +6,8 @@
 //!
 //! A curve that crosses an edge of a cell leaves it through another: crossings of the same two regions, at which the same
 //! inequalities turn, are two ends of one piece. A cell whose crossings do not pair so is quartered, and where three regions
-//! meet, at the last, its crossings meet in its middle. Every crossing is bisected; between two of them a curve is straight.
+//! meet, at the last, its crossings meet in its middle. Every crossing is bisected, and points between two of them until a
+//! curve is straight to 5e-5 of the ranges.
 
 use super::cell::{Cell, Edge, Side, Trace};
 use super::chain::{chains, loops};

@@ -7,7 +7,7 @@
 use super::line::Bracket;
 use super::model::Solver;
 use super::regime::Regime;
-use crate::impact::{Analysis, Because, Mode};
+use crate::impact::{Analysis, Because, Mode, Outcome};
 use crate::{Error, Result};
 use serde::Serialize;
 
@@ -152,12 +152,20 @@ impl Turns {
     }
 }
 
+/// A margin beside a border is not greater than this, unless the state jumps there.
+const ZERO: f64 = 1e-4;
+
 /// The outcomes of one side that the other rejects, and for which inequality.
 fn ending((names, here): &(Vec<String>, Analysis), there: &Analysis, side: Side) -> Vec<Turn> {
-    let turn = |modes: &Vec<Mode>| {
+    let turn = |outcome: &Outcome| {
+        let modes = &outcome.modes;
+        // An outcome far from its own borders ends where the state jumps, and no inequality is zero.
+        if outcome.margin.is_some_and(|margin| margin > ZERO) {
+            return None;
+        }
         let rejection = there.rejected.iter().find(|rejection| rejection.modes == *modes)?;
         let (contact, inequality) = Inequality::of(rejection.because)?;
         Some(Turn { modes: modes.clone(), side, contact: names.get(contact)?.clone(), inequality })
     };
-    here.outcomes.iter().filter_map(|outcome| turn(&outcome.modes)).collect()
+    here.outcomes.iter().filter_map(turn).collect()
 }

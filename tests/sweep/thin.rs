@@ -11,8 +11,9 @@
 //! (lift-off: c_n+ = 0 of the trailing foot). Where neither is valid the trailing foot slides, and where both are, it does as
 //! well: three outcomes.
 
-use crate::command::{assert_begins, sweep};
+use crate::command::{Sweep, assert_begins, run, sweep};
 use crate::walkers::{RANGE, straight};
+use serde_json::json;
 
 /// Of `urdf/pdw.urdf`.
 const A: f64 = 0.4;
@@ -108,4 +109,44 @@ fn a_band_that_opens_by_an_extremum_is_found() {
         let expected = [(0.0, LIFT_OFF), (alpha(stop_begins(j)), ALL)];
         assert_begins("no band", &sweep("urdf/pdw.urdf", &straight(Some(j))), &expected, 4e-12);
     }
+}
+
+const BLOCK: &str = "urdf/block.urdf";
+
+/// The study of a block whose `numbers` are the fields of the state.
+fn of_block(numbers: serde_json::Value) -> serde_json::Value {
+    let mut state = json!({"friction": 0.9});
+    state.as_object_mut().expect("an object").extend(numbers.as_object().expect("an object").clone());
+    json!({"parameters": {"s": {"from": -1, "to": 1, "steps": 51}}, "state": state})
+}
+
+/// A foot that touches for a moment between two samples: (s - 0.42278)^2 is within the contact tolerance for |s - 0.42278| < h.
+#[test]
+fn a_foot_that_grazes_the_ground_is_seen() {
+    for half in [1e-5, 1e-4, 1e-3] {
+        for centre in [0.42278, -0.17113, 0.90311] {
+            let height = format!("(s - {centre})^2");
+            let study = of_block(json!({
+                "position": {"base": {"z": height}}, "velocity": {"base": {"x": 0.5, "z": -1}}
+            }));
+            let tolerance = (half * half).to_string();
+            let run = run(BLOCK, &study, &["--format", "json", "--contact-tolerance", &tolerance]);
+            let sweep: Sweep = serde_json::from_str(&run.stdout).expect("JSON");
+            let places: Vec<f64> = sweep.regions.iter().map(|region| region.from - centre).collect();
+            assert_eq!(places.len(), 3, "{half} {centre}");
+            // The tolerance is rounded at the block's own size.
+            assert!((places[1] + half).abs() < 1e-3 * half && (places[2] - half).abs() < 1e-3 * half, "{places:?}");
+        }
+    }
+}
+
+/// A region that ends where rounding tells the sign at a sample: the velocity s (s + 0.001) + 1e-17 is negative between.
+#[test]
+fn a_region_that_ends_beside_a_sample_is_seen() {
+    let study = of_block(json!({"velocity": {"base": {"x": 0.5, "z": "s*(s + 0.001) + 1e-17"}}}));
+    let run = run(BLOCK, &study, &["--format", "json"]);
+    let sweep: Sweep = serde_json::from_str(&run.stdout).expect("JSON");
+    let from: Vec<f64> = sweep.regions.iter().map(|region| region.from).collect();
+    assert_eq!(from.len(), 3, "{from:?}");
+    assert!((from[1] + 0.001).abs() < 1e-10 && from[2].abs() < 1e-10, "{from:?}");
 }

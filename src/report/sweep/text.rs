@@ -91,7 +91,7 @@ impl Turns<'_> {
         let closing = self.closing.iter().map(|contact| alone(contact, above));
         let all: Vec<String> = self.turns.iter().map(turn).chain(opening).chain(closing).collect();
         match all.is_empty() {
-            true => "the outcomes change".to_owned(),
+            true => "the outcomes change, and no inequality of either side is seen to pass zero".to_owned(),
             false => all.join("; "),
         }
     }
