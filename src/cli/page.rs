@@ -81,5 +81,5 @@ impl PageOptions {
 
 /// Whether a file's ending says that it is a page.
 pub(super) fn is_page(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "html")
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
 }

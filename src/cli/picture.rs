@@ -89,7 +89,7 @@ enum Ending {
 }
 
 fn ending(path: &Path) -> Option<Ending> {
-    match path.extension()?.to_str()? {
+    match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
         "svg" => Some(Ending::Svg),
         "png" => Some(Ending::Png),
         _ => None,
