@@ -166,3 +166,15 @@ fn the_ending_of_the_output_chooses_its_form() {
         std::fs::remove_file(&file).expect("it is there");
     }
 }
+
+#[test]
+fn a_border_to_what_is_refused_says_so() {
+    let study = json!({
+        "parameters": {"s": {"from": -1, "to": 1, "steps": 9}},
+        "state": {"position": {"base": {"z": "s/10"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5}
+    });
+    let Run { status, stdout, .. } = run("urdf/block.urdf", &study, &[]);
+    assert_eq!(status, Some(1));
+    assert!(stdout.contains(": from B on states are answered\n"), "{stdout}");
+    assert!(stdout.contains(": block touches the ground in B alone\n"), "{stdout}");
+}

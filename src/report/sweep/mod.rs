@@ -110,6 +110,9 @@ pub struct Turns<'a> {
     /// Contacts that are open below it and closed above it.
     #[serde(skip_serializing_if = "<[String]>::is_empty")]
     pub closing: &'a [String],
+    /// Whether states are refused below it, and above it.
+    #[serde(skip)]
+    refused: [bool; 2],
 }
 
 /// An inequality that is zero on a border.
@@ -186,7 +189,12 @@ impl<'a> Turns<'a> {
             modes: &turn.modes,
             valid: turn.side,
         };
-        Self { turns: turns.inequalities.iter().map(turn).collect(), opening: &turns.opening, closing: &turns.closing }
+        Self {
+            turns: turns.inequalities.iter().map(turn).collect(),
+            opening: &turns.opening,
+            closing: &turns.closing,
+            refused: [turns.refused_below.is_some(), turns.refused_above.is_some()],
+        }
     }
 }
 

@@ -90,6 +90,12 @@ impl Turns<'_> {
         let opening = self.opening.iter().map(|contact| alone(contact, below));
         let closing = self.closing.iter().map(|contact| alone(contact, above));
         let all: Vec<String> = self.turns.iter().map(turn).chain(opening).chain(closing).collect();
+        match self.refused {
+            [true, false] => return format!("from {above} on states are answered"),
+            [false, true] => return format!("from {above} on states are refused"),
+            [true, true] => return "states are refused for another reason".to_owned(),
+            [false, false] => {}
+        }
         match all.is_empty() {
             true => "the outcomes change, and no inequality of either side is seen to pass zero".to_owned(),
             false => all.join("; "),
