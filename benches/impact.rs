@@ -4,6 +4,7 @@
 
 use divan::{Bencher, black_box};
 use heelstrike::Robot;
+use heelstrike::dynamics::plan::{Plan, Posture};
 use heelstrike::dynamics::{
     ContactPoint, Workspace, add_articulated_impulse, articulated_inertias, contact_jacobian, delassus, factorize,
     kinematics, mass_matrix,
@@ -11,9 +12,8 @@ use heelstrike::dynamics::{
 use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{Asked, ContactProblem, Friction, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::plan::{Plan, Posture};
 use heelstrike::planar::Rotation;
-use heelstrike::scene::NamedContact;
+use heelstrike::state::NamedContact;
 use heelstrike::state::{Defaults, State};
 
 const STATE: &str = r#"{"position": {"base": {"z": 0.4, "pitch": 0.05},

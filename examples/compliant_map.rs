@@ -2,8 +2,8 @@
 //! d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
 
 use heelstrike::accuracy::compliant::{Biped, Map, NEAR};
+use heelstrike::draw::plot::{Arrangement, Axis, Colour, Entry, Key, Legend, Mark, Panel, Picture, Shape, Stroke};
 use heelstrike::impact::{Friction, Mode};
-use heelstrike::report::picture::{Arrangement, Axis, Colour, Entry, Key, Legend, Mark, Panel, Picture, Shape, Stroke};
 use std::error::Error;
 use std::fmt::Write;
 

@@ -4,8 +4,8 @@
 
 use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::scene::{ByLink, Scene};
 use heelstrike::state::State;
+use heelstrike::state::{ByLink, Scene};
 use heelstrike::{Result, Robot};
 
 fn main() -> Result<()> {

@@ -85,31 +85,24 @@ pub mod guarantees {}
 pub mod left_out {}
 
 pub mod error;
-pub mod excerpt;
 pub mod scalar;
 pub mod planar;
 pub mod reductions;
 pub mod description;
 pub mod robot;
-pub mod scene;
-pub mod expression;
-mod json;
 pub mod state;
-pub mod plan;
 pub mod dynamics;
 pub mod contact;
 pub mod impact;
-pub mod uncertain;
 pub mod pipeline;
+pub mod gait;
+pub mod read;
+pub mod sweep;
 #[cfg(feature = "accuracy")]
 pub mod accuracy;
-pub mod report;
-pub mod documents;
-pub mod spatial;
-pub mod table;
-pub mod touchdown;
+pub mod write;
+pub mod draw;
 pub mod batch;
-pub mod sweep;
 
 pub use error::{Error, Reason, Result};
 pub use robot::Robot;

@@ -2,9 +2,9 @@
 //! digits against a reference of at least 256 bits.
 
 use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, Subject, cases, of_state, study};
+use heelstrike::dynamics::plan::{Plan, Posture};
 use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
-use heelstrike::plan::{Plan, Posture};
 use heelstrike::state::{Defaults, State};
 use heelstrike::{Reason, Robot};
 use std::time::Duration;

@@ -238,7 +238,7 @@ fn named_contacts_are_closed_whatever_their_height_and_keep_their_order() {
 #[test]
 fn feet_from_the_options_are_detected_by_their_height() {
     let robot = body(r#"<geometry><sphere radius="0.1"/></geometry>"#);
-    let feet = vec![heelstrike::scene::NamedContact { link: 0, offset: [0.5, 0.0, -0.25], radius: 0.0 }];
+    let feet = vec![heelstrike::state::NamedContact { link: 0, offset: [0.5, 0.0, -0.25], radius: 0.0 }];
     let options = || Options { feet: feet.clone(), ..Options::default() };
     let down = try_impact(&robot, options(), r#"{"position": {"base": {"z": 0.25}}}"#).unwrap();
     assert_eq!(down.contacts[0].point, [0.5, 0.0]);

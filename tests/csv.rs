@@ -2,12 +2,15 @@
 
 use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::report::{Detail, Refused, Report};
 use heelstrike::robot::{Base, Reduction};
-use heelstrike::scene::NamedContact;
+use heelstrike::state::NamedContact;
 use heelstrike::state::{Defaults, State};
-use heelstrike::table::{Columns, Header, Rates};
+use heelstrike::write::{Detail, Refused, Report};
 use heelstrike::{Error, Robot};
+use heelstrike::{
+    read::table::{Header, Rates},
+    write::Columns,
+};
 use std::collections::BTreeMap;
 
 /// A hip and a knee, a point for a foot, and a box on the body that can touch at two corners.

@@ -6,10 +6,10 @@ mod oracle;
 
 use dashu::rational::RBig;
 use heelstrike::Robot;
+use heelstrike::dynamics::plan::Posture;
 use heelstrike::impact::{self, Analysis, ContactProblem, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::plan::Posture;
-use heelstrike::scene::NamedContact;
+use heelstrike::state::NamedContact;
 use oracle::case::Case;
 use oracle::exact::{ratio, to_f64};
 use oracle::impact::{Combination, Enumeration, Friction, Problem, enumerate};

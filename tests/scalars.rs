@@ -3,10 +3,10 @@
 
 use dashu::rational::RBig;
 use heelstrike::Robot;
+use heelstrike::dynamics::plan::{Plan, Posture};
 use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
 use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{ContactProblem, Friction};
-use heelstrike::plan::{Plan, Posture};
 use heelstrike::planar::Rotation;
 use heelstrike::scalar::{Ball, Real};
 use std::cell::RefCell;

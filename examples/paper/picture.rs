@@ -2,7 +2,7 @@
 
 use crate::exhibit::{Exhibit, Found};
 use heelstrike::Result;
-use heelstrike::report::{Picture, drawing, sweep};
+use heelstrike::draw::{Picture, robot as drawing, sweep};
 
 /// Curves and regions of a study, or the robot in its pose with every outcome; none where there is nothing to draw.
 ///
@@ -10,9 +10,7 @@ use heelstrike::report::{Picture, drawing, sweep};
 /// A study that is refused.
 pub fn of(exhibit: &Exhibit, found: &Found) -> Result<Option<Picture>> {
     match found {
-        Found::Regions(findings) => {
-            exhibit.study(|model, workers| sweep::picture::of(model, findings, workers)).map(Some)
-        }
+        Found::Regions(findings) => exhibit.study(|model, workers| sweep::of(model, findings, workers)).map(Some),
         Found::Outcomes(of) => Ok(drawing::picture::impact(&exhibit.robot, &[], &of.0, &of.1)),
     }
 }

@@ -8,7 +8,7 @@
 //! a step also for chains of a thousand links. Source: Golub and Van Loan, *Matrix Computations*, section 8.2.
 
 use crate::dynamics::Workspace;
-use crate::plan::Plan;
+use crate::dynamics::plan::Plan;
 
 /// Enough for two digits, unless the two largest eigenvalues are closer than that.
 const STEPS: usize = 60;

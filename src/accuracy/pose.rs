@@ -7,16 +7,16 @@
 
 use super::number::Number;
 use crate::contact::Contact;
+use crate::dynamics::plan::{Plan, Posture};
 use crate::dynamics::{
     ContactPoint, Workspace, articulated_delassus, articulated_inertias, contact_jacobian, delassus, factorize,
     kinematics, mass_matrix, point_velocity,
 };
 use crate::impact::ContactProblem;
 use crate::pipeline::Impact;
-use crate::plan::{Plan, Posture};
 use crate::planar::Rotation;
 use crate::robot::Robot;
-use crate::scene::Ground;
+use crate::state::Ground;
 use crate::state::State;
 use nalgebra::DMatrix;
 use serde::Serialize;

@@ -5,7 +5,7 @@
 
 use super::number::Number;
 use super::pose::{Computation, Pose};
-use crate::plan::Motion;
+use crate::dynamics::plan::Motion;
 use crate::planar::{Inertia, Vector, difference, dot, scaled, sum, turned};
 use crate::robot::Robot;
 use crate::scalar::{Interval, Ordered, Real};

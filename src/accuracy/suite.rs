@@ -6,8 +6,8 @@ use super::robots;
 use crate::Result;
 use crate::impact::{ContactProblem, Friction};
 use crate::robot::Robot;
-use crate::scene::{ByLink, NamedContact, Scene};
 use crate::state::State;
+use crate::state::{ByLink, NamedContact, Scene};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI};
 
 /// A case of the suite.

@@ -2,7 +2,7 @@
 
 use super::foreign::foreign;
 use super::run::Source;
-use crate::table::Quotes;
+use crate::read::table::Quotes;
 use crate::{Error, Reason, Result};
 use memchr::memchr;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};

@@ -19,16 +19,18 @@ pub use recording::{Landing, Origin, Recorded, Recording, samples};
 pub use run::{Block, Broken, Form, Refusal, Sink, Source, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, Place, Summary, Verdicts};
 
-use crate::documents::utf8;
+use crate::draw::{Keyframe, ListedKeyframe};
 use crate::error::Location;
-use crate::excerpt::Excerpt;
+use crate::error::excerpt::Excerpt;
+use crate::gait::{At, Touching};
 use crate::impact::{Analysis, Friction, Mode, Outcome, Verdict};
 use crate::pipeline::{Options, Pipeline};
-use crate::report::{self, CarriedFields, Detail, Keyframe, ListedKeyframe, Refused, Report, short_id};
-use crate::scene::ByLink;
+use crate::read::documents::utf8;
+use crate::read::table::{Carried, Header, Rows};
+use crate::state::ByLink;
 use crate::state::{Defaults, State};
-use crate::table::{Carried, Columns, Header, Rows};
-use crate::touchdown::{At, Touching};
+use crate::write::Columns;
+use crate::write::{self, CarriedFields, Detail, Refused, Report, short_id};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 
@@ -194,7 +196,7 @@ impl<'q> Batch<'q> {
         let refused = Refused::new(id, around.line, &error);
         match self.question.columns {
             Some(columns) => columns.append_refused(&refused, around.carried, &mut block.out),
-            None => report::append_line(&mut block.out, &refused),
+            None => write::append_line(&mut block.out, &refused),
         }
         block.refuse(error, around);
     }

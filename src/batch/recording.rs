@@ -3,11 +3,11 @@
 
 use super::chunk::{Chunks, too_long};
 use super::run::Source;
-use crate::excerpt::Excerpt;
-use crate::report;
+use crate::error::excerpt::Excerpt;
+use crate::gait::{At, Sample, Sampled, Touchdown, Touching};
+use crate::read::table::{Carried, Header};
 use crate::state::{Defaults, State};
-use crate::table::{Carried, Header};
-use crate::touchdown::{At, Sample, Sampled, Touchdown, Touching};
+use crate::write;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::io::{self, Read};
@@ -51,10 +51,10 @@ pub struct Landing {
 
 impl Landing {
     /// As it stands in a result.
-    pub(super) fn told(&self, (at, touching): (At, Touching)) -> report::Touchdown<'_> {
+    pub(super) fn told(&self, (at, touching): (At, Touching)) -> write::Touchdown<'_> {
         let Self { row, time, striking, shift_z } = self;
         let (at, touching) = (at.name(), touching.to_string());
-        report::Touchdown { row: *row, time: *time, striking, shift_z: *shift_z, at, touching }
+        write::Touchdown { row: *row, time: *time, striking, shift_z: *shift_z, at, touching }
     }
 }
 

@@ -10,8 +10,8 @@
 
 use super::Summary;
 use crate::Error;
-use crate::excerpt::Excerpt;
-use crate::report::ListedKeyframe;
+use crate::draw::ListedKeyframe;
+use crate::error::excerpt::Excerpt;
 use std::io;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};

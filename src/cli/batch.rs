@@ -10,14 +10,17 @@ use super::robot::RobotOptions;
 use super::{Answered, Failure, Outcome, input};
 use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
+use heelstrike::draw::page::Gait;
 use heelstrike::error::Location;
-use heelstrike::excerpt::Excerpt;
-use heelstrike::report::page::Gait;
-use heelstrike::scene::NamedContact;
+use heelstrike::error::excerpt::Excerpt;
+use heelstrike::gait::{self, At, Difference, Dropped, Thresholds, Touching};
 use heelstrike::state::Defaults;
-use heelstrike::table::{Columns, Header, Rates};
-use heelstrike::touchdown::{self, At, Difference, Dropped, Thresholds, Touching};
-use heelstrike::{Error, Reason, Robot, report};
+use heelstrike::state::NamedContact;
+use heelstrike::{Error, Reason, Robot, write};
+use heelstrike::{
+    read::table::{Header, Rates},
+    write::Columns,
+};
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -207,8 +210,8 @@ pub(super) fn run(args: &Args) -> Outcome {
     let touchdowns = args.recording.touchdowns();
     if let Some((at, touching)) = touchdowns {
         // Before any file is replaced: does this robot have feet to look for?
-        let none = std::iter::empty::<touchdown::Sampled<()>>();
-        let refused = touchdown::find(none, &robot, &feet, at, touching).err();
+        let none = std::iter::empty::<gait::Sampled<()>>();
+        let refused = gait::find(none, &robot, &feet, at, touching).err();
         refused.map_or(Ok(()), |error| Err(error.in_file(input::name(&args.robot.robot))))?;
     }
     let thresholds = args.recording.thresholds(&robot, &feet);
@@ -304,17 +307,17 @@ impl Args {
             (Some(header), difference, touchdowns) if difference.is_some() || touchdowns.is_some() => {
                 let samples = batch::samples(chunks, header, question.robot, &question.defaults);
                 let samples: Box<dyn Iterator<Item = _> + Send> = match header.is_spatial() {
-                    true => Box::new(touchdown::sagittal(samples, dropped)),
+                    true => Box::new(gait::sagittal(samples, dropped)),
                     false => Box::new(samples),
                 };
                 let samples: Box<dyn Iterator<Item = _> + Send> = match difference {
-                    Some(difference) => Box::new(touchdown::rates(samples, difference)),
+                    Some(difference) => Box::new(gait::rates(samples, difference)),
                     None => samples,
                 };
                 let states: Box<dyn Iterator<Item = Recorded> + Send> = match touchdowns {
                     Some((at, touching)) => {
                         let feet = &question.options.feet;
-                        let found = touchdown::find(samples, question.robot, feet, at, touching);
+                        let found = gait::find(samples, question.robot, feet, at, touching);
                         let found = found.map_err(|error| error.in_file(input::name(&self.robot.robot)))?;
                         Box::new(found.with(thresholds).map(Recorded::from))
                     }
@@ -354,7 +357,7 @@ impl Args {
         }
         if let (Some(mut file), Some(path)) = (file, &self.summary) {
             let mut line = Vec::new();
-            report::append_line(&mut line, summary);
+            write::append_line(&mut line, summary);
             file.write_all(&line).map_err(|error| named(path, error))?;
         }
         Ok(())

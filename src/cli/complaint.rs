@@ -3,7 +3,7 @@
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, normalize_untrusted_str};
 use heelstrike::Error;
 use heelstrike::error::Location;
-use heelstrike::excerpt::Excerpt;
+use heelstrike::error::excerpt::Excerpt;
 use std::io::Write;
 
 /// Writes `error: file:line:column: place: reason` and, where there is a remedy, `hint: remedy`.

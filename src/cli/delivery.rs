@@ -4,7 +4,7 @@ use super::complaint::complain_at;
 use super::progress::Progress;
 use super::{Failure, status};
 use heelstrike::batch::{Block, Refusal, Sink, Summary};
-use heelstrike::report::page::Gait;
+use heelstrike::draw::page::Gait;
 use std::io::{self, ErrorKind, Write};
 
 /// So many refusals are told on standard error; all stand in the output.

@@ -7,10 +7,11 @@ use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::stream::{Answers, SUMMED_UP, answer_all};
 use super::{Failure, Outcome, input};
+use heelstrike::draw::{Picture, robot as drawing};
 use heelstrike::pipeline::{Impact, Pipeline};
-use heelstrike::report::{Detail, Palette, Picture, Report, Subject, drawing, text};
-use heelstrike::scene::NamedContact;
+use heelstrike::state::NamedContact;
 use heelstrike::state::{Defaults, State};
+use heelstrike::write::{Detail, Palette, Report, Subject, text};
 use heelstrike::{Error, Reason, Result, Robot};
 use std::path::PathBuf;
 

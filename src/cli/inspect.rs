@@ -4,7 +4,8 @@ use super::output::{Format, OutputOptions};
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::{Answered, Outcome};
-use heelstrike::report::{self, Inspection, drawing};
+use heelstrike::draw::robot as drawing;
+use heelstrike::write::{self, Inspection};
 use std::io::Write;
 
 /// Tell what was read: plane, links, joints, masses, feet, what was left out
@@ -38,7 +39,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         Format::Text => output.write_all(inspection.text(output.palette()).as_bytes())?,
         Format::Json => {
             let mut line = Vec::new();
-            report::append_line(&mut line, &inspection);
+            write::append_line(&mut line, &inspection);
             output.write_all(&line)?;
         }
     }

@@ -26,7 +26,7 @@ mod sweep;
 
 use clap::{Parser, Subcommand};
 use complaint::{complain, complain_at};
-use heelstrike::excerpt::Excerpt;
+use heelstrike::error::excerpt::Excerpt;
 use std::io::{self, Write};
 use std::process::ExitCode;
 

@@ -3,14 +3,15 @@
 use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::Robot;
-use heelstrike::documents::utf8;
-use heelstrike::excerpt::Excerpt;
+use heelstrike::error::excerpt::Excerpt;
 use heelstrike::impact::Friction;
 use heelstrike::pipeline;
+use heelstrike::read::documents::utf8;
+use heelstrike::read::loops_from_json;
 use heelstrike::reductions::Reductions;
-use heelstrike::report::Detail;
-use heelstrike::scene::{NamedContact, NamedLoop};
-use heelstrike::state::{Defaults, loops_from_json};
+use heelstrike::state::Defaults;
+use heelstrike::state::{NamedContact, NamedLoop};
+use heelstrike::write::Detail;
 use std::path::PathBuf;
 
 /// What a state may leave open.

@@ -1,7 +1,7 @@
 //! Standard output or a file, as text or JSON.
 
 use super::Failure;
-use heelstrike::report::Palette;
+use heelstrike::write::Palette;
 use heelstrike::{Error, Reason};
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};

@@ -3,9 +3,9 @@
 use super::Failure;
 use super::output::named;
 use super::picture::{PlotOptions, nothing_to_draw};
-use heelstrike::report::Picture;
-use heelstrike::report::page::Page;
-use heelstrike::report::picture::Rendered;
+use heelstrike::draw::Picture;
+use heelstrike::draw::page::Page;
+use heelstrike::draw::plot::Rendered;
 use heelstrike::{Error, Reason};
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::output::{apart, named, spare, writable};
 use super::page::is_page;
-use heelstrike::report::Picture;
+use heelstrike::draw::Picture;
 use heelstrike::{Error, Reason};
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 use super::output::Output;
 use super::{Answered, Outcome};
-use heelstrike::report::schema;
+use heelstrike::write::schema;
 use std::io::Write;
 
 /// Write the JSON Schema of a state, a result, a problem, a study, its sweep or a report on accuracy

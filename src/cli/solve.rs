@@ -5,9 +5,10 @@ use super::output::{Format, OutputOptions};
 use super::stream::{Answers, SUMMED_UP, answer_all};
 use super::{Outcome, input};
 use heelstrike::impact::{Analysis, Asked, Scratch};
+use heelstrike::read::Problem;
 use heelstrike::reductions::Reductions;
-use heelstrike::report::{Detail, Palette, Problem, Report, Subject, text};
 use heelstrike::state::Defaults;
+use heelstrike::write::{Detail, Palette, Report, Subject, text};
 use heelstrike::{Error, Result};
 use std::path::PathBuf;
 

@@ -3,9 +3,9 @@
 use super::complaint::{complain, complain_within, note};
 use super::output::{Format, OutputOptions};
 use super::{Answered, Failure, Outcome, input};
-use heelstrike::documents::{Document, documents, utf8};
-use heelstrike::report::{self, Palette, Refused};
+use heelstrike::read::documents::{Document, documents, utf8};
 use heelstrike::state::State;
+use heelstrike::write::{self, Palette, Refused};
 use heelstrike::{Error, Reason, Result};
 use std::io::Write;
 use std::path::Path;
@@ -80,7 +80,7 @@ pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Forma
             }),
         };
         if let (Err(error), Format::Json) = (&answer, format) {
-            report::append_line(&mut out, &Refused::new(State::id_in(document.text), document.line, error));
+            write::append_line(&mut out, &Refused::new(State::id_in(document.text), document.line, error));
         }
         output.write_all(&out)?;
         if let Err(error) | Ok(Some(error)) = answer {

@@ -8,7 +8,7 @@ use super::surface::{Sunk, Surface};
 use crate::error::{Error, Reason, Result};
 use crate::planar::{Vector, difference, scaled};
 use crate::robot::Robot;
-use crate::scene::NamedContact;
+use crate::state::NamedContact;
 
 impl Contact {
     fn of_touch(link: usize, placement: &Placement, Touch { circle, ground, gap }: Touch) -> Self {

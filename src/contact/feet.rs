@@ -2,7 +2,7 @@
 
 use crate::planar::{Vector, sum};
 use crate::robot::{FootShape, Robot};
-use crate::scene::NamedContact;
+use crate::state::NamedContact;
 
 /// One shape that may touch the ground.
 #[derive(Debug, Clone)]

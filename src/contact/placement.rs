@@ -1,8 +1,8 @@
 //! Where the bodies are in the world.
 
 use super::point::{Circle, Point};
+use crate::dynamics::plan::{Plan, Posture};
 use crate::dynamics::{Workspace, kinematics};
-use crate::plan::{Plan, Posture};
 use crate::planar::{Rotation, Vector, scaled, sum};
 use crate::robot::{Base, Rim, Robot};
 use parry2d::math::{Pose, Vector as ParryVector};

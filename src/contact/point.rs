@@ -6,7 +6,7 @@ use crate::dynamics::ContactPoint;
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Rim, Robot};
 use crate::scalar::Real;
-use crate::scene::NamedContact;
+use crate::state::NamedContact;
 
 /// A corner and the rim about it, rigid on a body.
 #[derive(Debug, Clone, Copy, PartialEq)]

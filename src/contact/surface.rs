@@ -11,7 +11,7 @@ use super::profile::{self, TooDeep};
 use super::terrain::Terrain;
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
-use crate::scene::Ground;
+use crate::state::Ground;
 
 /// A ground, compiled once for all feet of a state.
 #[derive(Debug, Clone)]

@@ -11,7 +11,7 @@
 use super::face::{Face, distance, unit, upright};
 use super::point::{Circle, Touch};
 use crate::planar::{Rotation, Vector, difference, dot, sum};
-use crate::scene::Profile;
+use crate::state::Profile;
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector as ParryVector;
 use parry2d::query::PointQueryWithLocation;

@@ -12,7 +12,7 @@
 
 use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
-use crate::plan::{Motion, Plan, PlanBody};
+use crate::dynamics::plan::{Motion, Plan, PlanBody};
 use crate::planar::{Inertia, Vector, difference, dot, scaled, sum, turned};
 use crate::scalar::Real;
 
@@ -318,8 +318,8 @@ impl<T: Real> Articulated<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::plan::Posture;
     use crate::dynamics::{contact_jacobian, delassus, factorize, kinematics, mass_matrix};
-    use crate::plan::Posture;
     use crate::planar::Rotation;
     use crate::robot::{Axis, Base, Body, Joint, Mover, Robot};
 

@@ -22,7 +22,7 @@
 //! tenth. The constants are generous: a sign that falls within them is settled by balls.
 
 use super::workspace::Workspace;
-use crate::plan::{Motion, Plan, Posture};
+use crate::dynamics::plan::{Motion, Plan, Posture};
 use crate::planar::{Vector, dot};
 
 /// Half the distance from 1 to the next f64.

@@ -6,10 +6,10 @@
 //!
 //! Source: Featherstone 2008, section 6.2. Inertias are kept about each body's own origin in world axes, so that moving
 //! one to the parent is a shift without a turn. S is the motion for a unit rate of the column, and where a column moves
-//! several joints their entries add up (see [`plan`](crate::plan)). Cost: O(nb depth).
+//! several joints their entries add up (see [`plan`](crate::dynamics::plan)). Cost: O(nb depth).
 
 use super::workspace::Workspace;
-use crate::plan::{Motion, Plan};
+use crate::dynamics::plan::{Motion, Plan};
 use crate::planar::{Inertia, Vector, dot, scaled, turned};
 use crate::scalar::Real;
 

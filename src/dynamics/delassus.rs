@@ -9,7 +9,7 @@
 
 use super::jacobian::walk;
 use super::workspace::Workspace;
-use crate::plan::Plan;
+use crate::dynamics::plan::Plan;
 use crate::planar::{Vector, dot};
 use crate::scalar::Real;
 

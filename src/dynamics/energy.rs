@@ -8,7 +8,7 @@
 
 use super::jacobian::{point_velocity, spin};
 use super::workspace::Workspace;
-use crate::plan::{Motion, Plan};
+use crate::dynamics::plan::{Motion, Plan};
 use crate::planar::{dot, turned};
 use crate::scalar::Real;
 

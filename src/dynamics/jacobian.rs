@@ -5,7 +5,7 @@
 //! Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
 
 use super::workspace::Workspace;
-use crate::plan::{Motion, Plan};
+use crate::dynamics::plan::{Motion, Plan};
 use crate::planar::{Rotation, Vector, difference, dot, scaled, sum, turned};
 use crate::scalar::Real;
 

@@ -3,7 +3,7 @@
 //! Source: Featherstone 2008, section 4.1, in world axes. Cost: O(nb).
 
 use super::workspace::Workspace;
-use crate::plan::{Motion, Plan, Posture};
+use crate::dynamics::plan::{Motion, Plan, Posture};
 use crate::planar::{Rotation, scaled, sum};
 use crate::scalar::Real;
 

@@ -16,7 +16,7 @@
 use super::delassus::{half_solve, other_half_solve, products};
 use super::jacobian::{ContactPoint, point_velocity, walk};
 use super::workspace::Workspace;
-use crate::plan::Plan;
+use crate::dynamics::plan::Plan;
 use crate::planar::{Vector, difference, dot, sum};
 use crate::scalar::Real;
 

@@ -4,7 +4,7 @@
 //! [`Real`] will do. Cost: O(nv depth^2).
 
 use super::workspace::Workspace;
-use crate::plan::Plan;
+use crate::dynamics::plan::Plan;
 use crate::scalar::Real;
 
 /// Factorizes the mass matrix: L below the diagonal, D on it. A vanishing entry of D is the caller's to notice.

@@ -7,8 +7,9 @@
 //!          └──────── articulated ────────────────────────> the same G and effect, without M
 //! ```
 //!
-//! Every function reads a [`Plan`](crate::plan::Plan) and writes into a [`Workspace`].
+//! Every function reads a [`Plan`](crate::dynamics::plan::Plan) and writes into a [`Workspace`].
 
+pub mod plan;
 mod articulated;
 mod bounds;
 mod crba;
@@ -39,7 +40,7 @@ mod tests {
     //! Each algorithm against an independent one, on random branching trees with revolute and prismatic joints.
 
     use super::*;
-    use crate::plan::{Plan, Posture};
+    use crate::dynamics::plan::{Plan, Posture};
     use crate::planar::{Rotation, Vector, dot};
     use crate::robot::{Axis, Base, Body, Follower, Joint, Mover, Robot};
     use crate::scalar::{Ball, DoubleDouble, Ordered, Real};

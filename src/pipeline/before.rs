@@ -9,16 +9,16 @@
 
 use super::{CONTACT_TOLERANCE, Loops, Pipeline};
 use crate::contact::{self, Contact, Placement, Surface};
+use crate::dynamics::plan::Plan;
 use crate::dynamics::{
     Arm, add_impulse, contact_jacobian, delassus, factorize, kinematics, kinetic_energy, mass_matrix, point_velocity,
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::ContactProblem;
 use crate::impact::problem::check_matrix_size;
-use crate::plan::Plan;
 use crate::planar::{Vector, dot, sum};
-use crate::scene::{Ground, Scene};
 use crate::state::State;
+use crate::state::{Ground, Scene};
 
 /// A state's contact problem, not yet analysed.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use super::Pipeline;
 use crate::contact::Contact;
 use crate::impact::Friction;
-use crate::scene::Scene;
+use crate::state::Scene;
 
 /// Something that this scene does not need.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use crate::error::{Error, Reason, Result};
 use crate::planar::{Vector, difference, dot};
 use crate::robot::Robot;
 use crate::scalar::Real;
-use crate::scene::NamedLoop;
+use crate::state::NamedLoop;
 use crate::state::State;
 
 /// How far apart the points of a loop may lie, as part of the robot's size: recorded poses are rounded, and simulators keep

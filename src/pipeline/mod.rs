@@ -8,7 +8,7 @@ mod before;
 mod left_out;
 mod loops;
 mod strike;
-mod uncertain;
+pub mod robust;
 
 use self::before::Before;
 pub use self::before::Unsolved;
@@ -16,19 +16,19 @@ pub use self::left_out::LeftOut;
 use self::loops::Loops;
 use self::strike::Strike;
 use crate::contact::{Contact, Feet, Placement};
+use crate::dynamics::plan::{Plan, Posture};
 use crate::dynamics::{
     Bounds, Constraints, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias,
     contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::{Analysis, Asked, ContactProblem, Errors, Explain, Friction, Mode, Scratch};
-use crate::plan::{Plan, Posture};
+use crate::pipeline::robust::Holds;
 use crate::planar::{Rotation, Vector, scaled, sum};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
-use crate::scene::{NamedContact, Scene};
 use crate::state::State;
-use crate::uncertain::Holds;
+use crate::state::{NamedContact, Scene};
 
 /// What the pipeline is asked for beside the outcomes.
 #[derive(Debug, Clone, Default)]

@@ -1,17 +1,17 @@
 //! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
 
 use crate::contact::Contact;
+use crate::dynamics::plan::{Plan, Posture};
 use crate::dynamics::{
     Closed, Constraints, ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus,
     articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix,
     orthogonalize, point_velocity,
 };
 use crate::impact::{ContactProblem, Errors, Friction, Source};
-use crate::plan::{Plan, Posture};
 use crate::planar::{Vector, dot, sum};
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Trigonometry};
-use crate::scene::Scene;
+use crate::state::Scene;
 
 /// A state with its contacts, every f64 of which is meant as the number that it is.
 pub struct Strike<'a> {

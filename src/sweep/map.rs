@@ -15,11 +15,11 @@ use super::line::{Landscape, Point, RESOLUTION};
 use super::model::{Model, Solver, Watched};
 use super::parallel::Workers;
 use super::regime::Regime;
-use super::study::Parameter;
 use super::turn::Turns;
 use crate::Error;
 use crate::impact::Verdict;
 use crate::planar::Vector;
+use crate::read::Parameter;
 use std::sync::Arc;
 
 /// Curves are traced through at least so many cells along each parameter.

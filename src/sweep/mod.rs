@@ -17,19 +17,17 @@ mod middle;
 mod model;
 mod parallel;
 mod regime;
-mod study;
 mod survey;
 mod turn;
 mod unit;
-mod variation;
 
+pub use crate::read::{Parameter, Study};
 pub use course::{Course, Place};
 pub use line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stretches};
 pub use map::{Area, CELLS, Curve, Map};
 pub use model::{Model, Solver, WATCHED_CONTACTS, Watched};
 pub use parallel::Workers;
 pub use regime::Regime;
-pub use study::{Parameter, Study};
 pub use survey::{Border, Region, Survey};
 pub use turn::{Inequality, Side, Turn, Turns};
 

@@ -8,7 +8,7 @@ use super::model::{Model, Solver};
 use crate::Robot;
 use crate::description::{Description, Inertial};
 use crate::robot::{Axis, Base};
-use crate::scene::Ground;
+use crate::state::Ground;
 use crate::state::State;
 
 /// A unit and a number that has it.

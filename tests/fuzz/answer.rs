@@ -3,8 +3,8 @@
 use crate::open;
 use heelstrike::impact::{Analysis, Outcome, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::report::{Detail, Palette, Report, Subject, text};
 use heelstrike::state::State;
+use heelstrike::write::{Detail, Palette, Report, Subject, text};
 use heelstrike::{Error, Robot};
 use serde_json::Value;
 

@@ -7,7 +7,8 @@ use crate::watch::watched;
 use dashu::rational::RBig;
 use heelstrike::Error;
 use heelstrike::impact::{Analysis, Asked, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
-use heelstrike::report::{Problem, Report};
+use heelstrike::read::Problem;
+use heelstrike::write::Report;
 use std::cell::RefCell;
 
 crate::target!(any_contact_problem_is_answered_or_refused, 3_000, 0.6, check);

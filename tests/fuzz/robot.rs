@@ -5,10 +5,10 @@ use crate::choices::Choices;
 use crate::state::{options, state_of};
 use crate::watch::watched;
 use heelstrike::Robot;
-use heelstrike::documents::utf8;
 use heelstrike::pipeline::Pipeline;
-use heelstrike::report::{Inspection, Palette, append_line};
+use heelstrike::read::documents::utf8;
 use heelstrike::state::{Defaults, State};
+use heelstrike::write::{Inspection, Palette, append_line};
 
 crate::target!(any_urdf_is_answered_or_refused, 2_000, 0.1, check);
 

@@ -1,8 +1,8 @@
 //! Profiles beside what else a scene has: contacts by name, slopes, a stance, uncertainty.
 
 use super::*;
-use heelstrike::scene::{Ground, Profile};
-use heelstrike::uncertain::Holds;
+use heelstrike::pipeline::robust::Holds;
+use heelstrike::state::{Ground, Profile};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 #[test]

@@ -3,7 +3,7 @@
 use super::{assert_refused, case};
 use heelstrike::Robot;
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::report::Problem;
+use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};
 
 #[test]

@@ -6,7 +6,7 @@ use crate::states::{Model, beside_a_border};
 use heelstrike::impact::{self, Analysis, Friction, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::robot::Robot;
-use heelstrike::scene::Ground;
+use heelstrike::state::Ground;
 use heelstrike::state::State;
 use serde_json::{Value, json};
 use std::fmt;

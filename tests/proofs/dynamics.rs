@@ -10,7 +10,7 @@
 use crate::number::Number;
 use heelstrike::impact::Friction;
 use heelstrike::robot::{Axis, Mover, Robot};
-use heelstrike::scene::Ground;
+use heelstrike::state::Ground;
 use heelstrike::state::State;
 use std::cmp::Ordering;
 

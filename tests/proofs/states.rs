@@ -4,8 +4,8 @@ use crate::oracle;
 use crate::random::Random;
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::robot::Robot;
-use heelstrike::scene::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene};
 use heelstrike::state::State;
+use heelstrike::state::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene};
 
 /// A robot with the points that its states name as contacts.
 pub struct Model {

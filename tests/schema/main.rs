@@ -4,8 +4,9 @@
 //! form of result that the command writes must be valid, and not with a field more or less.
 
 use assert_cmd::Command;
-use heelstrike::report::{Problem, schema};
+use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};
+use heelstrike::write::schema;
 use heelstrike::{Error, Reason, Robot};
 use serde_json::{Map, Value, json};
 use std::path::Path;

@@ -3,10 +3,10 @@
 use super::{assert_agreement, is_valid, written};
 use heelstrike::description::Description;
 use heelstrike::pipeline::Options;
-use heelstrike::report::schema;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Model, Study};
+use heelstrike::write::schema;
 use heelstrike::{Error, Reason, Robot};
 use serde_json::{Value, json};
 use std::sync::LazyLock;

@@ -6,12 +6,12 @@ mod motion;
 mod sagittal;
 
 use heelstrike::Robot;
+use heelstrike::gait::{At, Difference, Sample, Sampled, Touchdown, Touching, find, rates};
 use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::scene::NamedContact;
+use heelstrike::read::table::{Header, Rates};
 use heelstrike::state::Defaults;
-use heelstrike::table::{Header, Rates};
-use heelstrike::touchdown::{At, Difference, Sample, Sampled, Touchdown, Touching, find, rates};
+use heelstrike::state::NamedContact;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;

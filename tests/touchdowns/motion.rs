@@ -2,8 +2,8 @@
 
 use super::samples;
 use heelstrike::Robot;
-use heelstrike::table::Rates;
-use heelstrike::touchdown::{At, Difference, SMALL, Thresholds, Touchdown, Touching, find, rates};
+use heelstrike::gait::{At, Difference, SMALL, Thresholds, Touchdown, Touching, find, rates};
+use heelstrike::read::table::Rates;
 
 /// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own.
 const LIFT: &str = r#"<robot name="lift">

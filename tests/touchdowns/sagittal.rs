@@ -2,8 +2,8 @@
 
 use super::{data, samples};
 use heelstrike::Robot;
-use heelstrike::table::Rates;
-use heelstrike::touchdown::{Dropped, Sampled, sagittal};
+use heelstrike::gait::{Dropped, Sampled, sagittal};
+use heelstrike::read::table::Rates;
 use proptest::prelude::*;
 use std::sync::Mutex;
 

@@ -2,8 +2,8 @@
 
 use crate::states::{impact, ramone, read};
 use heelstrike::impact::{Friction, Mode, Verdict};
+use heelstrike::pipeline::robust::{Counterexample, Holds};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
-use heelstrike::uncertain::{Counterexample, Holds};
 use heelstrike::{Robot, state::State};
 use serde_json::{Value, json};
 

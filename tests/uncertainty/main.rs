@@ -8,8 +8,8 @@ mod by_hand;
 mod random;
 mod states;
 
+use heelstrike::pipeline::robust::Holds;
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::uncertain::Holds;
 use heelstrike::{Robot, state::State};
 use random::Random;
 use states::{between, impact, in_the_box, modes, on_both_feet, ramone, walking};

@@ -10,11 +10,11 @@
 use super::frozen::{GREATEST_FRICTION, Ground};
 use super::integrate::{Equations, Limits, integrate};
 use crate::Result;
+use crate::dynamics::plan::{Motion, Plan, Posture};
 use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::impact::Friction;
-use crate::plan::{Motion, Plan, Posture};
 use crate::planar::{Vector, difference, dot, scaled, sum, turned};
 use crate::{Error, Reason};
 use differential_equations::ode::ODE;

@@ -1,0 +1,96 @@
+//! Errors against run time as a picture: a panel for G and one for the outcomes.
+
+use crate::accuracy::{Errors, Factorization, Method, Study};
+use crate::draw::plot::{Arrangement, Axis, Colour, Entry, Key, Legend, MARK, Mark, Panel, Picture, Point, Shape};
+use crate::write::accuracy::{Accuracy, name_of};
+
+/// Marks by which cases are told from each other; where there are more cases they are not.
+const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
+
+impl Accuracy {
+    /// Errors of G and of the outcomes against run time, a point for each method and case; not of the reference, whose
+    /// hundred digits would press all others together. An error of exactly zero has no place on a logarithmic axis.
+    pub fn picture(&self) -> Picture {
+        let named = self.studies.len() <= MARKS.len();
+        let title = match self.studies.as_slice() {
+            [study] => format!("Error against run time: {}", study.name),
+            studies if named => format!("Error against run time of {} cases", studies.len()),
+            studies => format!("Error against run time: each mark is one of {} cases by one method", studies.len()),
+        };
+        let mark = |case: usize| if named { MARKS[case] } else { Mark::Circle };
+        let methods = || self.studies.iter().flat_map(|study| &study.methods).filter(|method| is_drawn(method));
+        let mut legend: Vec<Entry> = Vec::new();
+        for method in methods() {
+            let name = name_of(method);
+            if !legend.iter().any(|entry| entry.name == name) {
+                legend.push(Entry { name, key: Key::Mark(Mark::Circle, colour(method)) });
+            }
+        }
+        if named && self.studies.len() > 1 {
+            let cases = self.studies.iter().enumerate().filter(|(_, study)| study.methods.iter().any(is_drawn));
+            let entry = |(at, study): (usize, &Study)| Entry {
+                name: study.name.clone(),
+                // A mark of any method.
+                key: Key::Mark(mark(at), Colour::Grey),
+            };
+            legend.extend(cases.map(entry));
+        }
+        let panel = |what: &str, pick: fn(&Errors) -> Option<f64>| {
+            let mut series: Vec<(Mark, Colour, Vec<Point>)> = Vec::new();
+            for (case, study) in self.studies.iter().enumerate() {
+                for method in study.methods.iter().filter(|method| is_drawn(method)) {
+                    let error = method.error.as_ref().and_then(pick);
+                    let (Some(time), Some(error)) = (method.time, error) else { continue };
+                    let (mark, colour, point) = (mark(case), colour(method), (time.median, error));
+                    match series.iter_mut().find(|series| (series.0, series.1) == (mark, colour)) {
+                        Some((_, _, points)) => points.push(point),
+                        None => series.push((mark, colour, vec![point])),
+                    }
+                }
+            }
+            let marks = |(mark, colour, points)| Shape::Marks { points, mark, colour, size: MARK };
+            let axis = |label: &str| Axis { label: label.into(), logarithmic: true, ..Axis::default() };
+            let shapes = series.into_iter().map(marks).collect();
+            Panel { shapes, ..Panel::new(axis("time from state to G [s]"), axis(what)) }
+        };
+        let mut panels = vec![
+            panel("largest error of G", |error| error.delassus),
+            panel("largest error of impulses and velocities after", |error| error.outcome),
+        ];
+        let range = span_of(&panels);
+        panels.iter_mut().for_each(|panel| panel.y.range = range);
+        Picture { title, rows: vec![panels], legend: Legend { entries: legend, arrangement: Arrangement::Beside } }
+    }
+}
+
+/// The least and the greatest error of all panels, so that their axes are the same.
+fn span_of(panels: &[Panel]) -> Option<(f64, f64)> {
+    let marks = |shape: &Shape| match shape {
+        Shape::Marks { points, .. } => points.clone(),
+        _ => Vec::new(),
+    };
+    let errors = panels.iter().flat_map(|panel| &panel.shapes).flat_map(marks).map(|(_, error)| error);
+    let drawn = errors.filter(|error| error.is_finite() && *error > 0.0);
+    drawn.fold(None, |span, error| {
+        let (least, most) = span.unwrap_or((error, error));
+        Some((least.min(error), most.max(error)))
+    })
+}
+
+/// Whether the method has a place in the picture.
+fn is_drawn(method: &Method) -> bool {
+    method.number != "reference" && method.factorization.is_some() && method.time.is_some() && method.error.is_some()
+}
+
+/// The colour of a method.
+fn colour(method: &Method) -> Colour {
+    match (method.number, method.factorization) {
+        ("f32", Some(Factorization::ArticulatedBodies)) => Colour::Vermilion,
+        ("f32", _) => Colour::Orange,
+        ("f64", Some(Factorization::ArticulatedBodies)) => Colour::Blue,
+        ("f64", Some(Factorization::DenseCholesky)) => Colour::SkyBlue,
+        ("f64", _) => Colour::Green,
+        (_, Some(Factorization::ArticulatedBodies)) => Colour::Black,
+        _ => Colour::Purple,
+    }
+}

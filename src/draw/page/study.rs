@@ -1,0 +1,193 @@
+//! The page of a study: its samples, and of one parameter also both sides and the middle of every region.
+//!
+//! ```text
+//!     a region         |.........|.........|      sides lie beside the borders, further than these are bisected
+//! ```
+
+use super::{Axis, Page, Region, STILLS, Still};
+use crate::draw::Keyframe;
+use crate::draw::plot::Rendered;
+use crate::draw::sweep::{fills_along, fills_of_map};
+use crate::state::State;
+use crate::sweep::{Findings, Map, Model, Parameter, RESOLUTION, Regime, Solver, Survey, Workers};
+use crate::write::sweep::{MapSweep, Sweep};
+
+/// How far the sides of a region lie from its borders, as part of the parameter's range.
+const BESIDE: f64 = 4.0 * RESOLUTION;
+
+/// Where the page of a study stops.
+#[derive(Debug, Clone)]
+pub struct Stops {
+    /// The values of each parameter; a page stops at each combination.
+    values: Vec<Vec<f64>>,
+    /// For each parameter, of how many samples one is among them.
+    every: Vec<usize>,
+}
+
+impl Stops {
+    /// Those of a study and what was found in it.
+    pub fn new(model: &Model, findings: &Findings) -> Self {
+        let parameters = model.study.parameters();
+        let mut every = vec![1; parameters.len()];
+        let stops = |every: &[usize]| -> Vec<usize> {
+            parameters.iter().zip(every).map(|(parameter, every)| (parameter.steps - 1).div_ceil(*every) + 1).collect()
+        };
+        let mut counts = stops(&every);
+        while counts.iter().product::<usize>() > STILLS {
+            // That of most stops, one by one.
+            let longest = if counts.first() < counts.last() { counts.len() - 1 } else { 0 };
+            every[longest] += 1;
+            counts = stops(&every);
+        }
+        let samples = parameters.iter().zip(&every).map(|(parameter, &every)| samples(parameter, every));
+        let mut values: Vec<Vec<f64>> = samples.collect();
+        if let (Findings::Along(survey), [parameter], [values]) = (findings, parameters, &mut values[..]) {
+            values.extend(special(parameter, survey));
+            values.sort_unstable_by(f64::total_cmp);
+            values.dedup();
+        }
+        Self { values, every }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.values.iter().map(Vec::len).product()
+    }
+
+    /// The values of the parameters at a stop; the last parameter changes fastest.
+    fn point(&self, mut index: usize) -> Vec<f64> {
+        let mut point: Vec<f64> = self
+            .values
+            .iter()
+            .rev()
+            .map(|values| {
+                let value = values[index % values.len()];
+                index /= values.len();
+                value
+            })
+            .collect();
+        point.reverse();
+        point
+    }
+
+    /// What is left out, if anything is.
+    fn note(&self, parameters: &[Parameter]) -> Option<String> {
+        let thinned = parameters.iter().zip(&self.every).filter(|(_, every)| **every > 1);
+        let told: Vec<String> =
+            thinned.map(|(parameter, every)| format!("one of {every} samples of {}", parameter.name)).collect();
+        (!told.is_empty()).then(|| format!("this page stops at {}", told.join(" and ")))
+    }
+}
+
+/// One of so many samples, and the last one.
+fn samples(parameter: &Parameter, every: usize) -> Vec<f64> {
+    let last = parameter.steps - 1;
+    (0..last).step_by(every).chain([last]).map(|index| parameter.sample(index)).collect()
+}
+
+/// Both sides and the middle of every region.
+fn special(parameter: &Parameter, survey: &Survey) -> Vec<f64> {
+    let beside = BESIDE * parameter.range();
+    let of_region = |region: &crate::sweep::Region| {
+        let (from, to) = (region.from, region.to);
+        let sides = [from + beside, 0.5 * (from + to), to - beside];
+        sides.into_iter().filter(move |side| from < *side && *side < to)
+    };
+    survey.regions.iter().flat_map(of_region).collect()
+}
+
+impl Page {
+    /// The page of a study: what was found, the stops, its picture; tells `workers` of each stop.
+    pub fn of_study(model: &Model, findings: &Findings, stops: &Stops, rendered: Rendered, workers: Workers) -> Self {
+        let parameters = model.study.parameters();
+        let begin = || Solver::new(model);
+        let seen = workers.map(stops.count(), begin, |solver, index| look(model, solver, &stops.point(index)));
+        let (regions, notes) = match findings {
+            Findings::Along(survey) => along(&Sweep::new(&parameters[0], survey), survey),
+            Findings::Map(map) => areas(&MapSweep::new(parameters, map), map),
+        };
+        let region = |index: usize, regime: &Regime| match findings {
+            Findings::Along(survey) => {
+                let at = stops.point(index)[0];
+                Some(
+                    survey
+                        .regions
+                        .partition_point(|region| region.to <= at)
+                        .min(survey.regions.len().saturating_sub(1)),
+                )
+            }
+            Findings::Map(map) => map.areas.iter().position(|area| *area.regime == *regime),
+        };
+        let still = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| Still {
+            region: region(index, &regime),
+            keyframe,
+            name: None,
+        };
+        let stills: Vec<Still> = seen.into_iter().enumerate().map(still).collect();
+        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let title = format!("{} against {}", model.robot.name, names.join(" and "));
+        let axis = |(name, values): (&&str, &Vec<f64>)| Axis { name: (*name).to_owned(), values: values.clone() };
+        let axes = names.iter().zip(&stops.values).map(axis).collect();
+        Self::new(title, axes, regions, &stills, rendered, stops.note(parameters).into_iter().chain(notes).collect())
+    }
+}
+
+/// The state at a point and what happens there, whatever the state's uncertainty is.
+fn look(model: &Model, solver: &mut Solver, point: &[f64]) -> (Keyframe, Regime) {
+    let seen = solver.at(point, |robot, state, pipeline| {
+        let state = State { uncertainty: None, ..state };
+        let impact = pipeline.impact(&state);
+        let regime = Regime::of(&impact);
+        let keyframe = match impact {
+            Ok(impact) => Keyframe::of_impact(robot, &model.options.feet, &state, &impact),
+            Err(error) => Keyframe::refused(error),
+        };
+        (keyframe, regime)
+    });
+    seen.unwrap_or_else(|error| (Keyframe::refused(error.clone()), Regime::of(&Err(error))))
+}
+
+/// Regions along a parameter.
+fn along(sweep: &Sweep, survey: &Survey) -> (Vec<Region>, Vec<String>) {
+    let border = |at: usize, side: &str| {
+        let border = &sweep.borders[at];
+        let sides = [&sweep.regions[at].letter, &sweep.regions[at + 1].letter];
+        [format!("{side}, at {:?}", border.at), border.turns.in_words(sides)]
+    };
+    let fills = fills_along(survey);
+    let region = |(at, region): (usize, &crate::write::sweep::Region)| Region {
+        name: region.letter.clone(),
+        fill: fills.get(survey.regions[at].kind).map_or("", |fill| fill.hex()),
+        borders: [
+            at.checked_sub(1).map(|below| border(below, "below")),
+            (at < sweep.borders.len()).then(|| border(at, "above")),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
+    };
+    (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes.clone())
+}
+
+/// Regions of two parameters.
+fn areas(sweep: &MapSweep, map: &Map) -> (Vec<Region>, Vec<String>) {
+    let fills = fills_of_map(map);
+    let region = |(at, region): (usize, &crate::write::sweep::MapRegion)| {
+        let mut borders: Vec<[String; 2]> = Vec::new();
+        for border in &sweep.borders {
+            let [left, right] = &border.between;
+            let beyond = match (*left == region.letter, *right == region.letter) {
+                (true, _) => right,
+                (_, true) => left,
+                _ => continue,
+            };
+            let told = [format!("toward {beyond}"), border.turns.in_words([left, right])];
+            if !borders.contains(&told) {
+                borders.push(told);
+            }
+        }
+        let fill = fills.get(at).map_or("", |fill| fill.hex());
+        Region { name: region.letter.clone(), fill, borders }
+    };
+    (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes.clone())
+}

@@ -1,0 +1,223 @@
+//! beta and gamma of each contact against the parameter, and the paper's regions that they cut (its figure 10).
+//!
+//! ```text
+//!                beta < 0              beta > 0 (its mirror image)
+//!     A   0       .. pi + beta     beta      .. pi          lifts off
+//!     B   pi+beta .. pi            0         .. beta        slides, whatever the friction
+//!     C   -pi     .. beta          beta - pi .. 0           stays
+//!     E   beta    .. 0             -pi       .. beta - pi   all three
+//! ```
+
+use super::place::{Box, clear_of};
+use crate::draw::plot::{Anchor, Axis, Colour, Entry, Key, Label, Panel, Point, Shape, Stroke};
+use crate::impact::{Explanation, Region};
+use crate::sweep::{Course, Survey};
+use std::f64::consts::PI;
+
+const BETA: Stroke = Stroke::solid(Colour::Black, 1.0);
+const GAMMA: Stroke = Stroke::solid(Colour::Green, 2.4);
+
+/// Inside of the axes \[px\].
+const SIZE: (f64, f64) = (super::WIDTH, 220.0);
+/// Of a label's letters \[px\].
+const LETTERS: u32 = 12;
+
+/// Within a sample's distance an angle turns by less than this, or it jumps.
+const JUMP: f64 = 0.5;
+
+/// A panel for each contact that has angles somewhere.
+pub fn panels(survey: &Survey, courses: &[Course]) -> Vec<Panel> {
+    let mut names: Vec<&str> = Vec::new();
+    for (region, course) in survey.regions.iter().zip(courses) {
+        if course.places.iter().any(|place| place.explanation.is_some()) {
+            let new =
+                region.regime.contacts().iter().filter(|name| !names.contains(&name.as_str())).collect::<Vec<_>>();
+            names.extend(new.into_iter().map(String::as_str));
+        }
+    }
+    let (Some(first), Some(last)) = (survey.regions.first(), survey.regions.last()) else { return Vec::new() };
+    let borders: Vec<f64> = survey.borders.iter().map(|border| border.at).collect();
+    names.into_iter().map(|name| panel(name, &runs(name, survey, courses), (first.from, last.to), &borders)).collect()
+}
+
+/// What the lines of such panels mean.
+pub fn legend() -> [Entry; 2] {
+    let entry = |name: &str, stroke| Entry { name: name.into(), key: Key::Line(stroke) };
+    [entry("γ", GAMMA), entry("0, β and β ± π", BETA)]
+}
+
+/// The angles of a contact at a place.
+#[derive(Debug, Clone, Copy)]
+struct Angles {
+    at: f64,
+    beta: f64,
+    gamma: f64,
+}
+
+/// Stretches of places in which a contact has angles.
+fn runs(name: &str, survey: &Survey, courses: &[Course]) -> Vec<Vec<Angles>> {
+    let mut runs: Vec<Vec<Angles>> = vec![Vec::new()];
+    for (region, course) in survey.regions.iter().zip(courses) {
+        let contact = region.regime.contacts().iter().position(|known| known == name);
+        for place in &course.places {
+            let angles = |explanation: &Explanation| {
+                let contact = contact?;
+                Some(Angles {
+                    at: place.at,
+                    beta: *explanation.beta.get(contact)?,
+                    gamma: *explanation.gamma.get(contact)?,
+                })
+            };
+            match (place.explanation.as_ref().and_then(angles), runs.last_mut()) {
+                (Some(angles), Some(run)) => run.push(angles),
+                _ => runs.push(Vec::new()),
+            }
+        }
+        if course.places.is_empty() {
+            runs.push(Vec::new());
+        }
+    }
+    runs.retain(|run| !run.is_empty());
+    runs
+}
+
+fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f64]) -> Panel {
+    let mut shapes = Vec::new();
+    for run in runs {
+        let line = |turn: f64| -> Vec<Point> { run.iter().map(|angles| (angles.at, angles.beta + turn)).collect() };
+        shapes.extend([-PI, 0.0, PI].map(|turn| Shape::Line { points: line(turn), stroke: BETA }));
+    }
+    shapes.push(Shape::Line { points: vec![(from, 0.0), (to, 0.0)], stroke: BETA });
+    let gamma: Vec<Vec<Point>> = runs.iter().flat_map(|run| unbroken(run)).collect();
+    let pixel = |(x, y): Point| (SIZE.0 * (x - from) / (to - from), SIZE.1 * (y + PI) / (2.0 * PI));
+    let curve: Vec<Vec<Point>> = gamma.iter().map(|piece| piece.iter().map(|&point| pixel(point)).collect()).collect();
+    let walls = borders.iter().map(|&at| vec![pixel((at, -PI)), pixel((at, PI))]);
+    let all: Vec<Vec<Point>> = curve.iter().cloned().chain(walls).collect();
+    shapes.extend(gamma.into_iter().map(|points| Shape::Line { points, stroke: GAMMA }));
+    for (region, words) in
+        [(Region::A, "lifts off"), (Region::B, "slides"), (Region::C, "stays"), (Region::E, "all three")]
+    {
+        let strips = |run: &Vec<Angles>| run.iter().map(|angles| strip(region, angles.beta, angles.at)).collect();
+        let strips: Vec<Vec<(Point, Point)>> = runs.iter().map(strips).collect();
+        let strips: Vec<Vec<(Point, Point)>> =
+            strips.iter().map(|run| run.iter().map(|&(low, high)| (pixel(low), pixel(high))).collect()).collect();
+        // Rather on a border than nowhere.
+        if let Some((x, y)) = room(&strips, &all, words).or_else(|| room(&strips, &curve, words)) {
+            shapes.push(Shape::Text(Label {
+                at: (from + (to - from) * x / SIZE.0, 2.0 * PI * y / SIZE.1 - PI),
+                offset: (0.0, 0.0),
+                text: words.into(),
+                anchor: Anchor::Middle,
+                size: LETTERS,
+                colour: Colour::Black,
+                rim: true,
+            }));
+        }
+    }
+    let y = Axis { label: "angle [rad]".into(), range: Some((-PI, PI)), in_pi: true, ..Axis::default() };
+    let title = format!("{name}\nwith infinite friction, while all other contacts stick");
+    Panel { title, shapes, size: SIZE, ..Panel::new(Axis::default(), y) }
+}
+
+/// The lower and the upper end of a region of gamma.
+fn strip(region: Region, beta: f64, at: f64) -> (Point, Point) {
+    let (low, high) = match (region, beta <= 0.0) {
+        (Region::A, true) => (0.0, PI + beta),
+        (Region::A, false) => (beta, PI),
+        (Region::B, true) => (PI + beta, PI),
+        (Region::B, false) => (0.0, beta),
+        (Region::C, true) => (-PI, beta),
+        (Region::C, false) => (beta - PI, 0.0),
+        (Region::E, true) => (beta, 0.0),
+        (Region::E, false) => (-PI, beta - PI),
+    };
+    ((at, low), (at, high))
+}
+
+/// gamma in pieces that neither wrap from pi to -pi nor jump.
+fn unbroken(run: &[Angles]) -> Vec<Vec<Point>> {
+    let mut pieces: Vec<Vec<Point>> = vec![Vec::new()];
+    let mut before: Option<Angles> = None;
+    for &angles in run {
+        if let Some(last) = before {
+            let turn = libm::remainder(angles.gamma - last.gamma, 2.0 * PI);
+            let wraps = (last.gamma + turn - angles.gamma).abs() > PI;
+            let jumps = turn.abs() > JUMP;
+            if wraps && !jumps {
+                // Both ends reach the edge at one place.
+                let edge = PI.copysign(last.gamma);
+                let at = last.at + (angles.at - last.at) * (edge - last.gamma) / turn;
+                pieces.last_mut().into_iter().for_each(|piece| piece.push((at, edge)));
+                pieces.push(vec![(at, -edge)]);
+            } else if jumps {
+                pieces.push(Vec::new());
+            }
+        }
+        pieces.last_mut().into_iter().for_each(|piece| piece.push((angles.at, angles.gamma)));
+        before = Some(angles);
+    }
+    pieces
+}
+
+/// Where a text fits between the ends of `strips` and beside the curve \[px\]: the place with the most room about it.
+fn room(strips: &[Vec<(Point, Point)>], curve: &[Vec<Point>], text: &str) -> Option<Point> {
+    let half = Box::half_of(text, LETTERS);
+    let mut best: Option<(f64, Point)> = None;
+    for run in strips {
+        for &((x, low), (_, high)) in run.iter() {
+            for share in [0.5, 0.35, 0.65, 0.2, 0.8] {
+                let y = low + share * (high - low);
+                let text = Box { middle: (x, y), half };
+                if !text.is_within(SIZE) {
+                    continue;
+                }
+                let edges = run.iter().filter(|((at, _), _)| (at - x).abs() <= half.0);
+                let inside = edges.fold(f64::INFINITY, |least, ((_, low), (_, high))| least.min(y - low).min(high - y));
+                let clear = (inside - half.1).min(clear_of(&text, curve));
+                if clear > 2.0 && best.is_none_or(|(most, _)| clear > most + 1.0) {
+                    best = Some((clear, (x, y)));
+                }
+            }
+        }
+    }
+    best.map(|(_, point)| point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(gammas: &[f64]) -> Vec<Angles> {
+        gammas.iter().enumerate().map(|(at, &gamma)| Angles { at: at as f64, beta: 0.0, gamma }).collect()
+    }
+
+    #[test]
+    fn an_angle_that_wraps_leaves_at_the_edge_and_enters_at_the_other_one() {
+        let pieces = unbroken(&run(&[3.0, PI - 0.05, 0.15 - PI, -2.8]));
+        assert_eq!(pieces.len(), 2);
+        let ends = [pieces[0][2], pieces[1][0]];
+        assert!((ends[0].0 - 1.25).abs() < 1e-12 && ends[0].0 == ends[1].0, "{ends:?}");
+        assert_eq!([ends[0].1, ends[1].1], [PI, -PI]);
+        let back = unbroken(&run(&[-3.1, 3.1]));
+        assert_eq!([back[0][1].1, back[1][0].1], [-PI, PI]);
+    }
+
+    #[test]
+    fn an_angle_that_jumps_has_no_line_across() {
+        let pieces = unbroken(&run(&[0.1, 0.2, 2.0, 2.1]));
+        assert_eq!(pieces, [[(0.0, 0.1), (1.0, 0.2)], [(2.0, 2.0), (3.0, 2.1)]]);
+    }
+
+    #[test]
+    fn strips_share_out_the_whole_turn() {
+        for beta in [-1.2, -0.3, 0.3, 1.2] {
+            let strips = [Region::A, Region::B, Region::C, Region::E].map(|region| strip(region, beta, 0.0));
+            let widths: f64 = strips.iter().map(|((_, low), (_, high))| high - low).sum();
+            assert!((widths - 2.0 * PI).abs() < 1e-12, "{beta}");
+            assert!(strips.iter().all(|((_, low), (_, high))| low < high && -PI <= *low && *high <= PI), "{beta}");
+        }
+        // Each the mirror image of the other: gamma against pi - gamma.
+        assert_eq!(strip(Region::B, -0.3, 0.0), ((0.0, PI - 0.3), (0.0, PI)));
+        assert_eq!(strip(Region::B, 0.3, 0.0), ((0.0, 0.0), (0.0, 0.3)));
+    }
+}

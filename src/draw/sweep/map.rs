@@ -1,0 +1,194 @@
+//! Two parameters: areas of equal outcomes with their letters, and the borders between them.
+
+use super::place::{Box, clear_of, freest};
+use super::{Kind, fills_of_map};
+use crate::draw::plot::{
+    Anchor, Arrangement, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
+};
+use crate::planar::Vector;
+use crate::sweep::{Area, Map};
+use crate::write::sweep::Happening;
+
+/// Inside of the axes \[px\].
+const SIZE: Pixel = (540.0, 420.0);
+/// Of letters \[px\].
+const LETTERS: u32 = 15;
+/// A border's line.
+const BORDER: Stroke = Stroke::solid(Colour::Black, 1.0);
+/// From a letter to a small area that it belongs to.
+const LEADER: Stroke = Stroke::solid(Colour::Black, 0.7);
+/// How far a letter stands from borders at least \[px\].
+const CLEAR: f64 = 1.0;
+/// A letter of a small area stands at one of these distances \[px\], in one of so many directions.
+const AWAY: [f64; 4] = [26.0, 38.0, 52.0, 70.0];
+const DIRECTIONS: usize = 24;
+
+/// What the areas of a map look like.
+pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
+    let mut shapes: Vec<Shape> = Vec::new();
+    let mut entries = Vec::new();
+    for ((index, area), colour) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
+        let Kind { letter, happening, .. } =
+            Kind::new(index, Happening::of(&area.regime, area.verdict, area.refused.as_ref()), colour);
+        let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
+        // The seam between two fills lies under the border's line.
+        shapes.push(Shape::Area { loops, fill: Some(colour), stroke: None });
+        entries.push(Entry { name: format!("{letter}: {}", happening.lines().join("\n")), key: Key::Fill(colour) });
+    }
+    for curve in &map.curves {
+        shapes.push(Shape::Line { points: curve.points.iter().map(|&[x, y]| (x, y)).collect(), stroke: BORDER });
+    }
+    shapes.extend(letters(&x, &y, map));
+    let panel = Panel { shapes, size: SIZE, ..Panel::new(x, y) };
+    Picture {
+        title: String::new(),
+        rows: vec![vec![panel]],
+        legend: Legend { entries, arrangement: Arrangement::Columns },
+    }
+}
+
+/// The letters of all areas: within each part that has room for it, or beside the largest part, with a line to it.
+fn letters(x: &Axis, y: &Axis, map: &Map) -> Vec<Shape> {
+    let (Some(x), Some(y)) = (x.range, y.range) else { return Vec::new() };
+    let pixel = |[a, b]: Vector<f64>| (SIZE.0 * (a - x.0) / (x.1 - x.0), SIZE.1 * (b - y.0) / (y.1 - y.0));
+    let point = |(a, b): Pixel| -> Point { (x.0 + (x.1 - x.0) * a / SIZE.0, y.0 + (y.1 - y.0) * b / SIZE.1) };
+    let pixels = |points: &Vec<Vector<f64>>| points.iter().copied().map(pixel).collect();
+    let mut taken: Vec<Vec<Pixel>> = map.curves.iter().map(|curve| pixels(&curve.points)).collect();
+    let text = |index: usize, at: Pixel| {
+        let (letter, half) = lettered(index);
+        let label = Label {
+            at: point(at),
+            offset: (0.0, 0.0),
+            text: letter,
+            anchor: Anchor::Middle,
+            size: LETTERS,
+            colour: Colour::Black,
+            rim: true,
+        };
+        (Box { middle: at, half }, Shape::Text(label))
+    };
+    let mut shapes = Vec::new();
+    let mut small: Vec<(usize, &Area)> = Vec::new();
+    for (index, area) in map.areas.iter().enumerate() {
+        let half = lettered(index).1;
+        let middles = area.middles.iter().map(|(middle, _)| text(index, freest(pixel(*middle), half, &taken)));
+        let fitting: Vec<_> =
+            middles.filter(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR).collect();
+        if fitting.is_empty() {
+            small.push((index, area));
+        }
+        for (text, shape) in fitting {
+            taken.push(outline(&text));
+            shapes.push(shape);
+        }
+    }
+    for (index, area) in small {
+        let Some(from) = deepest(area).map(pixel) else { continue };
+        let places = AWAY.into_iter().flat_map(|distance| {
+            (0..DIRECTIONS).map(move |step| {
+                let angle = step as f64 * std::f64::consts::TAU / DIRECTIONS as f64;
+                (from.0 + distance * libm::cos(angle), from.1 + distance * libm::sin(angle))
+            })
+        });
+        let free = places
+            .map(|at| text(index, at))
+            .find(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR + 2.0);
+        if let Some((text, shape)) = free {
+            let (dx, dy) = (from.0 - text.middle.0, from.1 - text.middle.1);
+            let share = 0.5 * f64::from(LETTERS) / libm::hypot(dx, dy);
+            let to = (text.middle.0 + share * dx, text.middle.1 + share * dy);
+            shapes.push(Shape::Line { points: vec![point(from), point(to)], stroke: LEADER });
+            shapes.push(shape);
+            taken.push(outline(&text));
+            taken.push(vec![from, to]);
+        }
+    }
+    shapes
+}
+
+/// An area's letter, and half its width and height \[px\].
+fn lettered(index: usize) -> (String, Pixel) {
+    let letter = super::letter(index);
+    let half = Box::half_of(&letter, LETTERS);
+    (letter, half)
+}
+
+/// The point of an area that is farthest from its edges.
+fn deepest(area: &Area) -> Option<Vector<f64>> {
+    let middle = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| *middle);
+    // An area between the lines of the grid has none: then a place on its edge.
+    middle.or_else(|| area.loops.first()?.first().copied())
+}
+
+fn outline(Box { middle: (x, y), half: (across, up) }: &Box) -> Vec<Pixel> {
+    let corner = |right: f64, high: f64| (x + right * across, y + high * up);
+    vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::impact::Mode;
+    use crate::sweep::Regime;
+    use crate::sweep::{Curve, Turns};
+
+    /// Strips between wavy borders, with as many points as a study of 400 by 400 samples has.
+    fn strips(widths: &[f64]) -> Map {
+        let edge = |x: f64, step: usize| {
+            let y = step as f64 / 1600.0;
+            [x + if (0.01..0.99).contains(&x) { 0.004 * libm::sin(60.0 * y) } else { 0.0 }, y]
+        };
+        let line = |x: f64| -> Vec<Vector<f64>> { (0..=1600).map(|step| edge(x, step)).collect() };
+        let (mut areas, mut curves, mut x) = (Vec::new(), Vec::new(), 0.0);
+        for (index, width) in widths.iter().enumerate() {
+            let outcomes = vec![vec![Mode::ALL[index % 4], Mode::ALL[index / 4 % 4]]];
+            let contacts = vec!["left_foot".into(), "right_foot".into()];
+            let regime = Regime::Answered { contacts, outcomes, undecided: Vec::new() };
+            let back = line(x).into_iter().rev();
+            let loops = vec![line(x + width).into_iter().chain(back).collect()];
+            let middles = vec![(edge(x + 0.5 * width, 800), 0.5 * width)];
+            areas.push(Area { regime: regime.into(), loops, middles, verdict: None, refused: None });
+            if index > 0 {
+                curves.push(Curve { sides: [index - 1, index], points: line(x), turns: Turns::default() });
+            }
+            x += width;
+        }
+        Map { areas, curves, dependent: false }
+    }
+
+    fn axes() -> [Axis; 2] {
+        [(); 2].map(|()| Axis { range: Some((0.0, 1.0)), ..Axis::default() })
+    }
+
+    #[test]
+    fn a_map_of_many_points_is_a_small_file() {
+        let svg = picture(axes(), &strips(&[0.0625; 16])).svg().expect("a picture");
+        assert!(svg.len() < 500_000, "{} bytes", svg.len());
+    }
+
+    #[test]
+    fn a_letter_without_room_stands_beside_its_area_with_a_line_to_it() {
+        let widths = [0.5, 0.01, 0.49];
+        let map = strips(&widths);
+        let shapes = letters(&axes()[0], &axes()[1], &map);
+        let texts: Vec<(&str, Point)> = shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Text(label) => Some((label.text.as_str(), label.at)),
+                _ => None,
+            })
+            .collect();
+        let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["A", "C", "B"]);
+        assert!((0.0..0.5).contains(&texts[0].1.0) && (0.51..1.0).contains(&texts[1].1.0));
+        let leaders: Vec<&Vec<Point>> = shapes
+            .iter()
+            .filter_map(|shape| match shape {
+                Shape::Line { points, .. } => Some(points),
+                _ => None,
+            })
+            .collect();
+        let [leader] = leaders[..] else { panic!("one small area") };
+        assert!((leader[0].0 - 0.505).abs() < 0.006, "{leader:?}");
+    }
+}

@@ -1,0 +1,163 @@
+//! Studies as pictures.
+//!
+//! ```text
+//!     Survey --> Courses --[along, style]--> velocities after and impulses of each contact, regions shaded
+//!                        --[angles, place]-> beta and gamma, and what they cut
+//!     Map    --[map, place]----------------> areas with letters in the plane of two parameters
+//! ```
+
+mod along;
+mod angles;
+mod map;
+mod place;
+mod style;
+
+use crate::draw::plot::{Axis, Colour, Picture};
+use crate::sweep::{Course, Findings, Map, Model, Regime, Region, Survey, Workers};
+use crate::write::sweep::{Happening, letter};
+
+/// How wide panels along a parameter are inside of their axes \[px\].
+const WIDTH: f64 = 540.0;
+
+/// What the findings of `model` look like; tells `workers` of [`work`] pieces of work.
+pub fn of(model: &Model, findings: &Findings, workers: Workers) -> Picture {
+    match findings {
+        Findings::Along(survey) => along::picture(axis(model, 0), survey, &Course::of(model, survey, workers)),
+        Findings::Map(map) => map::picture([axis(model, 0), axis(model, 1)], map),
+    }
+}
+
+/// How many pieces of work a picture of the findings takes.
+pub fn work(model: &Model, findings: &Findings) -> usize {
+    match findings {
+        Findings::Along(survey) => Course::work(model, survey),
+        Findings::Map(_) => 0,
+    }
+}
+
+/// The axis of a parameter.
+fn axis(model: &Model, parameter: usize) -> Axis {
+    let Some(known) = model.study.parameters().get(parameter) else { return Axis::default() };
+    let name = with_greek_letters(&known.name);
+    let label = match model.unit(parameter) {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name,
+    };
+    Axis { label, range: Some((known.from, known.to)), ..Axis::default() }
+}
+
+/// A name whose parts are letters of the Greek alphabet where they are called so: `delta_alpha` is δ_α.
+fn with_greek_letters(name: &str) -> String {
+    const LETTERS: [(&str, &str); 24] = [
+        ("alpha", "α"),
+        ("beta", "β"),
+        ("gamma", "γ"),
+        ("delta", "δ"),
+        ("epsilon", "ε"),
+        ("zeta", "ζ"),
+        ("eta", "η"),
+        ("theta", "θ"),
+        ("iota", "ι"),
+        ("kappa", "κ"),
+        ("lambda", "λ"),
+        ("mu", "μ"),
+        ("nu", "ν"),
+        ("xi", "ξ"),
+        ("omicron", "ο"),
+        ("pi", "π"),
+        ("rho", "ρ"),
+        ("sigma", "σ"),
+        ("tau", "τ"),
+        ("upsilon", "υ"),
+        ("phi", "φ"),
+        ("chi", "χ"),
+        ("psi", "ψ"),
+        ("omega", "ω"),
+    ];
+    let part =
+        |part: &str| LETTERS.iter().find(|(called, _)| *called == part).map_or(part.to_owned(), |(_, is)| (*is).into());
+    name.split('_').map(part).collect::<Vec<_>>().join("_")
+}
+
+/// What happens where a regime holds, by the letter of its kind.
+struct Kind<'a> {
+    letter: String,
+    colour: Colour,
+    happening: Happening<'a>,
+}
+
+impl<'a> Kind<'a> {
+    fn new(kind: usize, happening: Happening<'a>, colour: Colour) -> Self {
+        Self { letter: letter(kind), colour, happening }
+    }
+}
+
+/// Whether a region is wide enough for lines in it.
+fn is_seen(region: &Region, survey: &Survey) -> bool {
+    let range: f64 = survey.regions.iter().map(|region| region.to - region.from).sum();
+    WIDTH * (region.to - region.from) >= range
+}
+
+/// The colour of every kind of region along a parameter, in the order of letters.
+pub(crate) fn fills_along(survey: &Survey) -> Vec<Colour> {
+    let mut firsts: Vec<&Regime> = Vec::new();
+    for region in &survey.regions {
+        if region.kind == firsts.len() {
+            firsts.push(&region.regime);
+        }
+    }
+    let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
+    colours(&firsts, &borders)
+}
+
+/// The colour of every area of a map, in the order of letters.
+pub(crate) fn fills_of_map(map: &Map) -> Vec<Colour> {
+    let regimes: Vec<&Regime> = map.areas.iter().map(|area| &*area.regime).collect();
+    let borders: Vec<[usize; 2]> = map.curves.iter().map(|curve| curve.sides).collect();
+    colours(&regimes, &borders)
+}
+
+/// A colour for each of `regimes`, the kinds in their order: neighbours, which `borders` part, differ in hue, and where that
+/// can be in lightness.
+fn colours(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Colour> {
+    let mut tints: Vec<Option<usize>> = Vec::new();
+    for (kind, regime) in regimes.iter().enumerate() {
+        let neighbour =
+            |&[a, b]: &[usize; 2]| if a == kind { tints.get(b) } else { tints.get(a).filter(|_| b == kind) };
+        let neighbours: Vec<usize> = borders.iter().filter_map(neighbour).copied().flatten().collect();
+        let count = |same: &dyn Fn(&usize) -> bool| neighbours.iter().filter(|&tint| same(tint)).count();
+        let cost = |tint: &usize| {
+            let used = tints.iter().flatten().filter(|&other| other == tint).count();
+            (count(&|other| other == tint), count(&|other| other % 2 == tint % 2), used, *tint)
+        };
+        let answered = matches!(regime, Regime::Answered { .. });
+        let tint = answered.then(|| (0..Colour::TINTS).min_by_key(cost)).flatten();
+        tints.push(tint);
+    }
+    tints.into_iter().map(|tint| tint.map_or(Colour::Pale, Colour::Tint)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_greek_letters_become_letters_where_they_stand_alone() {
+        let names = ["alpha", "delta_alpha", "left_hip_angle", "alphabet", "mu", "l_1"].map(with_greek_letters);
+        assert_eq!(names, ["α", "δ_α", "left_hip_angle", "alphabet", "μ", "l_1"]);
+    }
+
+    #[test]
+    fn neighbours_never_have_one_colour() {
+        let regime = Regime::Answered { contacts: Vec::new(), outcomes: Vec::new(), undecided: Vec::new() };
+        let regimes = [&regime; 20];
+        // Each kind borders on the one before it, and on the one that would have its colour, were they dealt out in turn.
+        let borders: Vec<[usize; 2]> =
+            (1..20).map(|kind| [kind - 1, kind]).chain((8..20).map(|k| [k, k - 8])).collect();
+        let colours = colours(&regimes, &borders);
+        assert_eq!(colours.len(), 20);
+        for [a, b] in borders {
+            assert_ne!(colours[a], colours[b], "{a} and {b}");
+        }
+    }
+}

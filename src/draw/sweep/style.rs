@@ -1,0 +1,101 @@
+//! How lines along a parameter are drawn, and the legend that tells it: colours for components, dashes for outcomes.
+
+use super::{Kind, angles, is_seen};
+use crate::draw::plot::{Colour, Dash, Entry, Key, Stroke};
+use crate::impact::Mode;
+use crate::sweep::Survey;
+use crate::write::words;
+
+/// The components and their lines: where both are the same, the wider one is seen behind the other.
+pub(super) const COMPONENTS: [(&str, Stroke); 2] =
+    [("tangential", Stroke::solid(Colour::Blue, 2.8)), ("normal", Stroke::solid(Colour::Vermilion, 1.6))];
+
+/// How the lines of each outcome are drawn.
+pub(super) struct Styles<'a>(Vec<Style<'a>>);
+
+struct Style<'a> {
+    contacts: &'a [String],
+    modes: &'a [Mode],
+    /// Its own dashes; none where it needs none to be told from others, and is known by its region.
+    dash: Option<Dash>,
+    /// Of the first region in which it is valid.
+    colour: Colour,
+    /// The letters of the regions in which it is valid.
+    letters: Vec<String>,
+    /// Whether another outcome is valid beside it somewhere.
+    ambiguous: bool,
+    /// Whether its lines are seen anywhere.
+    seen: bool,
+}
+
+impl<'a> Styles<'a> {
+    /// Where some region is ambiguous, each outcome that is seen has its own dashes wherever it is valid; of more outcomes
+    /// than there are dashes only those of ambiguous regions have.
+    pub fn of(survey: &'a Survey, kinds: &[Kind]) -> Self {
+        let mut styles: Vec<Style> = Vec::new();
+        for region in &survey.regions {
+            let contacts = region.regime.contacts();
+            let Kind { letter, colour, .. } = &kinds[region.kind];
+            let outcomes = region.regime.outcomes().unwrap_or_default();
+            for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
+                let ambiguous = outcomes.len() > 1 && is_seen(region, survey);
+                match styles.iter_mut().find(|style| (style.contacts, style.modes) == (contacts, modes)) {
+                    Some(style) => {
+                        style.ambiguous |= ambiguous;
+                        style.seen |= is_seen(region, survey);
+                        if !style.letters.contains(letter) {
+                            style.letters.push(letter.clone());
+                        }
+                    }
+                    None => {
+                        let letters = vec![letter.clone()];
+                        styles.push(Style {
+                            contacts,
+                            modes,
+                            dash: None,
+                            colour: *colour,
+                            letters,
+                            ambiguous,
+                            seen: is_seen(region, survey),
+                        });
+                    }
+                }
+            }
+        }
+        let seen = styles.iter().filter(|style| style.seen).count();
+        let all = seen <= Dash::ALL.len() && styles.iter().any(|style| style.ambiguous);
+        let dashed = styles.iter_mut().filter(|style| style.ambiguous || all && style.seen);
+        dashed.zip(Dash::ALL.into_iter().cycle()).for_each(|(style, dash)| style.dash = Some(dash));
+        Self(styles)
+    }
+
+    pub fn dash(&self, contacts: &[String], modes: &[Mode]) -> Dash {
+        let own = self.0.iter().find(|style| (style.contacts, style.modes) == (contacts, modes));
+        own.and_then(|style| style.dash).unwrap_or(Dash::Solid)
+    }
+
+    /// Components, what angles there are, outcomes with the letters of their regions, regions without any.
+    pub fn legend(&self, kinds: &[Kind], angles: bool) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        if !self.0.is_empty() {
+            entries.extend(COMPONENTS.map(|(name, stroke)| Entry { name: name.into(), key: Key::Line(stroke) }));
+        }
+        if angles {
+            entries.extend(angles::legend());
+        }
+        entries.extend(self.0.iter().map(|Style { contacts, modes, dash, colour, letters, .. }| {
+            let sentence = words::modes(contacts.iter().map(String::as_str), modes);
+            let line = |dash| Key::Line(Stroke { dash, ..Stroke::solid(Colour::Black, 1.6) });
+            let key = dash.map_or(Key::Fill(*colour), line);
+            Entry { name: format!("{}: {sentence}", letters.join(", ")), key }
+        }));
+        for Kind { letter, colour, happening } in kinds {
+            let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
+            let lines = if answered { happening.not_excluded() } else { happening.lines() };
+            if !lines.is_empty() {
+                entries.push(Entry { name: format!("{letter}: {}", lines.join("\n")), key: Key::Fill(*colour) });
+            }
+        }
+        entries
+    }
+}

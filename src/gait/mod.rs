@@ -1,0 +1,219 @@
+//! Touchdowns in recorded gaits: the moments at which a foot that was above the ground reaches it.
+//!
+//! ```text
+//!     samples in time --[sagittal, where the base is in 3-D]--> --[rates, where the table has none]--> --[find]-->
+//!     Touchdown: state, row, time, striking contact
+//! ```
+//!
+//! Recorded feet do not reach z = 0: they float or sink by centimetres, sink slowly while they stand, and may be scuffed
+//! over the ground. So a touchdown is told by the foot's motion. Of every point that can touch (a circle's lowest, a
+//! polygon's corners) the height is followed: a *descent* is a run of rows in which it falls faster than
+//! [`Thresholds::slow`]; it is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last not
+//! falling, ends no higher than [`Thresholds::ground`] above z = 0, and the point is free toward the ground: the lowest of its
+//! body over a ground of some slope m near to level.
+//!
+//! ```text
+//!     z_i - m x_i <= z_j - m x_j  for all points j of the body of i,        with one |m| <= 0.15
+//! ```
+//!
+//! So the toe of a flat foot comes down though the heel is recorded a little lower, and the upper side of a sole or what is
+//! inside of a round foot does not. The moment of contact is the one at which the point is [`Thresholds::above`] over the
+//! level on which its descent ends; before it the foot still has the velocity with which it strikes.
+//!
+//! How far feet float, and how well a height is known, is a matter of recording and not of the robot, so the thresholds are
+//! lengths; they can be told ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its feet less, and has them in
+//! proportion.
+//!
+//! With [`At::Row`] the state is the last row before that moment as it is. With [`At::Crossing`] it is the state at the
+//! moment:
+//!
+//! * Where the next row is before the impact too (the point goes on falling after it), positions lie on the line between
+//!   the two rows.
+//! * Else the next row may be after the impact. Time and positions then go on from the last three rows before it by the
+//!   parabola through them (a line, where there are two), until the point is where it touches; where it would not get there
+//!   before the next row, or the next row is far, they lie on the line between the two rows after all.
+//! * Velocities go through those of rows before the impact alone: on the line between the two rows around the moment, else
+//!   on the line through the last two, carried on. A velocity taken from differences belongs to the middle of the rows that
+//!   it comes from, and one that comes from a row after the impact does not count.
+//! * Neither goes back over two rows of one time: between them another foot may have struck.
+//! * Where the descent ends above that height, the row at which it ends is taken as it is.
+//!
+//! Where a row within that distance is followed by one of the same time, it is the state just before the impact and is taken
+//! as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
+//! [`Thresholds::above`] of z = 0; if it is below, the moment is the one at which it crosses z = 0. In every case the base is
+//! then shifted along z so that the striking point is at z = 0 (a robot that is bolted to the world is not).
+//!
+//! A jump back in time starts a new clip, and so does a step that is more than ten times the longest of the clip so far. A
+//! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order in which they are
+//! known, which is the order of the ends of the descents and, of one time, the order of the links.
+//!
+//! The contacts are named and closed: the striking one, those that strike together with it (both ends of a foot that comes
+//! down flat, both feet of a hop), and those that [`Touching`] adds.
+
+mod carry;
+mod clip;
+mod find;
+mod points;
+mod rates;
+mod sagittal;
+
+pub use find::{Touchdowns, find};
+pub use rates::{Difference, Differentiated, rates};
+pub use sagittal::{Dropped, Sagittal, sagittal};
+
+pub mod spatial;
+
+use crate::contact::Feet;
+use crate::gait::spatial::Spatial;
+use crate::state::NamedContact;
+use crate::state::State;
+use crate::{Error, Reason, Robot};
+use std::fmt;
+use std::str::FromStr;
+
+/// Robots of this size and larger \[m\] have the same thresholds; the size is the greatest distance from the root's origin to
+/// a foot or CoG with all joints at zero.
+pub const SMALL: f64 = 0.25;
+
+/// What counts as a touchdown; of a robot smaller than [`SMALL`] the same part of each as its size is of that.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thresholds {
+    /// The least height of a descent: 12 mm \[m\].
+    pub drop: f64,
+    /// A point that falls more slowly has ended its descent: 0.05 m/s \[m/s\].
+    pub slow: f64,
+    /// The highest level on which a descent may end: 20 mm \[m\].
+    pub ground: f64,
+    /// How far above the level on which its descent ends a point touches the ground: 2 mm \[m\].
+    pub above: f64,
+    /// Points that strike at the same row and are no more apart in height strike together: 1 um \[m\].
+    pub together: f64,
+}
+
+impl Thresholds {
+    /// Those for `robot` with the `feet` that were added to it.
+    pub fn of(robot: &Robot, feet: &[NamedContact]) -> Self {
+        let part = (Feet::new(robot, feet).size() / SMALL).min(1.0);
+        Self { drop: 0.012 * part, slow: 0.05 * part, ground: 0.02 * part, above: 0.002 * part, together: 1e-6 * part }
+    }
+}
+
+/// A state of a recording.
+#[derive(Debug, Clone)]
+pub struct Sample<S> {
+    /// When \[s\].
+    pub time: f64,
+    /// The state; without contacts and without a stance.
+    pub state: State,
+    /// From when to when its velocity was taken \[s\]: at its own time alone, or of differences between two rows.
+    pub rate_over: [f64; 2],
+    /// What the plane does not hold of a base in three dimensions, until the motion is projected ([`sagittal`]).
+    pub spatial: Option<Spatial>,
+    /// What the caller knows it by.
+    pub source: S,
+}
+
+/// A sample, or what stands in its place where it was refused.
+pub type Sampled<S> = std::result::Result<Sample<S>, (S, Error)>;
+
+/// A state just before a foot reaches the ground.
+#[derive(Debug, Clone)]
+pub struct Touchdown<S> {
+    /// The state, with its contacts.
+    pub state: State,
+    /// The sample that it is, or the last one before it, counted from 0 with the refused ones.
+    pub row: usize,
+    /// The time of the state \[s\].
+    pub time: f64,
+    /// The name of the contact that reaches the ground, as in the result; of several at once the first.
+    pub striking: String,
+    /// What was added to the base's z \[m\].
+    pub shift_z: f64,
+    /// What the caller knows the sample by.
+    pub source: S,
+}
+
+/// Which state of a touchdown is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum At {
+    /// At the moment of contact, between two rows.
+    #[default]
+    Crossing,
+    /// The last row before it.
+    Row,
+}
+
+impl At {
+    /// As it is spelled on the command line and in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Crossing => "crossing",
+            Self::Row => "row",
+        }
+    }
+}
+
+/// Which points touch the ground beside the striking one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Touching {
+    /// None.
+    Strike,
+    /// Of every other body the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the striking
+    /// point's by no more than `height` \[m\].
+    Slow {
+        /// Metres per second.
+        speed: f64,
+        /// Metres.
+        height: f64,
+    },
+    /// Every point free toward the ground whose height differs from the striking point's by no more than this \[m\],
+    /// however it moves.
+    Near {
+        /// Metres.
+        height: f64,
+    },
+}
+
+impl Default for Touching {
+    /// Feet that stand in recorded data: slower than 0.35 m/s and within 2 cm.
+    fn default() -> Self {
+        Self::Slow { speed: 0.35, height: 0.02 }
+    }
+}
+
+impl fmt::Display for Touching {
+    /// As it is read.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Strike => f.write_str("strike"),
+            Self::Slow { speed, height } => write!(f, "slow:{speed},{height}"),
+            Self::Near { height } => write!(f, "near:{height}"),
+        }
+    }
+}
+
+impl FromStr for Touching {
+    type Err = Error;
+
+    /// Reads `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`; `slow` alone is the default.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let refused = || {
+            let reason = Reason::Syntax(format!("expected strike, slow:SPEED,HEIGHT or near:HEIGHT, found \"{text}\""));
+            Error::new(reason).hint("as in slow:0.35,0.02, in m/s and m")
+        };
+        let number = |text: &str| {
+            let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
+            number.ok_or_else(refused)
+        };
+        match text.split_once(':') {
+            None if text == "strike" => Ok(Self::Strike),
+            None if text == "slow" => Ok(Self::default()),
+            Some(("slow", bounds)) => {
+                let (speed, height) = bounds.split_once(',').ok_or_else(refused)?;
+                Ok(Self::Slow { speed: number(speed)?, height: number(height)? })
+            }
+            Some(("near", height)) => Ok(Self::Near { height: number(height)? }),
+            _ => Err(refused()),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! The points of a robot that can touch the ground, and where they are.
+
+use super::Touching;
+use crate::contact::{Circle, Feet, Placement, Plane, Point, points};
+use crate::dynamics::plan::{Plan, Posture};
+use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
+use crate::planar::{Rotation, Vector};
+use crate::robot::{Base, Robot};
+use crate::state::NamedContact;
+use crate::state::State;
+
+/// Ground and soles that are taken for level are so up to this slope.
+const SLOPE: f64 = 0.15;
+
+/// All points of a robot's feet, in the order of its links, and the memory to place them.
+#[derive(Debug)]
+pub(super) struct Points<'r> {
+    robot: &'r Robot,
+    plan: Plan,
+    posture: Posture,
+    workspace: Workspace,
+    points: Vec<(usize, Point)>,
+}
+
+impl<'r> Points<'r> {
+    pub fn new(robot: &'r Robot, feet: &[NamedContact]) -> Self {
+        let mut all: Vec<(usize, Point)> = Vec::new();
+        for foot in Feet::new(robot, feet).iter() {
+            for point in points(foot) {
+                // Shapes of a link may share a corner; it is one point all the same.
+                if !all.contains(&(foot.link, point)) {
+                    all.push((foot.link, point));
+                }
+            }
+        }
+        let plan = Plan::new(robot, &[], &[]);
+        Self { robot, plan, posture: Posture::default(), workspace: Workspace::default(), points: all }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
+    pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
+        let placement = self.placement(position);
+        self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect()
+    }
+
+    fn placement(&mut self, position: &[f64]) -> Placement {
+        self.posture.set(&self.plan, position);
+        kinematics(&self.plan, &self.posture, &mut self.workspace);
+        let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
+        Placement::new(&self.plan, &self.workspace, base)
+    }
+
+    /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them to
+    /// within `together` \[m\]; all are at `places`.
+    pub fn is_free(&self, point: usize, places: &[Vector<f64>], together: f64) -> bool {
+        let [x, z] = places[point];
+        // Over the slope m a point is z - m x high.
+        let (mut least, mut most) = (-SLOPE, SLOPE);
+        for other in self.of_body(self.body(point)) {
+            let [across, above] = [x - places[other][0], z - places[other][1] - together];
+            if across > 0.0 {
+                least = least.max(above / across);
+            } else if across < 0.0 {
+                most = most.min(above / across);
+            } else if above > 0.0 {
+                return false;
+            }
+        }
+        least <= most
+    }
+
+    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
+    /// (`also`) among them, `together` as in [`Points::is_free`]; gives the shift \[m\] and the striking one's name.
+    pub fn touch(
+        &mut self,
+        state: &mut State,
+        striking: usize,
+        also: &[usize],
+        touching: Touching,
+        together: f64,
+    ) -> (f64, String) {
+        let placement = self.placement(&state.position);
+        let places: Vec<_> = self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect();
+        let above = |point: usize| (places[point][1] - places[striking][1]).abs();
+        let mut closed = vec![striking];
+        closed.extend(also);
+        match touching {
+            Touching::Strike => {}
+            Touching::Slow { speed, height } => {
+                let mut feet = self.lowest_of_other_bodies(&closed, &places);
+                feet.retain(|&point| above(point) <= height && self.speed(point, &placement, &state.velocity) < speed);
+                closed.append(&mut feet);
+            }
+            Touching::Near { height } => {
+                let free = |point: &usize| above(*point) <= height && self.is_free(*point, &places, together);
+                let near = |point: &usize| *point != striking && !also.contains(point) && free(point);
+                closed.extend((0..places.len()).filter(near));
+            }
+        }
+        // As detected contacts: in the order of the links, within a link along x.
+        let link = |point: usize| self.points[point].0;
+        closed.sort_by(|&a, &b| link(a).cmp(&link(b)).then(places[a][0].total_cmp(&places[b][0])));
+        state.scene.contacts = Some(closed.iter().map(|&point| self.named(point, &placement)).collect());
+
+        let name = self.robot.links[link(striking)].name.clone();
+        let mut of_link = closed.iter().filter(|&&point| link(point) == link(striking));
+        let at = of_link.clone().position(|&point| point == striking).unwrap_or(0);
+        let name = if of_link.nth(1).is_some() { format!("{name}/{at}") } else { name };
+        let shift = match self.robot.base {
+            Base::Floating => -places[striking][1],
+            Base::Fixed => 0.0,
+        };
+        if self.robot.base == Base::Floating {
+            state.position[1] += shift;
+        }
+        (shift, name)
+    }
+
+    /// The lowest point of every body of which none strikes.
+    fn lowest_of_other_bodies(&self, strikers: &[usize], places: &[Vector<f64>]) -> Vec<usize> {
+        let striking: Vec<usize> = strikers.iter().map(|&point| self.body(point)).collect();
+        let others = (0..self.robot.bodies.len()).filter(|body| !striking.contains(body));
+        let height = |point: &usize| places[*point][1];
+        let lowest = |body| self.of_body(body).min_by(|a, b| height(a).total_cmp(&height(b)));
+        others.filter_map(lowest).collect()
+    }
+
+    fn body(&self, point: usize) -> usize {
+        self.points[point].1.body
+    }
+
+    fn of_body(&self, body: usize) -> impl Iterator<Item = usize> {
+        (0..self.points.len()).filter(move |&point| self.body(point) == body)
+    }
+
+    /// Speed of a point after `at` \[m/s\].
+    fn speed(&self, point: usize, placement: &Placement, velocity: &[f64]) -> f64 {
+        let Circle { body, centre, radius, .. } = Plane::LEVEL.circle(placement, self.points[point].1);
+        let arm = ContactPoint { body, centre, radius, ground: Rotation::identity() }.arm(&self.workspace);
+        let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
+        libm::hypot(x, z)
+    }
+
+    fn named(&self, point: usize, placement: &Placement) -> NamedContact {
+        let (link, point) = self.points[point];
+        let Circle { centre, radius, .. } = Plane::LEVEL.circle(placement, point);
+        NamedContact { link, offset: self.robot.links[link].offset(centre), radius }
+    }
+}

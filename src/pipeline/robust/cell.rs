@@ -1,0 +1,232 @@
+//! Boxes of states.
+
+use crate::dynamics::plan::{Plan, Posture};
+use crate::impact::Friction;
+use crate::robot::{Axis, Base, Mover, Robot};
+use crate::scalar::{Affine, Real, Trigonometry};
+use crate::state::{State, Uncertainty};
+
+/// An uncertain number of a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    /// An entry of q, by coordinate.
+    Position(usize),
+    /// An entry of v, by coordinate.
+    Velocity(usize),
+    /// The friction of a link.
+    Friction(usize),
+    /// The rotor inertia of a joint.
+    RotorInertia(usize),
+}
+
+/// A box: an interval for each uncertain number, closed, with f64 ends.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Cell {
+    pub quantities: Vec<Quantity>,
+    /// Least and greatest value of each.
+    pub ends: Vec<[f64; 2]>,
+    /// The f64 nearest to both ends of the whole box that lie in it: half-widths are meant exactly, and `ends` cover them.
+    inner: Vec<[f64; 2]>,
+}
+
+impl Cell {
+    /// The whole box of a state whose contacts are on `links`.
+    pub fn new(robot: &Robot, state: &State, uncertainty: &Uncertainty, links: &[usize]) -> Self {
+        let mut cell = Self { quantities: Vec::new(), ends: Vec::new(), inner: Vec::new() };
+        let base = robot.base_dofs();
+        // Nothing depends on where the base is, and with a stance its velocity follows from the rest.
+        let placed = robot.base == Base::Floating;
+        let follows = placed && state.scene.stance.is_some();
+        for coordinate in 0..robot.dofs() {
+            let bound = coordinate < base.min(2);
+            if !(placed && bound) {
+                let (value, width) = (state.position[coordinate], uncertainty.position[coordinate]);
+                cell.add(Quantity::Position(coordinate), value, width, f64::NEG_INFINITY);
+            }
+            if !(follows && bound) {
+                let (value, width) = (state.velocity[coordinate], uncertainty.velocity[coordinate]);
+                cell.add(Quantity::Velocity(coordinate), value, width, f64::NEG_INFINITY);
+            }
+        }
+        for (at, &link) in links.iter().enumerate().filter(|&(at, link)| !links[..at].contains(link)) {
+            if let Some(Friction::Finite(mu)) = state.scene.friction.of(links[at]) {
+                cell.add(Quantity::Friction(link), mu, uncertainty.friction.of(link).unwrap_or(0.0), 0.0);
+            }
+        }
+        for (joint, &width) in uncertainty.rotor_inertia.iter().enumerate() {
+            // A held joint has no equation of its own for its rotor to enter.
+            if !state.scene.held.contains(&joint) {
+                let value = state.scene.rotor_inertia.get(joint).copied().unwrap_or(0.0);
+                cell.add(Quantity::RotorInertia(joint), value, width, 0.0);
+            }
+        }
+        cell
+    }
+
+    fn add(&mut self, quantity: Quantity, value: f64, width: f64, least: f64) {
+        let [(low, above), (high, below)] = [around(value, -width), around(value, width)];
+        let ends = [low.max(least), high];
+        if ends[0] < ends[1] {
+            self.quantities.push(quantity);
+            self.ends.push(ends);
+            self.inner.push([above.max(least), below]);
+        }
+    }
+
+    /// The middle of the quantity's interval, within it.
+    pub fn middle(&self, index: usize) -> f64 {
+        let [low, high] = self.ends[index];
+        let [least, greatest] = self.inner[index];
+        (low + (high - low) / 2.0).clamp(low, high).max(least).min(greatest)
+    }
+
+    /// The middle of every interval.
+    pub fn centre(&self) -> Vec<f64> {
+        (0..self.ends.len()).map(|index| self.middle(index)).collect()
+    }
+
+    /// The corner that lies in `direction`: the greatest value where it is positive, the least where it is negative, the
+    /// middle where it is zero or not told.
+    pub fn corner(&self, direction: &[f64]) -> Vec<f64> {
+        let towards = |(index, &[low, high]): (usize, &[f64; 2])| match direction.get(index) {
+            Some(&along) if along > 0.0 => high.min(self.inner[index][1]),
+            Some(&along) if along < 0.0 => low.max(self.inner[index][0]),
+            _ => self.middle(index),
+        };
+        self.ends.iter().enumerate().map(towards).collect()
+    }
+
+    /// Both halves along a quantity; none where no f64 lies between its ends.
+    pub fn halves(&self, index: usize) -> Option<[Self; 2]> {
+        let (middle, [low, high]) = (self.middle(index), self.ends[index]);
+        let half = |ends: [f64; 2]| {
+            let mut cell = self.clone();
+            cell.ends[index] = ends;
+            cell
+        };
+        (low < middle && middle < high).then(|| [half([low, middle]), half([middle, high])])
+    }
+
+    /// How wide the positions are; all else enters linearly and counts nothing.
+    pub fn spreads(&self) -> Vec<f64> {
+        let spread = |(quantity, [low, high]): (&Quantity, &[f64; 2])| match quantity {
+            Quantity::Position(_) => high - low,
+            _ => 0.0,
+        };
+        self.quantities.iter().zip(&self.ends).map(spread).collect()
+    }
+
+    /// The quantity's whole interval; none where it is certain.
+    fn find(&self, quantity: Quantity) -> Option<(usize, f64, f64)> {
+        let index = self.quantities.iter().position(|own| *own == quantity)?;
+        let (middle, [low, high]) = (self.middle(index), self.ends[index]);
+        // One rounding of each difference.
+        Some((index, middle, (high - middle).max(middle - low) * (1.0 + f64::EPSILON)))
+    }
+
+    /// The quantity as a number, `certain` where it is.
+    pub fn number<const N: usize>(&self, quantity: Quantity, certain: f64) -> Affine<N> {
+        match self.find(quantity) {
+            Some((index, middle, radius)) => Affine::varying(middle, radius, index),
+            None => Affine::from_f64(certain),
+        }
+    }
+
+    /// Cosines, sines and displacements of all positions in the box.
+    pub fn posture<const N: usize>(&self, robot: &Robot, position: &[f64]) -> Posture<Affine<N>> {
+        let base = robot.base_dofs();
+        let mut posture = Posture::default();
+        for (coordinate, &entry) in position.iter().enumerate() {
+            let turns = match coordinate.checked_sub(base) {
+                Some(joint) => matches!(robot.joints[joint].axis, Axis::Turn { .. }),
+                None => coordinate == 2,
+            };
+            let quantity = Quantity::Position(coordinate);
+            let [cos, sin] = match self.find(quantity) {
+                _ if !turns => [Affine::one(), Affine::zero()],
+                Some((index, middle, radius)) => Affine::cos_sin_varying(middle, radius, index),
+                None => Affine::cos_sin(entry),
+            };
+            posture.cos.push(cos);
+            posture.sin.push(sin);
+            posture.displacement.push(self.number(quantity, entry));
+        }
+        posture
+    }
+
+    /// All velocities in the box.
+    pub fn velocity<const N: usize>(&self, velocity: &[f64]) -> Vec<Affine<N>> {
+        let entries = velocity.iter().enumerate();
+        entries.map(|(coordinate, &entry)| self.number(Quantity::Velocity(coordinate), entry)).collect()
+    }
+
+    /// The robot with all rotors in the box.
+    pub fn plan<const N: usize>(&self, robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
+        let mut plan = Plan::new(robot, held, rotor_inertia);
+        for (body, own) in plan.bodies.iter_mut().zip(&robot.bodies) {
+            let Some(Mover::Joint(joint)) = own.joint else { continue };
+            if let Some((index, middle, radius)) = self.find(Quantity::RotorInertia(joint)) {
+                body.rotor = Affine::varying(middle, radius, index);
+            }
+        }
+        plan
+    }
+}
+
+/// The f64 nearest to `value` + `shift`, first beyond it and then short of it, seen from `value`; the same where it is one.
+fn around(value: f64, shift: f64) -> (f64, f64) {
+    let sum = value + shift;
+    // Knuth's two-sum: what the rounded sum misses.
+    let part = sum - value;
+    let missing = (value - (sum - part)) + (shift - part);
+    let onward = |number: f64| if shift > 0.0 { number.next_up() } else { number.next_down() };
+    let back = |number: f64| if shift > 0.0 { number.next_down() } else { number.next_up() };
+    match missing * shift.signum() {
+        missing if missing > 0.0 => (onward(sum), sum),
+        missing if missing < 0.0 => (sum, back(sum)),
+        _ => (sum, sum),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell() -> Cell {
+        let ends = vec![[1.0, 3.0], [0.0, 0.5]];
+        Cell { quantities: vec![Quantity::Position(2), Quantity::Friction(0)], inner: ends.clone(), ends }
+    }
+
+    #[test]
+    fn a_corner_lies_in_its_direction() {
+        assert_eq!(cell().corner(&[-0.1, 2.0]), [1.0, 0.5]);
+        assert_eq!(cell().corner(&[0.0, f64::NAN]), cell().centre());
+    }
+
+    #[test]
+    fn the_box_is_covered_and_its_corners_lie_in_it() {
+        // 1.3229729102424725 + 0.05 is no f64: the nearest lies above it.
+        let (value, width) = (1.322_972_910_242_472_5, 0.05);
+        let (beyond, short) = around(value, width);
+        assert_eq!(beyond, short.next_up());
+        assert!(beyond - value > width || short - value <= width);
+        assert_eq!(around(1.0, -0.5), (0.5, 0.5));
+    }
+
+    #[test]
+    fn halves_cover_the_whole_and_end_where_f64_ends() {
+        let [left, right] = cell().halves(0).expect("a wide interval");
+        assert_eq!((left.ends[0], right.ends[0]), ([1.0, 2.0], [2.0, 3.0]));
+        let ends = vec![[1.0, 1.0f64.next_up()]];
+        let thin = Cell { quantities: vec![Quantity::Position(2)], inner: ends.clone(), ends };
+        assert_eq!(thin.halves(0), None);
+    }
+
+    #[test]
+    fn a_number_covers_its_interval() {
+        let number: Affine<2> = cell().number(Quantity::Friction(0), 9.0);
+        assert_eq!((number.centre(), number.slopes()[1] >= 0.25), (0.25, true));
+        let certain: Affine<2> = cell().number(Quantity::Velocity(0), 9.0);
+        assert_eq!(certain, Affine::from_f64(9.0));
+    }
+}

@@ -1,0 +1,54 @@
+//! Whether a verdict holds while the state's numbers are known to an interval each.
+//!
+//! ```text
+//!     box of states --affine numbers--> G, c, mu --minors--> det A, numerators --signs--> every combination decided: it holds
+//!                          |                                                     some open: try states, halve the box
+//!                          └── a state whose proven outcomes differ: it does not hold
+//! ```
+//!
+//! The set of outcomes, as lists of modes, is the same on a box if every combination of modes is valid on all of it or
+//! rejected on all of it. The numbers of a box are [`Affine`](crate::scalar::Affine): what they owe to the same uncertain
+//! quantity cancels, and what is left over is of second order in the half-widths. A combination's unknowns are numerators
+//! over det A by Cramer's rule; they are polynomials, so that a pole inside the box (det A = 0) blurs nothing. A box that
+//! leaves combinations open is halved, within a fixed effort. The contact set is taken as that of the given state.
+//! Dependent contacts stay unknown (det A is zero everywhere), and so do long chains, through whose elimination the second
+//! order grows from link to link.
+//!
+//! Cost: O(P) for each operation of the dynamics with P uncertain quantities, and 2n 9^n of them for the minors.
+
+mod kept;
+mod cell;
+mod combination;
+mod search;
+
+pub(crate) use cell::{Cell, Quantity};
+pub(crate) use combination::{Cone, Numbers};
+pub(crate) use search::{Found, Model, search};
+
+use crate::impact::{Mode, Verdict};
+use crate::state::State;
+
+/// More contacts than this are not tried on a box.
+pub const CONTACT_LIMIT: usize = 5;
+
+/// Whether the set of outcomes, as lists of modes, is the same for every state of a box.
+#[derive(Debug, Clone)]
+pub enum Holds {
+    /// It is; shown by bounds that include all rounding.
+    Everywhere,
+    /// It is not.
+    Not(Box<Counterexample>),
+    /// Neither was shown within the effort spent.
+    Unknown,
+}
+
+/// A state of the box whose outcomes differ, as the proven analysis of that very state finds them.
+#[derive(Debug, Clone)]
+pub struct Counterexample {
+    /// The state; its contacts are named, so that they are the same whatever their height.
+    pub state: State,
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// Its outcomes' lists of modes.
+    pub outcomes: Vec<Vec<Mode>>,
+}

@@ -1,0 +1,164 @@
+//! The objects of a text: one, several after each other, or a list of them.
+
+use crate::error::Location;
+use crate::read::json::line_and_column;
+use crate::{Error, Reason, Result};
+use serde::de::IgnoredAny;
+
+/// One object of a text that may hold several.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Document<'t> {
+    /// Its own text, or what is left of a broken one.
+    pub text: &'t str,
+    /// The line on which it begins, from 1.
+    pub line: usize,
+    /// The column in which it begins, from 1.
+    pub column: usize,
+}
+
+impl Document<'_> {
+    /// Puts an error of this document where it stands in the whole text.
+    pub fn locate(&self, error: Error) -> Error {
+        match error.location() {
+            Some(Location { line: 1, column }) => error.on(self.line, self.column + column - 1),
+            Some(Location { line, column }) => error.on(self.line + line - 1, column),
+            None => error.on(self.line, self.column),
+        }
+    }
+}
+
+/// The objects of `text` in their order: one, several with or without line breaks between, or a list of them.
+///
+/// A broken object is given as far as the next line that begins with `{`, which is taken for the next object.
+pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
+    let start = text.len() - text.trim_start().len();
+    let within = if text[start..].starts_with('[') { Within::FreshList } else { Within::Stream };
+    let at = start + usize::from(within != Within::Stream);
+    Documents { text, at, within, counted: 0, line: 1, column: 1 }
+}
+
+/// The bytes as text, without a byte order mark.
+///
+/// # Errors
+/// [`Reason::Syntax`] with line and column of the first byte that is not UTF-8.
+pub fn utf8(bytes: &[u8]) -> Result<&str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
+        Err(broken) => {
+            let valid = String::from_utf8_lossy(&bytes[..broken.valid_up_to()]);
+            let (line, column) = line_and_column(&valid, valid.len());
+            Err(Error::new(Reason::Syntax("the text is not UTF-8".into()))
+                .hint("save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote")
+                .on(line, column))
+        }
+    }
+}
+
+/// What surrounds the next object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Within {
+    Stream,
+    /// A list of which no entry was read yet.
+    FreshList,
+    List,
+}
+
+struct Documents<'t> {
+    text: &'t str,
+    at: usize,
+    within: Within,
+    /// The byte whose place is `line` and `column`.
+    counted: usize,
+    line: usize,
+    column: usize,
+}
+
+impl<'t> Iterator for Documents<'t> {
+    type Item = Document<'t>;
+
+    fn next(&mut self) -> Option<Document<'t>> {
+        self.skip_blanks();
+        if self.within != Within::Stream && self.text[self.at..].starts_with(']') {
+            self.at += 1;
+            self.within = Within::Stream;
+            self.skip_blanks();
+        }
+        if self.within == Within::List && self.text[self.at..].starts_with(',') {
+            self.at += 1;
+            self.skip_blanks();
+        } else if self.within == Within::List {
+            // Neither a comma nor the list's end: what follows cannot be told apart.
+            self.within = Within::Stream;
+            return Some(self.take(self.text.len()));
+        }
+        if self.within == Within::FreshList {
+            self.within = Within::List;
+        }
+        let rest = &self.text[self.at..];
+        if rest.is_empty() && self.within == Within::Stream {
+            return None;
+        }
+        let mut values = serde_json::Deserializer::from_str(rest).into_iter::<IgnoredAny>();
+        let length = match values.next() {
+            Some(Ok(_)) => values.byte_offset(),
+            _ if self.within == Within::Stream => rest.find("\n{").map_or(rest.len(), |newline| newline + 1),
+            _ => {
+                self.within = Within::Stream;
+                rest.len()
+            }
+        };
+        Some(self.take(self.at + length))
+    }
+}
+
+impl<'t> Documents<'t> {
+    fn skip_blanks(&mut self) {
+        self.at = self.text.len() - self.text[self.at..].trim_start().len();
+    }
+
+    fn take(&mut self, end: usize) -> Document<'t> {
+        // The place counts on from the last document's, so that many in one line cost no more than in many lines.
+        let (lines, column) = line_and_column(&self.text[self.counted..], self.at - self.counted);
+        self.line += lines - 1;
+        self.column = if lines == 1 { self.column + column - 1 } else { column };
+        self.counted = self.at;
+        let text = &self.text[self.at..end];
+        self.at = end;
+        Document { text, line: self.line, column: self.column }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parts(text: &str) -> Vec<(&str, usize, usize)> {
+        documents(text).map(|part| (part.text, part.line, part.column)).collect()
+    }
+
+    #[test]
+    fn objects_follow_each_other_with_or_without_line_breaks() {
+        assert_eq!(parts(" {} {\n}\n\n{}\n"), [("{}", 1, 2), ("{\n}", 1, 5), ("{}", 4, 1)]);
+        assert_eq!(parts("  \n"), []);
+    }
+
+    #[test]
+    fn a_list_gives_its_entries() {
+        assert_eq!(parts("[\n{\"a\": 1},\n {}]\n"), [("{\"a\": 1}", 2, 1), ("{}", 3, 2)]);
+        assert_eq!(parts("[]"), []);
+    }
+
+    #[test]
+    fn a_broken_list_ends_with_a_broken_entry() {
+        assert_eq!(parts("[{} {}]"), [("{}", 1, 2), ("{}]", 1, 5)]);
+        assert_eq!(parts("[{},"), [("{}", 1, 2), ("", 1, 5)]);
+        assert_eq!(parts("[{}"), [("{}", 1, 2), ("", 1, 4)]);
+        assert_eq!(parts("["), [("", 1, 2)]);
+    }
+
+    #[test]
+    fn after_a_broken_object_the_next_line_is_tried() {
+        assert_eq!(parts("{\"a\":\n{\"b\": 1}\n"), [("{\"a\":\n", 1, 1), ("{\"b\": 1}", 2, 1)]);
+        assert_eq!(parts("{\"a\" 1}\n{}\n"), [("{\"a\" 1}\n", 1, 1), ("{}", 2, 1)]);
+    }
+}

@@ -1,0 +1,15 @@
+//! From text to states, problems and studies: JSON, its expressions, and CSV.
+
+pub mod expression;
+pub(crate) mod json;
+pub mod documents;
+pub(crate) mod state;
+mod uncertainty;
+mod problem;
+mod variation;
+mod study;
+pub mod table;
+
+pub use problem::Problem;
+pub use state::loops_from_json;
+pub use study::{Parameter, Study};

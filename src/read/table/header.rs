@@ -1,0 +1,335 @@
+//! What each column of a table is, resolved once against the robot.
+
+use super::records::place_of;
+use super::rows::Rows;
+use crate::robot::{Base, Plane, Still};
+use crate::{Error, Reason, Result, Robot};
+use std::collections::HashSet;
+
+/// The entries of a floating base in the order of q.
+const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
+
+/// What recordings of three-dimensional robots have instead of the pitch.
+const QUATERNION: [&str; 4] = ["base_qw", "base_qx", "base_qy", "base_qz"];
+
+/// What they have besides.
+const SIDEWAYS: &str = "base_y";
+
+/// Where the velocities of a table come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Rates {
+    /// From columns `v_...`; a table without one is refused.
+    #[default]
+    Columns,
+    /// From the positions of other rows by the `time` column; a table with columns `v_...` is refused.
+    Time,
+}
+
+/// The columns of a table of states.
+#[derive(Debug, Clone)]
+pub struct Header {
+    pub(crate) names: Vec<String>,
+    pub(crate) columns: Vec<Column>,
+    /// The columns that are carried through.
+    pub(crate) carried: Vec<usize>,
+    pub(crate) id: Option<usize>,
+    pub(crate) time: Option<usize>,
+    pub(crate) spatial: Option<SpatialColumns>,
+}
+
+/// The columns of a base in three dimensions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SpatialColumns {
+    /// Of the origin's x and y.
+    pub origin: [Option<usize>; 2],
+    /// Of w, x, y, z.
+    pub quaternion: [usize; 4],
+    /// The robot's plane.
+    pub plane: Plane,
+}
+
+/// What a column holds; coordinates are indices into q.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Column {
+    Id,
+    Position(usize),
+    Velocity(usize),
+    /// y of a base in three dimensions.
+    Sideways,
+    /// A component of its quaternion, of w, x, y, z.
+    Quaternion(usize),
+    /// Of a joint that has no coordinate of its own.
+    Ignored,
+    Friction,
+    Restitution,
+    Stance,
+    Carried,
+}
+
+impl Header {
+    /// Reads the first record of a table.
+    ///
+    /// # Errors
+    /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
+    /// robot does not have, a base in three dimensions that is half given or given beside a pitch, velocities that are missing
+    /// or one too many (see [`Rates`]). The error tells the column's place in `record`, on line 1.
+    pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
+        let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
+        let names = names(record)?;
+        let mut header = Self {
+            columns: Vec::with_capacity(names.len()),
+            carried: vec![],
+            id: None,
+            time: None,
+            spatial: None,
+            names,
+        };
+        let mut seen = HashSet::new();
+        for (at, name) in header.names.iter().enumerate() {
+            let refused = |error: Error| in_column(error, record, at);
+            if !seen.insert(name.as_str()) {
+                return Err(refused(Reason::Duplicate { what: "column", name: short(name) }.into()));
+            }
+            let column = column(name, robot).map_err(refused)?;
+            match column {
+                Column::Id => header.id = Some(at),
+                Column::Carried => header.carried.push(at),
+                _ => {}
+            }
+            if name == "time" {
+                header.time = Some(at);
+            }
+            header.columns.push(column);
+        }
+        header.spatial = header.spatial(record, robot)?;
+        header.check(record, robot, rates)?;
+        Ok(header)
+    }
+
+    /// What reads the rows of the table.
+    pub fn rows(&self) -> Rows<'_> {
+        Rows::new(self)
+    }
+
+    /// Whether there is a column `time`.
+    pub fn has_time(&self) -> bool {
+        self.time.is_some()
+    }
+
+    /// Whether the base is given in three dimensions, so that the motion has to be projected clip by clip
+    /// ([`crate::gait::sagittal`]).
+    pub fn is_spatial(&self) -> bool {
+        self.spatial.is_some()
+    }
+
+    /// Names of the columns that are not read, because their joints have no coordinate of their own: they are held, welded or
+    /// follow another joint.
+    pub fn ignored(&self) -> impl Iterator<Item = &str> {
+        let ignored = self.columns.iter().zip(&self.names).filter(|(column, _)| **column == Column::Ignored);
+        ignored.map(|(_, name)| name.as_str())
+    }
+
+    /// Names of the columns that are carried through.
+    pub fn carried(&self) -> impl Iterator<Item = &str> {
+        self.carried.iter().map(|&at| self.names[at].as_str())
+    }
+
+    /// Where the first column of a kind is.
+    fn place(&self, wanted: Column) -> Option<usize> {
+        self.columns.iter().position(|column| *column == wanted)
+    }
+
+    /// The columns of a base in three dimensions, if it is given so.
+    fn spatial(&self, record: &[u8], robot: &Robot) -> Result<Option<SpatialColumns>> {
+        let components = [0, 1, 2, 3].map(|component| self.place(Column::Quaternion(component)));
+        let sideways = self.place(Column::Sideways);
+        let Some(first) = components.into_iter().flatten().chain(sideways).min() else { return Ok(None) };
+        if let Some(missing) = components.iter().position(Option::is_none) {
+            let missing = Reason::Missing(format!("column q_{}", QUATERNION[missing]));
+            let hint = "a base in three dimensions has all of q_base_qw, q_base_qx, q_base_qy, q_base_qz; one in the plane \
+                        q_base_x, q_base_z, q_base_pitch alone";
+            return Err(in_column(missing.into(), record, first).hint(hint));
+        }
+        if let Some(pitch) = self.place(Column::Position(2)) {
+            let reason = "the base is turned by a quaternion, and by a pitch besides".to_owned();
+            let error = in_column(Error::new(Reason::Inconsistent(reason)), record, pitch);
+            return Err(error.hint("leave out the one or the other"));
+        }
+        let quaternion = components.map(Option::unwrap_or_default);
+        let origin = [self.place(Column::Position(0)), sideways];
+        Ok(Some(SpatialColumns { origin, quaternion, plane: robot.reading.plane }))
+    }
+
+    /// Refuses a table without what a state needs.
+    fn check(&self, record: &[u8], robot: &Robot, rates: Rates) -> Result<()> {
+        let first = |wanted: fn(&Column) -> bool| self.columns.iter().position(wanted);
+        let velocity = first(|column| matches!(column, Column::Velocity(_)));
+        let example = robot.coordinates().next().map_or("base_x".to_owned(), |name| prefixed(robot, name));
+        let missing = |what: &str, prefix: &str, hint: &str| {
+            let what = format!("a column of {what}, such as {prefix}{example},");
+            Err(Error::new(Reason::Missing(what)).on(1, 1).hint(hint))
+        };
+        if first(|column| matches!(column, Column::Position(_) | Column::Quaternion(_))).is_none() && velocity.is_none()
+        {
+            return missing("positions", "q_", "the first line must name the columns");
+        }
+        if let (true, Some(at)) = (self.is_spatial(), velocity) {
+            let error = in_column(Error::new(spatial_velocity()), record, at);
+            return Err(error.hint(SPATIAL_VELOCITY));
+        }
+        match (rates, velocity) {
+            (Rates::Columns, None) if self.is_spatial() && self.has_time() => {
+                let hint =
+                    "give --velocity central or backward: those of a base in three dimensions are taken from the time";
+                Err(Error::new(Reason::Missing("a source of velocities".into())).on(1, 1).hint(hint))
+            }
+            (Rates::Columns, None) if self.has_time() => missing(
+                "velocities",
+                "v_",
+                "add the columns, or --velocity central or backward to take them from the time",
+            ),
+            (Rates::Columns, None) => {
+                missing("velocities", "v_", "add the columns; with a column time they can be computed")
+            }
+            (Rates::Time, Some(at)) => {
+                let reason = "the table has velocities, and they were to be computed from the time".to_owned();
+                let error = in_column(Error::new(Reason::Inconsistent(reason)), record, at);
+                Err(error.hint("leave out --velocity, or the columns v_..."))
+            }
+            (Rates::Time, None) if !self.has_time() => {
+                let error = Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
+                Err(error.hint("velocities are computed over the time; add the column, or columns v_..."))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Puts an error where column `at` begins in the first record.
+fn in_column(error: Error, record: &[u8], at: usize) -> Error {
+    let (lines, column) = place_of(record, at);
+    error.at(format!("column {}", at + 1)).on(1 + lines, column)
+}
+
+/// The names in the first record, without the space around them.
+fn names(record: &[u8]) -> Result<Vec<String>> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(record);
+    let mut fields = csv::ByteRecord::new();
+    let read =
+        reader.read_byte_record(&mut fields).map_err(|error| Error::new(Reason::Syntax(error.to_string())).on(1, 1))?;
+    if !read {
+        return Err(Error::new(Reason::Missing("the line that names the columns".into()))
+            .on(1, 1)
+            .hint("the table is empty"));
+    }
+    let whole = record.trim_ascii_end().len() as u64;
+    if reader.position().byte() < whole {
+        let (lines, column) = line_and_column_after(record, reader.position().byte());
+        return Err(Error::new(Reason::Syntax("a line break that is not one of this table".into()))
+            .on(lines, column)
+            .hint("save the table with line ends \\n or \\r\\n"));
+    }
+    let name = |(at, field): (usize, &[u8])| match std::str::from_utf8(field) {
+        Ok(name) => Ok(name.trim().to_owned()),
+        Err(_) => {
+            let error = Error::new(Reason::Syntax("the column's name is not UTF-8".into()));
+            Err(in_column(error, record, at).hint("save the table as UTF-8"))
+        }
+    };
+    let names: Vec<String> = fields.iter().enumerate().map(name).collect::<Result<_>>()?;
+    match names.as_slice() {
+        [only] if only.contains([';', '\t']) => {
+            let by = if only.contains(';') { "semicolons" } else { "tabs" };
+            let reason = Reason::Syntax(format!("the columns are parted by {by}, not by commas"));
+            Err(Error::new(reason).on(1, 1).hint("save the table with commas between columns and points in numbers"))
+        }
+        [first, ..] if first.starts_with('{') => {
+            let reason = Reason::Syntax("expected the names of the columns, found JSON".into());
+            Err(Error::new(reason).on(1, 1).hint("are these lines of JSON? then say --input-format ndjson"))
+        }
+        _ => Ok(names),
+    }
+}
+
+/// Line and column of the byte at `offset` of the first record.
+fn line_and_column_after(record: &[u8], offset: u64) -> (usize, usize) {
+    let before = &record[..usize::try_from(offset).map_or(record.len(), |offset| offset.min(record.len()))];
+    let lines = before.iter().filter(|&&byte| byte == b'\n').count();
+    let start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
+    (lines + 1, before.len() - start + 1)
+}
+
+/// What the column called `name` holds.
+fn column(name: &str, robot: &Robot) -> Result<Column> {
+    if let Some(coordinate) = name.strip_prefix("q_") {
+        return self::coordinate("q_", coordinate, robot, Column::Position);
+    }
+    if let Some(coordinate) = name.strip_prefix("v_") {
+        return self::coordinate("v_", coordinate, robot, Column::Velocity);
+    }
+    Ok(match name {
+        "id" => Column::Id,
+        "friction" => Column::Friction,
+        "restitution" => Column::Restitution,
+        "stance" => Column::Stance,
+        _ => Column::Carried,
+    })
+}
+
+/// Why velocities of a base in three dimensions are refused, and the remedy: engines give them in the world's axes, the
+/// body's, or both.
+fn spatial_velocity() -> Reason {
+    Reason::Unsupported("velocities beside a base in three dimensions are not read".into())
+}
+
+const SPATIAL_VELOCITY: &str =
+    "leave out the columns v_..., and give --velocity central to take velocities from the time";
+
+/// What the column of a coordinate holds: `moving` where it is one of the robot's, by its index in q.
+fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Column) -> Result<Column> {
+    if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
+        return Ok(moving(robot.base_dofs() + joint));
+    }
+    let in_base = BASE.iter().position(|entry| *entry == name);
+    if let Some(at) = in_base.filter(|_| robot.base == Base::Floating) {
+        return Ok(moving(at));
+    }
+    let in_space = QUATERNION.iter().position(|entry| *entry == name);
+    let spatial = in_space.map(Column::Quaternion).or((name == SIDEWAYS).then_some(Column::Sideways));
+    if robot.base == Base::Fixed && (in_base.is_some() || spatial.is_some()) {
+        let reason = "the robot is bolted to the world, its base has no coordinates".to_owned();
+        return Err(Error::new(Reason::Inconsistent(reason)).hint("leave the column out, or give --base floating"));
+    }
+    match spatial {
+        Some(column) if prefix == "q_" => return Ok(column),
+        Some(_) => return Err(Error::new(spatial_velocity()).hint(SPATIAL_VELOCITY)),
+        None => {}
+    }
+    match robot.held(name) {
+        Some(held) if held.still == Still::Base => {
+            let reason = Reason::Inconsistent(format!("joint \"{}\" is {}", short(name), held.why()));
+            let hint = format!("give {prefix}base_x, {prefix}base_z and {prefix}base_pitch");
+            return Err(Error::new(reason).hint(hint));
+        }
+        Some(_) => return Ok(Column::Ignored),
+        None if robot.followers.iter().any(|follower| follower.name == name) => return Ok(Column::Ignored),
+        None => {}
+    }
+    let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();
+    let reason = Reason::UnknownName { what: "coordinate", name: short(name) };
+    Err(Error::new(reason).did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
+}
+
+/// A coordinate's name as columns have it behind `q_` and `v_`.
+pub(crate) fn prefixed(robot: &Robot, name: &str) -> String {
+    if robot.joint(name).is_some() { name.to_owned() } else { format!("base_{name}") }
+}
+
+/// The beginning of a text that may be long, for messages.
+pub(crate) fn short(text: &str) -> String {
+    const MOST: usize = 60;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}

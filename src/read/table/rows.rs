@@ -1,0 +1,299 @@
+//! Rows of a table and their states.
+
+use super::header::{Column, Header, SpatialColumns, short};
+use super::records::place_of;
+use crate::gait::spatial::{Spatial, project};
+use crate::impact::Friction;
+use crate::robot::Base;
+use crate::state::{ByLink, Scene};
+use crate::state::{Defaults, State};
+use crate::{Error, Reason, Result, Robot};
+use csv::ByteRecord;
+use serde_json::Value;
+use std::borrow::Cow;
+use std::io::{self, Read};
+
+/// Reads the rows of a table one record at a time, in memory that is reused.
+#[derive(Debug)]
+pub struct Rows<'h> {
+    header: &'h Header,
+    reader: csv::Reader<Feed>,
+    record: ByteRecord,
+}
+
+/// The bytes of one record after the other, so that one reader with its tables serves them all.
+#[derive(Debug, Default)]
+struct Feed {
+    bytes: Vec<u8>,
+    at: usize,
+    /// More was wanted than there is: the reader takes that for the end of everything.
+    ended: bool,
+}
+
+impl Read for Feed {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let read = (&self.bytes[self.at..]).read(into)?;
+        self.at += read;
+        self.ended |= read == 0;
+        Ok(read)
+    }
+}
+
+/// One record and the columns that it belongs to.
+#[derive(Debug, Clone, Copy)]
+pub struct Row<'r> {
+    header: &'r Header,
+    record: &'r ByteRecord,
+    raw: &'r [u8],
+    line: usize,
+}
+
+/// The fields of a row that are carried through, kept beyond their chunk.
+#[derive(Debug, Clone, Default)]
+pub struct Carried(ByteRecord);
+
+impl Carried {
+    /// These fields.
+    pub fn new(fields: impl Iterator<Item = String>) -> Self {
+        Self(fields.collect::<Vec<_>>().into())
+    }
+
+    /// The fields in the order of [`Header::carried`]; none where the row could not be read.
+    pub fn fields(&self) -> impl Iterator<Item = &[u8]> {
+        self.0.iter()
+    }
+
+    /// The fields as text by column; bytes that are no UTF-8 are replaced.
+    pub fn by_name<'c>(&'c self, header: &'c Header) -> impl Iterator<Item = (&'c str, Cow<'c, str>)> {
+        header.carried().zip(self.0.iter().map(String::from_utf8_lossy))
+    }
+}
+
+impl<'h> Rows<'h> {
+    pub(super) fn new(header: &'h Header) -> Self {
+        Self { header, reader: reader(), record: ByteRecord::new() }
+    }
+
+    /// The row in `record`, which begins on `line` of the table and may end with a line break; none where it is blank.
+    ///
+    /// # Errors
+    /// [`Reason::Syntax`] for a quote that is not closed and for a line break outside of quotes.
+    pub fn row<'r>(&'r mut self, record: &'r [u8], line: usize) -> Result<Option<Row<'r>>> {
+        let raw = record.strip_suffix(b"\n").unwrap_or(record);
+        let raw = raw.strip_suffix(b"\r").unwrap_or(raw);
+        if raw.trim_ascii().is_empty() {
+            return Ok(None);
+        }
+        let feed = self.reader.get_mut();
+        feed.bytes.clear();
+        feed.bytes.extend_from_slice(raw);
+        feed.bytes.push(b'\n');
+        feed.at = 0;
+        let start = self.reader.position().byte();
+        let read = self.reader.read_byte_record(&mut self.record);
+        let whole = self.reader.position().byte() - start > raw.len() as u64;
+        if self.reader.get_ref().ended || !whole {
+            let unclosed = self.reader.get_ref().ended;
+            self.reader = reader();
+            let reason =
+                if unclosed { "a quote is not closed" } else { "a line break of another kind stands in the row" };
+            return Err(Error::new(Reason::Syntax(reason.into())).on(line, 1));
+        }
+        match read {
+            Ok(_) => Ok(Some(Row { header: self.header, record: &self.record, raw, line })),
+            Err(error) => Err(Error::new(Reason::Syntax(error.to_string())).on(line, 1)),
+        }
+    }
+}
+
+fn reader() -> csv::Reader<Feed> {
+    csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(Feed::default())
+}
+
+impl Row<'_> {
+    /// The line on which the row begins, counted from 1.
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// What the user calls it, where that can be read.
+    pub fn id(&self) -> Option<Value> {
+        let text = std::str::from_utf8(self.record.get(self.header.id?)?).ok()?;
+        (!text.is_empty()).then(|| Value::String(text.to_owned()))
+    }
+
+    /// The fields that are carried through, where the row has as many as the header.
+    pub fn carried(&self) -> Carried {
+        if self.record.len() != self.header.columns.len() {
+            return Carried::default();
+        }
+        Carried(self.header.carried.iter().filter_map(|&at| self.record.get(at)).collect())
+    }
+
+    /// The time \[s\].
+    ///
+    /// # Errors
+    /// A table without it, and what is not a finite number.
+    pub fn time(&self) -> Result<f64> {
+        let missing = || Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
+        self.number(self.header.time.ok_or_else(missing)?)
+    }
+
+    /// The state of `robot`; what the row and `defaults` leave open is 0, of the friction unknown. Its x is that of the table
+    /// also where the base is given in three dimensions; along the heading it is put by [`crate::gait::sagittal`].
+    ///
+    /// # Errors
+    /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that is
+    /// both placed by a stance and given, a quaternion that is none. The error tells column, line and place.
+    pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
+        let (fields, columns) = (self.record.len(), self.header.columns.len());
+        if fields != columns {
+            let reason =
+                format!("the row has {fields} field{}, the header {columns}", if fields == 1 { "" } else { "s" });
+            return Err(Error::new(Reason::Inconsistent(reason)).on(self.line, 1));
+        }
+        let stance = self.stance(robot)?;
+        let mut state = State {
+            id: self.id(),
+            position: vec![0.0; robot.dofs()],
+            velocity: vec![0.0; robot.dofs()],
+            scene: Scene { stance, loops: defaults.loops.clone(), ..Scene::default() },
+            uncertainty: None,
+        };
+        let mut friction = None;
+        for (at, &column) in self.header.columns.iter().enumerate() {
+            match column {
+                Column::Position(to @ 0..2) | Column::Velocity(to @ 0..2) if stance.is_some() => {
+                    self.placed_base(at, ["x", "z"][to])?
+                }
+                Column::Sideways if stance.is_some() => self.placed_base(at, "y")?,
+                Column::Sideways | Column::Quaternion(_) => drop(self.number(at)?),
+                Column::Position(to) => state.position[to] = self.number(at)?,
+                Column::Velocity(to) => state.velocity[to] = self.number(at)?,
+                Column::Friction => friction = self.given(at)?.map(|text| self.friction(at, text)).transpose()?,
+                Column::Restitution => {
+                    if self.given(at)?.is_some() {
+                        state.scene.restitution = ByLink::everywhere(self.restitution(at)?);
+                    }
+                }
+                Column::Id => drop(self.given(at)?),
+                Column::Stance | Column::Carried | Column::Ignored => {}
+            }
+        }
+        if let Some((pitch, _)) = self.projected()? {
+            state.position[2] = pitch;
+        }
+        state.scene.friction.default = friction.or(defaults.friction);
+        Ok(state)
+    }
+
+    /// What the plane does not hold of a base that is given in three dimensions.
+    ///
+    /// # Errors
+    /// Those of [`Row::state`] about it.
+    pub fn spatial(&self) -> Result<Option<Spatial>> {
+        Ok(self.projected()?.map(|(_, spatial)| spatial))
+    }
+
+    /// The pitch of a base in three dimensions, and the rest.
+    fn projected(&self) -> Result<Option<(f64, Spatial)>> {
+        let Some(SpatialColumns { origin, quaternion, plane }) = self.header.spatial else { return Ok(None) };
+        // A stance leaves x and y open.
+        let length = |at: Option<usize>| match at {
+            Some(at) if self.given(at)?.is_some() => self.number(at),
+            _ => Ok(0.0),
+        };
+        let origin = [length(origin[0])?, length(origin[1])?];
+        let [w, x, y, z] = quaternion.map(|at| self.number(at));
+        let (lines, column) = place_of(self.raw, quaternion[0]);
+        let refused = |error: Error| error.at("q_base_qw").on(self.line + lines, column);
+        project(origin, [w?, x?, y?, z?], plane).map(Some).map_err(refused)
+    }
+
+    fn stance(&self, robot: &Robot) -> Result<Option<usize>> {
+        let Some(at) = self.header.columns.iter().position(|column| *column == Column::Stance) else {
+            return Ok(None);
+        };
+        let Some(name) = self.given(at)? else {
+            return Ok(None);
+        };
+        if robot.base == Base::Fixed {
+            let reason = "the robot is bolted to the world, a stance cannot place it".to_owned();
+            let error = self.refuse(at, Reason::Inconsistent(reason));
+            return Err(error.hint("leave it out, or give --base floating"));
+        }
+        let unknown = || {
+            let known = robot.links.iter().map(|link| link.name.as_str());
+            self.refuse(at, Reason::UnknownName { what: "link", name: short(name) }).did_you_mean(name, known)
+        };
+        robot.link(name).map(Some).ok_or_else(unknown)
+    }
+
+    /// Refuses a base's coordinate beside a stance.
+    fn placed_base(&self, at: usize, coordinate: &str) -> Result<()> {
+        if self.given(at)?.is_none() {
+            return Ok(());
+        }
+        let reason = Reason::Inconsistent(format!("the stance already gives the base's {coordinate}"));
+        Err(self.refuse(at, reason).hint("empty either the stance's cell or the base's x and z"))
+    }
+
+    fn friction(&self, at: usize, text: &str) -> Result<Friction> {
+        if text == "infinite" {
+            return Ok(Friction::Infinite);
+        }
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() && value >= 0.0 => Ok(Friction::Finite(value)),
+            Ok(value) if value < 0.0 => {
+                Err(self.refuse(at, Reason::OutOfRange { what: "friction".into(), allowed: "0 or more", value }))
+            }
+            Ok(value) if value.is_infinite() => Err(self
+                .refuse(at, Reason::NotFinite { what: "friction".into(), value })
+                .hint("did you mean infinite?")),
+            Ok(value) => Err(self.refuse(at, Reason::NotFinite { what: "friction".into(), value })),
+            Err(_) => {
+                let reason = Reason::Syntax(format!("expected a number or infinite, found \"{}\"", short(text)));
+                Err(self.refuse(at, reason).did_you_mean(text, ["infinite"]))
+            }
+        }
+    }
+
+    fn restitution(&self, at: usize) -> Result<f64> {
+        let value = self.number(at)?;
+        if (0.0..=1.0).contains(&value) {
+            return Ok(value);
+        }
+        Err(self.refuse(at, Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value }))
+    }
+
+    /// The number in a cell.
+    fn number(&self, at: usize) -> Result<f64> {
+        let Some(text) = self.given(at)? else {
+            let reason = Reason::WrongKind { expected: "a number", found: "an empty cell" };
+            return Err(self.refuse(at, reason).hint("write 0 where it is 0, or leave the column out"));
+        };
+        let value: f64 = text.parse().map_err(|_| {
+            let error = self.refuse(at, Reason::Syntax(format!("expected a number, found \"{}\"", short(text))));
+            if text.contains(',') { error.hint("write decimals with a point") } else { error }
+        })?;
+        if value.is_finite() {
+            return Ok(value);
+        }
+        Err(self.refuse(at, Reason::NotFinite { what: "a cell".into(), value }))
+    }
+
+    /// The text in a cell that is not empty.
+    fn given(&self, at: usize) -> Result<Option<&str>> {
+        let field = self.record.get(at).unwrap_or_default().trim_ascii();
+        match std::str::from_utf8(field) {
+            Ok(text) => Ok((!text.is_empty()).then_some(text)),
+            Err(_) => Err(self.refuse(at, Reason::Syntax("the cell is not UTF-8".into()))),
+        }
+    }
+
+    fn refuse(&self, at: usize, reason: Reason) -> Error {
+        let (lines, column) = place_of(self.raw, at);
+        let name = self.header.names.get(at).map_or("", String::as_str);
+        Error::new(reason).at(short(name)).on(self.line + lines, column)
+    }
+}

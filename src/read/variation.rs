@@ -1,0 +1,97 @@
+//! A robot with other numbers than its file's.
+
+use crate::description::{Collision, Description, Geometry, Inertial, Pose};
+use crate::read::json::Node;
+use crate::{Error, Reason, Result};
+
+/// The fields of a link and of a joint that can be varied, for hints.
+const OF_LINK: [&str; 4] = ["mass", "com", "inertia", "radius"];
+const OF_JOINT: [&str; 1] = ["origin"];
+
+/// `description` with the numbers of `{"links": {name: {"mass", "com", "inertia", "radius"}}, "joints": {name: {"origin"}}}`.
+///
+/// The mass \[kg\]; the CoG in the link's frame \[m\]; the moment of inertia about the CoG and the plane's normal \[kg m^2\],
+/// taken for every axis; the radius of the link's round collision shapes \[m\]; the place of the joint's frame in its
+/// parent's \[m\].
+///
+/// # Errors
+/// Unknown links, joints and fields; negative masses, moments and radii; a radius for a link without round shapes.
+pub fn applied(field: Node, description: &Description) -> Result<Description> {
+    let mut varied = description.clone();
+    for part in field.fields("field")? {
+        match part.key() {
+            "links" => {
+                for entry in part.fields("link")? {
+                    link(entry, &mut varied)?;
+                }
+            }
+            "joints" => {
+                for entry in part.fields("joint")? {
+                    joint(entry, &mut varied)?;
+                }
+            }
+            _ => return Err(part.unknown_field(&["links", "joints"])),
+        }
+    }
+    Ok(varied)
+}
+
+fn link(entry: Node, varied: &mut Description) -> Result<()> {
+    let name = entry.key();
+    let Some(at) = varied.links.iter().position(|link| link.name == name) else {
+        return Err(unknown(entry, "link", varied.links.iter().map(|link| link.name.as_str())));
+    };
+    let link = &mut varied.links[at];
+    let massless = || Inertial { origin: Pose { xyz: [0.0; 3], rpy: [0.0; 3] }, mass: 0.0, inertia: None };
+    for part in entry.fields("field")? {
+        match part.key() {
+            "mass" => link.inertial.get_or_insert_with(massless).mass = part.number_from_zero("mass")?,
+            "com" => link.inertial.get_or_insert_with(massless).origin.xyz = part.numbers("a list of 3 numbers")?,
+            "inertia" => {
+                let moment = part.number_from_zero("the moment of inertia")?;
+                let inertia = [[moment, 0.0, 0.0], [0.0, moment, 0.0], [0.0, 0.0, moment]];
+                link.inertial.get_or_insert_with(massless).inertia = Some(inertia);
+            }
+            "radius" => radius(part, &mut link.collisions)?,
+            _ => return Err(part.unknown_field(&OF_LINK)),
+        }
+    }
+    Ok(())
+}
+
+fn radius(part: Node, collisions: &mut [Collision]) -> Result<()> {
+    let value = part.number_from_zero("radius")?;
+    let mut any = false;
+    for collision in collisions {
+        match &mut collision.geometry {
+            Geometry::Sphere { radius } | Geometry::Cylinder { radius, .. } | Geometry::Capsule { radius, .. } => {
+                (*radius, any) = (value, true);
+            }
+            Geometry::Box { .. } | Geometry::Mesh { .. } | Geometry::Unknown { .. } => {}
+        }
+    }
+    match any {
+        true => Ok(()),
+        false => Err(part
+            .refuse(Reason::Inconsistent("the link has no round collision shape".into()))
+            .hint("a radius belongs to spheres, cylinders and capsules; name the link that carries the foot")),
+    }
+}
+
+fn joint(entry: Node, varied: &mut Description) -> Result<()> {
+    let Some(at) = varied.joint(entry.key()) else {
+        return Err(unknown(entry, "joint", varied.joints.iter().map(|joint| joint.name.as_str())));
+    };
+    for part in entry.fields("field")? {
+        match part.key() {
+            "origin" => varied.joints[at].origin.xyz = part.numbers("a list of 3 numbers")?,
+            _ => return Err(part.unknown_field(&OF_JOINT)),
+        }
+    }
+    Ok(())
+}
+
+fn unknown<'a>(entry: Node, what: &'static str, known: impl Iterator<Item = &'a str>) -> Error {
+    let name = entry.key();
+    entry.refuse_name(name, Reason::UnknownName { what, name: name.to_owned() }).did_you_mean(name, known)
+}

@@ -1,0 +1,96 @@
+//! What surrounds the robot: ground, friction, restitution, held joints, loops, applied impulses.
+
+use super::ground::Ground;
+use crate::impact::Friction;
+use crate::planar::Vector;
+
+/// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).
+#[derive(Debug, Clone, Default)]
+pub struct Scene {
+    /// What the robot strikes.
+    pub ground: Ground,
+    /// Friction of each contact's link; none where the state leaves it to the command line.
+    pub friction: ByLink<Friction>,
+    /// Newton restitution of each contact's link, 0 to 1; 0 where none is given.
+    pub restitution: ByLink<f64>,
+    /// The link whose lowest point is placed on the ground at x = 0 and is at rest.
+    pub stance: Option<usize>,
+    /// Joints that keep their velocity through the impact.
+    pub held: Vec<usize>,
+    /// Rotor inertia at each joint and then at each follower \[kg m^2\]; empty for none. It is added to the mass matrix's
+    /// diagonal, that of a follower times multiplier^2.
+    pub rotor_inertia: Vec<f64>,
+    /// Contacts named by hand; none where they are detected.
+    pub contacts: Option<Vec<NamedContact>>,
+    /// Pairs of points that stay together.
+    pub loops: Vec<NamedLoop>,
+    /// Impulses applied at the instant of the impact.
+    pub impulses: Vec<AppliedImpulse>,
+}
+
+/// A value per link with a default.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ByLink<T> {
+    /// For links that are not named.
+    pub default: Option<T>,
+    /// Link and its value.
+    pub links: Vec<(usize, T)>,
+}
+
+/// A contact point that the user names.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedContact {
+    /// The link.
+    pub link: usize,
+    /// Point (or centre of the circle) in the link's 3-D frame \[m\].
+    pub offset: [f64; 3],
+    /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
+    pub radius: f64,
+}
+
+/// Two points of links that stay together, as the pin does that a URDF, being a tree, cannot hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedLoop {
+    /// The point on which the loop's impulse acts.
+    pub a: LinkPoint,
+    /// The point on which the opposite impulse acts.
+    pub b: LinkPoint,
+}
+
+/// A point of a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkPoint {
+    /// The link.
+    pub link: usize,
+    /// The point in the link's 3-D frame \[m\].
+    pub offset: [f64; 3],
+}
+
+/// An impulse that acts on the robot while it strikes the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AppliedImpulse {
+    /// The link it acts on.
+    pub link: usize,
+    /// Its point in the link's 3-D frame \[m\].
+    pub offset: [f64; 3],
+    /// The impulse `[x, z]` in the world's axes \[N s\].
+    pub vector: Vector<f64>,
+}
+
+impl<T> Default for ByLink<T> {
+    fn default() -> Self {
+        Self { default: None, links: Vec::new() }
+    }
+}
+
+impl<T: Copy> ByLink<T> {
+    /// The same value for every link.
+    pub fn everywhere(value: T) -> Self {
+        Self { default: Some(value), links: Vec::new() }
+    }
+
+    /// The value of a link.
+    pub fn of(&self, link: usize) -> Option<T> {
+        self.links.iter().find(|(named, _)| *named == link).map(|&(_, value)| value).or(self.default)
+    }
+}

@@ -1,0 +1,262 @@
+//! Error against run time as text for people.
+
+use super::{Accuracy, Compliant, name_of};
+use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
+use crate::accuracy::{Errors, Factorization, Method, Spread, Study, Work};
+use crate::write::Palette;
+use crate::write::text::table::{Table, number};
+use std::fmt::Write;
+
+impl Accuracy {
+    /// As text for people.
+    pub fn text(&self, palette: &Palette) -> String {
+        let mut out = String::new();
+        match self.studies.as_slice() {
+            [study] => one(&mut out, study, palette),
+            studies => many(&mut out, studies, palette),
+        }
+        if let Some(advice) = &self.advice {
+            let _ = writeln!(out, "\n{advice}");
+        }
+        if let Some(compliant) = &self.compliant {
+            compare(&mut out, compliant, palette);
+        }
+        out
+    }
+}
+
+/// One case: a line for each method.
+fn one(out: &mut String, study: &Study, Palette { strong, plain, .. }: &Palette) {
+    let _ = writeln!(out, "{strong}{}{plain}: {}", study.name, ending(study));
+    let _ = writeln!(out, "Condition: {}.\n", conditions(study));
+    let methods = &study.methods;
+    let error = |pick: fn(&Errors) -> Option<f64>| {
+        methods.iter().map(move |method| method.error.as_ref().and_then(pick).map_or("-".into(), digits))
+    };
+    Table::default()
+        .text("method", methods.iter().map(name_of))
+        .text("from state to", methods.iter().map(|method| work(method.work)))
+        .text("time", methods.iter().map(|method| method.time.map_or("-".into(), span)))
+        .text("digits of M", error(|error| error.mass_matrix))
+        .text("of G", error(|error| error.delassus))
+        .text("of the outcomes", error(|error| error.outcome))
+        .write(out);
+    out.push_str("  time: median [quartiles]; digits: -log10 of the largest error, free of units\n");
+    tell_left_out(out, std::slice::from_ref(study));
+}
+
+fn work(work: Work) -> &'static str {
+    match work {
+        Work::Delassus => "G",
+        Work::Answer => "verdict",
+        Work::Outcome => "outcomes",
+    }
+}
+
+/// Many cases: a line for each, then one for each method.
+fn many(out: &mut String, studies: &[Study], Palette { strong, plain, .. }: &Palette) {
+    let columns = [
+        ("f32", Factorization::SparseLtl, "f32 LTL"),
+        ("f64", Factorization::SparseLtl, "LTL"),
+        ("f64", Factorization::DenseCholesky, "Cholesky"),
+        ("f64", Factorization::ArticulatedBodies, "artic."),
+        ("double-double", Factorization::ArticulatedBodies, "dd artic."),
+    ];
+    let _ = writeln!(out, "{strong}{} stiff and extreme cases{plain}, digits of G by each method:\n", studies.len());
+    let mut table = Table::default()
+        .text("case", studies.iter().map(|study| study.name.as_str()))
+        .text("verdict", studies.iter().map(brief_ending))
+        .text("cond. M", studies.iter().map(|study| power(study.condition.mass_matrix)))
+        .text("G", studies.iter().map(|study| power(study.condition.delassus)));
+    for (number, factorization, head) in columns {
+        let cell = |study: &Study| {
+            let mut methods = study.methods.iter();
+            let method = methods.find(|m| m.number == number && m.factorization == Some(factorization));
+            method.and_then(|method| method.error?.delassus).map_or("-".into(), digits)
+        };
+        table = table.text(head, studies.iter().map(cell));
+    }
+    table.write(out);
+    for (study, error) in studies.iter().filter_map(|study| Some((study, study.refused.as_ref()?))) {
+        let _ = writeln!(out, "  {}: {error}", study.name);
+    }
+    let _ = writeln!(out, "\n{strong}By method{plain}, over all cases:\n");
+    let mut methods: Vec<&Method> = Vec::new();
+    for method in studies.iter().flat_map(|study| &study.methods).filter(|method| method.time.is_some()) {
+        if !methods.iter().any(|known| name_of(known) == name_of(method) && known.work == method.work) {
+            methods.push(method);
+        }
+    }
+    let all = |method: &Method| {
+        let (name, work) = (name_of(method), method.work);
+        let every = studies.iter().flat_map(|study| &study.methods);
+        every.filter(move |other| other.work == work && name_of(other) == name).collect::<Vec<_>>()
+    };
+    let times = |method: &&Method| {
+        let mut medians: Vec<f64> =
+            all(method).iter().filter_map(|method| method.time).map(|time| time.median).collect();
+        medians.sort_by(f64::total_cmp);
+        let at = |part: usize| medians[(medians.len() - 1) * part / 4];
+        let times = Spread { lower_quartile: at(1), median: at(2), upper_quartile: at(3), samples: medians.len() };
+        span(times)
+    };
+    let errors = |method: &&Method, part: usize| {
+        let mut errors: Vec<f64> =
+            all(method).iter().filter_map(|method| method.error?.delassus).filter(|error| !error.is_nan()).collect();
+        errors.sort_by(f64::total_cmp);
+        if errors.is_empty() { "-".into() } else { digits(errors[(errors.len() - 1) * part / 2]) }
+    };
+    Table::default()
+        .text("method", methods.iter().map(|method| name_of(method)))
+        .text("from state to", methods.iter().map(|method| work(method.work)))
+        .text("time", methods.iter().map(times))
+        .text("digits of G", methods.iter().map(|method| errors(method, 1)))
+        .text("fewest", methods.iter().map(|method| errors(method, 2)))
+        .write(out);
+    out.push_str("  time: median [quartiles] of the cases; digits: -log10 of the largest error, free of units\n");
+    tell_left_out(out, studies);
+}
+
+/// Methods that were not tried, and why.
+fn tell_left_out(out: &mut String, studies: &[Study]) {
+    let every = || studies.iter().flat_map(|study| &study.methods);
+    let mut told: Vec<String> = Vec::new();
+    for (method, why) in every().filter_map(|method| Some((method, method.left_out?))) {
+        let name = name_of(method);
+        if !told.contains(&name) {
+            let cases = every().filter(|other| other.left_out == Some(why) && name_of(other) == name).count();
+            let of = if studies.len() > 1 { format!(" of {cases} of these cases") } else { String::new() };
+            let _ = writeln!(out, "  {name} is left out{of}: {why}");
+            told.push(name);
+        }
+    }
+}
+
+fn ending(study: &Study) -> String {
+    match (&study.answer, &study.refused) {
+        (Some(answer), _) => {
+            let (outcomes, s) = (answer.outcomes, if answer.outcomes == 1 { "" } else { "s" });
+            let proven = if answer.proven { "proven" } else { "not proven" };
+            format!("{}, {outcomes} outcome{s}, {proven}.", answer.verdict)
+        }
+        (None, Some(error)) => format!("refused: {error}."),
+        (None, None) => "no answer.".to_owned(),
+    }
+}
+
+fn brief_ending(study: &Study) -> String {
+    match (&study.answer, &study.refused) {
+        (Some(answer), _) => format!("{}{}", answer.verdict, if answer.proven { "" } else { " (not proven)" }),
+        (None, Some(_)) => "refused".to_owned(),
+        (None, None) => "-".to_owned(),
+    }
+}
+
+fn conditions(study: &Study) -> String {
+    let of = |what: &str, condition: Option<f64>| condition.map(|value| format!("{what} {}", number(value)));
+    let told: Vec<String> =
+        [of("mass matrix", study.condition.mass_matrix), of("Delassus matrix", study.condition.delassus)]
+            .into_iter()
+            .flatten()
+            .collect();
+    if told.is_empty() { "not known".into() } else { told.join(", ") }
+}
+
+fn power(condition: Option<f64>) -> String {
+    condition.map_or("-".into(), |value| if value < 1e3 { format!("{value:.0}") } else { format!("{value:.0e}") })
+}
+
+/// Less than any number but the reference can err by: what is left is the reference's own doubt.
+const NO_ERROR: f64 = 1e-40;
+
+/// Digits that an error leaves.
+fn digits(error: f64) -> String {
+    if error.is_nan() {
+        "none".to_owned()
+    } else if error < NO_ERROR {
+        "all".to_owned()
+    } else {
+        format!("{:.1}", (-libm::log10(error)).max(0.0))
+    }
+}
+
+fn span(time: Spread) -> String {
+    let (factor, unit) = match time.median {
+        median if median < 1e-6 => (1e9, "ns"),
+        median if median < 1e-3 => (1e6, "µs"),
+        median if median < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    let [low, median, high] = [time.lower_quartile, time.median, time.upper_quartile].map(|value| {
+        let value = value * factor;
+        if value < 10.0 { format!("{value:.2}") } else { format!("{value:.0}") }
+    });
+    format!("{median} {unit} [{low}, {high}]")
+}
+
+fn compare(out: &mut String, compliant: &Compliant, Palette { strong, plain, .. }: &Palette) {
+    let Compliant { name, comparison } = compliant;
+    let _ = writeln!(out, "\n{strong}Compliant contact{plain} beside the rigid outcomes of {name}:\n");
+    for (at, outcome) in comparison.outcomes.iter().enumerate() {
+        let modes: Vec<String> = outcome.modes.iter().map(ToString::to_string).collect();
+        let index = outcome.index.map_or("none".into(), |index| format!("{index:+}"));
+        let _ = writeln!(
+            out,
+            "  {}  {} (index {index}): nearest of {} runs, within {} % of {}",
+            at + 1,
+            modes.join(", "),
+            outcome.nearest,
+            100.0 * NEAR,
+            outcome.near
+        );
+    }
+    if comparison.unsettled > 0 {
+        let _ = writeln!(out, "  {} runs did not come to an end and count nowhere", comparison.unsettled);
+    }
+    out.push('\n');
+    let groups = &comparison.groups;
+    let three = |part: usize| groups.iter().map(move |group| share(group.distance[part]));
+    let value = |value: Option<f64>| value.map_or("infinite".into(), number);
+    Table::default()
+        .text("parameter", groups.iter().map(|group| group.parameter.unwrap_or("all runs")))
+        .text("value", groups.iter().map(|group| group.parameter.map_or(String::new(), |_| value(group.value))))
+        .text("runs", groups.iter().map(|group| group.runs.to_string()))
+        .text("distance: least", three(0))
+        .text("median", three(1))
+        .text("greatest", three(2))
+        .text("near none", groups.iter().map(|group| share(group.near_none)))
+        .write(out);
+    out.push('\n');
+    let rows = &comparison.tolerances;
+    Table::default()
+        .text("tolerance", rows.iter().map(|row| format!("{:e}", row.tolerance)))
+        .text("steps", rows.iter().map(|row| row.steps.to_string()))
+        .text("change", rows.iter().map(|row| share(row.change)))
+        .text("distance", rows.iter().map(|row| share(row.distance)))
+        .write(out);
+    out.push('\n');
+    let rows = &comparison.stiffnesses;
+    Table::default()
+        .text("k_n of the moving robot", rows.iter().map(|row| format!("{:e} N/m", row.stiffness)))
+        .text("change", rows.iter().map(|row| row.change.map_or("-".into(), share)))
+        .text("distance", rows.iter().map(|row| row.distance.map_or("-".into(), share)))
+        .write(out);
+    let _ = writeln!(
+        out,
+        "  distance: to the nearest outcome, change: from the finest tolerance, or from the configuration frozen;\n  \
+         both in the energy norm, in parts of the speed before. Infinite friction is taken as {GREATEST_FRICTION:e}.\n\n\
+         Stiffness changes nothing while the configuration is frozen; damping and the ratios decide where it ends."
+    );
+}
+
+fn share(part: f64) -> String {
+    if part.is_nan() {
+        "-".to_owned()
+    } else if part < 1e-9 {
+        "0".to_owned()
+    } else if part < 1e-3 {
+        format!("{part:.1e}")
+    } else {
+        format!("{part:.3}")
+    }
+}

@@ -1,0 +1,251 @@
+//! Results as rows: one per outcome.
+
+use crate::contact::Feet;
+use crate::read::table::{Carried, Header, prefixed};
+use crate::state::NamedContact;
+use crate::write::{ErrorObject, Outcome, Refused, Report, Touchdown};
+use crate::{Error, Reason, Result, Robot};
+use serde_json::Value;
+use std::collections::{HashMap, HashSet};
+
+/// The columns before those of the contacts.
+const FIRST: [&str; 5] = ["id", "verdict", "outcome", "margin", "proven"];
+
+/// The columns of a touchdown.
+const TOUCHDOWN: [&str; 6] = [
+    "touchdown_row",
+    "touchdown_time",
+    "touchdown_striking",
+    "touchdown_shift_z",
+    "touchdown_at",
+    "touchdown_touching",
+];
+
+/// The last columns, behind all that the contract orders and the carried ones.
+const LAST: [&str; 3] = ["border", "family", "error"];
+
+/// The columns of a table of results, fixed before its first row.
+#[derive(Debug, Clone)]
+pub struct Columns {
+    names: Vec<String>,
+    /// Which contact has which three columns.
+    contacts: HashMap<String, usize>,
+    coordinates: usize,
+    touchdowns: bool,
+    carried: usize,
+}
+
+/// A row in the making; cells that are not set stay empty.
+struct Cells(Vec<Vec<u8>>);
+
+impl Cells {
+    fn text(&mut self, at: usize, text: impl AsRef<[u8]>) {
+        self.0[at] = text.as_ref().to_vec();
+    }
+
+    fn number(&mut self, at: usize, number: f64) {
+        // The shortest digits that read back as the same number.
+        self.text(at, format!("{number:?}"));
+    }
+}
+
+impl Columns {
+    /// The columns for states of `robot` with the `feet` that were added to it; `input` is the table that the states come
+    /// from, if they come from one; `touchdowns` where they are touchdowns found in it.
+    pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, touchdowns: bool) -> Self {
+        Self::with(robot, feet, std::iter::empty(), input.into_iter().flat_map(Header::carried), touchdowns)
+    }
+
+    /// The same with columns of these names that are carried through, and for contacts that states name themselves.
+    pub fn with<'n>(
+        robot: &Robot,
+        feet: &[NamedContact],
+        named: impl Iterator<Item = &'n str>,
+        through: impl Iterator<Item = &'n str>,
+        touchdowns: bool,
+    ) -> Self {
+        let mut contacts = contacts(robot, feet, touchdowns);
+        for name in named {
+            if !contacts.iter().any(|known| known == name) {
+                contacts.push(name.to_owned());
+            }
+        }
+        let mut names: Vec<String> = FIRST.map(str::to_owned).into();
+        for contact in &contacts {
+            names.extend([format!("mode_{contact}"), format!("p_{contact}_t"), format!("p_{contact}_n")]);
+        }
+        names.extend(robot.coordinates().map(|name| format!("v_{}", prefixed(robot, name))));
+        if touchdowns {
+            names.extend(TOUCHDOWN.map(str::to_owned));
+        }
+        let own: HashSet<String> = names.iter().cloned().chain(LAST.map(str::to_owned)).collect();
+        let through: Vec<&str> = through.collect();
+        let taken: HashSet<&str> = through.iter().copied().collect();
+        let mut carried = 0;
+        for column in through {
+            let mut name = column.to_owned();
+            while own.contains(&name) || (name != column && taken.contains(name.as_str())) {
+                name.insert_str(0, "in_");
+            }
+            names.push(name);
+            carried += 1;
+        }
+        names.extend(LAST.map(str::to_owned));
+        let contacts = contacts.into_iter().enumerate().map(|(at, name)| (name, at)).collect();
+        Self { names, contacts, coordinates: robot.dofs(), touchdowns, carried }
+    }
+
+    /// Appends the line that names the columns.
+    pub fn append_header(&self, out: &mut Vec<u8>) {
+        append(&self.names, out);
+    }
+
+    /// Appends the rows of a result, one per outcome.
+    ///
+    /// # Errors
+    /// A contact that has no column, because the state names it and the robot has no such foot; nothing is appended then.
+    pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut Vec<u8>) -> Result<()> {
+        let mut cells = self.cells(report.id, carried);
+        cells.text(1, report.verdict.map_or(String::new(), |verdict| verdict.to_string()));
+        if let Some(proven) = report.proven {
+            cells.text(4, proven.to_string());
+        }
+        if let Some(touchdown) = &report.touchdown {
+            self.touchdown(touchdown, &mut cells);
+        }
+        if let Some(error) = &report.error {
+            cells.text(self.last() + 2, sentence(&error.message, error.place, error.hint));
+        }
+        let places: Vec<usize> =
+            report.contacts.iter().map(|contact| self.place(contact.name)).collect::<Result<_>>()?;
+        let outcomes = report.outcomes.as_deref().unwrap_or_default();
+        if outcomes.is_empty() {
+            append(&cells.0, out);
+        }
+        for (at, outcome) in outcomes.iter().enumerate() {
+            // Every outcome sets the same cells.
+            self.outcome(at + 1, outcome, &places, &mut cells);
+            append(&cells.0, out);
+        }
+        Ok(())
+    }
+
+    /// Appends the row of a refused state.
+    pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut Vec<u8>) {
+        let line = format!("line {}: ", refused.line);
+        self.append_error(refused.id.as_ref(), &line, &refused.error, carried, out);
+    }
+
+    /// Appends the row of a state that has an error in place of outcomes, with `before` in front of it.
+    pub fn append_error(
+        &self,
+        id: Option<&Value>,
+        before: &str,
+        error: &ErrorObject,
+        carried: Option<&Carried>,
+        out: &mut Vec<u8>,
+    ) {
+        let mut cells = self.cells(id, carried);
+        cells.text(1, "refused");
+        cells.text(self.last() + 2, before.to_owned() + &sentence(&error.message, error.place, error.hint));
+        append(&cells.0, out);
+    }
+
+    /// A row with the id and what is carried through.
+    fn cells(&self, id: Option<&Value>, carried: Option<&Carried>) -> Cells {
+        let mut cells = Cells(vec![Vec::new(); self.names.len()]);
+        match id {
+            Some(Value::String(text)) => cells.text(0, text),
+            Some(id) => cells.text(0, id.to_string()),
+            None => {}
+        }
+        let start = self.last() - self.carried;
+        for (at, field) in carried.into_iter().flat_map(Carried::fields).take(self.carried).enumerate() {
+            cells.text(start + at, field);
+        }
+        cells
+    }
+
+    fn outcome(&self, number: usize, outcome: &Outcome, places: &[usize], cells: &mut Cells) {
+        cells.text(2, number.to_string());
+        cells.text(3, outcome.margin.map_or(String::new(), |margin| format!("{margin:?}")));
+        cells.text(4, outcome.proven.to_string());
+        for ((&place, mode), impulse) in places.iter().zip(outcome.modes).zip(outcome.impulse) {
+            cells.text(place, mode.to_string());
+            cells.number(place + 1, impulse[0]);
+            cells.number(place + 2, impulse[1]);
+        }
+        let base = outcome.base_velocity_after.iter().flat_map(|named| &named.0);
+        let joints = outcome.joint_velocity_after.iter().flat_map(|named| &named.0);
+        let start = self.velocities();
+        for (at, (_, velocity)) in base.chain(joints).take(self.coordinates).enumerate() {
+            cells.number(start + at, *velocity);
+        }
+        let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
+        let at_zero: Vec<String> = at_zero.map(|zero| format!("{}: {}", zero.contact, zero.inequality)).collect();
+        cells.text(self.last(), at_zero.join("; "));
+        cells.text(self.last() + 1, outcome.family.to_string());
+    }
+
+    fn touchdown(&self, touchdown: &Touchdown, cells: &mut Cells) {
+        if self.touchdowns {
+            let start = self.velocities() + self.coordinates;
+            cells.text(start, touchdown.row.to_string());
+            cells.number(start + 1, touchdown.time);
+            cells.text(start + 2, touchdown.striking);
+            cells.number(start + 3, touchdown.shift_z);
+            cells.text(start + 4, touchdown.at);
+            cells.text(start + 5, &touchdown.touching);
+        }
+    }
+
+    /// The first of the last columns.
+    fn last(&self) -> usize {
+        self.names.len() - LAST.len()
+    }
+
+    /// The first column of a velocity.
+    fn velocities(&self) -> usize {
+        FIRST.len() + 3 * self.contacts.len()
+    }
+
+    /// The first of a contact's columns.
+    fn place(&self, contact: &str) -> Result<usize> {
+        self.contacts.get(contact).map(|at| FIRST.len() + 3 * at).ok_or_else(|| {
+            let reason = Reason::Unsupported(format!("the table of results has no columns for contact \"{contact}\""));
+            Error::new(reason).hint("write NDJSON instead, or add the foot by --contact")
+        })
+    }
+}
+
+/// The names of all contacts that the feet can give: of a polygon two corners at once, with `every_corner` all of them.
+/// A link of several has its plain name as well, for when a single one of them touches.
+fn contacts(robot: &Robot, feet: &[NamedContact], every_corner: bool) -> Vec<String> {
+    let mut counts = vec![0; robot.links.len()];
+    for foot in Feet::new(robot, feet).iter() {
+        let corners = foot.outline.corners().len();
+        counts[foot.link] += if every_corner { corners } else { corners.min(2) };
+    }
+    let mut names = Vec::new();
+    for (link, count) in robot.links.iter().zip(counts).filter(|&(_, count)| count > 0) {
+        names.push(link.name.clone());
+        if count > 1 {
+            names.extend((0..count).map(|at| format!("{}/{at}", link.name)));
+        }
+    }
+    names
+}
+
+/// An error in one cell.
+fn sentence(message: &str, place: Option<&str>, hint: Option<&str>) -> String {
+    let place = place.map_or(String::new(), |place| format!("{place}: "));
+    let hint = hint.map_or(String::new(), |hint| format!("; {hint}"));
+    format!("{place}{message}{hint}")
+}
+
+fn append<F: AsRef<[u8]>>(fields: &[F], out: &mut Vec<u8>) {
+    let mut writer = csv::WriterBuilder::new().buffer_capacity(1 << 10).from_writer(out);
+    // Writing into memory cannot fail.
+    let _ = writer.write_record(fields);
+    let _ = writer.flush();
+}

@@ -1,0 +1,206 @@
+//! What was read of a robot, as text that fits a screen: first what a user needs to trust the model, long lists cut short.
+
+use super::{Inspection, Joint};
+use crate::robot::Still;
+use crate::write::list::list;
+use crate::write::text::Palette;
+use crate::write::text::table::{Table, number, scale};
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+
+/// The longest line of the head, in characters.
+const WIDTH: usize = 118;
+/// Where the head's second column begins.
+const INDENT: usize = 15;
+/// The room for a list of names, in characters.
+const NAMES: usize = 300;
+/// The room for the feet of one shape, in characters.
+const FEET: usize = 600;
+/// The room for the links of a body, in characters.
+const LINKS: usize = 50;
+
+/// The whole text, with a line break at its end.
+pub(super) fn text(inspection: &Inspection, palette: &Palette) -> String {
+    let mut out = String::new();
+    // Writing into a string cannot fail.
+    let _ = inspection.write(palette, &mut out);
+    out
+}
+
+impl Inspection<'_> {
+    fn write(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *palette;
+        writeln!(out, "{strong}{}{plain}", self.name)?;
+        for caution in self.cautions {
+            write!(out, "{strong}")?;
+            entry("caution", caution, out)?;
+            write!(out, "{plain}")?;
+        }
+        entry("plane", &format!("{}: {}", self.plane_in_words(), self.plane_because), out)?;
+        entry("mass", &format!("{} kg", number(self.mass)), out)?;
+        let root = self.bodies.first().map_or("", |body| body.name);
+        let base = match self.base {
+            "floating" => format!("floating: x, z, pitch of the root link {root}; {}", self.base_because),
+            _ => format!("fixed: the root link {root} is bolted to the world; {}", self.base_because),
+        };
+        entry("base", &base, out)?;
+        entry("joints", &self.joints_in_words(), out)?;
+        entry("coordinates", &format!("{}: {}", self.coordinates.len(), self.coordinates.join(", ")), out)?;
+        entry("feet", &self.feet_in_words(), out)?;
+
+        writeln!(out, "\n{strong}bodies{plain}")?;
+        let (bodies, joints) = (&self.bodies, &self.joints);
+        let hinges = || joints.iter().chain(self.followers.iter().map(|follower| &follower.joint));
+        let points = bodies.iter().map(|body| body.com).chain(hinges().map(|joint| joint.origin));
+        let lengths = scale(points.flatten());
+        let moments = scale(bodies.iter().map(|body| body.moment));
+        Table::default()
+            .text("body", bodies.iter().map(|body| body.name))
+            .numbers("mass [kg]", self.mass, bodies.iter().map(|body| body.mass))
+            .numbers("CoG x [m]", lengths, bodies.iter().map(|body| body.com[0]))
+            .numbers("z [m]", lengths, bodies.iter().map(|body| body.com[1]))
+            .numbers("moment [kg m^2]", moments, bodies.iter().map(|body| body.moment))
+            .text("links", bodies.iter().map(|body| list(&body.links, LINKS)))
+            .write(out);
+
+        if hinges().next().is_some() {
+            writeln!(out, "\n{strong}joints{plain}")?;
+            let led = self.followers.iter().map(|follower| {
+                let super::Follower { leader, multiplier, offset, .. } = follower;
+                let offset = if *offset == 0.0 { String::new() } else { format!(" + {}", number(*offset)) };
+                format!(" as {} {leader}{offset}", number(*multiplier))
+            });
+            let led = joints.iter().map(|_| String::new()).chain(led);
+            Table::default()
+                .text("joint", hinges().map(|joint| joint.name))
+                .text("motion", hinges().zip(led).map(|(joint, led)| joint.in_words(self.normal()) + &led))
+                .text("from", hinges().map(|joint| joint.parent))
+                .text("to", hinges().map(|joint| joint.child))
+                .numbers("origin x [m]", lengths, hinges().map(|joint| joint.origin[0]))
+                .numbers("z [m]", lengths, hinges().map(|joint| joint.origin[1]))
+                .write(out);
+        }
+
+        let massless: Vec<&str> = self.links.iter().filter(|link| !link.has_inertial).map(|link| link.name).collect();
+        if !massless.is_empty() {
+            writeln!(out, "\nWithout inertial, so massless: {}", list(&massless, NAMES))?;
+        }
+        let left_out = self.left_out_by_reason();
+        if !left_out.is_empty() {
+            writeln!(out, "\n{strong}left out{plain}")?;
+            for (why, what) in left_out {
+                entry_below(&format!("{why}: {}", list(&what, NAMES)), out)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn plane_in_words(&self) -> &'static str {
+        match self.plane {
+            "yz" => "y-z: y forward, z up, pitch about -x (nose down)",
+            "xy" => "x-y: x forward, y up, pitch about -z (nose down)",
+            _ => "x-z: x forward, z up, pitch about +y (nose down)",
+        }
+    }
+
+    /// The plane's normal among the root link's axes: its letter, and whether it points along that axis.
+    fn normal(&self) -> (char, bool) {
+        match self.plane {
+            "yz" => ('x', false),
+            "xy" => ('z', false),
+            _ => ('y', true),
+        }
+    }
+
+    fn joints_in_words(&self) -> String {
+        let still = |is: fn(&Still) -> bool| self.held.iter().filter(|held| is(held.still)).count();
+        let fixed = still(|still| *still == Still::Fixed);
+        let base = still(|still| *still == Still::Base);
+        let parts = [
+            (self.joints.len(), "kept"),
+            (self.followers.len(), "kept as followers"),
+            (self.held.len() - fixed - base, "held"),
+            (base, "part of the base"),
+            (fixed, "fixed"),
+        ];
+        let parts = parts.iter().filter(|(count, what)| *count > 0 || *what == "kept");
+        parts.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The feet of one shape together, in the order of the first.
+    fn feet_in_words(&self) -> String {
+        if self.feet.is_empty() {
+            return "none: name them by --contact, or in each state by \"contacts\"".to_owned();
+        }
+        let feet = self.feet.iter().map(|foot| (foot.in_words(), foot.link));
+        let groups = grouped(feet).into_iter().map(|(shape, links)| format!("{} ({shape})", list(&links, FEET)));
+        groups.collect::<Vec<_>>().join(", ")
+    }
+
+    /// What was left out, that of one reason together; of joints without the bodies that they are welded into.
+    fn left_out_by_reason(&self) -> Vec<(String, Vec<String>)> {
+        let held = self.held.iter().map(|held| (held.why.clone(), held.name.to_owned()));
+        let names: HashSet<&str> = self.held.iter().map(|held| held.name).collect();
+        let is_held = |what: &str| {
+            let name = what.strip_prefix("joint \"").and_then(|name| name.strip_suffix('"'));
+            name.is_some_and(|name| names.contains(name))
+        };
+        let rest = self.left_out.iter().filter(|left| !is_held(&left.what));
+        grouped(held.chain(rest.map(|left| (left.why.to_owned(), left.what.clone().into_owned()))))
+    }
+}
+
+/// Things by their key, in the order of the first of each.
+fn grouped<T>(pairs: impl Iterator<Item = (String, T)>) -> Vec<(String, Vec<T>)> {
+    let mut groups: Vec<(String, Vec<T>)> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
+    for (key, thing) in pairs {
+        let place = *places.entry(key.clone()).or_insert(groups.len());
+        match groups.get_mut(place) {
+            Some((_, things)) => things.push(thing),
+            None => groups.push((key, vec![thing])),
+        }
+    }
+    groups
+}
+
+/// A line of the head, broken between words.
+fn entry(label: &str, text: &str, out: &mut String) -> std::fmt::Result {
+    wrapped(&format!("  {label:<12} "), INDENT, text, out)
+}
+
+/// A line of a list, broken between words.
+fn entry_below(text: &str, out: &mut String) -> std::fmt::Result {
+    wrapped("  ", 6, text, out)
+}
+
+fn wrapped(begin: &str, indent: usize, text: &str, out: &mut String) -> std::fmt::Result {
+    let mut line = begin.to_owned();
+    let mut empty = true;
+    for word in text.split(' ') {
+        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            writeln!(out, "{}", line.trim_end())?;
+            line = " ".repeat(indent);
+            empty = true;
+        }
+        if !empty {
+            line.push(' ');
+        }
+        line.push_str(word);
+        empty = false;
+    }
+    writeln!(out, "{}", line.trim_end())
+}
+
+impl Joint<'_> {
+    /// The motion, a turn about the axis of the file's root link.
+    fn in_words(&self, (letter, along): (char, bool)) -> String {
+        match (self.sign, self.direction) {
+            (Some(sign), _) => format!("turns about {}{letter}", if (sign < 0.0) == along { '-' } else { '+' }),
+            (_, direction) => {
+                let [x, z] = direction.unwrap_or_default();
+                format!("slides along ({}, {})", number(x), number(z))
+            }
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! What is written: the JSON contract, and text for people.
+//!
+//! ```text
+//!     Impact (a robot's state)  ──┐
+//!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
+//!                                         └────> text for people        text.rs
+//!     Robot ──> Inspection ──> JSON, text                               inspection.rs
+//!     Robot, Impact ──> Drawing ──> JSON, picture                       drawing
+//!     Survey ──> Sweep, samples ──> JSON, CSV, text                     sweep
+//!     Impacts ──> Keyframes, a Picture ──> Page ──> HTML                keyframe, page
+//!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
+//! ```
+
+mod holds;
+mod id;
+#[cfg(feature = "accuracy")]
+pub mod accuracy;
+mod inspection;
+mod list;
+mod outcome;
+mod result;
+pub mod sweep;
+#[cfg(feature = "schema")]
+pub mod schema;
+pub(crate) mod text;
+mod touchdown;
+pub(crate) mod words;
+mod csv;
+
+#[cfg(feature = "accuracy")]
+pub use accuracy::{Accuracy, Compliant};
+pub use csv::Columns;
+pub use holds::{Counterexample, Holds, StateFields};
+pub(crate) use id::short_id;
+pub use inspection::Inspection;
+pub use outcome::{AtZero, Border, NamedVelocities, Outcome, OutcomeInBrief};
+pub use result::{Brief, Contact, ErrorObject, Explained, LeftOut, Refused, Rejected, Report};
+pub use text::{Palette, Subject, text};
+pub use touchdown::{CarriedFields, Touchdown};
+
+use serde::Serialize;
+
+/// How much of a result is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Detail {
+    /// Also why every other combination fails.
+    pub explain: bool,
+    /// Also the matrices.
+    pub matrices: bool,
+    /// Only the verdict and each outcome's modes, index and margin.
+    pub brief: bool,
+}
+
+/// Appends `value` to `out` as one line of JSON.
+pub fn append_line<T: Serialize>(out: &mut Vec<u8>, value: &T) {
+    let start = out.len();
+    // Writing into memory cannot fail, and no report has keys that are not strings; should one ever, nothing is left.
+    match serde_json::to_writer(&mut *out, value) {
+        Ok(()) => out.push(b'\n'),
+        Err(_) => out.truncate(start),
+    }
+}

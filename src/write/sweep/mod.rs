@@ -1,0 +1,243 @@
+//! A study's regions, borders and samples, as JSON, CSV and text.
+//!
+//! ```text
+//!     Survey --> Sweep {parameter, regions, borders, notes} --> head of the JSON, text
+//!     each sample --> Report --> "samples", rows of CSV
+//!     Findings --> Picture  picture
+//! ```
+
+mod map;
+mod samples;
+mod text;
+
+pub use map::{MapBorder, MapRegion, MapSweep};
+#[cfg(feature = "schema")]
+pub(super) use samples::RefusedSample;
+pub use samples::{Sample, columns};
+
+use super::{ErrorObject, Palette};
+use crate::Error;
+use crate::impact::{Mode, Verdict};
+use crate::sweep::{self, Findings, Inequality, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
+use serde::Serialize;
+
+/// What is known of a study of one parameter, without its samples.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sweep<'a> {
+    /// The parameter.
+    pub parameter: &'a str,
+    /// The regions, from the least to the greatest value.
+    pub regions: Vec<Region<'a>>,
+    /// The border between each two of them.
+    pub borders: Vec<Border<'a>>,
+    /// What a reader should know, in whole sentences.
+    pub notes: Vec<String>,
+    /// How many samples there are.
+    #[serde(skip)]
+    steps: usize,
+}
+
+/// What is known of a study, without its samples.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+pub enum Regions<'a> {
+    /// Of one parameter.
+    Along(Sweep<'a>),
+    /// Of two parameters.
+    Map(MapSweep<'a>),
+}
+
+/// A stretch of the parameter with one set of outcomes.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Region<'a> {
+    /// Regions of the same letter have the same contacts and outcomes.
+    pub letter: String,
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What happens in it.
+    #[serde(flatten)]
+    pub happening: Happening<'a>,
+}
+
+/// What happens in a region.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Happening<'a> {
+    /// Names of the closed contacts; absent where states are refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<&'a [String]>,
+    /// The answer in one word, as at its middle; absent where states are refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
+    /// The modes of every outcome; absent where states are refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outcomes: Option<&'a [Vec<Mode>]>,
+    /// Combinations that no precision excludes; absent where everything is decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided: Option<&'a [Vec<Mode>]>,
+    /// Why the states in it are refused, as at its middle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorObject<'a>>,
+}
+
+/// A border between two regions.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Border<'a> {
+    /// Where it is.
+    pub at: f64,
+    /// What turns.
+    #[serde(flatten)]
+    pub turns: Turns<'a>,
+}
+
+/// What turns at a border.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Turns<'a> {
+    /// The inequalities that are zero there.
+    pub turns: Vec<Turn<'a>>,
+    /// Contacts that are closed below it and open above it.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    pub opening: &'a [String],
+    /// Contacts that are open below it and closed above it.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    pub closing: &'a [String],
+    /// Whether states are refused below it, and above it.
+    #[serde(skip)]
+    refused: [bool; 2],
+}
+
+/// An inequality that is zero on a border.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Turn<'a> {
+    /// The contact's name.
+    pub contact: &'a str,
+    /// What of it is zero.
+    pub inequality: Inequality,
+    /// The outcome that begins or ends there.
+    pub modes: &'a [Mode],
+    /// On which side of the border it is one.
+    pub valid: Side,
+}
+
+impl<'a> Regions<'a> {
+    /// What was found in a study of these parameters.
+    pub fn new(parameters: &'a [Parameter], findings: &'a Findings) -> Self {
+        match findings {
+            Findings::Along(survey) => Self::Along(Sweep::new(&parameters[0], survey)),
+            Findings::Map(map) => Self::Map(MapSweep::new(parameters, map)),
+        }
+    }
+
+    /// All regions and borders of `robot`'s study for people, with a line break at its end.
+    pub fn text(&self, robot: &str, palette: &Palette) -> String {
+        match self {
+            Self::Along(sweep) => sweep.text(robot, palette),
+            Self::Map(map) => map.text(robot, palette),
+        }
+    }
+}
+
+impl<'a> Sweep<'a> {
+    /// What a survey of `parameter` has found.
+    pub fn new(parameter: &'a Parameter, survey: &'a Survey) -> Self {
+        let region = |region: &'a sweep::Region| Region {
+            letter: letter(region.kind),
+            from: region.from,
+            to: region.to,
+            happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
+        };
+        let border = |border: &'a sweep::Border| Border { at: border.at, turns: Turns::new(&border.turns) };
+        let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
+        Self {
+            parameter: &parameter.name,
+            regions: survey.regions.iter().map(region).collect(),
+            borders: survey.borders.iter().map(border).collect(),
+            notes: not_guaranteed(contacts, survey.dependent),
+            steps: parameter.steps,
+        }
+    }
+}
+
+impl<'a> Happening<'a> {
+    /// That of a regime with the verdict inside of it, and why it is refused, if it is.
+    pub(crate) fn of(regime: &'a Regime, verdict: Option<Verdict>, refused: Option<&'a Error>) -> Self {
+        let undecided = match regime {
+            Regime::Answered { undecided, .. } if !undecided.is_empty() => Some(&undecided[..]),
+            _ => None,
+        };
+        let (contacts, outcomes) = (regime.outcomes().map(|_| regime.contacts()), regime.outcomes());
+        Self { contacts, verdict, outcomes, undecided, error: refused.map(ErrorObject::new) }
+    }
+}
+
+impl<'a> Turns<'a> {
+    /// What was found to turn.
+    pub fn new(turns: &'a sweep::Turns) -> Self {
+        let turn = |turn: &'a sweep::Turn| Turn {
+            contact: &turn.contact,
+            inequality: turn.inequality,
+            modes: &turn.modes,
+            valid: turn.side,
+        };
+        Self {
+            turns: turns.inequalities.iter().map(turn).collect(),
+            opening: &turns.opening,
+            closing: &turns.closing,
+            refused: [turns.refused_below.is_some(), turns.refused_above.is_some()],
+        }
+    }
+}
+
+/// A, B, ..., Z, AA, AB, ...
+pub fn letter(kind: usize) -> String {
+    let last = char::from(b'A' + (kind % 26) as u8);
+    match kind / 26 {
+        0 => last.to_string(),
+        more => letter(more - 1) + &last.to_string(),
+    }
+}
+
+/// What a search of regions with so many contacts may have missed, and where contacts depend on each other.
+fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
+    if contacts == 0 {
+        return Vec::new();
+    }
+    let exact = "borders are exact, but that no region is missing is not guaranteed";
+    if contacts > WATCHED_CONTACTS {
+        return vec![format!(
+            "{exact}: with more than {WATCHED_CONTACTS} contacts, regions that lie between two samples of the same outcomes are \
+             not searched for"
+        )];
+    }
+    let mut notes = vec![format!(
+        "{exact}: between two samples of the same outcomes a thinner region is found where an inequality of some combination \
+         turns or comes near zero, and missed where that happens more often than the samples show; more steps leave less \
+         room for it"
+    )];
+    if dependent {
+        notes.push(
+            "contacts depend on each other: combinations without a unique solution are not followed between samples"
+                .into(),
+        );
+    }
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_go_on_behind_z() {
+        let letters: Vec<String> = [0, 25, 26, 51, 52, 701, 702].map(letter).into();
+        assert_eq!(letters, ["A", "Z", "AA", "AZ", "BA", "ZZ", "AAA"]);
+    }
+}

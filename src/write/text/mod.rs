@@ -1,0 +1,297 @@
+//! A result as text: what touched, what happens, why nothing else does.
+
+mod outcome;
+mod reasons;
+
+use self::outcome::graded;
+pub(crate) mod table;
+
+use super::holds::Holds;
+use super::list::list;
+use super::result::{Contact, Report};
+use super::{Detail, words};
+use crate::Robot;
+use crate::impact::{Analysis, Friction, Mode, Region, Verdict};
+use crate::pipeline::Impact;
+use crate::read::Problem;
+use crate::robot::{Axis, Base};
+use crate::state::State;
+use std::fmt::Write;
+use table::{Table, is_residue, number, scale};
+
+/// The room for what was left out, in characters.
+const LEFT_OUT: usize = 200;
+
+/// What marks the important and the unimportant; empty for plain text, escape sequences for a terminal.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Palette {
+    /// Begins what matters most.
+    pub strong: &'static str,
+    /// Begins what may be passed over.
+    pub faint: &'static str,
+    /// Ends both.
+    pub plain: &'static str,
+}
+
+/// What a text tells beside the report itself.
+#[derive(Debug)]
+pub struct Subject<'a> {
+    /// What the report is about, as in `ramone`.
+    title: String,
+    /// Friction of each contact, where it is known.
+    friction: Vec<Option<Friction>>,
+    /// The unit of each entry of v.
+    units: Vec<&'static str>,
+    analysis: Option<&'a Analysis>,
+}
+
+impl<'a> Subject<'a> {
+    /// A robot's state.
+    pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
+        let base = match robot.base {
+            Base::Floating => ["m/s", "m/s", "rad/s"].as_slice(),
+            Base::Fixed => &[],
+        };
+        let joints = robot.joints.iter().map(|joint| match joint.axis {
+            Axis::Turn { .. } => "rad/s",
+            Axis::Slide { .. } => "m/s",
+        });
+        Self {
+            title: words::titled(&robot.name, &state.id),
+            friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
+            units: base.iter().copied().chain(joints).collect(),
+            analysis: impact.analysis.as_ref().ok(),
+        }
+    }
+
+    /// A contact problem without a robot.
+    pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
+        Self {
+            title: words::titled("contact problem", &problem.id),
+            friction: problem.contact.friction().iter().copied().map(Some).collect(),
+            units: Vec::new(),
+            analysis: Some(analysis),
+        }
+    }
+}
+
+/// The report as text, with a line break at its end.
+pub fn text(report: &Report, subject: &Subject, detail: Detail, palette: &Palette) -> String {
+    let mut writer = Writer { out: String::new(), report, subject, palette };
+    // Writing into a string cannot fail.
+    let _ = writer.write(detail);
+    writer.out
+}
+
+struct Writer<'w> {
+    out: String,
+    report: &'w Report<'w>,
+    subject: &'w Subject<'w>,
+    palette: &'w Palette,
+}
+
+impl<'w> Writer<'w> {
+    fn write(&mut self, detail: Detail) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *self.palette;
+        writeln!(self.out, "{strong}{}{plain}: {}", self.subject.title, touching(&self.report.contacts))?;
+        if let Some(energy) = self.report.kinetic_energy {
+            writeln!(self.out, "Kinetic energy before the impact: {} J.", number(energy))?;
+        }
+        if !detail.brief && !self.report.contacts.is_empty() {
+            self.out.push('\n');
+            self.contacts();
+        }
+        self.out.push('\n');
+        self.verdict()?;
+        let outcomes = self.report.outcomes.as_deref().unwrap_or_default();
+        if detail.brief {
+            for (at, outcome) in outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.modes.is_empty()) {
+                let border = if outcome.border.is_some() { ", on a border" } else { "" };
+                let family = if outcome.family { ", the end of a family" } else { "" };
+                let words = self.in_words(outcome.modes);
+                writeln!(self.out, "  {}  {words}{border}{family}{}", at + 1, graded(outcome))?;
+            }
+            return Ok(());
+        }
+        for (at, outcome) in outcomes.iter().enumerate() {
+            self.outcome(at + 1, outcome)?;
+        }
+        self.velocities(outcomes);
+        self.why_nothing_else(outcomes.len())?;
+        self.rejected();
+        self.regions();
+        self.matrices()?;
+        self.closing()
+    }
+
+    fn names(&self) -> impl Iterator<Item = &'w str> + use<'w> {
+        self.report.contacts.iter().map(|contact| contact.name)
+    }
+
+    /// The fastest contact velocity before or after.
+    fn speeds(&self) -> f64 {
+        let before = self.report.contacts.iter().map(|contact| contact.velocity_before);
+        let after = self.report.outcomes.iter().flatten().flat_map(|outcome| outcome.velocity_after.iter().copied());
+        scale(before.chain(after).flatten())
+    }
+
+    /// Where the contacts are and how they move.
+    fn contacts(&mut self) {
+        let contacts = &self.report.contacts;
+        let mut table = Table::default().text("contact", self.names());
+        let lengths = scale(contacts.iter().filter_map(|contact| contact.point).flatten());
+        if contacts.iter().all(|contact| contact.point.is_some()) {
+            let point = |axis: usize| contacts.iter().map(move |contact| contact.point.map(|point| point[axis]));
+            table = table.numbers("x [m]", lengths, point(0)).numbers("z [m]", lengths, point(1));
+        }
+        let gaps = contacts.iter().map(|contact| contact.gap);
+        if gaps.clone().flatten().any(|gap| gap != 0.0 && !is_residue(gap, lengths)) {
+            table = table.numbers("gap [m]", lengths, gaps);
+        }
+        // On a profile each contact may have axes of its own.
+        let normals = contacts.iter().map(|contact| contact.normal);
+        if normals.clone().any(|normal| normal != contacts[0].normal) {
+            let entry = |axis: usize| normals.clone().map(move |normal| normal.map(|normal| normal[axis]));
+            table = table.numbers("n: x", 1.0, entry(0)).numbers("z", 1.0, entry(1));
+        }
+        let speeds = self.speeds();
+        let before = |axis: usize| contacts.iter().map(move |contact| contact.velocity_before[axis]);
+        let friction = self.subject.friction.iter().map(|friction| friction.map_or("-".into(), |mu| mu.to_string()));
+        table
+            .numbers("before: t [m/s]", speeds, before(0))
+            .numbers("n [m/s]", speeds, before(1))
+            .text("friction", friction.collect::<Vec<String>>())
+            .write(&mut self.out);
+        let Palette { faint, plain, .. } = *self.palette;
+        self.out.extend(["  ", faint, "t: along the ground, forward; n: away from the ground", plain, "\n"]);
+    }
+
+    fn verdict(&mut self) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *self.palette;
+        let sentence = match (self.report.verdict, &self.report.outcomes) {
+            (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes.len()),
+            _ => "No outcomes are known.".to_owned(),
+        };
+        writeln!(self.out, "{strong}{sentence}{plain}")?;
+        if let Some(error) = &self.report.error {
+            writeln!(self.out, "{}", error.message)?;
+        }
+        self.holds()
+    }
+
+    /// Whether the verdict holds while the state's numbers vary.
+    fn holds(&mut self) -> std::fmt::Result {
+        let Some(holds) = self.report.holds else { return Ok(()) };
+        self.out.push_str("Holds on the whole box of the uncertainty: ");
+        match (holds, &self.report.counterexample) {
+            (Holds::Yes, _) => self.out.push_str("yes.\n"),
+            (Holds::No, Some(other)) => {
+                let outcomes: Vec<String> = other.outcomes.iter().map(|modes| self.in_words(modes)).collect();
+                writeln!(self.out, "no; a state in it (--format json) has: {}.", outcomes.join("; or "))?;
+            }
+            (Holds::No, None) => self.out.push_str("no.\n"),
+            (Holds::Unknown, _) => self.out.push_str("unknown.\n"),
+        }
+        Ok(())
+    }
+
+    /// The paper's section 4 for each contact.
+    fn regions(&mut self) {
+        match &self.report.explain {
+            None => {}
+            Some(None) if self.report.contacts.is_empty() => {}
+            Some(None) => self.out.push_str("\nNo beta, gamma and region: the contacts depend on each other.\n"),
+            Some(Some(explained)) => {
+                self.out.push_str("\nWith infinite friction, while all other contacts stick:\n");
+                Table::default()
+                    .text("contact", self.report.contacts.iter().map(|contact| contact.name))
+                    .numbers("beta [rad]", 1.0, explained.beta.iter().copied())
+                    .numbers("gamma [rad]", 1.0, explained.gamma.iter().copied())
+                    .text("region", explained.region.iter().map(|region| described(*region)))
+                    .write(&mut self.out);
+            }
+        }
+    }
+
+    fn matrices(&mut self) -> std::fmt::Result {
+        if let Some(coordinates) = self.report.coordinates {
+            writeln!(self.out, "\ncoordinates: {}", coordinates.join(", "))?;
+        }
+        let matrices = [
+            ("mass matrix", self.report.mass_matrix),
+            ("contact Jacobian, rows t and n per contact", self.report.contact_jacobian),
+            ("Delassus matrix, rows and columns t and n per contact", self.report.delassus.as_deref()),
+        ];
+        for (name, matrix) in matrices {
+            let Some(rows) = matrix.filter(|rows| !rows.is_empty()) else { continue };
+            writeln!(self.out, "\n{name}")?;
+            Table::matrix(rows).write_body(&mut self.out);
+        }
+        Ok(())
+    }
+
+    /// What else a reader should know before trusting the answer.
+    fn closing(&mut self) -> std::fmt::Result {
+        let follows_tables = self.report.explain.is_some() || self.report.delassus.is_some();
+        if follows_tables && self.report.verdict.is_some() {
+            self.out.push('\n');
+        }
+        let struck = !self.report.contacts.is_empty();
+        if struck && self.report.no_slip_consistent == Some(Some(false)) && self.report.verdict != Some(Verdict::None) {
+            let infinite = |friction: &Option<Friction>| *friction == Some(Friction::Infinite);
+            self.out.push_str(if self.subject.friction.iter().all(infinite) {
+                "No outcome in which every contact sticks or lifts off exists: it slides whatever the friction.\n"
+            } else {
+                "In every outcome some contact slides.\n"
+            });
+        }
+        if let (true, Some(rank)) = (struck, self.report.rank) {
+            match self.report.condition.flatten() {
+                Some(condition) => write!(self.out, "Contacts: rank {rank}, condition {}", number(condition))?,
+                None => write!(self.out, "Contacts: rank {rank} of {}, redundant", 2 * self.report.contacts.len())?,
+            }
+            let sum = self.report.index_sum.flatten();
+            let hidden = if self.report.verdict == Some(Verdict::Undecided) { "unknown" } else { "hidden by a border" };
+            let sum = sum.map_or(hidden.to_owned(), |sum| sum.to_string());
+            let proven = if self.report.proven == Some(true) { "proven" } else { "not proven" };
+            writeln!(self.out, "; sum of indices {sum}; {proven}.")?;
+        }
+        if !struck && !self.report.notes.is_empty() {
+            self.out.push('\n');
+        }
+        for note in self.report.notes.iter() {
+            writeln!(self.out, "Note: {note}")?;
+        }
+        if let Some(left_out) = self.report.left_out.as_ref().filter(|left_out| !left_out.is_empty()) {
+            let Palette { faint, plain, .. } = *self.palette;
+            let what: Vec<&str> = left_out.iter().map(|left| &*left.what).collect();
+            writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {}.{plain}", list(&what, LEFT_OUT))?;
+        }
+        Ok(())
+    }
+
+    /// `left_foot lifts off, right_foot sticks`.
+    fn in_words(&self, modes: &[Mode]) -> String {
+        words::modes(self.names(), modes)
+    }
+}
+
+fn touching(contacts: &[Contact]) -> String {
+    match contacts {
+        [] => "nothing touches the ground.".to_owned(),
+        [contact] => format!("{} touches the ground.", contact.name),
+        [.., last] => {
+            let names: Vec<&str> = contacts[..contacts.len() - 1].iter().map(|contact| contact.name).collect();
+            format!("{} and {} touch the ground.", names.join(", "), last.name)
+        }
+    }
+}
+
+fn described(region: Region) -> &'static str {
+    match region {
+        Region::A => "A: lifts off",
+        Region::B => "B: slides whatever the friction",
+        Region::C => "C: stays",
+        Region::E => "E: three outcomes are valid",
+    }
+}

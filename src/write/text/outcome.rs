@@ -1,0 +1,116 @@
+//! Each outcome, and the velocities after all of them.
+
+use super::Palette;
+use super::Writer;
+use crate::impact::Mode;
+use crate::write::outcome::Outcome;
+use crate::write::text::table::{Table, number, scale};
+use crate::write::words;
+use std::fmt::Write;
+
+impl Writer<'_> {
+    pub(super) fn outcome(&mut self, count: usize, outcome: &Outcome) -> std::fmt::Result {
+        if outcome.modes.is_empty() {
+            return Ok(());
+        }
+        let Palette { strong, plain, .. } = *self.palette;
+        let words = self.in_words(outcome.modes);
+        let decided = self.subject.analysis.and_then(|analysis| analysis.outcomes.get(count - 1));
+        let open = if decided.is_some_and(|outcome| !outcome.decided) { ", not excluded" } else { "" };
+        writeln!(self.out, "\n{strong}{count}  {words}{open}{plain}{}", graded(outcome))?;
+
+        let (impulses, speeds) = (scale(outcome.impulse.iter().copied().flatten()), self.speeds());
+        let mut table = Table::default()
+            .text("contact", self.names())
+            .text("mode", outcome.modes.iter().map(Mode::to_string))
+            .numbers("impulse: t [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[0]))
+            .numbers("n [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[1]))
+            .numbers("after: t [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[0]))
+            .numbers("n [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[1]));
+        if outcome.friction_needed.iter().any(Option::is_some) {
+            table = table.numbers("friction needed", 1.0, outcome.friction_needed.iter().copied());
+        }
+        table.write(&mut self.out);
+        self.loops(outcome);
+        self.energy(outcome)?;
+        if !outcome.impulse_unique {
+            self.out.push_str("  other impulses give the same velocities; these are the least\n");
+        }
+        if outcome.family {
+            self.out.push_str("  the end of a family: every velocity between its ends is an outcome, too\n");
+        }
+        self.border(outcome)
+    }
+
+    /// What is exactly zero, and what lies beyond.
+    fn border(&mut self, outcome: &Outcome) -> std::fmt::Result {
+        let Some(border) = &outcome.border else { return Ok(()) };
+        let zeros = border.at_zero.iter().map(|zero| format!("{} has {}", zero.contact, zero.inequality));
+        write!(self.out, "  exactly on a border: {}", zeros.collect::<Vec<_>>().join(", "))?;
+        let beyond: Vec<String> = border.neighbours.iter().map(|modes| self.in_words(modes)).collect();
+        match &beyond[..] {
+            [] => self.out.push('\n'),
+            [only] => writeln!(self.out, "; beyond it {only}")?,
+            several => writeln!(self.out, "; beyond it {}", several.join("; or "))?,
+        }
+        Ok(())
+    }
+
+    /// What every loop gives to its point a.
+    fn loops(&mut self, outcome: &Outcome) {
+        let impulses = outcome.loop_impulse.unwrap_or_default();
+        if impulses.is_empty() {
+            return;
+        }
+        let size = scale(impulses.iter().copied().flatten());
+        Table::default()
+            .text("loop", (0..impulses.len()).map(|index| format!("loops[{index}]")))
+            .numbers("impulse on a: x [N s]", size, impulses.iter().map(|impulse| impulse[0]))
+            .numbers("z [N s]", size, impulses.iter().map(|impulse| impulse[1]))
+            .write(&mut self.out);
+    }
+
+    fn energy(&mut self, outcome: &Outcome) -> std::fmt::Result {
+        let loss = outcome.energy_loss;
+        if loss == 0.0 {
+            return writeln!(self.out, "  no energy is lost");
+        }
+        let verb = if loss < 0.0 { "gives" } else { "takes" };
+        write!(self.out, "  the ground {verb} {} J", number(loss.abs()))?;
+        if let Some(energy) = self.report.kinetic_energy.filter(|&energy| energy > 0.0 && loss > 0.0) {
+            write!(self.out, ", {:.1} % of the kinetic energy", 100.0 * loss / energy)?;
+        }
+        self.out.push('\n');
+        Ok(())
+    }
+
+    /// v after the impact, one column per outcome.
+    pub(super) fn velocities(&mut self, outcomes: &[Outcome]) {
+        let Some(first) = outcomes.first().map(named_velocities).filter(|named| !named.is_empty()) else {
+            return;
+        };
+        let mut table = Table::default()
+            .text("velocity after", first.iter().map(|(name, _)| *name))
+            .text("", self.subject.units.iter().copied());
+        let velocities = scale(outcomes.iter().flat_map(named_velocities).map(|(_, velocity)| velocity));
+        for (at, outcome) in outcomes.iter().enumerate() {
+            let head = if outcomes.len() == 1 { String::new() } else { format!("{}", at + 1) };
+            table =
+                table.numbers(&head, velocities, named_velocities(outcome).into_iter().map(|(_, velocity)| velocity));
+        }
+        self.out.push('\n');
+        table.write(&mut self.out);
+    }
+}
+
+/// `   (margin 0.0130, index +1)`, as far as there are any.
+pub(super) fn graded(outcome: &Outcome) -> String {
+    let grades = words::grades(outcome.margin, outcome.index);
+    if grades.is_empty() { grades } else { format!("   ({grades})") }
+}
+
+/// v after an outcome, base and joints.
+fn named_velocities<'a>(outcome: &Outcome<'a>) -> Vec<(&'a str, f64)> {
+    let parts = [&outcome.base_velocity_after, &outcome.joint_velocity_after];
+    parts.into_iter().flatten().flat_map(|part| part.0.iter().copied()).collect()
+}

@@ -1,0 +1,169 @@
+//! Tables for people: columns of text to the left, columns of numbers with their points below each other.
+
+use std::fmt::Write;
+
+/// Columns of equal length, each below its head.
+#[derive(Debug, Default)]
+pub(crate) struct Table {
+    columns: Vec<Column>,
+}
+
+#[derive(Debug)]
+struct Column {
+    /// The head first.
+    cells: Vec<String>,
+    to_the_right: bool,
+}
+
+impl Table {
+    /// Adds a column of text.
+    pub(crate) fn text<C: Into<String>>(mut self, head: &str, cells: impl IntoIterator<Item = C>) -> Self {
+        let cells = std::iter::once(head.to_owned()).chain(cells.into_iter().map(Into::into)).collect();
+        self.columns.push(Column { cells, to_the_right: false });
+        self
+    }
+
+    /// Adds a column of numbers with as many decimals as its largest needs for six digits; `-` where there is none.
+    ///
+    /// What is left of a zero after rounding, beside numbers of the size `scale`, is written as `~0`.
+    pub(crate) fn numbers(
+        self,
+        head: &str,
+        scale: f64,
+        numbers: impl IntoIterator<Item = impl Into<Option<f64>>>,
+    ) -> Self {
+        let numbers: Vec<Option<f64>> = numbers.into_iter().map(Into::into).collect();
+        let largest = self::scale(numbers.iter().flatten().copied().filter(|&number| !is_residue(number, scale)));
+        self.column(head, scale, largest, numbers)
+    }
+
+    /// A table of numbers that have the same decimals in all columns, without heads.
+    pub(crate) fn matrix(rows: &[Vec<f64>]) -> Self {
+        let largest = scale(rows.iter().flatten().copied());
+        let columns = 0..rows.first().map_or(0, Vec::len);
+        columns.fold(Self::default(), |table, column| {
+            let entries = rows.iter().map(|row| row.get(column).copied()).collect();
+            table.column("", largest, largest, entries)
+        })
+    }
+
+    fn column(mut self, head: &str, scale: f64, largest: f64, numbers: Vec<Option<f64>>) -> Self {
+        let cell = |number: &Option<f64>| match *number {
+            None => "-".to_owned(),
+            Some(number) if is_residue(number, scale) => "~0".to_owned(),
+            Some(number) => within(number, largest),
+        };
+        let cells = std::iter::once(head.to_owned()).chain(numbers.iter().map(cell)).collect();
+        self.columns.push(Column { cells, to_the_right: true });
+        self
+    }
+
+    /// Writes the table, every line indented and without blanks at its end.
+    pub(crate) fn write(&self, out: &mut String) {
+        self.write_from(0, out);
+    }
+
+    /// Writes the table without its heads.
+    pub(crate) fn write_body(&self, out: &mut String) {
+        self.write_from(1, out);
+    }
+
+    fn write_from(&self, first: usize, out: &mut String) {
+        let rows = self.columns.iter().map(|column| column.cells.len()).max().unwrap_or(0);
+        let widths: Vec<usize> = self.columns.iter().map(Column::width).collect();
+        for row in first..rows {
+            let mut line = String::new();
+            for (column, &width) in self.columns.iter().zip(&widths) {
+                let cell = column.cells.get(row).map_or("", String::as_str);
+                let blanks = " ".repeat(width - cell.chars().count());
+                let (before, after) = if column.to_the_right { (blanks.as_str(), "") } else { ("", blanks.as_str()) };
+                line.extend(["  ", before, cell, after]);
+            }
+            // Writing into a string cannot fail.
+            let _ = writeln!(out, "{}", line.trim_end());
+        }
+    }
+}
+
+impl Column {
+    fn width(&self) -> usize {
+        self.cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0)
+    }
+}
+
+/// The largest magnitude.
+pub(crate) fn scale(numbers: impl IntoIterator<Item = f64>) -> f64 {
+    numbers.into_iter().fold(0.0, |largest, number| largest.max(number.abs()))
+}
+
+/// Whether `value` is what rounding left of a zero, beside numbers of the size `scale`.
+pub(crate) fn is_residue(value: f64, scale: f64) -> bool {
+    value != 0.0 && value.abs() < 1e-13 * scale
+}
+
+/// A number alone: six digits, without zeros at their end.
+pub(crate) fn number(value: f64) -> String {
+    let text = within(value, value.abs());
+    match text.split_once('e') {
+        Some((digits, exponent)) => format!("{}e{exponent}", without_zeros(digits)),
+        None => without_zeros(&text).to_owned(),
+    }
+}
+
+fn without_zeros(digits: &str) -> &str {
+    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
+}
+
+/// `value` with the decimals that give `largest` six digits; an exact zero is "0".
+fn within(value: f64, largest: f64) -> String {
+    const DIGITS: i32 = 6;
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(value.is_finite() && largest.is_finite()) {
+        return format!("{value:.3e}");
+    }
+    let magnitude = libm::log10(largest).floor() as i32;
+    let decimals = DIGITS - 1 - magnitude;
+    // Too small beside the largest to be seen with its decimals.
+    let vanishes = value.abs() < 0.5 * 10f64.powi(2 - decimals);
+    if !(-4..DIGITS).contains(&magnitude) || vanishes {
+        return format!("{value:.3e}");
+    }
+    format!("{value:.*}", decimals.max(0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_written_as_such() {
+        assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(number), ["NaN", "inf", "-inf"]);
+        assert_eq!(within(f64::NAN, 0.0), "NaN");
+        assert_eq!(within(1.0, f64::INFINITY), "1.000e0");
+    }
+
+    #[test]
+    fn numbers_keep_their_points_below_each_other() {
+        let mut out = String::new();
+        let table = Table::default().text("name", ["a", "long name"]).numbers("value", 1.0, [Some(-12.5), None]);
+        table.numbers("small", 1.0, [0.001, 1.0]).write(&mut out);
+        assert_eq!(
+            out,
+            "  name          value    small\n  a          -12.5000  0.00100\n  long name         -  1.00000\n"
+        );
+    }
+
+    #[test]
+    fn zeros_and_extremes_are_told_apart() {
+        let mut out = String::new();
+        Table::default().numbers("", 1.0, [0.0, 1e-17, 0.25]).write_body(&mut out);
+        assert_eq!(out, "         0\n        ~0\n  0.250000\n");
+        assert_eq!(within(1e-9, 1.0), "1.000e-9");
+        assert_eq!(number(0.0000826), "8.26e-5");
+        assert_eq!(number(10.5), "10.5");
+        assert_eq!(number(300.0), "300");
+        assert_eq!(number(1234567.0), "1.235e6");
+    }
+}
