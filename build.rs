@@ -1,8 +1,8 @@
-//! Tells the compiler which commit it builds, for `heelstrike --version`.
+//! Passes the commit to the compiler, for `heelstrike --version`.
 //!
 //! The commit is read from the packaged crate's `.cargo_vcs_info.json`, else from the checkout that this folder is the
-//! top of. Where neither is to be had (no git, a copy inside another repository) the version stands alone: nothing fails,
-//! and the same sources give the same binary.
+//! top of. Without either (no git, a copy inside another repository) the version stands alone: nothing fails, and the same
+//! sources give the same binary.
 
 use std::path::Path;
 use std::process::Command;
@@ -14,7 +14,7 @@ fn main() {
     println!("cargo::rustc-env=HEELSTRIKE_COMMIT={suffix}");
 }
 
-/// The commit that `cargo package` noted.
+/// The commit recorded by `cargo package`.
 fn packaged_commit() -> Option<String> {
     const NOTE: &str = ".cargo_vcs_info.json";
     let note = std::fs::read_to_string(NOTE).ok()?;
@@ -45,7 +45,7 @@ fn short(hash: &str) -> Option<String> {
     digits.bytes().all(|digit| digit.is_ascii_hexdigit()).then(|| digits.to_owned())
 }
 
-/// What git answers; nothing where it cannot.
+/// The output of git; `None` if it fails.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     let answer = String::from_utf8(output.stdout).ok()?;

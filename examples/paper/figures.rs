@@ -34,7 +34,7 @@ pub struct Claim {
 pub struct Finding {
     /// With its numbers.
     pub words: String,
-    /// Whether that is what is claimed; none where the claim's numbers are lost.
+    /// Whether that agrees with the claim; `None` if the claim's numbers are lost.
     pub agrees: Option<bool>,
 }
 

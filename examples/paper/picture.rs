@@ -4,7 +4,7 @@ use crate::exhibit::{Exhibit, Found};
 use heelstrike::Result;
 use heelstrike::draw::{Picture, robot as drawing, sweep};
 
-/// Curves and regions of a study, or the robot in its pose with every outcome; none where there is nothing to draw.
+/// Curves and regions of a study, or the robot in its pose with every outcome; `None` if there is nothing to draw.
 ///
 /// # Errors
 /// A study that is refused.
