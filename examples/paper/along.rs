@@ -1,7 +1,7 @@
 //! What a figure's regions along one parameter say of a claim.
 
-use crate::exhibit::Found;
-use crate::figures::Finding;
+use super::exhibit::Found;
+use super::figures::Finding;
 use heelstrike::sweep::Regime;
 
 /// The modes of an outcome, trailing/leading, as "slide-/stick".

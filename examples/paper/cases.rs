@@ -1,8 +1,8 @@
 //! What one state's outcomes, and the combinations of modes that are none, say of a claim.
 
-use crate::along::Modes;
-use crate::exhibit::Found;
-use crate::figures::Finding;
+use super::along::Modes;
+use super::exhibit::Found;
+use super::figures::Finding;
 use heelstrike::impact::Mode;
 use heelstrike::planar::Vector;
 

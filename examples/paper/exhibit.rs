@@ -1,6 +1,6 @@
 //! A figure's robot and study, or state, and what is found there.
 
-use crate::figures::{Figure, Input};
+use super::figures::{Figure, Input};
 use heelstrike::Robot;
 use heelstrike::description::Description;
 use heelstrike::impact::Analysis;

@@ -2,10 +2,10 @@
 //!
 //! Modes are those of the trailing and of the leading foot. The paper walks toward -x: it calls slide- forward.
 
-use crate::along::{Modes, bands, order, order_without_slides};
-use crate::cases::{Case, cases, outcomes};
-use crate::exhibit::Found;
-use crate::map::{bands_move, closes_at};
+use super::along::{Modes, bands, order, order_without_slides};
+use super::cases::{Case, cases, outcomes};
+use super::exhibit::Found;
+use super::map::{bands_move, closes_at};
 use std::f64::consts::PI;
 
 /// A figure or table.

@@ -1,8 +1,8 @@
 //! What a figure's regions of two parameters say of a claim.
 
-use crate::along::modes;
-use crate::exhibit::Found;
-use crate::figures::Finding;
+use super::along::modes;
+use super::exhibit::Found;
+use super::figures::Finding;
 use heelstrike::planar::Vector;
 use heelstrike::sweep::{Area, Map};
 

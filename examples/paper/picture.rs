@@ -1,6 +1,6 @@
 //! What a figure looks like.
 
-use crate::exhibit::{Exhibit, Found};
+use super::exhibit::{Exhibit, Found};
 use heelstrike::Result;
 use heelstrike::draw::{Picture, robot as drawing, sweep};
 

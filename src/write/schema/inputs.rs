@@ -1,6 +1,6 @@
 //! What the readers of states, problems and studies accept, as types that a schema can be derived from.
 //!
-//! Nothing is read into these types; `tests/schema` compares them with the readers field by field.
+//! Nothing is read into these types; `tests/command/schema` compares them with the readers field by field.
 #![expect(dead_code, reason = "the schemas are all that is wanted of them")]
 
 use super::Id;

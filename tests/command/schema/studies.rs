@@ -1,0 +1,162 @@
+//! Studies and what `sweep` writes of them.
+
+use super::{assert_agreement, is_valid, written};
+use heelstrike::description::Description;
+use heelstrike::pipeline::Options;
+use heelstrike::robot::Reduction;
+use heelstrike::state::Defaults;
+use heelstrike::sweep::{Model, Study};
+use heelstrike::write::schema;
+use heelstrike::{Error, Reason, Robot};
+use serde_json::{Value, json};
+use std::sync::LazyLock;
+
+static RAMONE: LazyLock<(Description, Robot)> = LazyLock::new(|| {
+    let description = Description::from_urdf(include_str!("../../../urdf/ramone.urdf")).expect("a description");
+    let robot = Robot::reduce(&description, &Reduction::default()).expect("a robot");
+    (description, robot)
+});
+
+/// Reads a study whole: its state and robot as well, at the ends and in the middle.
+fn read(text: &str) -> Result<(), Error> {
+    let (description, robot) = &*RAMONE;
+    let study = Study::from_json(text)?;
+    let (options, defaults) = (Options::default(), Defaults::default());
+    Model { study: &study, description, reduction: &Reduction::default(), robot, options, defaults }.readable()
+}
+
+fn sample() -> Value {
+    json!({
+        "parameters": {"alpha": {"from": 0, "to": 1.5, "steps": 5}},
+        "constants": {"k": 0.5, "m": "2*k"},
+        "state": {
+            "id": "k17",
+            "position": {"base": {"pitch": "-alpha"}, "joints": {"left_hip": "alpha + k"}},
+            "velocity": {"base": {"x": 0.1}},
+            "friction": {"default": "0.1 + alpha", "left_foot": "infinite"},
+            "restitution": 0.5,
+            "ground": {"slope": "0.1*alpha"},
+            "held": ["left_hip"],
+            "rotor_inertia": {"left_knee": "0.01*k^2"},
+            "contacts": [{"link": "left_foot", "offset": [0, 0, "-alpha"], "radius": 0.1}],
+            "uncertainty": {"velocity": "0.1*k^2"},
+            "impulse": [{"link": "torso", "offset": [0, 0, 0], "vector": [0, "alpha"]}],
+        },
+        "robot": {
+            "links": {"left_foot": {"mass": "1 + alpha", "com": [0, 0, "k"], "inertia": 0.1, "radius": 0.02}},
+            "joints": {"left_hip": {"origin": [0, 0, "0.1*alpha"]}},
+        },
+    })
+}
+
+#[test]
+fn schema_and_reader_of_studies_agree() {
+    // Which names and values there are, and what an expression says.
+    let beyond = |reason: &Reason| match reason {
+        Reason::UnknownName { .. } | Reason::Syntax(_) | Reason::NotFinite { .. } => true,
+        Reason::Inconsistent(text) => {
+            !text.starts_with("expected") && !text.starts_with("a study varies") && !text.contains("is no name")
+        }
+        _ => false,
+    };
+    assert_agreement(&schema::study(), &sample(), read, beyond);
+}
+
+#[test]
+fn expressions_stand_for_every_number_but_ids() {
+    let schema = schema::study();
+    let with = |pointer: &str, value: Value| {
+        let mut study = sample();
+        *study.pointer_mut(pointer).expect(pointer) = value;
+        study
+    };
+    for pointer in [
+        "/parameters/alpha/from",
+        "/parameters/alpha/steps",
+        "/constants/k",
+        "/state/position/base/pitch",
+        "/state/position/joints/left_hip",
+        "/state/restitution",
+        "/state/ground/slope",
+        "/state/contacts/0/offset/1",
+        "/state/contacts/0/radius",
+        "/state/uncertainty/velocity",
+        "/state/impulse/0/vector/0",
+        "/robot/links/left_foot/inertia",
+        "/robot/joints/left_hip/origin/2",
+    ] {
+        assert!(is_valid(&schema, &with(pointer, json!("2 + 2"))), "{pointer}");
+        assert!(!is_valid(&schema, &with(pointer, json!(true))), "{pointer}");
+        assert!(!is_valid(&schema::state(), &with(pointer, json!("2 + 2"))["state"]), "{pointer}");
+    }
+    let id = schema.pointer("/$defs/State/properties/id").expect("an id");
+    assert!(!id.to_string().contains("Expression"), "{id}");
+}
+
+#[test]
+fn the_schema_of_studies_has_the_fields_that_the_reader_names() {
+    let schema = schema::study();
+    for (text, pointer) in
+        [(json!({"?": 0}), "/properties"), (json!({"parameters": {"a": {"?": 0}}}), "/$defs/Parameter/properties")]
+    {
+        assert_fields(&schema, &text, pointer);
+    }
+    for (robot, pointer) in [
+        (json!({"?": 0}), "/$defs/Variation/properties"),
+        (json!({"links": {"torso": {"?": 0}}}), "/$defs/LinkVariation/properties"),
+        (json!({"joints": {"left_hip": {"?": 0}}}), "/$defs/JointVariation/properties"),
+    ] {
+        let mut study = sample();
+        study["robot"] = robot;
+        assert_fields(&schema, &study, pointer);
+    }
+}
+
+fn assert_fields(schema: &Value, text: &Value, pointer: &str) {
+    let properties = schema.pointer(pointer).and_then(Value::as_object).expect("properties");
+    let error = read(&text.to_string()).expect_err("an unknown field");
+    let hint = error.remedy().and_then(|hint| hint.strip_prefix("the fields here are ")).expect("the known fields");
+    let mut known: Vec<&str> = hint.split(", ").collect();
+    known.sort_unstable();
+    assert_eq!(properties.keys().collect::<Vec<_>>(), known, "{text}");
+}
+
+#[test]
+fn every_form_of_sweep_is_valid() {
+    let schema = schema::sweep();
+    let walker = json!({
+        "parameters": {"alpha": {"from": 0.1, "to": 1.5, "steps": 4}},
+        "state": {
+            "position": {"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}},
+            "velocity": {"base": {"pitch": -1}}, "stance": "left_leg", "friction": "infinite",
+        },
+    });
+    let mut refused = walker.clone();
+    refused["state"]["friction"] = json!("sqrt(1 - alpha)");
+    let mut lifting = walker.clone();
+    lifting["state"] = json!({"position": {"base": {"z": "0.9 + alpha"}}, "friction": 1});
+    let mut map = walker.clone();
+    map["parameters"]["v"] = json!({"from": -1, "to": 1, "steps": 3});
+    map["state"]["velocity"]["joints"] = json!({"hip": "v"});
+    for (study, arguments) in [
+        (&walker, &[][..]),
+        (&walker, &["--explain", "--matrices"]),
+        (&walker, &["--brief"]),
+        (&refused, &[]),
+        (&lifting, &[]),
+        (&map, &[]),
+    ] {
+        let command = [&["sweep", "urdf/minimalistic.urdf", "-", "--format", "json"], arguments].concat();
+        let found: Value = serde_json::from_str(&written(&command, &study.to_string())).expect("JSON");
+        assert!(is_valid(&schema, &found), "{study} {arguments:?}: {found}");
+        let mut more = found.clone();
+        more["regions"][0]["unknown?"] = json!(0);
+        assert!(!is_valid(&schema, &more), "{study}");
+        let mut less = found.clone();
+        less.as_object_mut().expect("an object").remove("samples");
+        assert!(!is_valid(&schema, &less), "{study}");
+        let mut other = found;
+        other["samples"][0]["alpha"] = json!("x");
+        assert!(!is_valid(&schema, &other), "{study}");
+    }
+}

@@ -1,0 +1,279 @@
+//! A leg of five bars (torso, two thighs, two shanks) that the tree has to cut open, against the same leg without the loop:
+//! its dependent rates are solved for (implicit differentiation), v = T v_red with T = [1; -K_d^-1 K_i].
+
+use crate::constraints::mechanism::{Mechanism, Part, assert_near, flat, impact, matrix, part, point};
+use heelstrike::pipeline::Impact;
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+/// Sums of some twenty products, inverses of matrices of condition below a few thousand.
+const ROUNDINGS: f64 = 1e5;
+
+const THIGH: f64 = 0.4;
+const SHANK: f64 = 0.5;
+const WIDTH: f64 = 0.2;
+
+/// The shanks' ends are one pin. Its foot is that of the left shank.
+fn cut_at_the_pin() -> Mechanism {
+    Mechanism {
+        root: (5.0, [0.02, 0.15], 0.3),
+        parts: vec![
+            part("left_thigh", "root", [-0.5 * WIDTH, 0.0], 0.8, [0.01, -0.15]),
+            part("left_shank", "left_thigh", [0.0, -THIGH], 0.4, [0.0, -0.2]),
+            part("right_thigh", "root", [0.5 * WIDTH, 0.0], 0.7, [-0.01, -0.18]),
+            part("right_shank", "right_thigh", [0.0, -THIGH], 0.3, [0.02, -0.25]),
+        ],
+    }
+}
+
+/// The same leg with the pin as a joint and the right knee open: the right shank hangs on the left one's end.
+fn cut_at_the_knee() -> Mechanism {
+    let mut mechanism = cut_at_the_pin();
+    let upside_down =
+        Part { parent: "left_shank", origin: [0.0, -SHANK], com: [0.02, SHANK - 0.25], ..mechanism.parts[3].clone() };
+    mechanism.parts[3] = upside_down;
+    mechanism
+}
+
+/// Ends of the loop: (part, point) of a and b.
+type Ends = [(&'static str, [f64; 2]); 2];
+const PIN: Ends = [("left_shank", [0.0, -SHANK]), ("right_shank", [0.0, -SHANK])];
+const KNEE: Ends = [("right_thigh", [0.0, -THIGH]), ("right_shank", [0.0, SHANK])];
+
+/// The coordinates of the tree that is cut at the pin, from pitch and the angles of both thighs: two circles about the knees.
+fn closed(pitch: f64, left: f64, right: f64) -> Vec<f64> {
+    let down = |angle: f64, length: f64| [-length * f64::sin(angle), -length * f64::cos(angle)];
+    let [a, b] = [(-0.5 * WIDTH, left), (0.5 * WIDTH, right)].map(|(x, angle)| {
+        let [dx, dz] = down(angle, THIGH);
+        [x + dx, dz]
+    });
+    let apart = [b[0] - a[0], b[1] - a[1]];
+    let distance = apart[0].hypot(apart[1]);
+    let drop = (SHANK * SHANK - 0.25 * distance * distance).sqrt();
+    // Below the middle of both knees.
+    let foot = [0.5 * (a[0] + b[0]) + drop * apart[1] / distance, 0.5 * (a[1] + b[1]) - drop * apart[0] / distance];
+    let angle = |knee: [f64; 2]| f64::atan2(-(foot[0] - knee[0]), -(foot[1] - knee[1]));
+    vec![0.3, 0.9, pitch, left, angle(a) - left, right, angle(b) - right]
+}
+
+/// K = J_a - J_b.
+fn loop_rows(mechanism: &Mechanism, q: &[f64], [a, b]: Ends) -> DMatrix<f64> {
+    mechanism.point_rates(q, a.0, a.1) - mechanism.point_rates(q, b.0, b.1)
+}
+
+/// T: rates of the tree for those of x, z, pitch and both thighs (columns 3 and 5).
+fn velocity_map(rows: &DMatrix<f64>) -> DMatrix<f64> {
+    let (kept, solved) = ([0, 1, 2, 3, 5], [4, 6]);
+    let dependent = rows.select_columns(&solved).try_inverse().expect("bent knees") * rows.select_columns(&kept);
+    DMatrix::from_fn(7, 5, |i, j| match solved.iter().position(|&row| row == i) {
+        Some(row) => -dependent[(row, j)],
+        None => f64::from(u8::from(kept[j] == i)),
+    })
+}
+
+fn named(ends: Ends) -> Value {
+    let [a, b] = ends.map(|(link, offset)| point(link, offset));
+    json!({"a": a, "b": b})
+}
+
+const FEET: [(&str, [f64; 2]); 2] = [("left_shank", [0.0, -SHANK]), ("root", [0.3, -0.5])];
+
+fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: Value) -> Value {
+    let mut state = mechanism.state(q, v);
+    state["contacts"] = FEET.map(|(link, offset)| point(link, offset)).into_iter().collect();
+    state["loops"] = loops;
+    state
+}
+
+fn case() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
+    let rates = prop::collection::vec(-1.0..1.0f64, 5);
+    (-0.5..0.5f64, -0.2..0.7f64, -0.7..0.2f64, rates)
+        .prop_map(|(pitch, left, right, rates)| (closed(pitch, left, right), rates))
+}
+
+/// v of the tree that is cut at the pin, its loop kept.
+fn rates_of_the_tree(q: &[f64], rates: &[f64]) -> DVector<f64> {
+    let map = velocity_map(&loop_rows(&cut_at_the_pin(), q, PIN));
+    map * DVector::from_row_slice(rates)
+}
+
+fn outcomes(impact: &Impact) -> Vec<Vec<heelstrike::impact::Mode>> {
+    let analysis = impact.analysis.as_ref().expect("an answer");
+    assert!(analysis.proven);
+    analysis.outcomes.iter().map(|outcome| outcome.modes.clone()).collect()
+}
+
+#[track_caller]
+fn assert_vectors_near(found: &[f64], expected: &[f64], size: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() <= ROUNDINGS * f64::EPSILON * size, "{found} {expected}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn the_leg_strikes_as_without_the_loop((q, rates) in case()) {
+        let mechanism = cut_at_the_pin();
+        let rows = loop_rows(&mechanism, &q, PIN);
+        let map = velocity_map(&rows);
+        let v = &map * DVector::from_vec(rates.clone());
+        let found = impact(&mechanism.robot(), &strike(&mechanism, &q, v.as_slice(), json!([named(PIN)])));
+        let matrices = found.matrices.as_ref().expect("asked for");
+
+        // Those of the tree are the tree's.
+        let mass = mechanism.mass_matrix(&q);
+        assert_near(&matrix(&matrices.mass_matrix), &mass, ROUNDINGS);
+        let feet = FEET.map(|(name, offset)| mechanism.point_rates(&q, name, offset));
+        let jacobian = DMatrix::from_fn(4, 7, |i, j| feet[i / 2][(i % 2, j)]);
+        assert_near(&matrix(&matrices.contact_jacobian), &jacobian, ROUNDINGS);
+        // G is that of the leg without the loop.
+        let reduced = (map.transpose() * &mass * &map).try_inverse().expect("positive definite");
+        let feet = &jacobian * &map;
+        assert_near(&matrix(&matrices.delassus), &(&feet * &reduced * feet.transpose()), ROUNDINGS);
+
+        let energy = 0.5 * v.dot(&(&mass * &v));
+        prop_assert!((found.kinetic_energy - energy).abs() <= ROUNDINGS * f64::EPSILON * energy);
+        outcomes(&found);
+        let analysis = found.analysis.as_ref().expect("an answer");
+        for ((outcome, after), loops) in analysis.outcomes.iter().zip(&found.velocity_after).zip(&found.loop_impulse) {
+            let (after, impulse) = (DVector::from_vec(after.clone()), flat(&outcome.impulse));
+            let size = after.amax().max(v.amax());
+            // v+ = T (v_red + M_red^-1 J_red' L).
+            let expected = &v + &map * &reduced * feet.transpose() * &impulse;
+            assert_vectors_near(after.as_slice(), expected.as_slice(), size);
+            assert_vectors_near((&rows * &after).as_slice(), &[0.0; 2], size);
+            // M (v+ - v-) = J' L + K' l.
+            let given = jacobian.transpose() * &impulse + rows.transpose() * flat(loops);
+            assert_vectors_near((&mass * (&after - &v)).as_slice(), given.as_slice(), 10.0 * size);
+            // Loops take no energy.
+            let left = 0.5 * after.dot(&(&mass * &after));
+            prop_assert!((energy - left - outcome.energy_loss).abs() <= ROUNDINGS * f64::EPSILON * energy);
+        }
+    }
+
+    #[test]
+    fn where_the_loop_is_cut_does_not_matter((q, rates) in case()) {
+        let v = rates_of_the_tree(&q, &rates);
+        let one = impact(&cut_at_the_pin().robot(), &strike(&cut_at_the_pin(), &q, v.as_slice(), json!([named(PIN)])));
+        // The right shank's coordinate is now its angle from the left shank.
+        let turned = |list: &[f64]| {
+            let mut list = list.to_vec();
+            list[6] = list[5] + list[6] - list[3] - list[4];
+            list
+        };
+        let mechanism = cut_at_the_knee();
+        let state = strike(&mechanism, &turned(&q), &turned(v.as_slice()), json!([named(KNEE)]));
+        let other = impact(&mechanism.robot(), &state);
+        prop_assert_eq!(outcomes(&one), outcomes(&other));
+        assert_near(
+            &matrix(&other.matrices.as_ref().expect("asked for").delassus),
+            &matrix(&one.matrices.as_ref().expect("asked for").delassus),
+            ROUNDINGS,
+        );
+        for (one, other) in one.velocity_after.iter().zip(&other.velocity_after) {
+            assert_vectors_near(other, &turned(one), 10.0);
+        }
+    }
+
+    #[test]
+    fn exchanging_the_ends_turns_the_impulse_round((q, rates) in case()) {
+        let (mechanism, v) = (cut_at_the_pin(), rates_of_the_tree(&q, &rates));
+        let robot = mechanism.robot();
+        let of = |ends: Ends| impact(&robot, &strike(&mechanism, &q, v.as_slice(), json!([named(ends)])));
+        let (one, other) = (of(PIN), of([PIN[1], PIN[0]]));
+        prop_assert_eq!(outcomes(&one), outcomes(&other));
+        for (one, other) in one.loop_impulse.iter().flatten().zip(other.loop_impulse.iter().flatten()) {
+            assert_vectors_near(other, &one.map(|entry| -entry), 10.0);
+        }
+        for (one, other) in one.velocity_after.iter().zip(&other.velocity_after) {
+            assert_vectors_near(other, one, 10.0);
+        }
+    }
+
+    /// Two legs of five bars, one behind the other: the loops' order is the order of their impulses and nothing else.
+    #[test]
+    fn the_order_of_the_loops_is_that_of_their_impulses((q, rates) in case()) {
+        let mut mechanism = cut_at_the_pin();
+        let second = ["hind_left_thigh", "hind_left_shank", "hind_right_thigh", "hind_right_shank"];
+        for (index, name) in second.into_iter().enumerate() {
+            let own = mechanism.parts[index].clone();
+            let parent = if index % 2 == 0 { "root" } else { second[index - 1] };
+            let origin = [own.origin[0] - if index % 2 == 0 { 0.7 } else { 0.0 }, own.origin[1]];
+            mechanism.parts.push(Part { name, parent, origin, ..own });
+        }
+        let robot = mechanism.robot();
+        let both = |list: &[f64]| [list, &list[3..]].concat();
+        let v = rates_of_the_tree(&q, &rates);
+        let hind: Ends = [(second[1], [0.0, -SHANK]), (second[3], [0.0, -SHANK])];
+        let of = |loops: [Ends; 2]| {
+            let loops = loops.map(named).into_iter().collect();
+            impact(&robot, &strike(&mechanism, &both(&q), &both(v.as_slice()), loops))
+        };
+        let (one, other) = (of([PIN, hind]), of([hind, PIN]));
+        prop_assert_eq!(outcomes(&one), outcomes(&other));
+        for (one, other) in one.loop_impulse.iter().zip(&other.loop_impulse) {
+            assert_vectors_near(&[other[1], other[0]].concat(), &one.concat(), 10.0);
+        }
+    }
+
+    /// An impulse on the loop acts through it: it leaves the velocity that the leg without the loop has.
+    #[test]
+    fn applied_impulses_act_through_the_loop((q, rates) in case(), push in prop::array::uniform2(-2.0..2.0f64)) {
+        let mechanism = cut_at_the_pin();
+        let map = velocity_map(&loop_rows(&mechanism, &q, PIN));
+        let v = &map * DVector::from_vec(rates);
+        let mut state = strike(&mechanism, &q, v.as_slice(), json!([named(PIN)]));
+        state["contacts"] = json!([]);
+        let mut applied = point("right_shank", [0.1, -0.2]);
+        applied["vector"] = json!(push);
+        state["impulse"] = json!([applied]);
+        let found = impact(&mechanism.robot(), &state);
+        let mass = mechanism.mass_matrix(&q);
+        let reduced = (map.transpose() * &mass * &map).try_inverse().expect("positive definite");
+        let arm = mechanism.point_rates(&q, "right_shank", [0.1, -0.2]) * &map;
+        let expected = &v + &map * reduced * arm.transpose() * DVector::from_row_slice(&push);
+        assert_vectors_near(&found.velocity_after[0], expected.as_slice(), 10.0);
+        prop_assert_eq!(found.loop_impulse[0].len(), 1);
+    }
+
+    /// With a stance the rates that a loop needs are taken from the joints, and the foot stays at rest.
+    #[test]
+    fn a_stance_rests_although_its_leg_is_closed((q, rates) in case(), noise in -1e-4..1e-4f64) {
+        let mechanism = cut_at_the_pin();
+        let mut v = rates_of_the_tree(&q, &rates);
+        v[4] += noise;
+        let mut state = strike(&mechanism, &q, v.as_slice(), json!([named(PIN)]));
+        state["stance"] = json!("left_shank");
+        for field in ["position", "velocity"] {
+            state[field]["base"] = json!({"pitch": state[field]["base"]["pitch"]});
+        }
+        let found = impact(&mechanism.robot(), &state);
+        prop_assert_eq!(found.velocity_before[0], [0.0; 2]);
+        outcomes(&found);
+        for after in &found.velocity_after {
+            let opens = loop_rows(&mechanism, &q, PIN) * DVector::from_vec(after.clone());
+            assert_vectors_near(opens.as_slice(), &[0.0; 2], 10.0);
+        }
+    }
+}
+
+#[test]
+fn a_rate_with_noise_is_told_and_mended_by_the_least_energy() {
+    let (mechanism, q) = (cut_at_the_pin(), closed(0.1, 0.4, -0.3));
+    let mut v = rates_of_the_tree(&q, &[0.2, -1.0, 0.3, 0.5, -0.4]);
+    v[6] += 1e-3;
+    let found = impact(&mechanism.robot(), &strike(&mechanism, &q, v.as_slice(), json!([named(PIN)])));
+    let [note] = &found.notes[..] else { panic!("{:?}", found.notes) };
+    assert!(note.starts_with("loops[0] (left_shank - right_shank) opens at 5.0e-4 m/s before the impact"), "{note}");
+    let (rows, mass) = (loop_rows(&mechanism, &q, PIN), mechanism.mass_matrix(&q));
+    let inverse = mass.try_inverse().expect("positive definite");
+    let mobility = (&rows * &inverse * rows.transpose()).try_inverse().expect("independent rows");
+    let mended = &v - inverse * rows.transpose() * mobility * &rows * &v;
+    let feet = FEET.map(|(name, offset)| mechanism.point_rates(&q, name, offset) * &mended);
+    for (found, expected) in found.velocity_before.iter().zip(feet) {
+        assert_vectors_near(found, expected.as_slice(), 10.0);
+    }
+}

@@ -1,0 +1,124 @@
+//! A four-bar by hand: a parallelogram of two cranks of length l and mass m on the ground, and a coupler of mass m_c that
+//! therefore does not turn. With both cranks at the angle q (positive: their ends swing back) the coupler moves at
+//! l q' (-cos q, sin q), so that
+//!
+//! ```text
+//!     M = (2/3 m + m_c) l^2        G = l^2 d d' / M,  d = (-cos q, sin q)
+//! ```
+//!
+//! (rods of moment m l^2 / 12 about their middle). At friction 0 a coupler that comes down stops: L_n = -M q' / (l sin q).
+//! The pin at crank 2 gives it f: the coupler's moments about its middle and its momentum along z are
+//! a_z + f_z = 0 and m_c dv_z = a_z - f_z + L_n (a from crank 1; L_n goes through the middle), so f_z = (L_n - m_c dv_z) / 2;
+//! the crank's moment about its pivot, m l^2 / 3 dq' = l f . d, gives f_x.
+
+use crate::constraints::mechanism::{Joint, Mechanism, Part, impact, part, point};
+use heelstrike::impact::Mode;
+use heelstrike::pipeline::Impact;
+use heelstrike::robot::{Base, Reduction, Robot};
+use serde_json::{Value, json};
+
+pub const L: f64 = 0.5;
+pub const M: f64 = 1.5;
+pub const M_COUPLER: f64 = 2.0;
+pub const WIDTH: f64 = 0.8;
+
+/// Cranks hang from the root at these places; the coupler on the first, its middle `WIDTH` / 2 in front of that.
+pub fn parallelogram(cranks: &[(&'static str, f64)]) -> Mechanism {
+    let crank = |&(name, x): &(&'static str, f64)| Part {
+        moment: M * L * L / 12.0,
+        ..part(name, "root", [x, 0.0], M, [0.0, -0.5 * L])
+    };
+    let coupler = part("coupler", cranks[0].0, [0.0, -L], M_COUPLER, [0.5 * WIDTH, 0.0]);
+    Mechanism { root: (1.0, [0.0; 2], 1.0), parts: cranks.iter().map(crank).chain([coupler]).collect() }
+}
+
+pub fn bolted(mechanism: &Mechanism) -> Robot {
+    let description = heelstrike::description::Description::from_urdf(&mechanism.urdf()).expect("a description");
+    Robot::reduce(&description, &Reduction { base: Some(Base::Fixed), ..Reduction::default() }).expect("a robot")
+}
+
+/// All cranks at q and q', the coupler level; a foot below the coupler's middle.
+pub fn state(mechanism: &Mechanism, q: f64, rate: f64, loops: Value) -> Value {
+    let joints = |value: f64| {
+        let named = mechanism.parts.iter().map(|part| (part.name, if part.name == "coupler" { -value } else { value }));
+        json!({"joints": named.map(|(name, value)| (name.to_owned(), json!(value))).collect::<serde_json::Map<_, _>>()})
+    };
+    json!({"position": joints(q), "velocity": joints(rate), "friction": 0, "loops": loops,
+        "contacts": [point("coupler", [0.5 * WIDTH, -0.1])]})
+}
+
+/// The coupler's point over the place `x` of a crank's pivot, and the crank's end.
+pub fn pin(crank: &str, x: f64) -> Value {
+    json!({"a": point(crank, [0.0, -L]), "b": point("coupler", [x, 0.0])})
+}
+
+/// The outcome's impulse and rates as they must be for `cranks` cranks; gives the normal impulse.
+#[track_caller]
+pub fn assert_stops(found: &Impact, q: f64, rate: f64, cranks: f64) -> f64 {
+    let mass = (cranks * M / 3.0 + M_COUPLER) * L * L;
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    let direction = [-q.cos(), q.sin()];
+    let delassus = &found.matrices.as_ref().expect("asked for").delassus;
+    for (row, along) in delassus.iter().zip(direction) {
+        for (entry, across) in row.iter().zip(direction) {
+            near(*entry, L * L * along * across / mass);
+        }
+    }
+    let analysis = found.analysis.as_ref().expect("an answer");
+    assert!(analysis.proven);
+    let [outcome] = &analysis.outcomes[..] else { panic!("{:?}", analysis.outcomes) };
+    assert_eq!(outcome.modes, [Mode::Stick]);
+    let normal = -mass * rate / (L * q.sin());
+    near(outcome.impulse[0][1], normal);
+    found.velocity_after[0].iter().for_each(|after| near(*after, 0.0));
+    normal
+}
+
+#[test]
+fn a_parallelogram_strikes_the_ground_as_on_paper() {
+    let mechanism = parallelogram(&[("front", 0.0), ("rear", WIDTH)]);
+    let robot = bolted(&mechanism);
+    // sin q > 0 and q' < 0: it comes down.
+    let (q, rate) = (0.6, -2.0);
+    let found = impact(&robot, &state(&mechanism, q, rate, json!([pin("rear", WIDTH)])));
+    let normal = assert_stops(&found, q, rate, 2.0);
+    // On the crank: f of the coupler, both rates go from `rate` to zero.
+    let change = -rate;
+    let f_z = 0.5 * (normal - M_COUPLER * L * change * q.sin());
+    let f_x = (M * L * change / 3.0 - f_z * q.sin()) / -q.cos();
+    let [[x, z]] = found.loop_impulse[0][..] else { panic!("{:?}", found.loop_impulse) };
+    assert!((x - f_x).abs() < 1e-13 && (z - f_z).abs() < 1e-13, "{x} {z}, not {f_x} {f_z}");
+}
+
+#[test]
+fn a_rod_pinned_to_the_ground_by_a_loop_is_a_pendulum() {
+    // Its joint is free to slide in the tree; the loop holds its upper end to the root. G at the free end, at the angle q:
+    // l^2 d d' / (m l^2 / 3), d as above.
+    let slide = |name, parent, direction| Part {
+        joint: Joint::Slide(direction),
+        mass: 0.0,
+        moment: 0.0,
+        ..part(name, parent, [0.0; 2], 0.0, [0.0; 2])
+    };
+    let rod = Part { moment: M * L * L / 12.0, ..part("rod", "up", [0.0; 2], M, [0.0, -0.5 * L]) };
+    let mechanism = Mechanism {
+        root: (1.0, [0.0; 2], 1.0),
+        parts: vec![slide("along", "root", [1.0, 0.0]), slide("up", "along", [0.0, 1.0]), rod],
+    };
+    let (q, rate) = (0.6_f64, -2.0);
+    let state = json!({"position": {"joints": {"rod": q}}, "velocity": {"joints": {"rod": rate}}, "friction": 0,
+        "loops": [{"a": point("rod", [0.0; 2]), "b": point("root", [0.0; 2])}], "contacts": [point("rod", [0.0, -L])]});
+    let found = impact(&bolted(&mechanism), &state);
+    let direction = [-q.cos(), q.sin()];
+    for (row, along) in found.matrices.as_ref().expect("asked for").delassus.iter().zip(direction) {
+        for (entry, across) in row.iter().zip(direction) {
+            assert!((entry - along * across / (M / 3.0)).abs() < 1e-14, "{entry}");
+        }
+    }
+    // What the rod's middle gains comes from the ground and the pivot together.
+    let analysis = found.analysis.as_ref().expect("an answer");
+    let normal = analysis.outcomes[0].impulse[0][1];
+    let [[x, z]] = found.loop_impulse[0][..] else { panic!("{:?}", found.loop_impulse) };
+    let gained = [-q.cos(), q.sin()].map(|along| M * 0.5 * L * -rate * along);
+    assert!((x - gained[0]).abs() < 1e-13 && (z + normal - gained[1]).abs() < 1e-13, "{x} {z} {normal}");
+}

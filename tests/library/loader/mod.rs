@@ -1,0 +1,428 @@
+//! URDF text -> robot: what is read, to which digits, what is welded, skipped or refused, and with which words.
+//!
+//! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
+
+use heelstrike::description::Description;
+use heelstrike::robot::{Axis, Base, LeftOut, Link, Mover, Reduction, Rim, Robot};
+use serde::Deserialize;
+use std::f64::consts::FRAC_PI_2;
+
+mod base;
+mod plane;
+mod refusals;
+mod untidy;
+
+fn model(name: &str) -> Robot {
+    let path = format!("{}/urdf/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
+    load(&std::fs::read_to_string(path).expect("a file"))
+}
+
+fn load(text: &str) -> Robot {
+    Robot::from_urdf(text).expect("a robot")
+}
+
+/// Centre and radius of the disc that is a link's only shape.
+fn disc(link: &Link) -> ([f64; 2], f64) {
+    let [shape] = &link.shapes[..] else { panic!("one shape") };
+    match (shape.corners(), shape.rim()) {
+        (&[centre], Rim::Circle { radius }) => (centre, radius),
+        other => panic!("{other:?} is no disc"),
+    }
+}
+
+fn reduce(text: &str, reduction: &Reduction) -> Robot {
+    Robot::reduce(&Description::from_urdf(text).expect("a description"), reduction).expect("a robot")
+}
+
+/// A robot of these elements, on the line after its first tag.
+fn robot(body: &str) -> String {
+    format!("<robot name=\"r\">\n{body}\n</robot>")
+}
+
+fn inertial(mass: f64, com: &str, iyy: f64) -> String {
+    format!(
+        "<inertial><origin xyz=\"{com}\"/><mass value=\"{mass}\"/><inertia ixx=\"1\" iyy=\"{iyy}\" izz=\"1\"/></inertial>"
+    )
+}
+
+/// A massive link `a`, this joint element's inside, and a massive link `b`.
+fn two_links(kind: &str, joint: &str) -> String {
+    let inertial = inertial(1.0, "0 0 0", 1.0);
+    robot(&format!(
+        "<link name=\"a\">{inertial}</link>\n<link name=\"b\">{inertial}</link>\n\
+         <joint name=\"j\" type=\"{kind}\"><parent link=\"a\"/><child link=\"b\"/>{joint}</joint>"
+    ))
+}
+
+fn left_out(what: &str, why: &str) -> LeftOut {
+    LeftOut { what: what.into(), why: why.into() }
+}
+
+// The models of the paper.
+
+#[test]
+fn ramone_keeps_the_digits_of_table_1() {
+    for (name, shank) in [("ramone", -0.165235), ("ramone_paper", -0.073265)] {
+        let ramone = model(name);
+        assert_eq!(ramone.base, Base::Floating);
+        assert_eq!(ramone.name, name);
+        let coordinates: Vec<&str> = ramone.coordinates().collect();
+        assert_eq!(coordinates, ["x", "z", "pitch", "left_hip", "left_knee", "right_hip", "right_knee"]);
+
+        let bodies: Vec<_> =
+            ramone.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com, body.moment)).collect();
+        let thigh = (0.7887, [0.0, -0.019399], 0.00221);
+        let expected = [
+            ("torso", 7.9026, [0.0, 0.0], 0.0800),
+            ("left_thigh", thigh.0, thigh.1, thigh.2),
+            ("left_shank", 0.510, [0.0, shank], 0.00652),
+            ("right_thigh", thigh.0, thigh.1, thigh.2),
+            ("right_shank", 0.510, [0.0, shank], 0.00652),
+        ];
+        assert_eq!(bodies, expected);
+
+        let joints: Vec<_> = ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin)).collect();
+        let (hip, knee) = ([0.0, -0.137675], [0.0, -0.200]);
+        assert_eq!(joints, [(0, 1, hip), (1, 2, knee), (0, 3, hip), (3, 4, knee)]);
+        assert!(ramone.joints.iter().all(|joint| joint.axis == Axis::Turn { sign: -1.0 }));
+
+        for foot in ["left_foot", "right_foot"] {
+            let foot = &ramone.links[ramone.link(foot).expect("a foot")];
+            assert!(!foot.has_inertial);
+            let (centre, radius) = disc(foot);
+            assert_eq!((centre, radius), ([0.0, -0.2385], 0.02815));
+            assert_eq!(foot.point::<f64>([0.001, 0.5, 0.0]), [0.001, -0.2385]);
+        }
+        assert_eq!(ramone.links.iter().filter(|link| !link.shapes.is_empty()).count(), 2);
+        let welds = [
+            left_out("joint \"left_ankle\"", "fixed: welded into left_shank"),
+            left_out("joint \"right_ankle\"", "fixed: welded into right_shank"),
+        ];
+        assert_eq!(ramone.left_out, welds);
+    }
+}
+
+#[test]
+fn walkers_hang_from_the_hip_with_point_feet() {
+    for (name, along, moment) in [("minimalistic", 0.5, 0.0), ("pdw", 0.4, 0.04)] {
+        let walker = model(name);
+        assert_eq!(walker.coordinates().collect::<Vec<_>>(), ["x", "z", "pitch", "hip"]);
+        assert_eq!((walker.bodies[0].name.as_str(), walker.bodies[1].name.as_str()), ("left_leg", "right_leg"));
+        for body in &walker.bodies {
+            assert_eq!((body.mass, body.com, body.moment), (1.0, [0.0, -along], moment));
+        }
+        assert_eq!((walker.joints[0].origin, walker.joints[0].axis), ([0.0, 0.0], Axis::Turn { sign: -1.0 }));
+        for link in &walker.links {
+            let (centre, radius) = disc(link);
+            assert_eq!((centre, radius), ([0.0, -1.0], 0.0));
+        }
+        assert_eq!(walker.left_out, []);
+    }
+}
+
+#[test]
+fn block_is_one_body_on_one_point() {
+    let block = model("block");
+    assert_eq!((block.bodies.len(), block.dofs()), (1, 3));
+    assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, [-1.0, 1.0], 1.0));
+    let (centre, radius) = disc(&block.links[0]);
+    assert_eq!((centre, radius), ([0.0, 0.0], 0.0));
+}
+
+// Robots of others.
+
+#[derive(Deserialize)]
+struct Reference {
+    /// Some variants lack what is read here, so each is read when it is wanted.
+    variants: std::collections::BTreeMap<String, serde_json::Value>,
+}
+
+#[derive(Deserialize)]
+struct Model {
+    coordinates: Vec<String>,
+    joints: Vec<ReferenceJoint>,
+    bodies: Vec<ReferenceBody>,
+    total_mass: f64,
+}
+
+#[derive(Deserialize)]
+struct ReferenceJoint {
+    name: String,
+    parent_body: usize,
+    child_body: usize,
+    origin_zero: [f64; 2],
+    /// Of a hinge.
+    axis_sign_y: Option<f64>,
+    /// Of a slide.
+    direction_zero: Option<[f64; 2]>,
+}
+
+#[derive(Deserialize)]
+struct ReferenceBody {
+    link: String,
+    merged_links: Vec<String>,
+    mass: f64,
+    com_zero: [f64; 2],
+    #[serde(rename = "Iyy_com")]
+    moment: f64,
+}
+
+#[test]
+fn robots_of_others_equal_the_values_of_pinocchio() {
+    for (folder, file, variant) in [
+        ("a1", "a1", "default"),
+        ("acrobot", "Acrobot", "fixed"),
+        ("cartpole", "cartpole", "fixed_prismatic"),
+        ("h1", "h1", "default"),
+        ("planar_walker_torso", "PlanarWalkerWithTorso", "rerooted"),
+        ("rabbit", "five_link_walker", "default"),
+        ("solo8", "solo", "default"),
+        ("upkie", "upkie", "default"),
+    ] {
+        let read = |name: String| {
+            let path = format!("{}/tests/data/robots/{folder}/{name}", env!("CARGO_MANIFEST_DIR"));
+            std::fs::read_to_string(path).expect("a file")
+        };
+        let robot = load(&read(format!("{file}.urdf")));
+        let reference: Reference = serde_json::from_str(&read("reference.json".into())).expect("a reference");
+        let expected: Model = serde_json::from_value(reference.variants[variant].clone()).expect("the variant");
+        assert_eq!(robot.coordinates().collect::<Vec<_>>(), expected.coordinates, "{folder}");
+        assert_eq!(robot.bodies.len(), expected.bodies.len(), "{folder}");
+        close(robot.mass(), expected.total_mass);
+
+        // Body origins at zero in the root's frame.
+        let mut origins = vec![[0.0; 2]; robot.bodies.len()];
+        for (index, body) in robot.bodies.iter().enumerate().skip(1) {
+            let (parent, origin, _) = robot.hinge(body.joint.expect("all but the root have a joint"));
+            origins[index] = [0, 1].map(|k| origins[parent][k] + origin[k]);
+        }
+
+        let body = |name: &str| robot.bodies.iter().position(|body| body.name == name).expect("the body");
+        for expected in &expected.bodies {
+            let index = body(&expected.link);
+            let reduced = &robot.bodies[index];
+            close(reduced.mass, expected.mass);
+            close(reduced.moment, expected.moment);
+            for k in [0, 1] {
+                close(origins[index][k] + reduced.com[k], expected.com_zero[k]);
+            }
+            for link in &expected.merged_links {
+                assert_eq!(robot.links[robot.link(link).expect("the link")].body, index, "{link}");
+            }
+        }
+        for (joint, reference) in robot.joints.iter().zip(&expected.joints) {
+            assert_eq!(joint.name, reference.name);
+            assert_eq!(joint.parent, body(&expected.bodies[reference.parent_body].link));
+            assert_eq!(joint.child, body(&expected.bodies[reference.child_body].link));
+            match (joint.axis, reference.axis_sign_y, reference.direction_zero) {
+                (Axis::Turn { sign }, Some(expected), _) => assert_eq!(sign, expected, "{}", joint.name),
+                (Axis::Slide { direction }, _, Some(expected)) => assert_eq!(direction, expected, "{}", joint.name),
+                (axis, ..) => panic!("{}: {axis:?}", joint.name),
+            }
+            for k in [0, 1] {
+                close(origins[joint.child][k], reference.origin_zero[k]);
+            }
+        }
+    }
+}
+
+/// Equal to 1e-12: all lengths are below 1 m and all masses below 50 kg.
+fn close(value: f64, reference: f64) {
+    assert!((value - reference).abs() <= 1e-12 * reference.abs().max(1.0), "{value} is not {reference}");
+}
+
+#[test]
+fn wheels_of_upkie_are_discs_and_meshes_of_solo_are_told() {
+    let upkie = load(include_str!("../../data/robots/upkie/upkie.urdf"));
+    let tire = &upkie.links[upkie.link("left_wheel_tire").expect("a tire")];
+    assert_eq!(disc(tire).1, 0.05);
+
+    let solo = load(include_str!("../../data/robots/solo8/solo.urdf"));
+    assert!(solo.links.iter().all(|link| link.shapes.is_empty()));
+    let foot = "collision mesh \"package://example-robot-data/robots/solo_description/meshes/obj/with_foot/solo_foot.obj\" \
+                of link \"FL_FOOT\"";
+    assert!(solo.left_out.contains(&left_out(foot, "its file was not read")), "{:?}", solo.left_out);
+    assert!(solo.left_out.contains(&left_out("12 <limit> in <joint>", "joint limits do not enter an impact")));
+}
+
+// Joints.
+
+#[test]
+fn an_axis_may_have_either_sign_and_any_length() {
+    for (axis, sign) in
+        [("0 1 0", 1.0), ("0 -1 0", -1.0), ("0 1e300 0", 1.0), ("0 -1e-310 0", -1.0), ("0.0009 1 0", 1.0)]
+    {
+        for kind in ["revolute", "continuous"] {
+            let robot = load(&two_links(kind, &format!("<axis xyz=\"{axis}\"/>")));
+            assert_eq!(robot.joints[0].axis, Axis::Turn { sign }, "{axis}");
+        }
+    }
+}
+
+#[test]
+fn an_axis_is_turned_by_all_origins_before_it() {
+    // The frame of b is rolled by a quarter turn, so its z axis is the root's -y.
+    let robot = load(&two_links("revolute", &format!("<origin rpy=\"{FRAC_PI_2} 0 0\"/><axis xyz=\"0 0 1\"/>")));
+    assert_eq!(robot.joints[0].axis, Axis::Turn { sign: -1.0 });
+    assert_eq!(robot.left_out, []);
+}
+
+#[test]
+fn an_axis_slightly_off_is_brought_into_line_and_told() {
+    let robot = load(&two_links("revolute", "<axis xyz=\"0 1 5e-4\"/>"));
+    let why = "its axis is 5.0e-4 rad off the plane's normal: taken as exactly on it";
+    assert_eq!(robot.left_out, [left_out("joint \"j\"", why)]);
+}
+
+#[test]
+fn a_slide_has_its_direction_in_the_roots_axes_at_length_one() {
+    let direction = |joint: &str| match load(&two_links("prismatic", joint)).joints[0].axis {
+        Axis::Slide { direction } => direction,
+        Axis::Turn { .. } => panic!("it turns"),
+    };
+    assert_eq!(direction("<axis xyz=\"0 0 -2\"/>"), [0.0, -1.0]);
+    assert_eq!(direction("<axis xyz=\"0.6 0 0.8\"/>"), [0.6, 0.8]);
+    assert_eq!(direction(""), [1.0, 0.0]);
+    // Pitched by a: x points down by sin a.
+    let [x, z] = direction("<origin rpy=\"0 0.3 0\"/>");
+    assert!((x - 0.3_f64.cos()).abs() < 1e-16 && (z + 0.3_f64.sin()).abs() < 1e-16);
+}
+
+#[test]
+fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
+    let inertial = inertial(1.0, "0 0 0", 1.0);
+    let link = |name: &str| format!("<link name=\"{name}\">{inertial}</link>");
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+             <axis xyz=\"0 1 0\"/></joint>"
+        )
+    };
+    let text = robot(
+        &[
+            joint("ankle", "shank", "foot"),
+            link("foot"),
+            joint("knee", "thigh", "shank"),
+            link("shank"),
+            link("thigh"),
+            link("root"),
+            joint("hip", "root", "thigh"),
+            joint("tail", "root", "tip"),
+            link("tip"),
+        ]
+        .concat(),
+    );
+    let robot = load(&text);
+    assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
+    let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
+    let joint = |joint| Some(Mover::Joint(joint));
+    assert_eq!(
+        bodies,
+        [("root", None), ("thigh", joint(2)), ("shank", joint(1)), ("foot", joint(0)), ("tip", joint(3))]
+    );
+    assert_eq!(robot.links.iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
+}
+
+// Welding.
+
+#[test]
+fn fixed_links_are_welded_with_their_turned_inertia() {
+    let text = robot(&format!(
+        "<link name=\"a\">{}</link>\n\
+         <link name=\"b\"><inertial><origin xyz=\"0 7 1\"/><mass value=\"3\"/>\
+         <inertia ixx=\"0.2\" ixy=\"0\" ixz=\"0\" iyy=\"9\" iyz=\"0\" izz=\"0.1\"/></inertial>\
+         <collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n<link name=\"c\">{}</link>\n\
+         <joint name=\"weld\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>\
+         <origin xyz=\"2 5 0\" rpy=\"0 {FRAC_PI_2} {FRAC_PI_2}\"/></joint>\n\
+         <joint name=\"hinge\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/><axis xyz=\"1 0 0\"/>\
+         <origin xyz=\"0 0 1\" rpy=\"0 -{FRAC_PI_2} 0\"/></joint>",
+        inertial(1.0, "0 0 4", 0.5),
+        inertial(1.0, "0 0 0", 1.0)
+    ));
+    // The weld turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment izz.
+    let robot = load(&text);
+    let body = &robot.bodies[0];
+    assert_eq!((robot.bodies.len(), body.mass), (2, 4.0));
+    // CoG (-5 * 3 / 4, 4 / 4), arms (3.75, 3) and (-1.25, -1).
+    let expected = [-3.75, 1.0, 0.5 + 3.75 * 3.75 + 9.0 + 0.1 + 3.0 * (1.25 * 1.25 + 1.0)];
+    for (value, expected) in [body.com[0], body.com[1], body.moment].into_iter().zip(expected) {
+        assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");
+    }
+    // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
+    let [x, z] = robot.links[1].point::<f64>([1.0, 2.0, 3.0]);
+    assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15);
+    let (centre, radius) = disc(&robot.links[1]);
+    assert_eq!((centre, radius, robot.links[1].body), ([2.0, 0.0], 0.1, 0));
+    // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
+    let [x, z] = robot.joints[0].origin;
+    assert!((x - 2.0).abs() < 1e-15 && z.abs() < 1e-15);
+    assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Turn { sign: 1.0 }));
+}
+
+#[test]
+fn a_box_foot_keeps_its_exact_corners_through_a_weld() {
+    let text = robot(&format!(
+        "<link name=\"a\">{}</link><link name=\"foot\"><collision><origin xyz=\"0.05 0 0\"/><geometry>\
+         <box size=\"0.2 0.1 0.04\"/></geometry></collision></link><joint name=\"j\" type=\"fixed\">\
+         <parent link=\"a\"/><child link=\"foot\"/><origin xyz=\"0 0 -0.3\"/></joint>",
+        inertial(1.0, "0 0 0", 1.0)
+    ));
+    let robot = load(&text);
+    let [polygon] = &robot.links[1].shapes[..] else { panic!("one polygon") };
+    let (rear, front, low, high) = (0.05 - 0.1, 0.05 + 0.1, -0.3 - 0.02, -0.3 + 0.02);
+    assert_eq!(polygon.corners(), [[rear, low], [front, low], [front, high], [rear, high]]);
+}
+
+#[test]
+fn a_link_without_inertial_weighs_nothing_and_a_missing_inertia_is_told() {
+    let text = robot(
+        "<link name=\"a\"><inertial><origin xyz=\"0.1 0 0\"/><mass value=\"2\"/></inertial></link><link name=\"b\"/>\
+         <joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>",
+    );
+    let robot = load(&text);
+    assert_eq!((robot.bodies[0].mass, robot.bodies[0].com, robot.bodies[0].moment), (2.0, [0.1, 0.0], 0.0));
+    assert_eq!(robot.links.iter().map(|link| link.has_inertial).collect::<Vec<_>>(), [true, false]);
+    let expected = [
+        left_out("joint \"j\"", "fixed: welded into a"),
+        left_out("link \"a\"", "its <inertial> has no <inertia>: taken as a point mass"),
+    ];
+    assert_eq!(robot.left_out, expected);
+}
+
+#[test]
+fn skipped_shapes_are_told_one_by_one() {
+    let shape = |geometry: &str| format!("<collision><geometry>{geometry}</geometry></collision>");
+    let text = robot(&format!(
+        "<link name=\"a\">{}{}{}{}</link>",
+        inertial(1.0, "0 0 0", 1.0),
+        shape("<mesh filename=\"foot.stl\"/>"),
+        shape("<plane/>"),
+        shape("<sphere radius=\"1\"/>"),
+    ));
+    let robot = load(&text);
+    assert_eq!(robot.links[0].shapes.len(), 1);
+    let expected = [
+        left_out("collision mesh \"foot.stl\" of link \"a\"", "its file was not read"),
+        left_out("collision <plane> of link \"a\"", "no shape of URDF"),
+    ];
+    assert_eq!(robot.left_out, expected);
+}
+
+#[test]
+fn a_long_chain_is_reduced_without_recursion() {
+    // As many joints as may move, every second one; 2,000 x 2 + 1 links.
+    let count = 4_001;
+    let inertial = inertial(1.0, "0 0 -0.5", 0.1);
+    let mut body = format!("<link name=\"l0\">{inertial}</link>");
+    for k in 1..count {
+        let parent = k - 1;
+        let kind = if k % 2 == 0 { "fixed" } else { "continuous" };
+        body += &format!(
+            "<link name=\"l{k}\">{inertial}</link><joint name=\"j{k}\" type=\"{kind}\"><parent link=\"l{parent}\"/>\
+             <child link=\"l{k}\"/><origin xyz=\"0 0 -1\"/><axis xyz=\"0 1 0\"/></joint>"
+        );
+    }
+    let robot = load(&robot(&body));
+    assert_eq!((robot.bodies.len(), robot.joints.len()), (count / 2 + 1, count / 2));
+    assert_eq!(robot.bodies[1].com, [0.0, -1.0]);
+}

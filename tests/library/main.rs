@@ -1,0 +1,19 @@
+//! One feature per module, through the library or as the command prints it, against cases worked by hand.
+
+#[cfg(feature = "accuracy")]
+mod accuracy;
+mod architecture;
+mod constraints;
+mod contacts;
+mod courses;
+mod csv;
+mod ground;
+mod loader;
+mod maps;
+mod reductions;
+mod regression;
+#[path = "../support/mod.rs"]
+mod support;
+mod sweep;
+mod touchdowns;
+mod uncertainty;

@@ -1,0 +1,229 @@
+//! Studies of two parameters: the areas and curves of a map against single states, and against studies of one parameter.
+
+use heelstrike::Robot;
+use heelstrike::description::Description;
+use heelstrike::impact::Mode;
+use heelstrike::pipeline::Options;
+use heelstrike::robot::Reduction;
+use heelstrike::state::Defaults;
+use heelstrike::sweep::{Area, Findings, Map, Model, Regime, Solver, Study, Survey, Workers};
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+const PDW: &str = include_str!("../../urdf/pdw.urdf");
+const MINIMALISTIC: &str = include_str!("../../urdf/minimalistic.urdf");
+
+/// The walker against its leg angle and its legs' inertia, with its CoG this far along the leg.
+fn inertia(along: f64) -> String {
+    let leg = format!("{{\"inertia\": \"j\", \"com\": [0, 0, {}]}}", -along);
+    format!(
+        "{{\"parameters\": {{\"alpha\": {{\"from\": 0.001, \"to\": 1.5697, \"steps\": 33}}, \
+         \"j\": {{\"from\": 0, \"to\": 0.5, \"steps\": 17}}}}, \
+         \"robot\": {{\"links\": {{\"left_leg\": {leg}, \"right_leg\": {leg}}}}}, {}}}",
+        walk("infinite")
+    )
+}
+
+fn walk(friction: &str) -> String {
+    format!(
+        "\"state\": {{\"position\": {{\"base\": {{\"pitch\": \"-alpha\"}}, \"joints\": {{\"hip\": \"-2*alpha\"}}}}, \
+         \"velocity\": {{\"base\": {{\"pitch\": -1}}}}, \"stance\": \"left_leg\", \"friction\": \"{friction}\"}}"
+    )
+}
+
+/// Asks about the model of a study.
+fn with<T>(urdf: &str, study: &str, ask: impl FnOnce(&Model) -> T) -> T {
+    let study = Study::from_json(study).expect("a study");
+    let description = Description::from_urdf(urdf).expect("a description");
+    let reduction = Reduction::default();
+    let robot = Robot::reduce(&description, &reduction).expect("a robot");
+    ask(&Model {
+        study: &study,
+        description: &description,
+        reduction: &reduction,
+        robot: &robot,
+        options: Options::default(),
+        defaults: Defaults::default(),
+    })
+}
+
+fn workers() -> Workers<'static> {
+    Workers { threads: 2, done: &|| () }
+}
+
+fn map(model: &Model) -> Map {
+    match Findings::of(model, workers()) {
+        Findings::Map(map) => map,
+        Findings::Along(_) => panic!("two parameters make a map"),
+    }
+}
+
+/// How often the loops of an area wind around a point: once inside of it, else not at all.
+fn winding(area: &Area, [x, y]: [f64; 2]) -> i32 {
+    let mut turns = 0;
+    for points in &area.loops {
+        for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
+            let left = (b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1]);
+            if a[1] <= y && y < b[1] && left > 0.0 {
+                turns += 1;
+            } else if b[1] <= y && y < a[1] && left < 0.0 {
+                turns -= 1;
+            }
+        }
+    }
+    turns
+}
+
+fn outcomes(area: &Area) -> Vec<Vec<Mode>> {
+    area.regime.outcomes().map(<[_]>::to_vec).unwrap_or_default()
+}
+
+/// Random points of the ranges lie within exactly one area, and have its regime but for a thin seam at its curves.
+fn points_lie_in_their_areas(urdf: &str, study: &str) {
+    with(urdf, study, |model| {
+        let map = map(model);
+        let mut solver = Solver::new(model);
+        let [first, second] = model.study.parameters() else { panic!("two parameters") };
+        let mut runner = TestRunner::new_with_rng(Config::default(), TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+        let ranges = (first.from..first.to, second.from..second.to);
+        let (mut wrong, count) = (0, 4_000);
+        for _ in 0..count {
+            let (x, y) = ranges.new_tree(&mut runner).expect("a point").current();
+            let inside: Vec<&Area> = map.areas.iter().filter(|area| winding(area, [x, y]) != 0).collect();
+            let [only] = inside[..] else { panic!("{x}, {y} lies in {} areas", inside.len()) };
+            assert_eq!(winding(only, [x, y]), 1, "holes run the other way");
+            wrong += usize::from(solver.regime(&[x, y]) != only.regime);
+        }
+        // Curves are straight between points at most a sixty-fourth of the ranges apart.
+        assert!(wrong * 500 < count, "{wrong} of {count} points are not in the area of their outcomes");
+    });
+}
+
+#[test]
+fn points_lie_in_the_area_of_their_outcomes() {
+    points_lie_in_their_areas(PDW, &inertia(0.4));
+}
+
+#[test]
+fn points_lie_in_the_area_of_their_outcomes_where_many_areas_meet() {
+    let study = format!(
+        "{{\"parameters\": {{\"alpha\": {{\"from\": 0, \"to\": \"pi/2\", \"steps\": 20}}, \
+         \"mu\": {{\"from\": 0, \"to\": 2, \"steps\": 20}}}}, {}}}",
+        walk("mu")
+    );
+    points_lie_in_their_areas(MINIMALISTIC, &study);
+}
+
+/// The paper: both bands close where the leg's centre of percussion, with the hip as pivot, is the foot.
+#[test]
+fn the_walker_s_bands_close_at_its_critical_inertia() {
+    for along in [0.3_f64, 0.4, 0.5] {
+        let critical = along * (1.0 - along);
+        with(PDW, &inertia(along), |model| {
+            let map = map(model);
+            let area = |wanted: &[[Mode; 2]]| {
+                let found = map.areas.iter().find(|area| outcomes(area) == wanted);
+                found.unwrap_or_else(|| panic!("no area of {wanted:?} at {along}"))
+            };
+            let slides = area(&[[Mode::SlideMinus, Mode::Stick]]);
+            let greatest = slides.loops.iter().flatten().map(|point| point[1]).fold(0.0, f64::max);
+            assert!((greatest - critical).abs() < 1e-3, "{along}: the sliding band ends at {greatest}, not {critical}");
+            // The second ambiguous band is the one that reaches up to the greatest inertia.
+            let ambiguous =
+                area(&[[Mode::Separate, Mode::Stick], [Mode::Stick, Mode::Stick], [Mode::SlidePlus, Mode::Stick]]);
+            let second = ambiguous.loops.iter().find(|points| points.iter().any(|point| point[1] == 0.5));
+            let second = second.unwrap_or_else(|| panic!("no second band at {along}"));
+            let least = second.iter().map(|point| point[1]).fold(1.0, f64::min);
+            assert!((least - critical).abs() < 1e-3, "{along}: the ambiguous band begins at {least}, not {critical}");
+        });
+    }
+}
+
+/// Where a line of the map is cut, the borders are those of the study of that line alone.
+#[test]
+fn a_section_of_a_map_is_the_study_of_one_parameter() {
+    let areas_along = |j: f64| {
+        with(PDW, &inertia(0.4), |model| {
+            let map = map(model);
+            let mut letters: Vec<Vec<Vec<Mode>>> = Vec::new();
+            for k in 0..=2_000 {
+                let alpha = 0.001 + 1.5687 * f64::from(k) / 2_000.0;
+                let area =
+                    map.areas.iter().find(|area| winding(area, [alpha, j]) == 1).map(outcomes).unwrap_or_default();
+                if letters.last() != Some(&area) {
+                    letters.push(area);
+                }
+            }
+            letters
+        })
+    };
+    for j in [0.05, 0.21, 0.33] {
+        let line = inertia(0.4).replace(", \"j\": {\"from\": 0, \"to\": 0.5, \"steps\": 17}", "");
+        let line = line.replace("{\"parameters\"", &format!("{{\"constants\": {{\"j\": {j}}}, \"parameters\""));
+        let alone = with(PDW, &line, |model| {
+            let survey = Survey::of(model, workers());
+            survey
+                .regions
+                .iter()
+                .map(|region| region.regime.outcomes().unwrap_or_default().to_vec())
+                .collect::<Vec<_>>()
+        });
+        assert_eq!(areas_along(j), alone, "{j}");
+    }
+}
+
+#[test]
+fn a_map_is_the_same_for_any_number_of_threads() {
+    let found = |threads| {
+        with(PDW, &inertia(0.4), |model| {
+            let map = Map::of(model, Workers { threads, done: &|| () });
+            let loops: Vec<_> = map.areas.iter().map(|area| (area.loops.clone(), area.middles.clone())).collect();
+            let curves: Vec<_> = map.curves.iter().map(|curve| (curve.sides, curve.points.clone())).collect();
+            (loops, curves)
+        })
+    };
+    assert_eq!(found(1), found(3));
+}
+
+#[test]
+fn curves_and_areas_are_labelled_with_what_turns_and_what_holds() {
+    with(PDW, &inertia(0.4), |model| {
+        let map = map(model);
+        let mut solver = Solver::new(model);
+        for area in &map.areas {
+            assert!(!area.middles.is_empty());
+            for (middle, _) in &area.middles {
+                assert_eq!(solver.regime(middle), area.regime);
+            }
+            assert!(matches!(*area.regime, Regime::Answered { .. }) && area.refused.is_none());
+        }
+        for curve in &map.curves {
+            assert_ne!(curve.sides[0], curve.sides[1]);
+            assert!(!curve.turns.inequalities.is_empty());
+        }
+    });
+}
+
+/// Where the velocity of a block's only contact passes zero on a circle, its area is known.
+#[test]
+fn an_island_has_its_size() {
+    for (radius, room) in [(0.03_f64, 2e-2), (0.1, 5e-3), (0.4, 1e-3)] {
+        let study = format!(
+            "{{\"parameters\": {{\"h\": {{\"from\": -1, \"to\": 1, \"steps\": 20}}, \"g\": {{\"from\": -1, \"to\": 1, \"steps\": 20}}}}, \
+             \"state\": {{\"friction\": 0.9, \"velocity\": {{\"base\": {{\"x\": 0.5, \
+             \"z\": \"(h - 0.15)^2 + (g - 0.25)^2 - {radius}^2\"}}}}}}}}"
+        );
+        with(include_str!("../../urdf/block.urdf"), &study, |model| {
+            let map = map(model);
+            let inside = |area: &&Area| winding(area, [0.15, 0.25]) == 1;
+            let island = map.areas.iter().find(inside).expect("an island");
+            let points = &island.loops[0];
+            let next = points.iter().cycle().skip(1);
+            let size: f64 = points.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum();
+            let whole = std::f64::consts::PI * radius * radius;
+            assert!((size / whole - 1.0).abs() < room, "{radius}: {size} of {whole}");
+            let off = points.iter().map(|p| ((p[0] - 0.15).hypot(p[1] - 0.25) - radius).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-8, "{radius}");
+        });
+    }
+}

@@ -1,0 +1,282 @@
+//! What once went wrong, each with what it should be; found by reviews and by comparison with an exact solver.
+
+use heelstrike::impact::{Analysis, ContactProblem, Friction, Mode, Verdict, analyse};
+use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::robot::Base;
+use heelstrike::state::{Defaults, State};
+use heelstrike::{Error, Robot};
+
+use Mode::{Separate, SlideMinus, Stick};
+
+fn solve<const N: usize>(delassus: &[f64], before: [[f64; 2]; N], friction: [Friction; N], e: [f64; N]) -> Analysis {
+    let problem = ContactProblem::new(delassus.to_vec(), before.to_vec(), friction.to_vec(), e.to_vec());
+    analyse(&problem.expect("a good problem"), false).expect("few contacts")
+}
+
+fn mu(mu: f64) -> Friction {
+    Friction::Finite(mu)
+}
+
+fn modes(analysis: &Analysis) -> Vec<&[Mode]> {
+    analysis.outcomes.iter().map(|outcome| outcome.modes.as_slice()).collect()
+}
+
+fn robot(links_and_joints: &str) -> Robot {
+    Robot::from_urdf(&format!("<robot name=\"r\">{links_and_joints}</robot>")).expect("a good robot")
+}
+
+fn impact_with(robot: &Robot, options: Options, state: &str) -> Result<Impact, Error> {
+    let defaults = Defaults { friction: Some(mu(0.5)), ..Defaults::default() };
+    Pipeline::new(robot, options).impact(&State::from_json(state, robot, &defaults)?)
+}
+
+fn impact(robot: &Robot, state: &str) -> Result<Impact, Error> {
+    impact_with(robot, Options::default(), state)
+}
+
+/// A body on two legs that end in flat feet, 0.2 m long, of which the left one is 0.3 m ahead.
+fn flat_footed() -> Robot {
+    let link = |name: &str, mass: f64, moment: f64, foot: &str| {
+        format!(
+            "<link name=\"{name}\"><inertial><mass value=\"{mass}\"/><inertia ixx=\"1\" iyy=\"{moment}\" izz=\"1\" ixy=\"0\" \
+             ixz=\"0\" iyz=\"0\"/></inertial>{foot}</link>"
+        )
+    };
+    let joint = |name: &str, child: &str, x: f64| {
+        format!(
+            "<joint name=\"{name}\" type=\"continuous\"><parent link=\"body\"/><child link=\"{child}\"/>\
+             <axis xyz=\"0 1 0\"/><origin xyz=\"{x} 0 -1\"/></joint>"
+        )
+    };
+    let foot = "<collision><geometry><box size=\"0.2 0.1 0.05\"/></geometry></collision>";
+    robot(
+        &[
+            link("body", 2.0, 1.0, ""),
+            link("left", 1.0, 0.1, foot),
+            link("right", 1.0, 0.1, foot),
+            joint("left_hip", "left", 0.3),
+            joint("right_hip", "right", -0.3),
+        ]
+        .concat(),
+    )
+}
+
+/// A single body of 2 kg with a flat side 0.4 m long, 0.1 m below its CoG.
+fn flat_box() -> Robot {
+    robot(
+        "<link name=\"body\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"0.5\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>\
+         </inertial><collision><geometry><box size=\"0.4 0.1 0.2\"/></geometry></collision></link>",
+    )
+}
+
+// Redundant contacts.
+
+#[test]
+fn free_tangential_impulses_without_a_cone_earn_no_pressure() {
+    let delassus = [65., -48., 65., -16., -48., 37., -48., 13., 65., -48., 65., -16., -16., 13., -16., 5.];
+    let found = solve(&delassus, [[6., -3.], [6., -1.]], [Friction::Infinite; 2], [0.25, 0.5]);
+    assert_eq!(modes(&found), [[Separate, Stick]]);
+    let [_, l] = found.outcomes[0].impulse[..] else { panic!("two contacts") };
+    // Rounding of a few operations on numbers below a hundred.
+    assert!((l[0] + 2.0 / 23.0).abs() < 1e-13 && (l[1] - 1.0 / 46.0).abs() < 1e-13, "{l:?}");
+}
+
+#[test]
+fn the_impulse_told_is_the_least() {
+    let delassus = [2., -2., 2., 1., -2., 5., -2., -1., 2., -2., 2., 1., 1., -1., 1., 2.];
+    let found = solve(&delassus, [[-3., -3.]; 2], [mu(0.5), mu(8.0)], [0.0; 2]);
+    assert_eq!(modes(&found), [[Stick, Stick]]);
+    for (found, expected) in found.outcomes[0].impulse.as_flattened().iter().zip([1., 2., 2., 1.]) {
+        assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+    }
+}
+
+/// Within cones of 1e-12 the search begins at impulses of 1e15, and pairs of f64 left 3e-6 of the impulse to rounding.
+#[test]
+fn an_impulse_within_needle_thin_cones_keeps_its_digits() {
+    let mut delassus = [0.0; 36];
+    for (row, column, entry) in [(3, 3, 1.0), (3, 4, -1.0), (3, 5, -1.0), (4, 4, 1.0), (4, 5, 1.0), (5, 5, 1.0)] {
+        (delassus[row * 6 + column], delassus[column * 6 + row]) = (entry, entry);
+    }
+    let analysis = solve(&delassus, [[0.0, 0.0], [0.0, -3.0], [3.0, 3.0]], [mu(1e-12); 3], [0.0; 3]);
+    // Only n of contact 1 presses without a cost: n_1 = 3 + t_2 + n_2 with |t_2| <= 1e-12 n_2.
+    assert_eq!(analysis.outcomes[0].impulse, [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]]);
+}
+
+/// Where contacts move a body 1e30 times less than others, 256 bits settled the signs and left 3e-9 of the impulse to rounding.
+#[test]
+fn an_impulse_of_a_contact_that_hardly_moves_anything_keeps_its_digits() {
+    let jacobian = [[-3.0, -1.0], [1.5777218104420236e-30, 4.733165431326071e-30], [-2.0, -2.0], [-2.0, -2.0]];
+    let rows = jacobian.as_flattened();
+    let delassus: Vec<f64> = rows.iter().flat_map(|a| rows.iter().map(move |b| a * b)).collect();
+    let analysis = solve(&delassus, jacobian.map(|row| row.map(|entry| -3.0 * entry)), [mu(1.6e-5); 4], [0.0; 4]);
+    // Contact 1 alone pushes forward, and its impulse is the shortest on the edge of its cone: J L = 3.
+    let [tangential, normal] = jacobian[1];
+    let expected = 3.0 / (normal + 1.6e-5 * tangential);
+    let found = analysis.outcomes[0].impulse[1];
+    assert!(
+        (found[1] / expected - 1.0).abs() < 1e-12 && (found[0] / (1.6e-5 * expected) - 1.0).abs() < 1e-12,
+        "{found:?}"
+    );
+}
+
+#[test]
+fn contacts_that_can_squeeze_each_other_at_rest_are_on_no_border() {
+    // L = s (1, 2) is admissible for every s: the normal impulse is not forced to zero.
+    let found = solve(&[4., -2., -2., 1.], [[0., 0.]], [mu(2.0)], [0.0]);
+    assert_eq!((found.verdict, found.outcomes[0].index, found.index_sum), (Verdict::NoImpact, Some(1), Some(1)));
+    assert!(!found.outcomes[0].impulse_unique);
+}
+
+#[test]
+fn a_twin_without_impulse_is_recognized() {
+    let delassus = [11., -2., 10., -2., -2., 5., 0., 5., 10., 0., 12., 0., -2., 5., 0., 5.];
+    let found = solve(&delassus, [[0., -1.]; 2], [Friction::ZERO, mu(8.0)], [0.25, 0.25]);
+    assert_eq!((found.verdict, modes(&found)), (Verdict::Unique, vec![&[SlideMinus, Stick][..]]));
+}
+
+#[test]
+fn an_ill_conditioned_matrix_that_is_given_keeps_its_digits() {
+    // Two bodies, 2^-30 apart in one entry; solved by hand: t rows decouple, and n rows are [[a, -b], [-b, b + d]].
+    let (a, b, d) = (393_216.000_732_421_9, 393_216.0, 0.000_015_258_789_062_5);
+    let delassus = [786_432., 0., 0., 0., 0., a, 0., -b, 0., 0., 786_432., 0., 0., -b, 0., b + d];
+    let found = solve(&delassus, [[0., 0.], [0., -4.]], [mu(0.25); 2], [0.0; 2]);
+    // G L = (0, 4): L_1 = 4 b / det, L_2 = 4 a / det with det = a (b + d) - b^2, taken with exact entries.
+    let det = (a - b) * b + a * ((b + d) - b);
+    let [first, second] = [found.outcomes[0].impulse[0][1], found.outcomes[0].impulse[1][1]];
+    assert!((first / (4.0 * b / det) - 1.0).abs() < 1e-14, "{first}");
+    assert!((second / (4.0 * a / det) - 1.0).abs() < 1e-14, "{second}");
+}
+
+#[test]
+fn a_sign_that_rounding_hides_in_given_numbers_is_read_exactly() {
+    // The cone's edge is at 4/5; 0.8 as f64 lies 4e-17 above it.
+    let rod = |mu: f64| solve(&[2., 1., 1., 2.], [[0.5, -1.0]], [Friction::Finite(mu)], [0.0]);
+    assert_eq!(modes(&rod(0.8)), [[Stick]]);
+    assert_eq!(modes(&rod(0.8_f64.next_down())), [[Mode::SlidePlus]]);
+}
+
+// Feet at rest.
+
+#[test]
+fn a_flat_foot_rests_while_another_contact_leaves() {
+    let state = r#"{"stance": "left", "velocity": {"base": {"pitch": 0.5}, "joints": {"left_hip": -0.5}}}"#;
+    let found = impact(&flat_footed(), state).expect("an answer");
+    assert_eq!(found.contacts.len(), 4);
+    let analysis = found.analysis.expect("few contacts");
+    assert_eq!(analysis.verdict, Verdict::NoImpact);
+    assert_eq!(analysis.outcomes[0].modes[..2], [Stick, Stick]);
+    assert_eq!(analysis.outcomes[0].impulse, [[0.0; 2]; 4]);
+}
+
+#[test]
+fn a_flat_foot_that_slides_along_takes_no_impulse() {
+    let state = r#"{"position": {"base": {"z": 0.1}}, "velocity": {"base": {"x": 1.0}}}"#;
+    let analysis = impact(&flat_box(), state).expect("an answer").analysis.expect("few contacts");
+    assert_eq!((analysis.verdict, analysis.outcomes[0].impulse.as_slice()), (Verdict::NoImpact, &[[0.0; 2]; 2][..]));
+}
+
+#[test]
+fn a_speed_that_is_all_rounding_is_taken_at_its_word_and_told() {
+    // Base and joint rates cancel at the foot to 1e-16 m/s.
+    let ramone = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot");
+    let state = |more: &str| {
+        format!(
+            r#"{{"position": {{"base": {{"z": 0.60432}}, "joints": {{"left_hip": 0.3, "right_hip": 0.1}}}}, "friction": 0.6,
+            "velocity": {{"base": {{"x": {}, "z": {}, "pitch": -0.1}}, "joints": {{"left_hip": 0.7, "left_knee": -0.2}}}},
+            "contacts": [{{"link": "left_foot", "radius": 0.02815}}]{more}}}"#,
+            0.0, 0.0
+        )
+    };
+    let moving = impact(&ramone, &state("")).expect("an answer");
+    let [x, z] = moving.velocity_before[0];
+    let nulled = state("").replace("\"x\": 0, \"z\": 0", &format!("\"x\": {:?}, \"z\": {:?}", -x, -z));
+    let found = impact(&ramone, &nulled).expect("an answer");
+    let [t, n] = found.velocity_before[0];
+    assert!(t.abs() < 1e-15 && n.abs() < 1e-15, "all but rounding is gone: {t} {n}");
+    assert_ne!([t, n], [0.0; 2], "or the case shows nothing");
+    // Of exactly these f64 rates the foot leaves the ground, by less than f64 resolves.
+    let analysis = found.analysis.expect("one contact");
+    assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true));
+    assert!(found.notes.iter().any(|note| note.contains("--resting-speed")), "{:?}", found.notes);
+    let options = Options { resting_speed: 1e-12, ..Options::default() };
+    let resting = impact_with(&ramone, options, &nulled).expect("an answer");
+    assert_eq!(resting.analysis.expect("one contact").verdict, Verdict::NoImpact);
+}
+
+// Extremes.
+
+#[test]
+fn a_robot_that_cannot_move_answers() {
+    let pendulum = "<robot name=\"p\"><link name=\"base\"/><link name=\"rod\"><inertial><origin xyz=\"0 0 -1\"/><mass value=\"1\"/>\
+         <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><origin xyz=\"0 0 -1\"/>\
+         <geometry><sphere radius=\"0\"/></geometry></collision></link><joint name=\"j\" type=\"continuous\">\
+         <parent link=\"base\"/><child link=\"rod\"/><axis xyz=\"0 1 0\"/><origin xyz=\"0 0 1\"/></joint></robot>";
+    let robot = Robot::from_urdf(pendulum).expect("good");
+    assert_eq!(robot.base, Base::Fixed);
+    let found = impact(&robot, r#"{"held": ["j"]}"#).expect("an answer");
+    assert_eq!(found.analysis.expect("one contact").verdict, Verdict::NoImpact);
+    // Held against the ground, the driven foot slides; nothing can stop it.
+    let driven = impact(&robot, r#"{"held": ["j"], "velocity": {"joints": {"j": 1.0}}}"#).expect("an answer");
+    let analysis = driven.analysis.expect("one contact");
+    assert_eq!(analysis.rank, 0);
+    assert!(analysis.outcomes.iter().all(|outcome| outcome.modes != [Stick]), "{:?}", analysis.outcomes);
+}
+
+#[test]
+fn numbers_that_overflow_are_refused_by_name() {
+    let refused = |state: &str| impact(&flat_box(), state).map(|found| found.analysis).expect_err(state).to_string();
+    let far = r#"{"contacts": [{"link": "body", "offset": [1e200, 0, 1e200]}], "velocity": {"base": {"z": -1}}}"#;
+    assert!(refused(far).contains("the Delassus matrix must be a finite number"), "{}", refused(far));
+    let fast = r#"{"velocity": {"base": {"x": 1e308, "z": -1e308}}, "position": {"base": {"z": 0.1}}}"#;
+    assert!(refused(fast).contains("finite"), "{}", refused(fast));
+}
+
+#[test]
+fn matrices_beyond_the_range_are_refused_and_within_it_keep_their_digits() {
+    let scaled = |unit: f64| {
+        let delassus = [3.0 * unit, 0.5 * unit, 0.5 * unit, unit];
+        ContactProblem::new(delassus.to_vec(), vec![[0.1, -1.0]], vec![mu(0.7)], vec![0.0])
+    };
+    assert!(scaled(1e-160).is_err() && scaled(1e154).is_err());
+    // G_nt L_t + G_nn L_n = 1 on the edge L_t = -0.7 L_n: L_n = 1 / (1 - 0.35).
+    for unit in [1e-110, 1.0, 1e110] {
+        let found = analyse(&scaled(unit).expect("within the range"), false).expect("one contact");
+        let sticking = found.outcomes[0].impulse[0];
+        assert!((found.outcomes[0].energy_loss * unit).is_finite());
+        assert!(
+            (sticking[1] * unit - 1.0 / (1.0 - 0.5 * 0.5 / 3.0) * (1.0 + 0.1 * 0.5 / 3.0)).abs() < 1e-14,
+            "{sticking:?}"
+        );
+    }
+}
+
+// Stance and detection.
+
+#[test]
+fn a_stance_stands_whatever_the_tolerance() {
+    let ramone = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot");
+    let state = r#"{"stance": "left_foot", "position": {"base": {"pitch": 0.123}, "joints": {"left_hip": 0.7, "left_knee": -1.1,
+        "right_hip": 1.4, "right_knee": -2.0}}}"#;
+    let options = Options { contact_tolerance: Some(0.0), ..Options::default() };
+    let found = impact_with(&ramone, options, state).expect("an answer");
+    assert_eq!(found.contacts.len(), 1);
+    assert_eq!(found.velocity_before, [[0.0; 2]]);
+}
+
+#[test]
+fn the_stance_foot_is_the_lowest_also_under_a_coarse_tolerance() {
+    let options = Options { contact_tolerance: Some(0.02), ..Options::default() };
+    let state = r#"{"stance": "body", "position": {"base": {"pitch": 0.05}}}"#;
+    let found = impact_with(&flat_box(), options, state).expect("an answer");
+    let at_origin = found.contacts.iter().find(|contact| contact.point == [0.0; 2]).expect("it stands at the origin");
+    assert_eq!(at_origin.centre, [0.2, -0.1], "the toe, with the nose down");
+}
+
+#[test]
+fn a_gain_of_energy_is_told() {
+    let delassus = [3.019_756_771_129_185_5, 2.127_611_009_867_684, 2.127_611_009_867_684, 1.602_399_100_432_706_7];
+    let found = solve(&delassus, [[-1.18, -0.5876]], [mu(1.0)], [1.0]);
+    assert!(found.outcomes.iter().any(|outcome| outcome.energy_loss < 0.0));
+    assert!(found.energy_note().is_some_and(|note| note.contains("add energy")));
+}

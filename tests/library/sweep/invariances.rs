@@ -1,0 +1,99 @@
+//! The same study told another way has the same regions.
+
+use crate::sweep::command::{Sweep, run, sweep};
+use crate::sweep::walkers::{kneed, straight};
+use serde_json::{Value, json};
+
+const ROBOT: &str = "urdf/ramone_paper.urdf";
+
+/// Checks that both have the same regions, where those of `other` lie at `place` of a parameter of this range.
+fn assert_same(one: &Sweep, other: &Sweep, place: impl Fn(f64) -> f64, range: f64) {
+    assert_eq!(one.regions.len(), other.regions.len());
+    for (one, other) in one.regions.iter().zip(&other.regions) {
+        assert_eq!((&one.letter, &one.contacts, one.set()), (&other.letter, &other.contacts, other.set()));
+        for (at, there) in [(one.from, other.from), (one.to, other.to)] {
+            assert!((at - place(there)).abs() <= 4e-12 * range, "{at} instead of {}", place(there));
+        }
+    }
+    for (one, other) in one.borders.iter().zip(&other.borders) {
+        assert_eq!(one.turns, other.turns);
+    }
+}
+
+/// The text of the study with every whole word replaced.
+fn renamed(study: &Value, word: &str, by: &str) -> Value {
+    serde_json::from_str(&study.to_string().replace(word, by)).expect("JSON")
+}
+
+#[test]
+fn a_rescaled_parameter_has_the_same_regions() {
+    let one = sweep(ROBOT, &kneed());
+    for factor in [1e-6, 0.3, 1e6] {
+        let mut study = renamed(&kneed(), "alpha", "(factor*beta)");
+        let [from, to] = crate::sweep::walkers::RANGE.map(|end| end / factor);
+        study["parameters"] = json!({"beta": {"from": from, "to": to, "steps": 50}});
+        study["constants"]["factor"] = json!(factor);
+        assert_same(&one, &sweep(ROBOT, &study), |beta| factor * beta, 1.57);
+    }
+}
+
+#[test]
+fn a_reversed_parameter_has_the_same_regions_from_the_other_end() {
+    let mut study = renamed(&kneed(), "alpha", "(-beta)");
+    let [from, to] = crate::sweep::walkers::RANGE;
+    study["parameters"] = json!({"beta": {"from": -to, "to": -from, "steps": 50}});
+    let (one, other) = (sweep(ROBOT, &kneed()), sweep(ROBOT, &study));
+    assert_eq!(one.regions.len(), other.regions.len());
+    for (one, other) in one.regions.iter().zip(other.regions.iter().rev()) {
+        assert_eq!(one.set(), other.set());
+        assert!((one.from + other.to).abs() < 4e-12 && (one.to + other.from).abs() < 4e-12);
+    }
+    for (one, other) in one.borders.iter().zip(other.borders.iter().rev()) {
+        let swap = |side: &str| if side == "below" { "above" } else { "below" }.to_owned();
+        let mut there = other.turns.to_vec();
+        there.iter_mut().for_each(|turn| turn.valid = swap(&turn.valid));
+        there.sort();
+        let mut here = one.turns.clone();
+        here.sort();
+        assert_eq!(here, there);
+    }
+}
+
+#[test]
+fn names_of_constants_do_not_matter() {
+    let study = renamed(&renamed(&kneed(), "bend", "e"), "upper", "zz_1");
+    assert_eq!(run(ROBOT, &study, &["--format", "json"]).stdout, run(ROBOT, &kneed(), &["--format", "json"]).stdout);
+}
+
+/// Seen from behind, each angle and each tangential direction turns.
+#[test]
+fn a_mirrored_robot_slides_the_other_way_at_the_same_places() {
+    let mirrored = json!({
+        "parameters": straight(None)["parameters"],
+        "state": {
+            "position": {"base": {"pitch": "alpha"}, "joints": {"hip": "2*alpha"}},
+            "velocity": {"base": {"pitch": 1}},
+            "stance": "left_leg",
+            "friction": 1,
+        },
+    });
+    let mut study = straight(None);
+    study["state"]["friction"] = json!(1);
+    let (one, other) = (sweep("urdf/minimalistic.urdf", &study), sweep("urdf/minimalistic.urdf", &mirrored));
+    assert_eq!(one.regions.len(), 6);
+    let turned = |modes: String| modes.replace("e+", "e*").replace("e-", "e+").replace("e*", "e-");
+    for (one, other) in one.regions.iter().zip(&other.regions) {
+        assert_eq!(one.set(), other.set().into_iter().map(turned).collect());
+        assert!((one.from - other.from).abs() < 4e-12, "{} and {}", one.from, other.from);
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    for format in ["text", "json", "csv"] {
+        let with = |threads: &str| run(ROBOT, &kneed(), &["--format", format, "--threads", threads]);
+        let (one, four) = (with("1"), with("4"));
+        assert_eq!(one.stdout, four.stdout);
+        assert!(!one.stdout.is_empty());
+    }
+}

@@ -1,0 +1,13 @@
+//! Studies of one parameter: where their regions lie, what turns between them, and what is written of them.
+//!
+//! Borders that are known go to `paper`, `thin` and `turns`; `completeness` compares with dense scans of random studies.
+
+mod command;
+mod completeness;
+mod invariances;
+mod output;
+mod paper;
+mod studies;
+mod thin;
+mod transitions;
+mod walkers;

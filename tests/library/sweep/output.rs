@@ -1,0 +1,180 @@
+//! What is written: samples, tables, text, endings, and what happens to refused samples.
+
+use crate::sweep::command::{Run, run, sweep};
+use crate::sweep::walkers::{kneed, straight};
+use assert_cmd::Command;
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+/// What `impact` writes of a state, as JSON.
+fn impact(robot: &str, state: &Value, arguments: &[&str]) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.args(["impact", robot, "-", "--format", "json"]).args(arguments).write_stdin(state.to_string());
+    let output = command.output().expect("the binary starts");
+    serde_json::from_slice(&output.stdout).expect("a line of JSON")
+}
+
+#[test]
+fn every_sample_is_the_result_of_impact_for_the_same_numbers() {
+    for arguments in [&[][..], &["--explain", "--matrices"], &["--brief"]] {
+        let mut study = kneed();
+        study["parameters"]["alpha"]["steps"] = json!(7);
+        study["state"]["id"] = json!("alpha");
+        let Run { status, stdout, stderr } =
+            run("urdf/ramone.urdf", &study, &[&["--format", "json"], arguments].concat());
+        assert_eq!(status, Some(0), "{stderr}");
+        let written: Value = serde_json::from_str(&stdout).expect("JSON");
+        let samples = written["samples"].as_array().expect("a list");
+        assert_eq!(samples.len(), 7);
+        for sample in samples {
+            let alpha = sample["alpha"].as_f64().expect("a number");
+            let mut state = study["state"].clone();
+            let bend = libm::atan2(0.2385, 0.2);
+            state["position"]["joints"] = json!({
+                "left_hip": bend + alpha, "left_knee": -PI / 2.0, "right_hip": bend - alpha, "right_knee": -PI / 2.0,
+            });
+            assert_eq!(sample["result"], impact("urdf/ramone.urdf", &state, arguments), "at {alpha}");
+        }
+    }
+}
+
+#[test]
+fn samples_begin_at_from_and_end_at_to() {
+    let mut study = straight(None);
+    study["parameters"]["alpha"] = json!({"from": 0.1, "to": "pi/3", "steps": 4});
+    let alphas: Vec<Value> =
+        sweep("urdf/minimalistic.urdf", &study).samples.iter().map(|sample| sample["alpha"].clone()).collect();
+    let third = (PI / 3.0 - 0.1) / 3.0;
+    assert_eq!(alphas.len(), 4);
+    assert_eq!((alphas[0].clone(), alphas[3].clone()), (json!(0.1), json!(PI / 3.0)));
+    for (at, alpha) in alphas.iter().enumerate() {
+        let off = alpha.as_f64().expect("a number") - (0.1 + third * at as f64);
+        assert!(off.abs() < 1e-15, "{alphas:?}");
+    }
+}
+
+/// pi/12, pi/6 and 5 pi/12 are borders; the samples on them do not make the regions more, wherever they lie.
+#[test]
+fn samples_on_borders_make_no_regions_of_their_own() {
+    let mut study = straight(None);
+    study["parameters"]["alpha"] = json!({"from": "pi/12", "to": "5*pi/12", "steps": 5});
+    let found = sweep("urdf/minimalistic.urdf", &study);
+    crate::sweep::command::assert_begins(
+        "between borders",
+        &found,
+        &[(PI / 12.0, "slide-/stick"), (PI / 6.0, "stick/stick")],
+        1e-12,
+    );
+    assert_eq!((found.regions[0].from, found.regions[1].to), (PI / 12.0, 5.0 * PI / 12.0));
+}
+
+#[test]
+fn text_is_for_people() {
+    let run = run("urdf/minimalistic.urdf", &straight(None), &[]);
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    insta::assert_snapshot!("minimalistic", run.stdout);
+}
+
+/// Above 0.3 the cone's half-angle has no value; below, nothing touches.
+fn partly_refused() -> Value {
+    json!({
+        "parameters": {"p": {"from": 0, "to": 1, "steps": 5}},
+        "state": {"position": {"base": {"z": "1 + sqrt(0.3 - p)"}}, "friction": 1},
+    })
+}
+
+#[test]
+fn refused_samples_stand_in_their_place_and_the_rest_goes_on() {
+    let Run { status, stdout, stderr } = run("urdf/block.urdf", &partly_refused(), &["--format", "json"]);
+    assert_eq!(status, Some(1));
+    assert!(stderr.contains("the expression has no value"), "{stderr}");
+    let found: Value = serde_json::from_str(&stdout).expect("JSON");
+    let regions = found["regions"].as_array().expect("a list");
+    assert_eq!(regions.len(), 2, "{regions:#?}");
+    assert_eq!((&regions[0]["outcomes"], &regions[0]["contacts"]), (&json!([[]]), &json!([])));
+    assert!(regions[0].get("error").is_none());
+    let border = regions[0]["to"].as_f64().expect("a number");
+    assert!((border - 0.3).abs() <= 1e-12, "{border}");
+    let samples = found["samples"].as_array().expect("a list");
+    for (at, sample) in samples.iter().enumerate() {
+        let result = &sample["result"];
+        if at < 2 {
+            assert_eq!(result["verdict"], "no_contact");
+        } else {
+            assert_eq!(result["error"]["place"], "state.position.base.z");
+            assert!(result.get("verdict").is_none() && regions[1].get("outcomes").is_none());
+        }
+        assert_eq!(sample["p"], json!(0.25 * at as f64));
+    }
+}
+
+#[test]
+fn a_refused_region_with_an_answered_middle_says_why_it_is_refused() {
+    // The root has a value above 0.6, and within 1e-7 of 0.3, the middle of what is below.
+    let study = json!({
+        "parameters": {"p": {"from": 0, "to": 1, "steps": 4}},
+        "state": {"position": {"base": {"z": "1 + sqrt(max(p - 0.6, 1e-14 - (p - 0.3)^2))"}}, "friction": 1},
+    });
+    let Run { status, stdout, stderr } = run("urdf/block.urdf", &study, &["--format", "text"]);
+    assert_eq!(status, Some(1), "{stdout}");
+    assert!(stderr.contains("the expression has no value"), "{stderr}");
+    assert!(stdout.contains("A  0 .. 0.6  refused: the expression has no value"), "{stdout}");
+}
+
+#[test]
+fn tables_have_the_parameter_and_the_region_beside_the_columns_of_batch() {
+    let mut study = straight(None);
+    study["parameters"]["alpha"]["steps"] = json!(4);
+    let Run { status, stdout, .. } = run("urdf/minimalistic.urdf", &study, &["--format", "csv"]);
+    assert_eq!(status, Some(0));
+    let mut lines = stdout.lines();
+    let header = "id,verdict,outcome,margin,proven,mode_left_leg,p_left_leg_t,p_left_leg_n,mode_right_leg,p_right_leg_t,\
+                  p_right_leg_n,v_base_x,v_base_z,v_base_pitch,v_hip,alpha,region,border,family,error";
+    assert_eq!(lines.next(), Some(header));
+    let column = |line: &str, name: &str| {
+        let at = header.split(',').position(|known| known == name).expect("a column");
+        line.split(',').nth(at).expect("a cell").to_owned()
+    };
+    // 0.001, 0.524, 1.047 and 1.57; the last one has three outcomes.
+    let rows: Vec<&str> = lines.collect();
+    let of = |name: &str| rows.iter().map(|row| column(row, name)).collect::<Vec<_>>();
+    assert_eq!(of("region"), ["A", "C", "C", "D", "D", "D"]);
+    assert_eq!(of("outcome"), ["1", "1", "1", "1", "2", "3"]);
+    assert_eq!(of("mode_left_leg"), ["separate", "stick", "stick", "separate", "stick", "slide+"]);
+    assert_eq!(of("alpha")[0], "0.001");
+    assert_eq!(of("alpha")[5], "1.57");
+
+    let Run { status, stdout, .. } = run("urdf/block.urdf", &partly_refused(), &["--format", "csv"]);
+    assert_eq!(status, Some(1));
+    let rows: Vec<&str> = stdout.lines().skip(1).collect();
+    assert_eq!(rows.len(), 5, "{stdout}");
+    assert!(rows[1].contains("no_contact") && rows[2].contains("the expression has no value"), "{stdout}");
+}
+
+#[test]
+fn the_ending_of_the_output_chooses_its_form() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let mut study = straight(None);
+    study["parameters"]["alpha"]["steps"] = json!(3);
+    for (ending, format) in [("json", "json"), ("ndjson", "json"), ("csv", "csv"), ("txt", "text"), ("", "text")] {
+        let file = folder.join(format!("sweep-{}.{ending}", std::process::id()));
+        let path = file.to_str().expect("UTF-8");
+        let written = run("urdf/minimalistic.urdf", &study, &["-o", path]);
+        assert_eq!((written.status, written.stdout.as_str()), (Some(0), ""), "{}", written.stderr);
+        let told = run("urdf/minimalistic.urdf", &study, &["--format", format]).stdout;
+        assert_eq!(std::fs::read_to_string(&file).expect("the output"), told, "{ending}");
+        std::fs::remove_file(&file).expect("it is there");
+    }
+}
+
+#[test]
+fn a_border_to_what_is_refused_says_so() {
+    let study = json!({
+        "parameters": {"s": {"from": -1, "to": 1, "steps": 9}},
+        "state": {"position": {"base": {"z": "s/10"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5}
+    });
+    let Run { status, stdout, .. } = run("urdf/block.urdf", &study, &[]);
+    assert_eq!(status, Some(1));
+    assert!(stdout.contains(": from B on states are answered\n"), "{stdout}");
+    assert!(stdout.contains(": block touches the ground in B alone\n"), "{stdout}");
+}

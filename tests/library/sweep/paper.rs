@@ -1,0 +1,76 @@
+//! The borders of every model of the paper from 50 samples, against `data/paper.json` (40-digit values) and the bands that
+//! are printed.
+
+use crate::sweep::command::{Sweep, assert_begins, sweep};
+use crate::sweep::walkers::{kneed, straight};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+#[derive(Deserialize)]
+struct Reference {
+    regions: BTreeMap<String, Vec<(String, String)>>,
+}
+
+/// Name in the reference, URDF file and study.
+fn models() -> [(&'static str, &'static str, Value); 7] {
+    [
+        ("minimalistic", "urdf/minimalistic.urdf", straight(None)),
+        // The file's own inertia, and the same from the study.
+        ("pdw_j0.04", "urdf/pdw.urdf", straight(None)),
+        ("pdw_j0.04", "urdf/pdw.urdf", straight(Some(0.04))),
+        ("pdw_j0.24", "urdf/pdw.urdf", straight(Some(0.24))),
+        ("pdw_j0.44", "urdf/pdw.urdf", straight(Some(0.44))),
+        ("ramone_table1_script_precision", "urdf/ramone.urdf", kneed()),
+        ("ramone_as_computed_in_paper", "urdf/ramone_paper.urdf", kneed()),
+    ]
+}
+
+#[test]
+fn every_border_of_the_reference_is_found_from_50_samples() {
+    let reference: BTreeMap<String, Reference> =
+        serde_json::from_str(include_str!("../../data/paper.json")).expect("the reference is readable");
+    let mut borders = 0;
+    for (name, urdf, mut study) in models() {
+        for (friction, regions) in &reference[name].regions {
+            study["state"]["friction"] = friction.parse().map_or(json!(friction), |number: f64| json!(number));
+            let expected: Vec<(f64, &str)> =
+                regions.iter().map(|(begin, outcomes)| (begin.parse().expect("a number"), outcomes.as_str())).collect();
+            assert_begins(&format!("{name}, friction {friction}"), &sweep(urdf, &study), &expected, 1e-10);
+            borders += expected.len() - 1;
+        }
+    }
+    assert_eq!(borders, 35);
+}
+
+/// Where the regions lie whose outcomes are chosen, to the four digits that are printed.
+fn printed(sweep: &Sweep, chosen: impl Fn(&[Vec<String>]) -> bool) -> Vec<[String; 2]> {
+    let regions = sweep.regions.iter().filter(|region| chosen(region.outcomes.as_deref().expect("answered")));
+    regions.map(|region| [region.from, region.to].map(|at| format!("{at:.4}"))).collect()
+}
+
+/// The bands: the trailing foot slides although friction is infinite; several outcomes are valid.
+#[test]
+fn bands_of_ramone_are_those_that_are_printed() {
+    let slides = |outcomes: &[Vec<String>]| outcomes.len() == 1 && outcomes[0][0].starts_with("slide");
+    let several = |outcomes: &[Vec<String>]| outcomes.len() > 1;
+    let computed = sweep("urdf/ramone_paper.urdf", &kneed());
+    assert_eq!(printed(&computed, slides), [["0.4708", "0.5438"], ["1.0201", "1.0597"]]);
+    assert_eq!(printed(&computed, several), [["1.3432", "1.3965"]]);
+    let table = sweep("urdf/ramone.urdf", &kneed());
+    assert_eq!(printed(&table, slides), [["0.4388", "0.5256"], ["1.0535", "1.1219"]]);
+    assert!(printed(&table, several).is_empty());
+}
+
+/// With the centre of percussion in the foot all outcomes touch at pi/4: one border, and whatever is told of the sample on
+/// it, no region of its own.
+#[test]
+fn the_degenerate_place_of_the_walker_is_one_border() {
+    let mut study = straight(Some(0.24));
+    let quarter = std::f64::consts::FRAC_PI_4;
+    study["parameters"]["alpha"] = json!({"from": 0.5 * quarter, "to": 1.5 * quarter, "steps": 3});
+    let sweep = sweep("urdf/pdw.urdf", &study);
+    assert_begins("pdw", &sweep, &[(0.0, "separate/stick"), (quarter, "stick/stick")], 1e-12);
+    assert_eq!(sweep.samples[1]["alpha"], json!(quarter));
+    assert_eq!(sweep.samples[1]["result"]["proven"], json!(true));
+}

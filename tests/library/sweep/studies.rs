@@ -1,0 +1,179 @@
+//! Random studies: robots of this repository, a pose and a velocity that are linear in the parameter, frictions of every
+//! kind, robots that vary.
+
+use crate::support::random::Random;
+use heelstrike::Robot;
+use heelstrike::description::Description;
+use heelstrike::pipeline::Options;
+use heelstrike::robot::Reduction;
+use heelstrike::state::Defaults;
+use heelstrike::sweep::{Model, Study};
+use serde_json::{Map, Value, json};
+
+/// A robot and what a study may ask of it.
+pub struct Subject {
+    pub name: &'static str,
+    pub description: Description,
+    pub reduction: Reduction,
+    pub robot: Robot,
+}
+
+/// The planar robots of this repository without loops.
+pub fn subjects() -> Vec<Subject> {
+    let files = [
+        ("minimalistic", include_str!("../../../urdf/minimalistic.urdf")),
+        ("pdw", include_str!("../../../urdf/pdw.urdf")),
+        ("ramone", include_str!("../../../urdf/ramone.urdf")),
+        ("ramone_paper", include_str!("../../../urdf/ramone_paper.urdf")),
+        ("block", include_str!("../../../urdf/block.urdf")),
+        ("rabbit", include_str!("../../data/robots/rabbit/five_link_walker.urdf")),
+        ("walker with torso", include_str!("../../data/robots/planar_walker_torso/PlanarWalkerWithTorso.urdf")),
+        ("acrobot", include_str!("../../data/robots/acrobot/Acrobot.urdf")),
+        ("cartpole", include_str!("../../data/robots/cartpole/cartpole.urdf")),
+    ];
+    files.into_iter().map(|(name, text)| Subject::new(name, text)).collect()
+}
+
+impl Subject {
+    pub fn new(name: &'static str, urdf: &str) -> Self {
+        let description = Description::from_urdf(urdf).expect("a robot's description");
+        let reduction = Reduction::default();
+        let robot = Robot::reduce(&description, &reduction).expect("a robot");
+        Self { name, description, reduction, robot }
+    }
+
+    /// The model of a study.
+    pub fn model<'a>(&'a self, study: &'a Study<'a>) -> Model<'a> {
+        Model {
+            study,
+            description: &self.description,
+            reduction: &self.reduction,
+            robot: &self.robot,
+            options: Options::default(),
+            defaults: Defaults::default(),
+        }
+    }
+}
+
+fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+    low + (high - low) * (random.bits() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// A constant, or a line in the parameter p.
+fn linear(random: &mut Random, size: f64) -> Value {
+    let constant = between(random, -size, size);
+    match random.once_in(3) {
+        true => json!(constant),
+        false => json!(format!("{constant} + {}*p", between(random, -size, size))),
+    }
+}
+
+/// A line in the parameter, which runs from -1 to 1, that stays positive and near `value`.
+fn near(random: &mut Random, value: f64) -> Value {
+    json!(format!("{}*(1 + {}*p)", value.max(0.01), between(random, -0.8, 0.8)))
+}
+
+fn friction(random: &mut Random) -> Value {
+    match random.whole(0, 5) {
+        0 => json!(0),
+        1 | 2 => json!(between(random, 0.05, 2.0)),
+        3 => json!(format!("0.7 + {}*p", between(random, -0.6, 0.6))),
+        _ => json!("infinite"),
+    }
+}
+
+/// The text of a study with this many samples.
+pub fn study(subject: &Subject, random: &mut Random, steps: usize) -> Value {
+    let robot = &subject.robot;
+    let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
+    let shaped: Vec<&str> =
+        robot.links.iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str()).collect();
+    let floats = robot.base_dofs() == 3;
+    let standing = floats && !shaped.is_empty() && !random.once_in(4);
+
+    let mut state = Map::new();
+    for (name, size) in [("position", 1.2), ("velocity", 2.0)] {
+        let joints: Map<String, Value> =
+            robot.joints.iter().map(|joint| (joint.name.clone(), linear(random, size))).collect();
+        let mut coordinates = Map::from_iter([("joints".to_owned(), Value::Object(joints))]);
+        if floats {
+            let mut base = Map::from_iter([("pitch".to_owned(), linear(random, size))]);
+            if !standing {
+                base.insert("x".into(), linear(random, size));
+                base.insert("z".into(), linear(random, size));
+            }
+            coordinates.insert("base".into(), base.into());
+        }
+        state.insert(name.into(), coordinates.into());
+    }
+    if standing {
+        state.insert("stance".into(), json!(random.pick(&shaped)));
+    }
+    let by_hand = !standing || random.once_in(2);
+    if by_hand {
+        let mut places: Vec<&str> = if standing { shaped.clone() } else { links.clone() };
+        if standing {
+            // The stance rests on a contact of its own.
+            let stance = state["stance"].as_str().map(str::to_owned);
+            places.retain(|link| Some((*link).to_owned()) == stance || random.once_in(2));
+        }
+        let order = random.permutation(places.len());
+        let count = if standing { places.len() } else { random.whole(1, 3) as usize };
+        let contacts: Vec<Value> = order
+            .into_iter()
+            .take(count)
+            .map(|at| {
+                let offset = [linear(random, 0.5), json!(0), linear(random, 0.5)];
+                json!({"link": places[at], "offset": offset, "radius": random.pick(&[json!(0), json!(0.05), json!("0.1+0.05*p")])})
+            })
+            .collect();
+        state.insert("contacts".into(), contacts.into());
+    }
+    let frictions = match random.once_in(3) {
+        true => {
+            let mut by_link = Map::from_iter([("default".to_owned(), friction(random))]);
+            by_link.insert(random.pick(&links).to_owned(), friction(random));
+            by_link.into()
+        }
+        false => friction(random),
+    };
+    state.insert("friction".into(), frictions);
+    if random.once_in(5) {
+        state.insert("restitution".into(), random.pick(&[json!(0.5), json!("0.5+0.4*p")]));
+    }
+    if random.once_in(5) {
+        state.insert("ground".into(), json!({"slope": linear(random, 0.3)}));
+    }
+
+    let mut study = json!({"parameters": {"p": {"from": -1, "to": 1, "steps": steps}}, "state": state});
+    if random.once_in(3) {
+        study["robot"] = variation(subject, random);
+    }
+    study
+}
+
+/// What of a robot varies: numbers of a link that has mass, and where a joint is.
+fn variation(subject: &Subject, random: &mut Random) -> Value {
+    let massive: Vec<_> = subject.description.links.iter().filter(|link| link.inertial.is_some()).collect();
+    let link = random.pick(&massive);
+    let mut fields = Map::new();
+    if let Some(inertial) = &link.inertial {
+        if random.once_in(2) {
+            fields.insert("mass".into(), near(random, inertial.mass));
+        }
+        if random.once_in(2) {
+            fields.insert("com".into(), json!([linear(random, 0.3), 0, linear(random, 0.3)]));
+        }
+        if fields.is_empty() || random.once_in(2) {
+            fields.insert("inertia".into(), near(random, 0.2));
+        }
+    }
+    let mut robot = json!({"links": {link.name.clone(): fields}});
+    if random.once_in(2) {
+        let moving: Vec<&str> = subject.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+        if !moving.is_empty() {
+            robot["joints"] = json!({random.pick(&moving): {"origin": [linear(random, 0.3), 0, linear(random, 0.3)]}});
+        }
+    }
+    robot
+}

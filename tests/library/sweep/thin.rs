@@ -1,0 +1,152 @@
+//! Bands thinner than the grid, in places that are known in closed form.
+//!
+//! ```text
+//!     walker of two straight legs, m = l = 1, CoG a from the hip, inertia j, friction infinite, u = cos 2 alpha, k = a (1 - a):
+//!
+//!     lift-off is valid   where   N(u) = (k - j)^2 - k (1 - u^2) + j (1 + u) > 0
+//!     stop is valid       where   u < (k - j) / (1 - a)
+//! ```
+//!
+//! By hand from M (v+ - v-) = J^T L with both feet down (stop: L_n = 0 of the trailing foot), and with the leading one alone
+//! (lift-off: c_n+ = 0 of the trailing foot). Where neither is valid the trailing foot slides, and where both are, it does as
+//! well: three outcomes.
+
+use crate::sweep::command::{Sweep, assert_begins, run, sweep};
+use crate::sweep::walkers::{RANGE, straight};
+use serde_json::json;
+
+/// Of `urdf/pdw.urdf`.
+const A: f64 = 0.4;
+const K: f64 = A * (1.0 - A);
+
+const LIFT_OFF: &str = "separate/stick";
+const SLIDE: &str = "slide-/stick";
+const STOP: &str = "stick/stick";
+const ALL: &str = "separate/stick|slide+/stick|stick/stick";
+
+/// Where u is.
+fn alpha(u: f64) -> f64 {
+    0.5 * u.acos()
+}
+
+/// Where N is zero: u of the smaller and of the greater leg angle.
+fn lift_off_ends(j: f64) -> Option<[f64; 2]> {
+    let root = discriminant(j).sqrt();
+    (!root.is_nan()).then(|| [root, -root].map(|root| (root - j) / (2.0 * K)))
+}
+
+fn discriminant(j: f64) -> f64 {
+    j * j - 4.0 * K * ((K - j) * (K - j) - K + j)
+}
+
+fn stop_begins(j: f64) -> f64 {
+    (K - j) / (1.0 - A)
+}
+
+/// The regions that begin in the range.
+fn within_range<const N: usize>(begins: [(f64, &'static str); N]) -> Vec<(f64, &'static str)> {
+    begins.into_iter().filter(|(begin, _)| *begin < RANGE[1]).collect()
+}
+
+/// The band of sliding closes at j = k, where its borders, of two different inequalities, cross; its width is about
+/// 1.25 (k - j).
+#[test]
+fn a_band_between_two_crossing_inequalities_is_found_however_thin() {
+    for off in [1e-2, 1e-3, 1e-4, 4e-6, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
+        let j = K - off;
+        let [first, last] = lift_off_ends(j).expect("it ends and begins again");
+        let expected =
+            within_range([(0.0, LIFT_OFF), (alpha(first), SLIDE), (alpha(stop_begins(j)), STOP), (alpha(last), ALL)]);
+        let width = expected[2].0 - expected[1].0;
+        assert!((0.8..1.5).contains(&(width / off)), "{width}");
+        let sweep = sweep("urdf/pdw.urdf", &straight(Some(j)));
+        // Of 1e-12 of the range, and what rounding does to numbers of about 1.
+        assert_begins(&format!("a band of {width:.1e}"), &sweep, &expected, 4e-12);
+        let found = sweep.regions[1].to - sweep.regions[1].from;
+        assert!((found - width).abs() < 4e-12, "{found} instead of {width}");
+    }
+}
+
+/// Beyond j = k the first band is one of three outcomes.
+#[test]
+fn a_thin_band_of_three_outcomes_is_found() {
+    for off in [1e-2, 4e-6, 1e-8, 1e-10] {
+        let j = K + off;
+        let [first, last] = lift_off_ends(j).expect("it ends and begins again");
+        let expected =
+            within_range([(0.0, LIFT_OFF), (alpha(stop_begins(j)), ALL), (alpha(first), STOP), (alpha(last), ALL)]);
+        assert_begins(&format!("{off:.0e}"), &sweep("urdf/pdw.urdf", &straight(Some(j))), &expected, 4e-12);
+    }
+}
+
+/// Lift-off stops being invalid anywhere where the two zeros of N meet: a band that opens by an extremum, as wide as the
+/// root of the distance from there.
+#[test]
+fn a_band_that_opens_by_an_extremum_is_found() {
+    // 4 k^2 - k = c of N's discriminant (1 - 4 k) j^2 + (8 k^2 - 4 k) j + 4 k^2 - 4 k^3.
+    let (two, one, zero) = (1.0 - 4.0 * K, 8.0 * K * K - 4.0 * K, 4.0 * K * K * (1.0 - K));
+    let merged = (-one - (one * one - 4.0 * two * zero).sqrt()) / (2.0 * two);
+    assert!(discriminant(merged).abs() < 1e-15, "{merged}");
+    for off in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 3e-14] {
+        let j = merged - off;
+        let [first, last] = lift_off_ends(j).expect("it ends and begins again").map(alpha);
+        let expected = [(0.0, LIFT_OFF), (alpha(stop_begins(j)), ALL), (first, STOP), (last, ALL)];
+        let width = last - first;
+        // A double root: an error of a few 1e-16 of N moves both ends by it over the width.
+        let within = 2e-15 / width + 4e-12;
+        assert!(within < 0.1 * width, "{width}");
+        assert_begins(
+            &format!("a band of {width:.1e}"),
+            &sweep("urdf/pdw.urdf", &straight(Some(j))),
+            &expected,
+            within,
+        );
+    }
+    // Beyond there is none.
+    for off in [1e-12, 1e-6] {
+        let j = merged + off;
+        assert_eq!(lift_off_ends(j), None);
+        let expected = [(0.0, LIFT_OFF), (alpha(stop_begins(j)), ALL)];
+        assert_begins("no band", &sweep("urdf/pdw.urdf", &straight(Some(j))), &expected, 4e-12);
+    }
+}
+
+const BLOCK: &str = "urdf/block.urdf";
+
+/// The study of a block whose `numbers` are the fields of the state.
+fn of_block(numbers: serde_json::Value) -> serde_json::Value {
+    let mut state = json!({"friction": 0.9});
+    state.as_object_mut().expect("an object").extend(numbers.as_object().expect("an object").clone());
+    json!({"parameters": {"s": {"from": -1, "to": 1, "steps": 51}}, "state": state})
+}
+
+/// A foot that touches for a moment between two samples: (s - 0.42278)^2 is within the contact tolerance for |s - 0.42278| < h.
+#[test]
+fn a_foot_that_grazes_the_ground_is_seen() {
+    for half in [1e-5, 1e-4, 1e-3] {
+        for centre in [0.42278, -0.17113, 0.90311] {
+            let height = format!("(s - {centre})^2");
+            let study = of_block(json!({
+                "position": {"base": {"z": height}}, "velocity": {"base": {"x": 0.5, "z": -1}}
+            }));
+            let tolerance = (half * half).to_string();
+            let run = run(BLOCK, &study, &["--format", "json", "--contact-tolerance", &tolerance]);
+            let sweep: Sweep = serde_json::from_str(&run.stdout).expect("JSON");
+            let places: Vec<f64> = sweep.regions.iter().map(|region| region.from - centre).collect();
+            assert_eq!(places.len(), 3, "{half} {centre}");
+            // The tolerance is rounded at the block's own size.
+            assert!((places[1] + half).abs() < 1e-3 * half && (places[2] - half).abs() < 1e-3 * half, "{places:?}");
+        }
+    }
+}
+
+/// A region that ends where rounding tells the sign at a sample: the velocity s (s + 0.001) + 1e-17 is negative between.
+#[test]
+fn a_region_that_ends_beside_a_sample_is_seen() {
+    let study = of_block(json!({"velocity": {"base": {"x": 0.5, "z": "s*(s + 0.001) + 1e-17"}}}));
+    let run = run(BLOCK, &study, &["--format", "json"]);
+    let sweep: Sweep = serde_json::from_str(&run.stdout).expect("JSON");
+    let from: Vec<f64> = sweep.regions.iter().map(|region| region.from).collect();
+    assert_eq!(from.len(), 3, "{from:?}");
+    assert!((from[1] + 0.001).abs() < 1e-10 && from[2].abs() < 1e-10, "{from:?}");
+}

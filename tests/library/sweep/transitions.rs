@@ -1,0 +1,92 @@
+//! What turns at a border, where that is known by hand.
+
+use crate::sweep::command::{Border, Turn, sweep};
+use crate::sweep::walkers::straight;
+use serde_json::json;
+use std::f64::consts::PI;
+
+fn sorted(border: &Border) -> Vec<Turn> {
+    let mut turns = border.turns.clone();
+    turns.sort();
+    turns
+}
+
+fn turn(contact: &str, inequality: &str, modes: [&str; 2], valid: &str) -> Turn {
+    let [contact, inequality, valid] = [contact, inequality, valid].map(str::to_owned);
+    Turn { contact, inequality, modes: modes.map(str::to_owned).into(), valid }
+}
+
+/// Of the trailing foot, the paper's three cases: lift-off needs c_n+ >= 0, stop L_n >= 0, and a slide without friction's
+/// limit has c_t+ of one sign and L_t of the other. c_n+ of lift-off and L_t of the slide turn together, and L_n of the stop
+/// and c_t+ of the slide.
+#[test]
+fn the_borders_of_the_minimalistic_biped_turn_by_the_trailing_foot() {
+    let sweep = sweep("urdf/minimalistic.urdf", &straight(None));
+    let trailing = |inequality, mode, valid| turn("left_leg", inequality, [mode, "stick"], valid);
+    let expected = [
+        (
+            PI / 12.0,
+            vec![trailing("normal_velocity", "separate", "below"), trailing("tangential_impulse", "slide-", "above")],
+        ),
+        (
+            PI / 6.0,
+            vec![trailing("normal_impulse", "stick", "above"), trailing("tangential_velocity", "slide-", "below")],
+        ),
+        (
+            5.0 * PI / 12.0,
+            vec![trailing("normal_velocity", "separate", "above"), trailing("tangential_impulse", "slide+", "above")],
+        ),
+    ];
+    assert_eq!(sweep.borders.len(), expected.len());
+    for (border, (at, turns)) in sweep.borders.iter().zip(expected) {
+        assert!((border.at - at).abs() < 4e-12, "{} instead of {at}", border.at);
+        assert_eq!(sorted(border), turns, "at {at}");
+        assert!(border.opening.is_empty() && border.closing.is_empty());
+    }
+}
+
+/// The paper's single body, G = [[2, 1], [1, 2]], struck by L_ext along a direction: it slides where friction does not
+/// suffice, |L_t| = mu L_n.
+#[test]
+fn a_cone_turns_where_friction_suffices() {
+    let study = json!({
+        "parameters": {"mu": {"from": 0.1, "to": 1.9, "steps": 5}},
+        // L_ext = (-0.75, -1), so that sticking takes L = (0.75, 1); c- = G L_ext.
+        "state": {"velocity": {"base": {"x": "2*(-0.75) - 1", "z": "-0.75 - 2"}}, "friction": "mu"},
+    });
+    let sweep = sweep("urdf/block.urdf", &study);
+    let [border] = &sweep.borders[..] else { panic!("{:?}", sweep.borders) };
+    assert!((border.at - 0.75).abs() < 4e-12, "{}", border.at);
+    let of = |inequality: &str, mode: &str, valid: &str| Turn {
+        contact: "block".into(),
+        inequality: inequality.into(),
+        modes: vec![mode.into()],
+        valid: valid.into(),
+    };
+    let expected = [of("friction_cone", "stick", "above"), of("tangential_velocity", "slide-", "below")];
+    assert_eq!(sorted(border), expected);
+}
+
+/// Lifted off the ground, a contact leaves the set; the sample's contacts decide, so the border lies at the tolerance.
+#[test]
+fn a_border_where_a_contact_opens_names_it() {
+    let study = json!({
+        "parameters": {"height": {"from": -0.1, "to": 1, "steps": 4}},
+        "state": {"position": {"base": {"z": "max(0, height)"}}, "velocity": {"base": {"z": -1}}, "friction": 1},
+    });
+    let sweep = sweep("urdf/block.urdf", &study);
+    let [below, above] = &sweep.regions[..] else { panic!("{:?}", sweep.regions) };
+    assert_eq!(
+        (below.contacts.as_deref(), above.contacts.as_deref()),
+        (Some(&["block".to_owned()][..]), Some(&[][..]))
+    );
+    assert_eq!(above.outcomes, Some(vec![vec![]]));
+    let border = &sweep.borders[0];
+    // The contact tolerance is 1e-6 of the robot's size, the distance of its CoG at (-1, 1).
+    let tolerance = 1e-6 * f64::sqrt(2.0);
+    assert!((border.at - tolerance).abs() < 2e-12, "{} instead of {tolerance}", border.at);
+    assert_eq!(
+        (&border.opening[..], &border.closing[..], &border.turns[..]),
+        (&["block".to_owned()][..], &[][..], &[][..])
+    );
+}

@@ -1,0 +1,126 @@
+//! Random states of RAMone on both feet, and what their boxes may hold.
+
+use crate::support::random::Random;
+use heelstrike::impact::{Friction, Mode};
+use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::state::{Defaults, State};
+use heelstrike::{Error, Robot};
+use serde_json::{Value, json};
+
+pub fn ramone() -> Robot {
+    Robot::from_urdf(include_str!("../../../urdf/ramone.urdf")).expect("a good robot")
+}
+
+pub fn read(robot: &Robot, state: &Value) -> Result<State, Error> {
+    State::from_json(&state.to_string(), robot, &Defaults::default())
+}
+
+pub fn impact(robot: &Robot, state: &State) -> Impact {
+    Pipeline::new(robot, Options::default()).impact(state).expect("an answer")
+}
+
+/// Any number from `low` to `high`.
+pub fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+    low + (high - low) * (random.bits() >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Both feet on the ground, in any posture, with any velocities of order one and friction from 0.2 to 1.5, all half-widths
+/// `width`.
+pub fn on_both_feet(robot: &Robot, random: &mut Random, width: f64) -> State {
+    let mut number = |scale: f64| between(random, -scale, scale);
+    let joints = |value: &mut dyn FnMut() -> f64| -> Value {
+        robot.joints.iter().map(|joint| (joint.name.clone(), json!(value()))).collect()
+    };
+    let state = json!({
+        "position": {"base": {"z": 0.4, "pitch": number(0.5)}, "joints": joints(&mut || number(1.5))},
+        "velocity": {"base": {"x": number(1.0), "z": number(1.0), "pitch": number(2.0)}, "joints": joints(&mut || number(3.0))},
+        "friction": 0.85 + number(0.65),
+        "contacts": [{"link": "left_foot", "radius": 0.02815}, {"link": "right_foot", "radius": 0.02815}],
+        "uncertainty": {"position": width, "velocity": width, "friction": width},
+    });
+    read(robot, &state).expect("a good state")
+}
+
+/// One foot stands on a slope while the other strikes, with whatever else a state may have.
+pub fn walking(robot: &Robot, random: &mut Random) -> State {
+    let joints: Value =
+        robot.joints.iter().map(|joint| (joint.name.clone(), json!(between(random, -1.2, 1.2)))).collect();
+    let rates: Value =
+        robot.joints.iter().map(|joint| (joint.name.clone(), json!(between(random, -2.0, 2.0)))).collect();
+    let held: &[&str] = if random.once_in(2) { &["left_knee"] } else { &[] };
+    let state = json!({
+        "position": {"base": {"pitch": between(random, -0.5, 0.5)}, "joints": joints},
+        "velocity": {"base": {"pitch": between(random, -2.0, 2.0)}, "joints": rates},
+        "stance": "left_foot",
+        "ground": {"slope": between(random, -0.3, 0.3)},
+        "held": held,
+        "rotor_inertia": {"right_knee": 0.01},
+        "friction": {"default": between(random, 0.2, 1.5), "right_foot": random.pick(&[json!("infinite"), json!(0.7), json!(0)])},
+        "restitution": {"left_foot": 0, "right_foot": random.pick(&[0.0, 0.5])},
+        "contacts": [{"link": "left_foot", "radius": 0.02815}, {"link": "right_foot", "radius": 0.02815}],
+        "uncertainty": {
+            "position": {"base": {"pitch": 1e-3}, "joints": {"left_hip": 2e-3, "right_knee": 1e-3, "left_knee": 1e-3}},
+            "velocity": 1e-3,
+            "friction": {"default": 1e-2},
+            "rotor_inertia": 1e-3,
+        },
+    });
+    read(robot, &state).expect("a good state")
+}
+
+/// The lists of modes of a proven answer, sorted.
+pub fn modes(impact: &Impact) -> Vec<Vec<Mode>> {
+    let analysis = impact.analysis.as_ref().expect("outcomes");
+    assert!(analysis.proven);
+    let mut modes: Vec<Vec<Mode>> = analysis.outcomes.iter().map(|outcome| outcome.modes.clone()).collect();
+    modes.sort();
+    modes
+}
+
+/// A state of the box whose place in each interval, from -1 to 1, is what `place` tells.
+pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) -> State {
+    let mut other = state.clone();
+    let known = other.uncertainty.take().expect("an uncertain state");
+    let placed = state.scene.stance.is_some();
+    for (coordinate, (position, width)) in other.position.iter_mut().zip(&known.position).enumerate() {
+        // Detected contacts must not lose the ground.
+        if coordinate >= robot.base_dofs().min(2) {
+            *position += width * place();
+        }
+    }
+    for (coordinate, (velocity, width)) in other.velocity.iter_mut().zip(&known.velocity).enumerate() {
+        if !(placed && coordinate < 2) {
+            *velocity += width * place();
+        }
+    }
+    let links: Vec<usize> = other.scene.contacts.iter().flatten().map(|contact| contact.link).collect();
+    for link in links {
+        if let Some(Friction::Finite(mu)) = other.scene.friction.of(link) {
+            let moved = Friction::Finite((mu + known.friction.of(link).unwrap_or(0.0) * place()).max(0.0));
+            other.scene.friction.links.retain(|(named, _)| *named != link);
+            other.scene.friction.links.push((link, moved));
+        }
+    }
+    for (joint, width) in known.rotor_inertia.iter().enumerate().filter(|(_, width)| **width > 0.0) {
+        other.scene.rotor_inertia.resize(robot.joints.len(), 0.0);
+        other.scene.rotor_inertia[joint] = (other.scene.rotor_inertia[joint] + width * place()).max(0.0);
+    }
+    other
+}
+
+/// The other state must lie in the first one's box, but for a rounding of the ends.
+pub fn assert_in_the_box(state: &State, other: &State) {
+    let known = state.uncertainty.as_ref().expect("an uncertain state");
+    let within = |a: &[f64], b: &[f64], widths: &[f64]| {
+        a.iter().zip(b).zip(widths).all(|((a, b), width)| (a - b).abs() <= width + f64::EPSILON * (a.abs() + width))
+    };
+    assert!(within(&state.position, &other.position, &known.position));
+    assert!(within(&state.velocity, &other.velocity, &known.velocity));
+    for contact in other.scene.contacts.iter().flatten() {
+        let width = known.friction.of(contact.link).unwrap_or(0.0);
+        match (state.scene.friction.of(contact.link), other.scene.friction.of(contact.link)) {
+            (Some(Friction::Finite(a)), Some(Friction::Finite(b))) => assert!(within(&[a], &[b], &[width]) && b >= 0.0),
+            (one, other) => assert_eq!(one, other),
+        }
+    }
+}

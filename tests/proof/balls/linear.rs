@@ -1,0 +1,273 @@
+//! Linear equations and inequalities, with what is left free.
+//!
+//! ```text
+//!     A x = b  -->  x = x0 + N s, by elimination with full pivoting;    is there an s with p + Q s >= 0 (or > 0)?
+//! ```
+
+use crate::balls::number::Number;
+use std::cmp::Ordering;
+
+/// When a number is zero.
+#[derive(Debug, Clone, Copy)]
+pub struct Zero {
+    /// Whether this is the highest precision, where what is below 2^-150 of its scale counts as zero.
+    pub last: bool,
+}
+
+/// 2^-150.
+const SMALL: f64 = 7.006492321624085e-46;
+
+impl Zero {
+    /// How `number` compares with zero; none where it is not told.
+    pub fn sign<N: Number>(self, number: &N, scale: f64) -> Option<Ordering> {
+        let small = || self.last && number.size() < SMALL * scale;
+        number.sign().or_else(|| small().then_some(Ordering::Equal))
+    }
+}
+
+/// A number that depends on what is free: constant + sum of factors * s.
+#[derive(Debug, Clone)]
+pub struct Affine<N> {
+    /// Its value where all that is free is zero.
+    pub constant: N,
+    /// What one unit of each free number adds.
+    pub factors: Vec<N>,
+}
+
+impl<N: Number> Affine<N> {
+    /// A number on which the `free` ones have no effect.
+    pub fn constant(constant: N, free: usize, bits: usize) -> Self {
+        Self { constant, factors: vec![N::new(0.0, bits); free] }
+    }
+
+    /// The sum.
+    pub fn plus(&self, other: &Self) -> Self {
+        let factors = self.factors.iter().zip(&other.factors).map(|(a, b)| a.plus(b)).collect();
+        Self { constant: self.constant.plus(&other.constant), factors }
+    }
+
+    /// The product with a number.
+    pub fn times(&self, factor: &N) -> Self {
+        let factors = self.factors.iter().map(|entry| entry.times(factor)).collect();
+        Self { constant: self.constant.times(factor), factors }
+    }
+}
+
+/// All solutions of a system of equations.
+pub struct Solution<N> {
+    /// Every unknown.
+    pub values: Vec<Affine<N>>,
+    /// How many numbers are free; none in a regular system.
+    pub free: usize,
+    /// Sign of the determinant of a regular system.
+    pub sign: i8,
+}
+
+/// What becomes of a system of equations.
+pub enum Solved<N> {
+    /// Not told by this precision.
+    Open,
+    /// It has no solution.
+    Contradictory,
+    /// It has.
+    Solution(Solution<N>),
+}
+
+/// Solves the square system `rows` = [A | b] in `bits` bits; the scales are those of A and b.
+pub fn solve<N: Number>(mut rows: Vec<Vec<N>>, zero: Zero, scale: f64, scale_right: f64, bits: usize) -> Solved<N> {
+    let n = rows.len();
+    let mut columns: Vec<usize> = (0..n).collect();
+    let mut sign = 1;
+    let mut rank = 0;
+    while rank < n {
+        let k = rank;
+        let places = (k..n).flat_map(|row| (k..n).map(move |column| (row, column)));
+        let told = |&(row, column): &(usize, usize)| {
+            matches!(rows[row][column].sign(), Some(Ordering::Less | Ordering::Greater))
+        };
+        let size = |(row, column): (usize, usize)| rows[row][column].size();
+        let Some((row, column)) = places.clone().filter(told).max_by(|&a, &b| size(a).total_cmp(&size(b))) else {
+            let vanishes = |(row, column): (usize, usize)| {
+                let row: &Vec<N> = &rows[row];
+                zero.sign(&row[column], scale) == Some(Ordering::Equal)
+            };
+            if !places.into_iter().all(vanishes) {
+                return Solved::Open;
+            }
+            break;
+        };
+        if row != k {
+            rows.swap(row, k);
+            sign = -sign;
+        }
+        if column != k {
+            rows.iter_mut().for_each(|row| row.swap(column, k));
+            columns.swap(column, k);
+            sign = -sign;
+        }
+        if rows[k][k].sign() == Some(Ordering::Less) {
+            sign = -sign;
+        }
+        let (above, below) = rows.split_at_mut(k + 1);
+        let pivot_row = &above[k];
+        for row in below {
+            if row[k].is_zero() {
+                continue;
+            }
+            let factor = row[k].over(&pivot_row[k]);
+            for (entry, over) in row.iter_mut().zip(pivot_row).skip(k + 1) {
+                *entry = entry.minus(&factor.times(over));
+            }
+        }
+        rank += 1;
+    }
+    let mut open = false;
+    for row in &rows[rank..] {
+        match zero.sign(&row[n], scale_right) {
+            None => open = true,
+            Some(Ordering::Equal) => {}
+            Some(_) => return Solved::Contradictory,
+        }
+    }
+    if open {
+        return Solved::Open;
+    }
+
+    // Unknowns beyond the rank are free; the others follow from the last to the first.
+    let free = n - rank;
+    let mut values: Vec<Affine<N>> = (0..n)
+        .map(|column| {
+            let mut value = Affine::constant(N::new(0.0, bits), free, bits);
+            if column >= rank {
+                value.factors[column - rank] = N::new(1.0, bits);
+            }
+            value
+        })
+        .collect();
+    for k in (0..rank).rev() {
+        let mut rest = Affine::constant(rows[k][n].clone(), free, bits);
+        for column in k + 1..n {
+            rest = rest.plus(&values[column].times(&rows[k][column].negative()));
+        }
+        let over = |number: &N| number.over(&rows[k][k]);
+        values[k] = Affine { constant: over(&rest.constant), factors: rest.factors.iter().map(over).collect() };
+    }
+    let mut ordered: Vec<(usize, Affine<N>)> = columns.into_iter().zip(values).collect();
+    ordered.sort_by_key(|&(column, _)| column);
+    Solved::Solution(Solution { values: ordered.into_iter().map(|(_, value)| value).collect(), free, sign })
+}
+
+/// The inequality `value >= 0`, or `> 0` where it is strict.
+#[derive(Debug, Clone)]
+pub struct Inequality<N> {
+    /// Its left side.
+    pub value: Affine<N>,
+    /// The size of its constant; its factors have that of `scale / unit`.
+    pub scale: f64,
+    /// Whether zero violates it.
+    pub strict: bool,
+}
+
+/// More inequalities than these are left open.
+const MOST: usize = 4000;
+
+/// Whether some choice of the free numbers, each of size `unit`, satisfies all inequalities; none where it is not told.
+///
+/// Fourier and Motzkin: a number may be eliminated by adding each inequality that bounds it from below to each that bounds
+/// it from above.
+pub fn feasible<N: Number>(mut list: Vec<Inequality<N>>, zero: Zero, unit: f64) -> Option<bool> {
+    let free = list.first().map_or(0, |first| first.value.factors.len());
+    for _ in 0..free {
+        let (mut lower, mut upper, mut rest) = (Vec::new(), Vec::new(), Vec::new());
+        for mut inequality in list {
+            let factor = inequality.value.factors.pop().expect("one for each free number");
+            match zero.sign(&factor, inequality.scale / unit)? {
+                Ordering::Equal => rest.push(inequality),
+                Ordering::Greater => lower.push((factor, inequality)),
+                Ordering::Less => upper.push((factor.negative(), inequality)),
+            }
+        }
+        if rest.len() + lower.len() * upper.len() > MOST {
+            return None;
+        }
+        for (a, below) in &lower {
+            for (b, above) in &upper {
+                rest.push(Inequality {
+                    value: below.value.times(b).plus(&above.value.times(a)),
+                    scale: below.scale * b.size() + above.scale * a.size(),
+                    strict: below.strict || above.strict,
+                });
+            }
+        }
+        list = rest;
+    }
+    let mut told = true;
+    for Inequality { value, scale, strict } in &list {
+        match zero.sign(&value.constant, *scale) {
+            None => told = false,
+            Some(Ordering::Less) => return Some(false),
+            Some(Ordering::Equal) if *strict => return Some(false),
+            Some(_) => {}
+        }
+    }
+    told.then_some(true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ZERO: Zero = Zero { last: true };
+
+    #[test]
+    fn dependent_equations_leave_numbers_free() {
+        // x + y + z = 3, 2x + 2y + 2z = 6, x - z = 1.
+        let rows = vec![vec![1.0, 1.0, 1.0, 3.0], vec![2.0, 2.0, 2.0, 6.0], vec![1.0, 0.0, -1.0, 1.0]];
+        let Solved::Solution(solution) = solve(rows.clone(), ZERO, 1.0, 1.0, 0) else { panic!("it has solutions") };
+        assert_eq!(solution.free, 1);
+        for s in [-1.0, 0.0, 2.5] {
+            let x: Vec<f64> = solution.values.iter().map(|value| value.constant + value.factors[0] * s).collect();
+            for row in &rows {
+                let left: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
+                assert!((left - row[3]).abs() < 1e-12, "{x:?}");
+            }
+        }
+        let mut contradictory = rows;
+        contradictory[1][3] = 7.0;
+        assert!(matches!(solve(contradictory, ZERO, 1.0, 1.0, 0), Solved::Contradictory));
+    }
+
+    #[test]
+    fn the_sign_is_that_of_the_determinant() {
+        let rows = vec![vec![0.0, 2.0, 1.0], vec![3.0, 1.0, 1.0]];
+        let Solved::Solution(solution) = solve(rows, ZERO, 1.0, 1.0, 0) else { panic!("it is regular") };
+        assert_eq!((solution.sign, solution.free, solution.values[1].constant), (-1, 0, 0.5));
+        let rows = vec![vec![3.0, 1.0, 1.0], vec![1.0, 2.0, 1.0]];
+        let Solved::Solution(solution) = solve(rows, ZERO, 1.0, 1.0, 0) else { panic!("it is regular") };
+        assert_eq!(solution.sign, 1);
+    }
+
+    #[test]
+    fn a_triangle_is_feasible_until_its_corner_passes_the_side() {
+        // x >= 0, y >= 0, x + y <= width, and x + 2 y above (or no less than) a limit.
+        let answer = |width: f64, limit: f64, strict: bool| {
+            let inequality = |constant: f64, factors: [f64; 2], strict| Inequality {
+                value: Affine { constant, factors: factors.to_vec() },
+                scale: 1.0,
+                strict,
+            };
+            let list = vec![
+                inequality(0.0, [1.0, 0.0], false),
+                inequality(0.0, [0.0, 1.0], false),
+                inequality(width, [-1.0, -1.0], false),
+                inequality(-limit, [1.0, 2.0], strict),
+            ];
+            feasible(list, ZERO, 1.0)
+        };
+        assert_eq!(answer(1.0, 1.5, true), Some(true));
+        assert_eq!(answer(1.0, 2.0, false), Some(true));
+        assert_eq!(answer(1.0, 2.0, true), Some(false));
+        assert_eq!(answer(1.0, 2.5, false), Some(false));
+        assert_eq!(answer(-1.0, -5.0, false), Some(false));
+    }
+}

@@ -1,0 +1,127 @@
+//! What the product calls proven, against an oracle in balls of 256 bits and more: what is checked with more digits than
+//! f64 has belongs here.
+//!
+//! The oracle (`dynamics`, `oracle`, `number`) shares no code with the product: absolute poses, a dense mass matrix, one
+//! linear solve per list of modes. It takes from the library only the numbers of the reduced robot and of the state.
+//!
+//! A million states, a third of them beside a border, counted by robot:
+//!
+//! ```text
+//!     HEELSTRIKE_STATES=1000000 cargo test --release --test proof -- --nocapture states_are_decided_rightly
+//! ```
+//!
+//! `HEELSTRIKE_THREADS` sets the number of threads. A state that fails is printed as `heelstrike impact` reads it.
+
+mod census;
+mod dynamics;
+mod linear;
+mod number;
+mod oracle;
+mod references;
+mod states;
+
+use crate::support::random::Random;
+use census::{Finding, Row, census, compare};
+use heelstrike::impact::{Mode, Verdict};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::state::{Defaults, State};
+use oracle::Index;
+use std::time::Instant;
+
+/// Answers this many states, prints the counts and fails where an answer is wrong.
+fn checked(states: u64) {
+    let threads = environment("HEELSTRIKE_THREADS", std::thread::available_parallelism().map_or(4, usize::from));
+    let start = Instant::now();
+    let census = census(&states::models(), states, threads);
+    let time = start.elapsed();
+    let Row { random, near } = census.total();
+    let count = random.states + near.states;
+    println!("{census}");
+    println!("{count} states in {time:.1?}, {:.2?} of a thread each", time * threads as u32 / count as u32);
+    assert!(random.wrong + near.wrong == 0, "{} wrongly proven", random.wrong + near.wrong);
+    assert!(random.different + near.different == 0, "{} wrongly decided", random.different + near.different);
+    for (kind, counts) in [("random", random), ("near", near)] {
+        let told = counts.states - counts.unknown - counts.refused;
+        assert!(counts.proven * 1000 >= told * 999, "{} of {told} {kind} states proven", counts.proven);
+    }
+    // A state without an answer shows nothing, so few of them may lack one.
+    let void = random.unknown + random.refused + near.unknown + near.refused;
+    assert!(void * 200 <= count, "{void} states without an answer");
+    assert!(near.states * 3 >= count, "{} of {count} states are beside a border", near.states);
+    assert!(random.ambiguous * 50 >= random.states, "{} of {} are ambiguous", random.ambiguous, random.states);
+}
+
+/// The number in an environment variable.
+fn environment<T: std::str::FromStr>(name: &str, default: T) -> T {
+    let value = std::env::var(name).ok();
+    value.map_or(default, |value| value.parse().unwrap_or_else(|_| panic!("{name} is no number: {value}")))
+}
+
+#[test]
+fn states_are_decided_rightly() {
+    checked(environment("HEELSTRIKE_STATES", 10_000));
+}
+
+/// A check that never fails checks nothing.
+#[test]
+fn a_mistake_is_found() {
+    let mut seen = [0; 3];
+    for model in &states::models() {
+        let mut random = Random::new(7);
+        for _ in 0..40 {
+            let state = model.random(&mut random);
+            let Some(answer) = oracle::answer(&model.robot, &state) else { continue };
+            let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
+            let Ok(right) = impact.and_then(|impact| impact.analysis) else { continue };
+            if !matches!(compare(&answer, &right), Finding::Proven | Finding::Same) {
+                continue;
+            }
+            let mut mistakes = Vec::new();
+            let mut flipped = right.clone();
+            let mode = &mut flipped.outcomes[0].modes[0];
+            *mode = if *mode == Mode::Separate { Mode::Stick } else { Mode::Separate };
+            mistakes.push(flipped);
+            let mut lost = right.clone();
+            lost.outcomes.pop();
+            mistakes.push(lost);
+            // Where contacts depend on each other the index is not compared.
+            if answer.outcomes.iter().all(|outcome| outcome.index != Index::Redundant) {
+                let mut turned = right.clone();
+                turned.outcomes[0].index = Some(turned.outcomes[0].index.map_or(1, |index| -index));
+                mistakes.push(turned);
+            }
+            for (count, mut mistake) in seen.iter_mut().zip(mistakes) {
+                mistake.proven = false;
+                mistake.outcomes.iter_mut().for_each(|outcome| outcome.proven = false);
+                assert!(matches!(compare(&answer, &mistake), Finding::Different(_)), "{mistake:?}");
+                mistake.proven = true;
+                assert!(matches!(compare(&answer, &mistake), Finding::Wrong(_)), "{mistake:?}");
+                *count += 1;
+            }
+            // One proven outcome that is none is wrong, even where the list is not said to be complete.
+            let mut single = right.clone();
+            single.proven = false;
+            single.verdict = Verdict::Undecided;
+            single.outcomes[0].proven = true;
+            assert_eq!(compare(&answer, &single), Finding::Undecided);
+            single.outcomes[0].modes[0] =
+                if single.outcomes[0].modes[0] == Mode::SlidePlus { Mode::SlideMinus } else { Mode::SlidePlus };
+            assert!(matches!(compare(&answer, &single), Finding::Wrong(_)), "{single:?}");
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
+}
+
+#[test]
+fn states_are_written_as_they_are() {
+    for model in &states::models() {
+        let mut random = Random::new(3);
+        for _ in 0..20 {
+            let state = model.random(&mut random);
+            let text = census::state_json(&model.robot, &state).to_string();
+            let read = State::from_json(&text, &model.robot, &Defaults::default());
+            let read = read.unwrap_or_else(|error| panic!("{error}\n{text}"));
+            assert_eq!(oracle::answer(&model.robot, &read), oracle::answer(&model.robot, &state), "{text}");
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! Random states of several robots, seeded, and states a wanted distance from a border.
+
+use crate::balls::oracle;
+use crate::support::random::Random;
+use heelstrike::impact::{Friction, Mode};
+use heelstrike::robot::Robot;
+use heelstrike::state::State;
+use heelstrike::state::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene};
+
+/// A robot with the points that its states name as contacts.
+pub struct Model {
+    /// What the table calls it.
+    pub name: &'static str,
+    /// The reduced robot.
+    pub robot: Robot,
+    feet: Vec<NamedContact>,
+    /// How many of them touch in most states.
+    touching: usize,
+    /// The most that may touch, so that no contact depends on others.
+    most: usize,
+}
+
+/// A robot with sliding joints that lean, which none of the files has.
+const TELESCOPE: &str = r#"<robot name="telescope">
+  <link name="torso"><inertial><origin xyz="0.02 0 0.1"/><mass value="5"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="0.07" iyz="0" izz="1"/></inertial></link>
+  <link name="left_leg"><inertial><origin xyz="0 0 -0.2"/><mass value="0.7"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="0.004" iyz="0" izz="1"/></inertial></link>
+  <link name="left_foot"><inertial><origin xyz="0 0 -0.1"/><mass value="0.3"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="1"/></inertial></link>
+  <link name="right_foot"><inertial><origin xyz="0.01 0 -0.3"/><mass value="0.9"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="0.006" iyz="0" izz="1"/></inertial></link>
+  <joint name="left_hip" type="continuous"><parent link="torso"/><child link="left_leg"/>
+    <origin xyz="-0.1 0 -0.05"/><axis xyz="0 1 0"/></joint>
+  <joint name="left_slide" type="prismatic"><parent link="left_leg"/><child link="left_foot"/>
+    <origin xyz="0 0 -0.3"/><axis xyz="0.6 0 -0.8"/><limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
+  <joint name="right_slide" type="prismatic"><parent link="torso"/><child link="right_foot"/>
+    <origin xyz="0.1 0 -0.05"/><axis xyz="0 0 -1"/><limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
+</robot>"#;
+
+/// A body that stands on two corners, and has three ways to move for their four rows.
+const SLED: &str = r#"<robot name="sled">
+  <link name="sled"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="1"/></inertial></link>
+</robot>"#;
+
+/// The robots, each with up to four feet.
+pub fn models() -> Vec<Model> {
+    let read = |path: &str| {
+        let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+    };
+    let model = |name, urdf: &str, touching, feet: &[(&str, [f64; 3], f64)]| {
+        let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let foot = |&(link, offset, radius): &(&str, [f64; 3], f64)| NamedContact {
+            link: robot.link(link).unwrap_or_else(|| panic!("{name} has no link {link}")),
+            offset,
+            radius,
+        };
+        // With more rows than coordinates contacts depend on each other; of that only what two flat feet bring.
+        let most = if touching > 2 { touching } else { feet.len().min(robot.dofs() / 2).max(touching) };
+        Model { name, feet: feet.iter().map(foot).collect(), robot, touching, most }
+    };
+    let end = |z: f64| [0.0, 0.0, z];
+    let legs = [("left_leg", end(-1.0), 0.0), ("right_leg", end(-1.0), 0.0)];
+    let round = [("left_foot", end(0.0), 0.02815), ("right_foot", end(0.0), 0.02815)];
+    let h1 = read("tests/proof/balls/h1_planar.urdf");
+    let solo = ["FL_LOWER_LEG", "FR_LOWER_LEG", "HL_LOWER_LEG", "HR_LOWER_LEG"].map(|leg| (leg, end(-0.16), 0.0));
+    vec![
+        model("minimalistic", &read("urdf/minimalistic.urdf"), 2, &legs),
+        model("pdw", &read("urdf/pdw.urdf"), 2, &legs),
+        model("ramone", &read("urdf/ramone.urdf"), 2, &round),
+        model(
+            "ramone_paper",
+            &read("urdf/ramone_paper.urdf"),
+            3,
+            &[round[0], round[1], ("torso", [0.05, 0.0, 0.2], 0.04)],
+        ),
+        model(
+            "rabbit",
+            &read("tests/data/robots/rabbit/five_link_walker.urdf"),
+            2,
+            &[("right_shin", end(0.4), 0.0), ("left_shin", end(0.4), 0.0), ("torso", end(0.48), 0.0)],
+        ),
+        model(
+            "upkie",
+            &read("tests/data/robots/upkie/upkie.urdf"),
+            2,
+            &[("left_wheel_tire", end(0.0), 0.05), ("right_wheel_tire", end(0.0), 0.05)],
+        ),
+        model("solo8", &read("tests/data/robots/solo8/solo.urdf"), 4, &solo),
+        model(
+            "h1_planar",
+            &h1,
+            2,
+            &[
+                ("left_ankle_link", [0.17, 0.0, -0.05], 0.0),
+                ("right_ankle_link", [-0.06, 0.0, -0.05], 0.0),
+                ("left_elbow_link", [0.3, 0.0, -0.01], 0.02),
+                ("left_knee_link", [0.03, 0.0, -0.2], 0.02),
+            ],
+        ),
+        model(
+            "h1_flat",
+            &h1,
+            2,
+            &[
+                ("left_ankle_link", [0.17, 0.0, -0.05], 0.0),
+                ("left_ankle_link", [-0.06, 0.0, -0.05], 0.0),
+                ("right_ankle_link", [0.17, 0.0, -0.05], 0.0),
+                ("right_ankle_link", [-0.06, 0.0, -0.05], 0.0),
+            ],
+        ),
+        model("sled", SLED, 2, &[("sled", [0.4, 0.0, 0.0], 0.0), ("sled", [-0.3, 0.0, 0.0], 0.0)]),
+        model(
+            "telescope",
+            TELESCOPE,
+            3,
+            &[("left_foot", end(-0.2), 0.02), ("right_foot", end(-0.5), 0.0), ("torso", [0.2, 0.0, 0.3], 0.0)],
+        ),
+    ]
+}
+
+/// Choices of real numbers.
+impl Random {
+    /// From `low` to `high`, every f64 with all its digits.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        // 53 bits make a number below one.
+        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+
+    /// 10 to a power from `low` to `high`.
+    fn decades(&mut self, low: f64, high: f64) -> f64 {
+        10_f64.powf(self.between(low, high))
+    }
+}
+
+impl Model {
+    /// A state with one to four of the robot's feet as contacts.
+    pub fn random(&self, random: &mut Random) -> State {
+        let dofs = self.robot.dofs();
+        let base = self.robot.base_dofs();
+        let mut state = State {
+            position: (0..dofs).map(|_| random.between(-1.5, 1.5)).collect(),
+            velocity: (0..dofs).map(|_| random.between(-2.0, 2.0)).collect(),
+            ..State::default()
+        };
+        // Most impacts are struck from above, else most of them end with the feet in the air.
+        state.velocity[1] -= random.between(0.0, 3.0);
+        // Joints at rest make contacts of equal velocity, straight legs make matrices that are nearly singular.
+        if random.once_in(3) {
+            state.velocity.iter_mut().for_each(|rate| {
+                if random.once_in(2) {
+                    *rate = 0.0;
+                }
+            });
+        }
+        if random.once_in(8) && dofs > base {
+            let joint = random.whole(base as i64, dofs as i64 - 1) as usize;
+            // The feet of a walker with a hip alone would be one, and its legs of point masses one without inertia.
+            let straight = if self.robot.joints.len() == 1 { [1e-4, 1e-2] } else { [0.0, 1e-9] };
+            state.position[joint] = random.pick(&straight);
+        }
+        state.scene = self.scene(random);
+        state
+    }
+
+    fn scene(&self, random: &mut Random) -> Scene {
+        let order = random.permutation(self.feet.len());
+        let count = match random.whole(1, 12) {
+            1 => 1,
+            2 => self.most,
+            _ => self.touching,
+        };
+        let contacts: Vec<NamedContact> = order[..count].iter().map(|&foot| self.feet[foot]).collect();
+        let alike = random.once_in(2).then(|| friction(random));
+        let mut links: Vec<usize> = contacts.iter().map(|contact| contact.link).collect();
+        links.sort_unstable();
+        links.dedup();
+        let by_link = links.iter().map(|&link| (link, alike.unwrap_or_else(|| friction(random)))).collect();
+        // A link stands on the lowest of its contacts; with one there is no question which that is.
+        let alone = contacts.iter().filter(|contact| contact.link == contacts[0].link).count() == 1;
+        let mut scene = Scene {
+            friction: ByLink { default: None, links: by_link },
+            ground: ground(random),
+            stance: (alone && random.once_in(4)).then(|| contacts[0].link),
+            ..Scene::default()
+        };
+        if random.once_in(5) {
+            let bounce = |link: usize| (link, random.pick(&[0.0, 0.5, 1.0, 0.3]));
+            scene.restitution = ByLink { default: None, links: links.into_iter().map(bounce).collect() };
+        }
+        if random.once_in(10) && !self.robot.joints.is_empty() {
+            scene.held = vec![random.whole(0, self.robot.joints.len() as i64 - 1) as usize];
+        }
+        if random.once_in(10) {
+            scene.rotor_inertia = self.robot.joints.iter().map(|_| random.decades(-4.0, -1.0)).collect();
+        }
+        if random.once_in(10) {
+            scene.impulses = vec![AppliedImpulse {
+                link: self.feet[order[0]].link,
+                offset: [random.between(-0.1, 0.1), 0.0, random.between(-0.1, 0.1)],
+                vector: [random.between(-1.0, 1.0), random.between(-1.0, 1.0)],
+            }];
+        }
+        scene.contacts = Some(contacts);
+        scene
+    }
+}
+
+/// None, little, the usual, much, or infinite friction.
+fn friction(random: &mut Random) -> Friction {
+    match random.whole(0, 9) {
+        0 => Friction::ZERO,
+        1 => Friction::Finite(random.decades(-12.0, -1.0)),
+        2 => Friction::Finite(random.decades(0.2, 12.0)),
+        3 | 4 => Friction::Infinite,
+        _ => Friction::Finite(random.between(0.1, 1.5)),
+    }
+}
+
+/// A number of a state that a line in the space of states changes.
+#[derive(Debug, Clone, Copy)]
+enum Parameter {
+    Position(usize),
+    Velocity(usize),
+    /// Of one of the links.
+    Friction(usize),
+}
+
+impl Parameter {
+    fn random(state: &State, robot: &Robot, random: &mut Random) -> Self {
+        let floating = robot.base_dofs() == 3;
+        let finite: Vec<usize> = (0..state.scene.friction.links.len())
+            .filter(|&k| matches!(state.scene.friction.links[k].1, Friction::Finite(mu) if mu > 0.0))
+            .collect();
+        // The base's x and z lead nowhere, and with a stance nor do their rates.
+        let dofs = robot.dofs() as i64 - 1;
+        match random.whole(0, 2) {
+            0 if !finite.is_empty() => Self::Friction(random.pick(&finite)),
+            1 => Self::Position(random.whole(if floating { 2 } else { 0 }, dofs) as usize),
+            _ => Self::Velocity(random.whole(if state.scene.stance.is_some() { 2 } else { 0 }, dofs) as usize),
+        }
+    }
+
+    fn of(self, state: &State) -> f64 {
+        match self {
+            Self::Position(k) => state.position[k],
+            Self::Velocity(k) => state.velocity[k],
+            Self::Friction(k) => match state.scene.friction.links[k].1 {
+                Friction::Finite(mu) => mu,
+                Friction::Infinite => f64::INFINITY,
+            },
+        }
+    }
+
+    fn with(self, state: &State, value: f64) -> State {
+        let mut changed = state.clone();
+        match self {
+            Self::Position(k) => changed.position[k] = value,
+            Self::Velocity(k) => changed.velocity[k] = value,
+            Self::Friction(k) => changed.scene.friction.links[k].1 = Friction::Finite(value.max(0.0)),
+        }
+        changed
+    }
+}
+
+/// States beside one border: both neighbouring f64 between which the outcomes change, and one further off on either side,
+/// 1e-15 to 1e-6 of the parameter away.
+pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
+    loop {
+        let state = model.random(random);
+        let parameter = Parameter::random(&state, &model.robot, random);
+        let start = parameter.of(&state);
+        let far = match parameter {
+            Parameter::Friction(_) => start * random.decades(-2.0, 2.0),
+            _ => start + random.between(-1.0, 1.0),
+        };
+        let guess = |value: f64| oracle::guess(&model.robot, &parameter.with(&state, value));
+        let Some(guessed) = bisect(start, far, guess) else { continue };
+        let told = |value: f64| told(model, &parameter.with(&state, value));
+        let Some([a, b]) = widen(guessed, told).and_then(|[a, b]| bisect(a, b, told)) else { continue };
+        if told(a).is_none() || told(b).is_none() {
+            continue;
+        }
+        let mut off = |value: f64, away: f64| {
+            let step = random.decades(-15.0, -6.0) * value.abs();
+            if away < value { value + step } else { value - step }
+        };
+        let values = [a, b, off(a, b), off(b, a)];
+        return values.map(|value| parameter.with(&state, value)).to_vec();
+    }
+}
+
+/// The modes of all outcomes; none where they are not told.
+fn told(model: &Model, state: &State) -> Option<Vec<Vec<Mode>>> {
+    let answer = oracle::answer(&model.robot, state).filter(|answer| answer.open == 0)?;
+    Some(answer.outcomes.into_iter().map(|outcome| outcome.modes).collect())
+}
+
+/// Two neighbouring f64 from `a` to `b` that `property` tells apart; none if it does not tell `a` from `b`.
+fn bisect<T: PartialEq>(mut a: f64, mut b: f64, property: impl Fn(f64) -> T) -> Option<[f64; 2]> {
+    let at_a = property(a);
+    if property(b) == at_a {
+        return None;
+    }
+    loop {
+        let middle = a + (b - a) / 2.0;
+        if middle == a || middle == b {
+            return Some([a, b]);
+        }
+        *(if property(middle) == at_a { &mut a } else { &mut b }) = middle;
+    }
+}
+
+/// Two numbers about `guessed` that `property` tells apart: what f64 guesses is off by its rounding.
+fn widen<T: PartialEq>([a, b]: [f64; 2], property: impl Fn(f64) -> T) -> Option<[f64; 2]> {
+    let mut reach = b - a;
+    let (mut low, mut high) = (a, b);
+    // 4^20 units in the last place are 1e-4 of the number; what f64 guesses is not as wrong.
+    for _ in 0..20 {
+        if property(low) != property(high) {
+            return Some([low, high]);
+        }
+        (low, high) = (a - reach, b + reach);
+        reach *= 4.0;
+    }
+    None
+}
+
+/// Level ground, a slope, or a profile of one segment whose rounded normal is not quite of length one.
+fn ground(random: &mut Random) -> Ground {
+    if random.once_in(2) {
+        return Ground::Slope(0.0);
+    }
+    if random.once_in(2) {
+        return Ground::Slope(random.between(-0.6, 0.6));
+    }
+    let [x, z] = random.pick(&[[4.0, 3.0], [4.0, -3.0], [12.0, 5.0], [8.0, -6.0]]);
+    Ground::Profile(Profile::new(vec![[-x, -z], [x, z]]).expect("a profile"))
+}

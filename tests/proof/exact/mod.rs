@@ -1,0 +1,439 @@
+//! The crate against the exact oracle of this folder: what is compared with rational arithmetic belongs here.
+
+mod case;
+mod enumeration;
+mod rational;
+mod self_test;
+mod tree;
+
+use crate::support::random::Random;
+use case::Case;
+use dashu::rational::RBig;
+use enumeration::{Combination, Enumeration, Friction, Problem, enumerate};
+use heelstrike::Robot;
+use heelstrike::dynamics::plan::Posture;
+use heelstrike::impact::{self, Analysis, ContactProblem, Verdict};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::state::NamedContact;
+use rational::{ratio, to_f64};
+use std::collections::BTreeMap;
+use std::thread;
+use tree::Tree;
+
+/// What is left of an outcome once names and formats are gone; contact vectors flat, [t, n] per contact.
+#[derive(Debug, Clone)]
+struct Answer {
+    impulse: Vec<f64>,
+    velocity_after: Vec<f64>,
+    index: Option<i64>,
+    margin: Option<f64>,
+    energy_loss: f64,
+}
+
+/// Answers by their modes.
+type Answers = BTreeMap<Vec<String>, Answer>;
+
+fn from_analysis(analysis: &Analysis) -> Answers {
+    let answer = |outcome: &impact::Outcome| Answer {
+        impulse: outcome.impulse.concat(),
+        velocity_after: outcome.velocity_after.concat(),
+        index: outcome.index.map(i64::from),
+        margin: Some(outcome.margin.expect("every combination has an inequality")),
+        energy_loss: outcome.energy_loss,
+    };
+    let modes = |outcome: &impact::Outcome| outcome.modes.iter().map(|mode| mode.to_string()).collect();
+    analysis.outcomes.iter().map(|outcome| (modes(outcome), answer(outcome))).collect()
+}
+
+fn modes(combination: &Combination) -> Vec<String> {
+    combination.modes.iter().map(|mode| mode.name().to_owned()).collect()
+}
+
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// Whether two lists are equal to 1e-9 of `scale`; a NaN is near nothing.
+fn near(a: &[f64], b: &[f64], scale: f64) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * scale)
+}
+
+/// Compares the crate's answers with all exact outcomes, or says what differs.
+///
+/// All tolerances are those of the issue, 1e-9 of scale: eps times a condition, with numbers as short as these 3.5e-12 was
+/// the worst seen. The margin is free of units; its scale is 1.
+fn compare(problem: &Problem, all: &Enumeration, verdict: &str, answers: &Answers, count: usize) -> Result<(), String> {
+    let expected: BTreeMap<Vec<String>, &Combination> = all.outcomes().map(|o| (modes(o), o)).collect();
+    if !expected.keys().eq(answers.keys()) || count != expected.len() {
+        return Err(format!("{verdict}, outcomes {:?}\nnot {:?}", answers.keys(), expected.keys()));
+    }
+    let outcomes: Vec<&Combination> = expected.values().copied().collect();
+    let stays = outcomes[0].impulse_f64().iter().all(|l| *l == 0.0);
+    let right = match outcomes.len() {
+        1 if stays => "no_impact",
+        1 => "unique",
+        _ => "ambiguous",
+    };
+    if verdict != right {
+        return Err(format!("verdict {verdict}, not {right}"));
+    }
+    let before: Vec<f64> = problem.velocity_before.iter().map(to_f64).collect();
+    let after: Vec<Vec<f64>> = outcomes.iter().map(|outcome| outcome.velocity_f64()).collect();
+    let impulses: Vec<Vec<f64>> = outcomes.iter().map(|outcome| outcome.impulse_f64()).collect();
+    let speed = largest(before.iter().chain(after.iter().flatten()).copied());
+    let push = largest(impulses.iter().flatten().copied());
+    for (k, (modes, outcome)) in expected.iter().enumerate() {
+        let answer = &answers[modes];
+        if !near(&answer.velocity_after, &after[k], speed) {
+            return Err(format!("{modes:?}: velocity after {:?}, not {:?}", answer.velocity_after, after[k]));
+        }
+        if !near(&answer.impulse, &impulses[k], push) {
+            return Err(format!("{modes:?}: impulse {:?}, not {:?}", answer.impulse, impulses[k]));
+        }
+        if answer.index != Some(i64::from(outcome.index)) {
+            return Err(format!("{modes:?}: index {:?}, not {}", answer.index, outcome.index));
+        }
+        if let Some(margin) = answer.margin
+            && !near(&[margin], &[outcome.margin], outcome.margin.max(1.0))
+        {
+            return Err(format!("{modes:?}: margin {margin:e}, not {:e}", outcome.margin));
+        }
+        let taken: f64 = (0..before.len()).map(|i| -0.5 * impulses[k][i] * (before[i] + after[k][i])).sum();
+        if !near(&[answer.energy_loss], &[taken], speed * push) {
+            return Err(format!("{modes:?}: energy loss {}, not {taken}", answer.energy_loss));
+        }
+    }
+    Ok(())
+}
+
+/// Runs `check` on the numbers below `count` in four threads; adds up what it returns.
+fn total<const N: usize>(count: u64, check: impl Fn(u64) -> [usize; N] + Sync) -> [usize; N] {
+    let mut sums = [0; N];
+    thread::scope(|scope| {
+        let check = &check;
+        let work = |worker| move || (worker..count).step_by(4).map(check).fold([0; N], added);
+        let workers: Vec<_> = (0..4).map(|worker| scope.spawn(work(worker))).collect();
+        for worker in workers {
+            sums = added(sums, worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        }
+    });
+    sums
+}
+
+fn added<const N: usize>(a: [usize; N], b: [usize; N]) -> [usize; N] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+fn given(friction: &Friction) -> impact::Friction {
+    friction.as_ref().map_or(impact::Friction::Infinite, |mu| impact::Friction::Finite(to_f64(mu)))
+}
+
+fn name(verdict: Verdict) -> String {
+    serde_json::to_value(verdict).expect("a word").as_str().expect("a word").to_owned()
+}
+
+/// G = A A^T with whole numbers in A, so that f64 holds G exactly: up to four contacts and no dynamics.
+#[test]
+fn matrices_have_the_outcomes_of_exact_arithmetic() {
+    let [compared, ambiguous] = total(8_000, |seed| {
+        let mut random = Random::new(seed);
+        let contacts = random.whole(1, 4) as usize;
+        let columns = 2 * contacts + random.whole(0, 2) as usize;
+        // The smallest entries give zeros in G and in the pivots of an elimination.
+        let most = random.pick(&[1, 2, 5]);
+        let row = |random: &mut Random| (0..columns).map(|_| random.whole(-most, most)).collect();
+        let a: Vec<Vec<i64>> = (0..2 * contacts).map(|_| row(&mut random)).collect();
+        let entry = |i: usize, j: usize| a[i].iter().zip(&a[j]).map(|(x, y)| x * y).sum::<i64>();
+        let frictions = [Some(ratio(0, 1)), Some(ratio(1, 2)), Some(ratio(3, 1)), None, None];
+        let problem = Problem {
+            delassus: (0..2 * contacts).map(|i| (0..2 * contacts).map(|j| ratio(entry(i, j), 4)).collect()).collect(),
+            velocity_before: (0..2 * contacts).map(|i| ratio(random.whole(-9, 9) - (i as i64 % 2) * 4, 4)).collect(),
+            friction: (0..contacts).map(|_| random.pick(&frictions)).collect(),
+            restitution: (0..contacts).map(|_| ratio(random.pick(&[0, 0, 0, 1, 4]), 4)).collect(),
+        };
+        if rational::rank(&problem.delassus) < 2 * contacts {
+            return [0, 0];
+        }
+        let all = enumerate(&problem);
+        // No slack in these is within 1e-9 but exact zeros: they are borders.
+        if all.clearance() < 1e-9 {
+            return [0, 0];
+        }
+        let library = ContactProblem::new(
+            problem.delassus.iter().flatten().map(to_f64).collect(),
+            problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
+            problem.friction.iter().map(given).collect(),
+            problem.restitution.iter().map(to_f64).collect(),
+        );
+        let analysis = library.and_then(|library| impact::analyse(&library, false));
+        let analysis = analysis.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{problem:?}"));
+        let answers = from_analysis(&analysis);
+        compare(&problem, &all, &name(analysis.verdict), &answers, analysis.outcomes.len())
+            .unwrap_or_else(|difference| panic!("seed {seed}: {difference}\n{}", solve_json(&problem)));
+        [1, usize::from(answers.len() > 1)]
+    });
+    assert!(compared > 7_000 && ambiguous > 300, "{compared} compared, {ambiguous} ambiguous");
+}
+
+/// A problem with a known outcome that lies on borders, by c- = c+ - G L in numbers that f64 holds: some contacts leave at
+/// no speed, rest without a load, need all of their friction, or slide at no speed. In two of three problems one number is
+/// then off by 2^-1 to 2^-52 of itself. None where G is singular.
+fn beside_borders(random: &mut Random) -> Option<Problem> {
+    let contacts = random.whole(1, 3) as usize;
+    let columns = 2 * contacts + random.whole(0, 2) as usize;
+    let row = |random: &mut Random| (0..columns).map(|_| random.whole(-3, 3)).collect();
+    let a: Vec<Vec<i64>> = (0..2 * contacts).map(|_| row(random)).collect();
+    let entry = |i: usize, j: usize| a[i].iter().zip(&a[j]).map(|(x, y)| x * y).sum::<i64>();
+    let delassus: rational::Matrix =
+        (0..2 * contacts).map(|i| (0..2 * contacts).map(|j| ratio(entry(i, j), 4)).collect()).collect();
+    if rational::rank(&delassus) < 2 * contacts {
+        return None;
+    }
+    let frictions = [Some(ratio(0, 1)), Some(ratio(1, 4)), Some(ratio(1, 1)), Some(ratio(3, 1)), None];
+    let mut friction: Vec<Friction> = (0..contacts).map(|_| random.pick(&frictions)).collect();
+    let restitution: Vec<RBig> = (0..contacts).map(|_| ratio(random.pick(&[0, 0, 0, 1]), 1)).collect();
+    // [t, n] of impulse and of (c_t, xi_n) after.
+    let (mut impulse, mut after) = (Vec::new(), Vec::new());
+    for mu in &friction {
+        let load = ratio(random.whole(0, 4), 2);
+        let side = ratio(random.pick(&[-1, 1]), 1);
+        // At infinite friction a load bears any push, and a slide has none.
+        let edge = mu.as_ref().map_or_else(|| ratio(random.whole(0, 4), 2), |mu| mu * &load);
+        let zero = || ratio(0, 1);
+        let (l, c) = match random.whole(0, 3) {
+            0 => ([zero(), zero()], [ratio(random.whole(-4, 4), 2), ratio(random.whole(0, 2), 2)]),
+            1 => ([zero(), load], [zero(), zero()]),
+            2 => ([-&side * edge, load], [zero(), zero()]),
+            _ => {
+                let load = if mu.is_none() { zero() } else { load };
+                ([-&side * edge, load], [side * ratio(random.whole(0, 2), 2), zero()])
+            }
+        };
+        impulse.extend(l);
+        after.extend(c);
+    }
+    let mut velocity_before: Vec<RBig> =
+        after.iter().zip(rational::times(&delassus, &impulse)).map(|(after, change)| after - change).collect();
+    for (contact, e) in restitution.iter().enumerate() {
+        let normal = &mut velocity_before[2 * contact + 1];
+        // xi_n counts an approach 1 + e times.
+        if *normal < RBig::ZERO {
+            *normal = &*normal / (ratio(1, 1) + e);
+        }
+    }
+    let off = RBig::ONE + ratio(random.pick(&[-1, 1]), 1 << random.whole(1, 52));
+    // As f64 holds it: what is compared is what the library is given.
+    let pushed = |value: &RBig| RBig::try_from(to_f64(&(value * &off))).expect("a finite number");
+    match random.whole(0, 2) {
+        0 => {}
+        1 => {
+            let entry = random.whole(0, 2 * contacts as i64 - 1) as usize;
+            velocity_before[entry] = pushed(&velocity_before[entry]);
+        }
+        _ => {
+            let entry = random.whole(0, contacts as i64 - 1) as usize;
+            friction[entry] = friction[entry].as_ref().map(pushed);
+        }
+    }
+    Some(Problem { delassus, velocity_before, friction, restitution })
+}
+
+/// Matrices that are given are exact, so that a sign of theirs may stay undecided but not be wrong, however small.
+#[test]
+fn matrices_beside_borders_have_the_outcomes_of_exact_arithmetic() {
+    let [compared, borders, near, undecided] = total(16_000, |seed| {
+        let Some(problem) = beside_borders(&mut Random::new(seed)) else { return [0; 4] };
+        let all = enumerate(&problem);
+        // With det A = 0 and more than one solution the exact oracle does not tell which is admissible.
+        if all.dependent > 0 {
+            return [0; 4];
+        }
+        let library = ContactProblem::new(
+            problem.delassus.iter().flatten().map(to_f64).collect(),
+            problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
+            problem.friction.iter().map(given).collect(),
+            problem.restitution.iter().map(to_f64).collect(),
+        );
+        let analysis = library.and_then(|library| impact::analyse(&library, false));
+        let analysis = analysis.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{problem:?}"));
+        let frictionless = problem.friction.contains(&Some(RBig::ZERO));
+        // Without any velocity no slack has a size, and all are zero.
+        let clear = |outcome: &&Combination| outcome.margin > 0.0 && outcome.margin.is_finite();
+        // At friction 0 the oracle has no slack for L_t = 0, and so no index.
+        let index =
+            |outcome: &Combination| clear(&outcome).then_some(i64::from(outcome.index)).filter(|_| !frictionless);
+        let expected: BTreeMap<Vec<String>, Option<i64>> =
+            all.outcomes().map(|outcome| (modes(outcome), index(outcome))).collect();
+        let found: BTreeMap<Vec<String>, Option<i64>> = from_analysis(&analysis)
+            .into_iter()
+            .map(|(modes, answer)| (modes, answer.index.filter(|_| !frictionless)))
+            .collect();
+        let border = usize::from(!all.outcomes().all(|outcome| clear(&outcome)));
+        if analysis.verdict == Verdict::Undecided {
+            assert!(!analysis.proven, "seed {seed}: undecided, but proven\n{}", solve_json(&problem));
+            return [0, 0, 0, 1];
+        }
+        assert_eq!(
+            (&found, found.len()),
+            (&expected, analysis.outcomes.len()),
+            "seed {seed}: {}\n{}",
+            analysis.verdict,
+            solve_json(&problem)
+        );
+        let clearance = all.clearance();
+        [1, border, usize::from(clearance > 0.0 && clearance < 1e-9), 0]
+    });
+    let counts = format!("{compared} compared, {borders} on and {near} beside a border, {undecided} undecided");
+    assert!(compared >= 10_000 && borders > 5_000 && near > 1_000 && undecided * 300 < compared, "{counts}");
+}
+
+/// As `heelstrike solve` reads it.
+fn solve_json(problem: &Problem) -> serde_json::Value {
+    let friction = |friction: &Friction| friction.as_ref().map_or("infinite".into(), |mu| to_f64(mu).into());
+    let numbers = |values: &[_]| values.iter().map(to_f64).collect::<Vec<f64>>();
+    serde_json::json!({
+        "delassus": problem.delassus.iter().map(|row| numbers(row)).collect::<Vec<_>>(),
+        "velocity_before": problem.velocity_before.chunks(2).map(numbers).collect::<Vec<_>>(),
+        "friction": problem.friction.iter().map(friction).collect::<Vec<serde_json::Value>>(),
+        "restitution": numbers(&problem.restitution),
+    })
+}
+
+/// States of each robot; some are left out, because G is singular or a border is near.
+const STATES: u64 = 13;
+
+/// The robot of that number and its states that are off every border.
+fn robot(number: u64) -> (Tree, Vec<(Case, Enumeration)>) {
+    let tree = Tree::random(&mut Random::new(number));
+    let cases = (0..STATES).filter_map(|state| Case::random(&tree, 1000 * number + state));
+    let all = cases.map(|case| {
+        let all = case.enumerate();
+        (case, all)
+    });
+    let clear = all.filter(|(_, all)| all.clearance() > 1e-9).collect();
+    (tree, clear)
+}
+
+/// The crate's analysis of a case, from the cosines and sines of its angles.
+fn analyse(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
+    let numbers = |values: &[_]| values.iter().map(to_f64).collect::<Vec<f64>>();
+    let motions = &case.motions;
+    let posture = Posture {
+        cos: numbers(&motions.cos),
+        sin: numbers(&motions.sin),
+        displacement: numbers(&motions.displacement),
+    };
+    let named = case.contacts.iter().map(|contact| {
+        let [x, z] = contact.centre.each_ref().map(to_f64);
+        NamedContact {
+            link: robot.link(&Tree::link(contact.body)).expect("a link of the file"),
+            offset: [x, to_f64(&contact.sideways), z],
+            radius: to_f64(&contact.radius),
+        }
+    });
+    let problem = Pipeline::new(robot, Options::default()).contact_problem(
+        &posture,
+        &numbers(&motions.velocity),
+        &named.collect::<Vec<_>>(),
+        case.friction.iter().map(given).collect(),
+        numbers(&case.restitution),
+    )?;
+    impact::analyse(&problem, false)
+}
+
+#[test]
+fn trees_have_the_outcomes_of_exact_arithmetic() {
+    let [compared, ambiguous, three] = total(1_050, |number| {
+        let (tree, cases) = robot(number);
+        let robot = Robot::from_urdf(&tree.urdf()).unwrap_or_else(|error| panic!("{error}\n{}", tree.urdf()));
+        let mut counts = [0, 0, 0];
+        for (case, all) in &cases {
+            let fail = |difference: &str| -> ! { panic!("{}", report(&tree, case, difference)) };
+            let analysis = analyse(&robot, case).unwrap_or_else(|error| fail(&error.to_string()));
+            let answers = from_analysis(&analysis);
+            compare(&case.problem, all, &name(analysis.verdict), &answers, analysis.outcomes.len())
+                .unwrap_or_else(|difference| fail(&difference));
+            counts = added(counts, [1, usize::from(answers.len() > 1), usize::from(case.contacts.len() > 2)]);
+        }
+        counts
+    });
+    let counts = format!("{compared} compared, {ambiguous} ambiguous, {three} with three contacts");
+    assert!(compared >= 10_000 && ambiguous > 300 && three > 1_000, "{counts}");
+}
+
+/// Everything that is needed to run a case by hand.
+fn report(tree: &Tree, case: &Case, difference: &str) -> String {
+    format!("robot {}, seed {}: {difference}\n{}{}", case.seed / 1000, case.seed, tree.urdf(), case.state(tree))
+}
+
+#[test]
+fn the_binary_has_the_outcomes_of_exact_arithmetic() {
+    let directory = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [compared, ambiguous] = total(110, |number| {
+        let (tree, cases) = robot(number);
+        let path = directory.join(format!("oracle_{number}.urdf"));
+        std::fs::write(&path, tree.urdf()).expect("the target directory can be written");
+        let states: Vec<_> = cases.iter().map(|(case, _)| case.state(&tree)).collect();
+        let path = path.to_str().expect("UTF-8");
+        let mut counts = [0, 0];
+        for ((case, all), answer) in cases.iter().zip(crate::support::binary::answers(&["batch", path, "-"], &states)) {
+            let answer = answer.unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
+            check_line(&tree, case, all, &answer).unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
+            counts = added(counts, [1, usize::from(answer.outcomes.len() > 1)]);
+        }
+        counts
+    });
+    assert!(compared >= 1_000 && ambiguous > 30, "{compared} compared, {ambiguous} ambiguous");
+}
+
+/// Compares a line of the batch with the exact outcomes, coordinates by their names.
+fn check_line(
+    tree: &Tree,
+    case: &Case,
+    all: &Enumeration,
+    answer: &crate::support::binary::Answer,
+) -> Result<(), String> {
+    let answers = answer.outcomes.iter().map(|outcome| {
+        let numbers = Answer {
+            impulse: outcome.impulse.concat(),
+            velocity_after: outcome.velocity_after.concat(),
+            index: outcome.index,
+            margin: None,
+            energy_loss: outcome.energy_loss,
+        };
+        (outcome.modes.clone(), numbers)
+    });
+    let verdict = answer.verdict.as_ref().ok_or("no verdict")?;
+    compare(&case.problem, all, verdict, &answers.collect(), answer.outcomes.len())?;
+    if answer.index_sum != Some(1) || answer.rank != Some(case.problem.delassus.len()) {
+        return Err(format!("index sum {:?}, rank {:?}", answer.index_sum, answer.rank));
+    }
+    let energy = to_f64(&tree::kinetic_energy(&case.mass_matrix, &case.motions.velocity));
+    // A sum of as many products as M has entries, without cancellation beyond that of M itself.
+    if !answer.kinetic_energy.is_some_and(|given| (given - energy).abs() <= 1e-12 * energy) {
+        return Err(format!("kinetic energy {:?}, not {energy}", answer.kinetic_energy));
+    }
+    let names: Vec<String> = answer.contacts.iter().filter_map(|contact| contact.link.clone()).collect();
+    let links: Vec<String> = case.contacts.iter().map(|contact| Tree::link(contact.body)).collect();
+    if names != links {
+        return Err(format!("contacts {names:?}, not {links:?}"));
+    }
+    for outcome in &answer.outcomes {
+        let exact = all.outcomes().find(|exact| modes(exact) == outcome.modes).ok_or("compared before")?;
+        let base = outcome.base_velocity_after.as_ref().ok_or("no velocity of the base")?;
+        let joints = outcome.joint_velocity_after.as_ref();
+        let moving = tree.moving();
+        let given: Option<Vec<f64>> = ["x", "z", "pitch"]
+            .iter()
+            .map(|name| base.get(*name).copied())
+            .chain(moving.iter().map(|&body| joints?.get(&Tree::joint(body)).copied()))
+            .collect();
+        let given = given.ok_or_else(|| format!("velocities {base:?}, {joints:?}"))?;
+        let after: Vec<f64> = case.velocity_after(&exact.impulse_exact()).iter().map(to_f64).collect();
+        let scale = largest(case.motions.velocity.iter().map(to_f64).chain(after.iter().copied()));
+        if !near(&given, &after, scale) {
+            return Err(format!("{:?}: velocities {given:?}", outcome.modes));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,241 @@
+//! One core, many numbers: kinematics, mass matrix, factorization, Jacobian, Delassus matrix and the numbers of all
+//! combinations run on exact rationals, balls and lanes without a change, and agree with f64.
+
+use dashu::rational::RBig;
+use heelstrike::Robot;
+use heelstrike::dynamics::plan::{Plan, Posture};
+use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
+use heelstrike::impact::enumerate::{Leaf, Tableau};
+use heelstrike::impact::{ContactProblem, Friction};
+use heelstrike::planar::Rotation;
+use heelstrike::scalar::{Ball, Real};
+use std::cell::RefCell;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+thread_local! {
+    static ARENA: RefCell<Vec<RBig>> = const { RefCell::new(Vec::new()) };
+}
+
+/// An exact rational by its place in the thread's arena, so that it is `Copy`.
+#[derive(Clone, Copy)]
+struct Exact(usize);
+
+impl Exact {
+    fn new(value: RBig) -> Self {
+        ARENA.with_borrow_mut(|arena| {
+            arena.push(value);
+            Self(arena.len() - 1)
+        })
+    }
+
+    fn value(self) -> RBig {
+        ARENA.with_borrow(|arena| arena[self.0].clone())
+    }
+}
+
+impl Add for Exact {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::new(self.value() + other.value())
+    }
+}
+
+impl Sub for Exact {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.value() - other.value())
+    }
+}
+
+impl Mul for Exact {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self::new(self.value() * other.value())
+    }
+}
+
+impl Div for Exact {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        Self::new(self.value() / other.value())
+    }
+}
+
+impl Neg for Exact {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.value())
+    }
+}
+
+impl Real for Exact {
+    fn from_f64(value: f64) -> Self {
+        Self::new(RBig::try_from(value).expect("finite"))
+    }
+}
+
+/// Four states side by side.
+#[derive(Clone, Copy)]
+struct Lanes([f64; 4]);
+
+impl Lanes {
+    fn zip(self, other: Self, operation: impl Fn(f64, f64) -> f64) -> Self {
+        Self(std::array::from_fn(|lane| operation(self.0[lane], other.0[lane])))
+    }
+}
+
+impl Add for Lanes {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Lanes {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+
+impl Div for Lanes {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+}
+
+impl Neg for Lanes {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(self.0.map(|entry| -entry))
+    }
+}
+
+impl Real for Lanes {
+    fn from_f64(value: f64) -> Self {
+        Self([value; 4])
+    }
+}
+
+/// RAMone; angles by the tangent of their half, so that cosine and sine are rational.
+fn ramone() -> Robot {
+    Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot")
+}
+
+/// Tangents of half angles of pitch and the four joints, state by state.
+const HALF_TANGENTS: [[f64; 5]; 4] = [
+    [0.0625, 0.5, -0.75, 0.125, -0.875],
+    [-0.125, 0.25, -0.5, 0.375, -0.25],
+    [0.0, -0.5, -1.0, 0.5, -0.0625],
+    [0.03125, 0.625, 0.25, -0.5, -0.75],
+];
+const VELOCITY: [f64; 7] = [0.5, -0.25, 1.0, -0.5, 0.75, 0.0, -1.5];
+
+/// M (lower triangle), G, c and the numbers of all combinations at friction 0.75 and infinite.
+fn run<T: Real>(half_tangents: [T; 5]) -> Vec<T> {
+    let robot = ramone();
+    let plan = Plan::<T>::new(&robot, &[], &[]);
+    let one = T::one();
+    let cos = half_tangents.map(|t| (one - t * t) / (one + t * t));
+    let sin = half_tangents.map(|t| (t + t) / (one + t * t));
+    // x and z have no angle; their entries are not read.
+    let padded = |values: [T; 5]| [[T::zero(); 2].as_slice(), values.as_slice()].concat();
+    let posture = Posture { cos: padded(cos), sin: padded(sin), displacement: vec![T::zero(); 7] };
+    let mut workspace = Workspace::default();
+    kinematics(&plan, &posture, &mut workspace);
+    mass_matrix(&plan, &mut workspace);
+    factorize(&plan, &mut workspace);
+    let contacts = ["left_foot", "right_foot"].map(|name| {
+        let link = &robot.links[robot.link(name).expect("a foot")];
+        ContactPoint {
+            body: link.body,
+            centre: link.point([0.0; 3]).map(T::from_f64),
+            radius: T::from_f64(0.02815),
+            ground: Rotation::identity(),
+        }
+    });
+    contact_jacobian(&plan, &contacts, &VELOCITY.map(T::from_f64), None, &mut workspace);
+    delassus(&plan, &mut workspace);
+    let mut numbers = workspace.mass_matrix.clone();
+    numbers.extend(&workspace.delassus);
+    numbers.extend(workspace.contact_velocity.as_flattened());
+    numbers
+}
+
+/// The numbers of all combinations of a problem given in f64.
+fn combinations<T: Real>(problem: &ContactProblem) -> Vec<T> {
+    let mut tableau = Tableau::<T>::new();
+    tableau.load(&problem.map(T::from_f64));
+    let mut numbers = Vec::new();
+    tableau.visit(&mut |leaf: &Leaf<'_, T>| (0..2).for_each(|contact| numbers.extend(leaf.numbers(contact))));
+    numbers
+}
+
+fn problem() -> ContactProblem {
+    let delassus = vec![3.0, 0.5, 0.25, 0.1, 0.5, 2.0, 0.3, -0.5, 0.25, 0.3, 4.0, 1.0, 0.1, -0.5, 1.0, 3.0];
+    let friction = vec![Friction::Finite(0.75), Friction::Infinite];
+    ContactProblem::new(delassus, vec![[0.5, -1.0], [-0.3, -0.5]], friction, vec![0.0, 0.5]).expect("a good problem")
+}
+
+fn exact(value: f64) -> RBig {
+    RBig::try_from(value).expect("finite")
+}
+
+fn far(exact_value: &RBig, value: f64) -> f64 {
+    (exact_value - exact(value)).to_f64().value().abs()
+}
+
+#[test]
+fn f64_is_within_rounding_of_the_exact_core() {
+    for tangents in HALF_TANGENTS {
+        let reference = run(tangents.map(Exact::from_f64));
+        for (index, (reference, found)) in reference.iter().zip(run(tangents)).enumerate() {
+            let reference = reference.value();
+            // Entries are sums of some dozen terms of order ten at most.
+            assert!(far(&reference, found) < 1e3 * f64::EPSILON, "entry {index}: {found} for {tangents:?}");
+        }
+    }
+    for (reference, found) in combinations::<Exact>(&problem()).iter().zip(combinations::<f64>(&problem())) {
+        assert!(far(&reference.value(), found) < 1e3 * f64::EPSILON);
+    }
+}
+
+#[test]
+fn balls_enclose_the_exact_core() {
+    let enclosed = |ball: &Ball, reference: &RBig| {
+        let distance = reference - exact(ball.mid);
+        let radius = exact(ball.radius);
+        distance <= radius && -distance <= radius
+    };
+    let mut widest = 0.0_f64;
+    for tangents in HALF_TANGENTS {
+        let reference = run(tangents.map(Exact::from_f64));
+        for (reference, ball) in reference.iter().zip(run(tangents.map(Ball::from_f64))) {
+            assert!(enclosed(&ball, &reference.value()), "{ball:?}");
+            widest = widest.max(ball.radius);
+        }
+    }
+    for (reference, ball) in combinations::<Exact>(&problem()).iter().zip(combinations::<Ball>(&problem())) {
+        assert!(enclosed(&ball, &reference.value()), "{ball:?}");
+        widest = widest.max(ball.radius);
+    }
+    assert!(widest < 1e-11, "balls are of use only while they are small: {widest}");
+}
+
+#[test]
+fn lanes_give_the_bits_of_f64() {
+    let lanes = run(std::array::from_fn(|angle| Lanes(std::array::from_fn(|lane| HALF_TANGENTS[lane][angle]))));
+    for (lane, &tangents) in HALF_TANGENTS.iter().enumerate() {
+        for (wide, single) in lanes.iter().zip(run(tangents)) {
+            assert_eq!(wide.0[lane].to_bits(), single.to_bits());
+        }
+    }
+}

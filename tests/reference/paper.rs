@@ -1,0 +1,430 @@
+//! The paper's models through their URDF files and the command line, against `data/paper.json` (40-digit values):
+//! matrices, the three cases, every outcome, the regions of the leg angle, the paper's Table 2 and its single body.
+//!
+//! Both sides use different coordinates; [`to_reference`] holds the transformation.
+
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_4;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use nalgebra::DMatrix;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::support::binary::{Answer, answers};
+use crate::support::scaled::{Differences, largest, matrix};
+
+/// To this share of the largest entry, contact velocity or impulse of the case.
+const TOLERANCE: f64 = 1e-11;
+
+/// Lower leg, knee to foot centre, and upper leg of RAMone \[m\].
+const SHANK: f64 = 0.2385;
+const THIGH: f64 = 0.2;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Legs {
+    Straight,
+    Kneed,
+}
+
+/// A model of the reference and the URDF file it is read from.
+struct Model {
+    name: &'static str,
+    urdf: &'static str,
+    /// The legs' inertia that takes the place of the file's.
+    inertia: Option<&'static str>,
+    legs: Legs,
+}
+
+const MODELS: [Model; 6] = [
+    Model { name: "minimalistic", urdf: "minimalistic", inertia: None, legs: Legs::Straight },
+    Model { name: "pdw_j0.04", urdf: "pdw", inertia: None, legs: Legs::Straight },
+    Model { name: "pdw_j0.24", urdf: "pdw", inertia: Some("0.24"), legs: Legs::Straight },
+    Model { name: "pdw_j0.44", urdf: "pdw", inertia: Some("0.44"), legs: Legs::Straight },
+    Model { name: "ramone_table1_script_precision", urdf: "ramone", inertia: None, legs: Legs::Kneed },
+    Model { name: "ramone_as_computed_in_paper", urdf: "ramone_paper", inertia: None, legs: Legs::Kneed },
+];
+
+/// What the reference says about a model: states by leg angle, and regions `[start, "modes|modes"]` by friction.
+#[derive(Deserialize)]
+struct Reference {
+    at: BTreeMap<String, At>,
+    regions: BTreeMap<String, Vec<(String, String)>>,
+}
+
+/// One state; contact rows are [trailing x, y, leading x, y].
+#[derive(Deserialize)]
+struct At {
+    mass_matrix: Vec<Vec<f64>>,
+    contact_jacobian: Vec<Vec<f64>>,
+    delassus: Vec<Vec<f64>>,
+    contact_velocity_before: [f64; 4],
+    three_cases: BTreeMap<String, [f64; 4]>,
+    outcomes: BTreeMap<String, Vec<Expected>>,
+    pose: Option<Pose>,
+}
+
+#[derive(Deserialize)]
+struct Expected {
+    modes: [String; 2],
+    impulse: [f64; 4],
+    velocity_after: [f64; 4],
+}
+
+#[derive(Deserialize)]
+struct Pose {
+    hip: [f64; 2],
+    knee: f64,
+    pitch: f64,
+}
+
+static REFERENCE: LazyLock<BTreeMap<String, Reference>> =
+    LazyLock::new(|| serde_json::from_str(include_str!("../data/paper.json")).expect("the reference is readable"));
+
+/// A state of the reference and what the binary answers for it.
+struct Case {
+    model: &'static Model,
+    place: String,
+    friction: &'static str,
+    reference: &'static At,
+    answer: Result<Answer, String>,
+}
+
+/// Every state of the reference at every friction it is given for, answered once for all tests of this file.
+static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
+    let mut cases = Vec::new();
+    for model in &MODELS {
+        let listed: Vec<(&str, &At, &str)> = REFERENCE[model.name]
+            .at
+            .iter()
+            .flat_map(|(alpha, at)| at.outcomes.keys().map(move |friction| (alpha.as_str(), at, friction.as_str())))
+            .collect();
+        let states: Vec<Value> = listed
+            .iter()
+            .map(|&(alpha, at, friction)| state(model, alpha.parse().unwrap(), at.pose.as_ref(), friction))
+            .collect();
+        for ((alpha, reference, friction), answer) in listed.into_iter().zip(impact(model, &states)) {
+            let place = format!("{}, alpha {alpha}, friction {friction}", model.name);
+            cases.push(Case { model, place, friction, reference, answer });
+        }
+    }
+    cases
+});
+
+impl Case {
+    /// The answer, or the reason that there is none as a difference.
+    fn answer(&self, differences: &mut Differences) -> Option<&Answer> {
+        self.answer.as_ref().map_err(|refusal| differences.note(&self.place, refusal)).ok()
+    }
+}
+
+/// Runs `impact` on a model's states.
+fn impact(model: &Model, states: &[Value]) -> Vec<Result<Answer, String>> {
+    let robot = urdf(model);
+    answers(&["impact", &robot, "-", "--format", "json", "--matrices", "--explain"], states)
+}
+
+/// The path of the model's URDF file; one with another inertia is derived from the project's.
+fn urdf(model: &Model) -> String {
+    let file = format!("{}/urdf/{}.urdf", env!("CARGO_MANIFEST_DIR"), model.urdf);
+    let Some(inertia) = model.inertia else { return file };
+    let text = std::fs::read_to_string(&file).expect("the model's URDF file");
+    let of_file = "iyy=\"0.04\"";
+    assert_eq!(text.matches(of_file).count(), 2, "{file}: the inertia of two legs");
+    // A file per call: test threads, and test processes, run at once.
+    static FILES: AtomicUsize = AtomicUsize::new(0);
+    let number = FILES.fetch_add(1, Ordering::Relaxed);
+    let derived = format!("{}/{}.{}.{number}.urdf", env!("CARGO_TARGET_TMPDIR"), model.name, std::process::id());
+    std::fs::write(&derived, text.replace(of_file, &format!("iyy=\"{inertia}\""))).expect("the derived URDF file");
+    derived
+}
+
+/// The trailing foot at rest on the ground, the robot turning about it at 1 rad/s counter-clockwise, joints at rest.
+fn state(model: &Model, alpha: f64, pose: Option<&Pose>, friction: &str) -> Value {
+    let friction = friction.parse().map_or(json!(friction), |number: f64| json!(number));
+    let id = format!("{} {alpha} {friction}", model.name);
+    let (stance, pitch, joints) = match model.legs {
+        // Angles from straight down: trailing +alpha, leading -alpha; the root is the trailing leg.
+        Legs::Straight => ("left_leg", -alpha, json!({"hip": -2.0 * alpha})),
+        Legs::Kneed => {
+            let bend = (SHANK / THIGH).atan();
+            let computed = Pose { hip: [bend + alpha, bend - alpha], knee: -std::f64::consts::FRAC_PI_2, pitch: 0.0 };
+            let Pose { hip: [trailing, leading], knee, pitch } = *pose.unwrap_or(&computed);
+            let joints = json!({"left_hip": trailing, "left_knee": knee, "right_hip": leading, "right_knee": knee});
+            ("left_foot", -pitch, joints)
+        }
+    };
+    json!({
+        "id": id,
+        "position": {"base": {"pitch": pitch}, "joints": joints},
+        "velocity": {"base": {"pitch": -1.0}},
+        "stance": stance,
+        "friction": friction,
+    })
+}
+
+/// T of q_reference = T q_tool. Reference: angles counter-clockwise, the walkers' legs absolute [x, y, trailing, leading].
+/// Tool: pitch clockwise, joints relative.
+fn to_reference(legs: Legs) -> DMatrix<f64> {
+    match legs {
+        Legs::Straight => DMatrix::from_row_slice(
+            4,
+            4,
+            &[
+                1.0, 0.0, 0.0, 0.0, //
+                0.0, 1.0, 0.0, 0.0, //
+                0.0, 0.0, -1.0, 0.0, //
+                0.0, 0.0, -1.0, 1.0,
+            ],
+        ),
+        Legs::Kneed => {
+            let mut signs = DMatrix::identity(7, 7);
+            signs[(2, 2)] = -1.0;
+            signs
+        }
+    }
+}
+
+/// Modes in one order, to compare as sets.
+fn sorted(modes: impl Iterator<Item = String>) -> Vec<String> {
+    let mut modes: Vec<String> = modes.collect();
+    modes.sort();
+    modes
+}
+
+/// The numbers of the combination of modes, be it an outcome or rejected: impulse and velocity after.
+fn combination(answer: &Answer, modes: [&str; 2]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let outcomes = answer.outcomes.iter().map(|o| (&o.modes, Some((&o.impulse, &o.velocity_after))));
+    let rejected = answer.rejected.iter().map(|r| (&r.modes, r.impulse.as_ref().zip(r.velocity_after.as_ref())));
+    let (impulse, velocity) = outcomes.chain(rejected).find(|(listed, _)| **listed == modes)?.1?;
+    Some((impulse.concat(), velocity.concat()))
+}
+
+#[test]
+fn matrices_are_those_of_the_paper_in_the_tools_coordinates() {
+    let mut differences = Differences::default();
+    for case in CASES.iter() {
+        let Some(answer) = case.answer(&mut differences) else { continue };
+        let (place, at) = (&case.place, case.reference);
+        let turn = to_reference(case.model.legs);
+        let (coordinates, links): (&[&str], _) = match case.model.legs {
+            Legs::Straight => (&["x", "z", "pitch", "hip"], ["left_leg", "right_leg"]),
+            Legs::Kneed => {
+                (&["x", "z", "pitch", "left_hip", "left_knee", "right_hip", "right_knee"], ["left_foot", "right_foot"])
+            }
+        };
+        if answer.coordinates != coordinates {
+            differences.note(place, format!("coordinates {:?}", answer.coordinates));
+        }
+        let touching: Vec<_> = answer.contacts.iter().filter_map(|contact| contact.link.as_deref()).collect();
+        if touching != links {
+            differences.note(place, format!("contacts {touching:?}"));
+        }
+        let mass = turn.transpose() * matrix(&at.mass_matrix) * &turn;
+        differences.compare_matrix(&format!("{place}: M"), &answer.mass_matrix, &mass, TOLERANCE);
+        let jacobian = matrix(&at.contact_jacobian) * &turn;
+        differences.compare_matrix(&format!("{place}: J"), &answer.contact_jacobian, &jacobian, TOLERANCE);
+        differences.compare_matrix(&format!("{place}: G"), &answer.delassus, &matrix(&at.delassus), TOLERANCE);
+        let before = answer.contacts.iter().flat_map(|contact| contact.velocity_before).collect::<Vec<_>>();
+        let should = &at.contact_velocity_before;
+        differences.compare(&format!("{place}: c before"), &before, should, TOLERANCE * largest(should));
+    }
+    differences.finish();
+}
+
+/// Leading foot stopped, friction infinite; the reference lists c_x, c_y, L_x, L_y of the trailing foot alone.
+#[test]
+fn the_three_cases_are_among_outcomes_and_rejections() {
+    let mut differences = Differences::default();
+    for case in CASES.iter().filter(|case| case.friction == "infinite") {
+        let Some(answer) = case.answer(&mut differences) else { continue };
+        for (name, &[c_x, c_y, l_x, l_y]) in &case.reference.three_cases {
+            let place = format!("{}: {name}", case.place);
+            let trailing = match name.as_str() {
+                "lift_off" => "separate",
+                "stop" => "stick",
+                "slide" if c_x > 0.0 => "slide+",
+                "slide" => "slide-",
+                _ => panic!("{place}: what case is this?"),
+            };
+            let Some((impulse, velocity)) = combination(answer, [trailing, "stick"]) else {
+                differences.note(&place, format!("{trailing}, stick is not listed with its numbers"));
+                continue;
+            };
+            // The leading foot's impulse from c_le+ = 0, for the case's largest impulse: G_le,le L_le = -(c_le + G_le,tr L_tr).
+            let delassus = matrix(&case.reference.delassus);
+            let before = &case.reference.contact_velocity_before;
+            let pull = [2, 3].map(|row| before[row] + delassus[(row, 0)] * l_x + delassus[(row, 1)] * l_y);
+            let (a, b, d) = (delassus[(2, 2)], delassus[(2, 3)], delassus[(3, 3)]);
+            let leading = [b * pull[1] - d * pull[0], b * pull[0] - a * pull[1]].map(|l| l / (a * d - b * b));
+
+            let should = [l_x, l_y, leading[0], leading[1]];
+            differences.compare(&format!("{place}: L"), &impulse, &should, TOLERANCE * largest(&should));
+            let should = [c_x, c_y, 0.0, 0.0];
+            let size = largest(&should).max(largest(before));
+            differences.compare(&format!("{place}: c after"), &velocity, &should, TOLERANCE * size);
+        }
+    }
+    differences.finish();
+}
+
+#[test]
+fn every_outcome_is_found_and_no_other() {
+    let mut differences = Differences::default();
+    for case in CASES.iter() {
+        let Some(answer) = case.answer(&mut differences) else { continue };
+        let (place, expected) = (&case.place, &case.reference.outcomes[case.friction]);
+        let found = sorted(answer.outcomes.iter().map(|outcome| outcome.modes.join("/")));
+        let should = sorted(expected.iter().map(|outcome| outcome.modes.join("/")));
+        if found != should {
+            differences.note(place, format!("outcomes {found:?} instead of {should:?}"));
+        }
+        let verdict = if expected.len() == 1 { "unique" } else { "ambiguous" };
+        if answer.verdict.as_deref() != Some(verdict) {
+            differences.note(place, format!("verdict {:?} instead of {verdict}", answer.verdict));
+        }
+        if answer.index_sum != Some(1) {
+            differences.note(place, format!("index sum {:?}", answer.index_sum));
+        }
+        for outcome in expected {
+            let Some(found) = answer.outcomes.iter().find(|found| found.modes == outcome.modes) else { continue };
+            let place = format!("{place}: {}", outcome.modes.join("/"));
+            let size = largest(&outcome.velocity_after).max(largest(&case.reference.contact_velocity_before));
+            let velocity = found.velocity_after.concat();
+            differences.compare(&format!("{place}: c after"), &velocity, &outcome.velocity_after, TOLERANCE * size);
+            let size = largest(&outcome.impulse);
+            differences.compare(&format!("{place}: L"), &found.impulse.concat(), &outcome.impulse, TOLERANCE * size);
+            if !found.impulse_unique || found.border.is_some() {
+                differences.note(&place, format!("unique {}, border {:?}", found.impulse_unique, found.border));
+            }
+        }
+    }
+    differences.finish();
+}
+
+/// In the middle of every region and just inside its ends the outcomes are the region's: so the borders lie where the
+/// reference has them.
+#[test]
+fn regions_of_the_leg_angle_begin_and_end_where_the_reference_says() {
+    const BESIDE: f64 = 1e-8;
+    let mut differences = Differences::default();
+    for model in &MODELS {
+        let (mut states, mut expected) = (Vec::new(), Vec::new());
+        for (friction, regions) in &REFERENCE[model.name].regions {
+            let start = |index: usize| regions.get(index).map(|(start, _)| start.parse::<f64>().expect("an angle"));
+            for (index, (from, outcomes)) in regions.iter().enumerate() {
+                let from: f64 = from.parse().expect("an angle");
+                let next = start(index + 1);
+                let middle = 0.5 * (from + next.unwrap_or(std::f64::consts::FRAC_PI_2));
+                // The two outer ends are limits of the study, not borders.
+                let first = (index > 0).then_some(from + BESIDE);
+                for alpha in [first, Some(middle), next.map(|next| next - BESIDE)].into_iter().flatten() {
+                    states.push(state(model, alpha, None, friction));
+                    expected.push(sorted(outcomes.split('|').map(String::from)));
+                }
+            }
+        }
+        for ((state, should), answer) in states.iter().zip(expected).zip(impact(model, &states)) {
+            let place = state["id"].as_str().expect("a name");
+            match answer {
+                Err(refusal) => differences.note(place, refusal),
+                Ok(answer) => {
+                    let found = sorted(answer.outcomes.iter().map(|outcome| outcome.modes.join("/")));
+                    if found != should {
+                        differences.note(place, format!("{:?}: {found:?} instead of {should:?}", answer.verdict));
+                    }
+                }
+            }
+        }
+    }
+    differences.finish();
+}
+
+/// Table 2 prints c of lift-off, L of stop, c_x and L_x of the slide, in 1e-4 m/s and 1e-4 N s, for alpha = 0.5.
+#[test]
+fn table_2_of_the_paper_comes_out_to_its_printed_digits() {
+    const UNIT: f64 = 1e-4;
+    const ROUNDED: f64 = 0.5e-3;
+    // Exact is 0.82681, which rounds to 0.827: the paper's 0.826 is one off in its last digit.
+    const LAST_DIGIT: f64 = 1e-3;
+    let at = |case: &&Case| case.model.urdf == "ramone_paper" && case.place.contains("alpha 0.5,");
+    let answer = CASES.iter().find(at).expect("the state of Table 2").answer.as_ref().expect("an answer");
+    let of = |trailing| combination(answer, [trailing, "stick"]).expect("listed with its numbers");
+    let (lift_off, stop, slide) = (of("separate").1, of("stick").0, of("slide+"));
+    let mut differences = Differences::default();
+    for (place, is, printed, digits) in [
+        ("lift-off, c_x", lift_off[0], 0.826, LAST_DIGIT),
+        ("lift-off, c_y", lift_off[1], -0.032, ROUNDED),
+        ("stop, L_x", stop[0], -0.116, ROUNDED),
+        ("stop, L_y", stop[1], -0.043, ROUNDED),
+        ("slide, c_x", slide.1[0], 0.582, ROUNDED),
+        ("slide, L_x", slide.0[0], -0.033, ROUNDED),
+    ] {
+        differences.compare(place, &[is / UNIT], &[printed], digits);
+    }
+    differences.finish();
+}
+
+/// With the centre of percussion in the foot, at j = 0.24, all outcomes touch at alpha = pi/4. The f64 nearest to it lies
+/// beside that point, and is told as what it is.
+#[test]
+fn the_degenerate_walker_is_proven_however_near_its_border_is() {
+    let model = MODELS.iter().find(|model| model.name == "pdw_j0.24").expect("the walker");
+    let state = state(model, FRAC_PI_4, None, "infinite");
+    let answer = impact(model, &[state]).pop().expect("a line").expect("an answer without null among its numbers");
+    assert!(answer.proven, "{answer:#?}");
+    let least = answer.outcomes.iter().filter_map(|outcome| outcome.margin).fold(f64::INFINITY, f64::min);
+    // pi/4 is off by 6e-17.
+    assert!((0.0..1e-15).contains(&least), "{answer:#?}");
+}
+
+/// The paper's section 4: one body of mass 1 and inertia 1 with its CoG at (-1, 1) from the contact, G = [[2, 1], [1, 2]].
+/// An external impulse L_ext acts like the velocity before G L_ext; each region of its angle has its own outcomes.
+#[test]
+fn the_single_body_ends_as_its_region_says() {
+    let model = Model { name: "block", urdf: "block", inertia: None, legs: Legs::Straight };
+    let regions: [(&str, [f64; 2], &[&str]); 4] = [
+        ("A", [0.0, 1.0], &["separate"]),
+        ("B", [-4.0, 1.0], &["slide-"]),
+        ("C", [0.0, -1.0], &["stick"]),
+        ("E", [1.0, -0.25], &["separate", "slide+", "stick"]),
+    ];
+    let states: Vec<Value> = regions
+        .iter()
+        .map(|&(region, [l_t, l_n], _)| {
+            let velocity = json!({"base": {"x": 2.0 * l_t + l_n, "z": l_t + 2.0 * l_n}});
+            json!({"id": region, "velocity": velocity, "friction": "infinite"})
+        })
+        .collect();
+    let mut differences = Differences::default();
+    for ((region, [l_t, l_n], modes), answer) in regions.into_iter().zip(impact(&model, &states)) {
+        let answer = match answer {
+            Ok(answer) => answer,
+            Err(refusal) => {
+                differences.note(region, refusal);
+                continue;
+            }
+        };
+        let delassus = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]);
+        differences.compare_matrix(&format!("{region}: G"), &answer.delassus, &delassus, TOLERANCE);
+        let found = sorted(answer.outcomes.iter().map(|outcome| outcome.modes.join("/")));
+        if found != modes {
+            differences.note(region, format!("{found:?} instead of {modes:?}"));
+        }
+        for outcome in &answer.outcomes {
+            // Sticking takes the external impulse up; sliding has L_n = 0 and c_n = 0 = G_nt (L_t + L_ext,t) + G_nn L_ext,n.
+            let (impulse, velocity) = match outcome.modes[0].as_str() {
+                "separate" => ([0.0, 0.0], [2.0 * l_t + l_n, l_t + 2.0 * l_n]),
+                "stick" => ([-l_t, -l_n], [0.0, 0.0]),
+                _ => ([-l_t - 2.0 * l_n, 0.0], [-3.0 * l_n, 0.0]),
+            };
+            let place = format!("{region}, {}", outcome.modes[0]);
+            let within = TOLERANCE * largest(&impulse);
+            differences.compare(&format!("{place}: L"), &outcome.impulse.concat(), &impulse, within);
+            let within = TOLERANCE * (2.0 * l_t + l_n).abs().max((l_t + 2.0 * l_n).abs());
+            differences.compare(&format!("{place}: c after"), &outcome.velocity_after.concat(), &velocity, within);
+        }
+    }
+    differences.finish();
+}

@@ -1,0 +1,286 @@
+//! Robots of other people's projects against Pinocchio's values (`data/robots`): matrices, energy and contact points with
+//! the reference's contacts named by hand, then each contact struck alone. Of a reference's variants the one is taken that
+//! the rules of `robot` mean: `default` where the root link floats.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::support::binary::{Answer, Outcome, answers};
+use crate::support::scaled::{Differences, largest, matrix};
+
+/// To this share of the largest entry.
+const TOLERANCE: f64 = 1e-10;
+
+#[derive(Deserialize)]
+struct Reference {
+    urdf: String,
+    /// Some variants lack a Delassus matrix, so each is read when it is wanted.
+    variants: BTreeMap<String, Value>,
+}
+
+#[derive(Deserialize)]
+struct Variant {
+    base: Base,
+    coordinates: Vec<String>,
+    contacts: Vec<Contact>,
+    configs: Vec<Config>,
+}
+
+#[derive(Deserialize)]
+struct Base {
+    mode: String,
+}
+
+#[derive(Deserialize)]
+struct Contact {
+    link: String,
+    offset: [f64; 3],
+    radius: f64,
+}
+
+/// A configuration with the values there; contact rows are x then z.
+#[derive(Deserialize)]
+#[allow(non_snake_case, reason = "the reference's own names")]
+struct Config {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    M: Vec<Vec<f64>>,
+    J: Vec<Vec<f64>>,
+    G: Vec<Vec<f64>>,
+    kinetic_energy: f64,
+    contact_points: Vec<[f64; 2]>,
+    impacts: Vec<Impact>,
+}
+
+/// A contact struck alone; no inequality is checked in either. Without values where the contact cannot move both ways.
+#[derive(Deserialize)]
+struct Impact {
+    stick: Option<Struck>,
+    normal_only: Option<Struck>,
+}
+
+#[derive(Deserialize)]
+struct Struck {
+    impulse: [f64; 2],
+    v_plus: Vec<f64>,
+    kinetic_energy_plus: f64,
+}
+
+/// A robot of `tests/data/robots`.
+struct Robot {
+    urdf: String,
+    variant: Variant,
+}
+
+impl Robot {
+    fn read(name: &str, variant: &str) -> Self {
+        let folder = format!("{}/tests/data/robots/{name}", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(format!("{folder}/reference.json")).expect("the robot's reference");
+        let Reference { urdf, mut variants } = serde_json::from_str(&text).expect("the reference is readable");
+        let variant = variants.remove(variant).expect("the variant");
+        let variant = serde_json::from_value(variant).expect("the variant is readable");
+        Self { urdf: format!("{folder}/{urdf}"), variant }
+    }
+
+    /// The state of a configuration with these contacts.
+    fn state(&self, id: &str, config: &Config, contacts: &[Contact], friction: f64) -> Value {
+        let named = |values: &[f64]| {
+            let named = self.variant.coordinates.iter().zip(values).map(|(name, &value)| (name.clone(), value));
+            let (base, joints) = named.enumerate().partition::<Vec<_>, _>(|(index, _)| *index < self.base_dofs());
+            let [base, joints] = [base, joints].map(|part| part.into_iter().map(|(_, entry)| entry));
+            let [base, joints] = [base, joints].map(BTreeMap::from_iter);
+            match self.base_dofs() {
+                0 => json!({"joints": joints}),
+                _ => json!({"base": base, "joints": joints}),
+            }
+        };
+        let contacts: Vec<Value> = contacts
+            .iter()
+            .map(|contact| json!({"link": contact.link, "offset": contact.offset, "radius": contact.radius}))
+            .collect();
+        json!({
+            "id": id,
+            "position": named(&config.q),
+            "velocity": named(&config.v),
+            "friction": friction,
+            "contacts": contacts,
+        })
+    }
+
+    /// The velocity after as v, in the order of the coordinates.
+    fn velocity_after(&self, outcome: &Outcome) -> Vec<f64> {
+        let entry = |(index, name): (usize, &String)| {
+            let is_base = index < self.base_dofs();
+            let part = if is_base { &outcome.base_velocity_after } else { &outcome.joint_velocity_after };
+            part.as_ref().and_then(|part| part.get(name)).copied().unwrap_or(f64::NAN)
+        };
+        self.variant.coordinates.iter().enumerate().map(entry).collect()
+    }
+
+    /// The coordinates x, z and pitch come first where the base floats; a joint may be named like them.
+    fn base_dofs(&self) -> usize {
+        if self.variant.base.mode == "floating" { 3 } else { 0 }
+    }
+}
+
+#[test]
+fn a1_equals_its_reference() {
+    compare("a1", "default");
+}
+
+#[test]
+fn acrobot_equals_its_reference() {
+    compare("acrobot", "fixed");
+}
+
+#[test]
+fn cartpole_equals_its_reference() {
+    compare("cartpole", "fixed_prismatic");
+}
+
+#[test]
+fn h1_equals_its_reference() {
+    compare("h1", "default");
+}
+
+#[test]
+fn planar_walker_torso_equals_its_reference() {
+    compare("planar_walker_torso", "rerooted");
+}
+
+#[test]
+fn rabbit_equals_its_reference() {
+    compare("rabbit", "default");
+}
+
+#[test]
+fn solo8_equals_its_reference() {
+    compare("solo8", "default");
+}
+
+#[test]
+fn upkie_equals_its_reference() {
+    compare("upkie", "default");
+}
+
+fn compare(name: &str, variant: &str) {
+    let robot = Robot::read(name, variant);
+    let mut differences = Differences::default();
+    compare_matrices(&robot, &mut differences);
+    compare_single_contacts(&robot, &mut differences);
+    differences.finish();
+}
+
+fn compare_matrices(robot: &Robot, differences: &mut Differences) {
+    let variant = &robot.variant;
+    let states: Vec<Value> = variant
+        .configs
+        .iter()
+        .enumerate()
+        .map(|(index, config)| robot.state(&format!("configuration {index}"), config, &variant.contacts, 0.8))
+        .collect();
+    let answers = answers(&["impact", &robot.urdf, "-", "--format", "json", "--matrices"], &states);
+    for ((config, state), answer) in variant.configs.iter().zip(&states).zip(answers) {
+        let place = state["id"].as_str().expect("a name");
+        let answer = match answer {
+            Ok(answer) => answer,
+            Err(refusal) => {
+                differences.note(place, refusal);
+                continue;
+            }
+        };
+        if answer.coordinates != variant.coordinates {
+            differences.note(place, format!("coordinates {:?}", answer.coordinates));
+        }
+        differences.compare_matrix(&format!("{place}: M"), &answer.mass_matrix, &matrix(&config.M), TOLERANCE);
+        differences.compare_matrix(&format!("{place}: J"), &answer.contact_jacobian, &matrix(&config.J), TOLERANCE);
+        differences.compare_matrix(&format!("{place}: G"), &answer.delassus, &matrix(&config.G), TOLERANCE);
+        let energy = answer.kinetic_energy.as_slice();
+        let within = TOLERANCE * config.kinetic_energy;
+        differences.compare(&format!("{place}: kinetic energy"), energy, &[config.kinetic_energy], within);
+        let points: Vec<f64> = answer.contacts.iter().filter_map(|contact| contact.point).flatten().collect();
+        differences.compare(&format!("{place}: points"), &points, &config.contact_points.concat(), TOLERANCE);
+        let before: Vec<f64> = answer.contacts.iter().flat_map(|contact| contact.velocity_before).collect();
+        let should = contact_velocity(&config.J, &config.v);
+        differences.compare(&format!("{place}: c before"), &before, &should, TOLERANCE * largest(&should));
+    }
+}
+
+/// `stick` of the reference is the mode stick, valid or rejected; `normal_only` is a slide without friction: the contact
+/// point stays on the ground and L_t = 0.
+fn compare_single_contacts(robot: &Robot, differences: &mut Differences) {
+    let variant = &robot.variant;
+    let (mut states, mut expected) = (Vec::new(), Vec::new());
+    for (index, config) in variant.configs.iter().enumerate() {
+        for (contact, impact) in variant.contacts.iter().zip(&config.impacts).enumerate().map(|(at, pair)| (at, pair.1))
+        {
+            let struck = [("stick", 0.8, &impact.stick), ("slide", 0.0, &impact.normal_only)];
+            for (mode, friction, should) in
+                struck.into_iter().filter_map(|(mode, friction, should)| Some((mode, friction, should.as_ref()?)))
+            {
+                let id = format!("configuration {index}, contact {contact} alone, {mode}");
+                let alone = std::slice::from_ref(&variant.contacts[contact]);
+                states.push(robot.state(&id, config, alone, friction));
+                expected.push((mode, &config.J[2 * contact..2 * contact + 2], config, should));
+            }
+        }
+    }
+    let answers = answers(&["impact", &robot.urdf, "-", "--format", "json", "--explain"], &states);
+    for ((state, (mode, rows, config, should)), answer) in states.iter().zip(expected).zip(answers) {
+        let place = state["id"].as_str().expect("a name");
+        match answer {
+            Err(refusal) => differences.note(place, refusal),
+            Ok(answer) => compare_struck(robot, place, &answer, mode, rows, config, should, differences),
+        }
+    }
+}
+
+#[allow(clippy::too_many_arguments, reason = "one contact's reference has this many parts")]
+fn compare_struck(
+    robot: &Robot,
+    place: &str,
+    answer: &Answer,
+    mode: &str,
+    rows: &[Vec<f64>],
+    config: &Config,
+    should: &Struck,
+    differences: &mut Differences,
+) {
+    let outcome = answer.outcomes.iter().find(|outcome| outcome.modes[0].starts_with(mode));
+    let rejected = answer.rejected.iter().filter(|rejected| rejected.modes[0].starts_with(mode));
+    let numbers = outcome.map(|outcome| (&outcome.impulse, &outcome.velocity_after));
+    let numbers = numbers.into_iter().chain(rejected.filter_map(|r| r.impulse.as_ref().zip(r.velocity_after.as_ref())));
+    let mut listed = 0;
+    for (impulse, velocity) in numbers {
+        listed += 1;
+        let within = TOLERANCE * largest(&should.impulse);
+        differences.compare(&format!("{place}: L"), &impulse.concat(), &should.impulse, within);
+        let before = contact_velocity(rows, &config.v);
+        let mut after = contact_velocity(rows, &should.v_plus);
+        let within = TOLERANCE * largest(&before).max(largest(&after));
+        // Zero by definition; the product above leaves rounding there.
+        after[1] = 0.0;
+        differences.compare(&format!("{place}: c after"), &velocity.concat(), &after, within);
+    }
+    if listed == 0 {
+        differences.note(place, "neither among the outcomes nor among the rejected with its numbers");
+    }
+    // The whole robot's velocity and energy are told of outcomes alone.
+    if let Some(outcome) = outcome {
+        // A robot with as many coordinates as the contact has directions stops dead.
+        let within = TOLERANCE * largest(&should.v_plus).max(largest(&config.v));
+        differences.compare(&format!("{place}: v after"), &robot.velocity_after(outcome), &should.v_plus, within);
+        let after = answer.kinetic_energy.map(|before| before - outcome.energy_loss);
+        let within = TOLERANCE * config.kinetic_energy;
+        differences.compare(&format!("{place}: energy after"), after.as_slice(), &[should.kinetic_energy_plus], within);
+    }
+}
+
+/// J v.
+fn contact_velocity(jacobian: &[Vec<f64>], velocity: &[f64]) -> Vec<f64> {
+    let jacobian: DMatrix<f64> = matrix(jacobian);
+    (jacobian * DVector::from_column_slice(velocity)).as_slice().to_vec()
+}

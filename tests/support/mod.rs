@@ -1,0 +1,8 @@
+//! What several test files use; `tests/README.md` says where a new test goes.
+
+#![allow(dead_code, reason = "each binary uses its own part")]
+
+pub mod binary;
+pub mod mechanism;
+pub mod random;
+pub mod scaled;
