@@ -5,8 +5,8 @@
 //! ```
 //!
 //! With or without a reduction the outcomes, velocities and impulses are the same to 1e-12 of scale;
-//! `tests/library/reductions`
-//! compares them. [`left_out`](crate::left_out) gives what each saves, and what can never be left out.
+//! `tests/library/reductions` compares them. [`left_out`](crate::left_out) gives what each saves, and what can never be left
+//! out.
 
 /// The reductions to make; all by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
