@@ -87,6 +87,7 @@ pub mod left_out {}
 pub mod error;
 pub mod scalar;
 pub mod planar;
+pub mod law;
 pub mod reductions;
 pub mod description;
 pub mod robot;

@@ -75,7 +75,7 @@ impl<'a> Pose<'a> {
     pub fn problem(&self) -> Option<ContactProblem> {
         let (shape, computation) = (self.shape()?, self.computed());
         let Workspace { delassus, contact_velocity, .. } = computation.workspace();
-        let (friction, restitution) = (shape.friction().to_vec(), shape.restitution().to_vec());
+        let (friction, restitution) = (shape.laws().to_vec(), shape.restitution().to_vec());
         ContactProblem::new(delassus.clone(), contact_velocity.clone(), friction, restitution).ok()
     }
 

@@ -4,7 +4,8 @@
 
 use super::robots;
 use crate::Result;
-use crate::impact::{ContactProblem, Friction};
+use crate::impact::ContactProblem;
+use crate::law::Friction;
 use crate::robot::Robot;
 use crate::state::State;
 use crate::state::{ByLink, NamedContact, Scene};

@@ -1,6 +1,7 @@
 //! What is said of a whole batch at its end.
 
-use crate::impact::{Analysis, Mode, Outcome, Verdict};
+use crate::impact::{Analysis, Outcome, Verdict};
+use crate::law::Mode;
 use crate::pipeline::Impact;
 use serde::{Serialize, Serializer};
 use serde_json::Value;

@@ -4,7 +4,7 @@ use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::Robot;
 use heelstrike::error::excerpt::Excerpt;
-use heelstrike::impact::Friction;
+use heelstrike::law::Friction;
 use heelstrike::pipeline;
 use heelstrike::read::documents::utf8;
 use heelstrike::read::loops_from_json;

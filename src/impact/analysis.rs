@@ -14,14 +14,14 @@ use super::enumerate::{Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
 use super::labels::Labels;
 use super::lone;
-use super::mode::{Friction, Mode};
-use super::outcome::{Analysis, Because, Effort, Motion, Outcome, Rejection, Verdict};
+use super::outcome::{Analysis, Effort, Motion, Outcome, Rejection, RejectionReason, Verdict};
 use super::problem::{ContactProblem, Source};
 use super::reading::{Reading, read_f64};
 use super::redundant::{Judged, Member};
 use super::region::explanation;
-use super::sign::{Scale, SlackKind};
+use super::sign::Scale;
 use crate::error::{Error, Reason, Result};
+use crate::law::{ContactLaw, Impulse, Inequality, Mode};
 use crate::reductions::Reductions;
 use crate::scalar::{Ordered, Real, Sign};
 use nalgebra::DMatrix;
@@ -106,7 +106,7 @@ impl Scratch {
         let asked = Asked { prove: asked.prove && source.is_exact(), ..asked };
         let errors = source.errors();
         self.scale.measure(problem, errors);
-        self.tableau.share_frictionless(asked.reductions.frictionless);
+        self.tableau.share_equal_impulses(asked.reductions.frictionless);
         self.tableau.load(problem);
         self.bounds.load(&self.tableau, &self.scale, errors.delassus, self.scale.noise);
         let mut first = FirstLook {
@@ -122,8 +122,8 @@ impl Scratch {
         };
         self.tableau.visit(&mut first);
         let FirstLook { regular, open, coarse, mut found, .. } = first;
-        let frictionless = problem.friction().iter().any(|friction| friction.is_zero());
-        let regular = regular || (frictionless && shows_regular(&mut self.tableau, &mut self.bounds, contacts));
+        let unheld = problem.laws().iter().any(|law| law.impulse(Mode::Stick) != Impulse::Free);
+        let regular = regular || (unheld && shows_regular(&mut self.tableau, &mut self.bounds, contacts));
         let scale = &self.scale;
         let was_open = !open.is_empty();
         let mut coarse = coarse;
@@ -187,16 +187,15 @@ struct FirstLook<'a, 'f> {
 
 impl Visitor<f64> for FirstLook<'_, '_> {
     fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
-        self.bounds.follow(tableau, self.problem.friction(), contact, source);
+        self.bounds.follow(tableau, contact, source);
     }
 
     fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
         let bound = self.bounds.at(leaf.depth());
         // Where all contacts stick, the pivots are those of the whole matrix.
         self.regular |= bound.impulse_error().is_finite()
-            && leaf.modes.iter().all(|&mode| mode == Mode::Stick)
-            && !self.problem.friction().iter().any(|friction| friction.is_zero());
-        self.labels.start(leaf.modes, self.problem.friction(), self.found.asked.reductions.frictionless);
+            && leaf.modes.iter().zip(self.problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
+        self.labels.start(leaf.modes, self.problem.laws(), self.found.asked.reductions.frictionless);
         while let Some(modes) = self.labels.next() {
             let reading = read_f64(leaf, modes, self.problem, self.scale, bound, self.found.asked.explain.tells(modes));
             match reading.sign {
@@ -322,8 +321,7 @@ fn no_slip_consistent(outcomes: &[Outcome]) -> Option<bool> {
 /// Whether f64 shows that G is regular: for problems with a frictionless contact, none of whose combinations solves for all
 /// impulses.
 fn shows_regular(tableau: &mut Tableau<f64>, bounds: &mut Bounds, contacts: usize) -> bool {
-    let friction = vec![Friction::Infinite; contacts];
-    tableau.stick_all(|tableau, contact| bounds.follow(tableau, &friction, contact, contact));
+    tableau.stick_all(|tableau, contact| bounds.follow(tableau, contact, contact));
     bounds.at(contacts).impulse_error().is_finite()
 }
 
@@ -451,7 +449,7 @@ impl Found<'_> {
         motion: impl FnOnce() -> Motion,
     ) {
         if reading.sign == Sign::Negative {
-            let solved = !matches!(reading.because, Because::NothingHolds { .. });
+            let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
             let motion = (self.asked.explain.tells(modes) && solved).then(motion);
             self.reject(number, modes, reading.because, reading.margin, motion);
             return;
@@ -478,9 +476,9 @@ impl Found<'_> {
         modes: &[Mode],
         problem: &ContactProblem,
         motion: Motion,
-        at_zero: &[(usize, SlackKind)],
+        at_zero: &[(usize, Inequality)],
     ) -> Outcome {
-        let border = border(modes, problem.friction(), at_zero, &motion);
+        let border = border(modes, problem.laws(), at_zero, &motion);
         let mut outcome = Outcome {
             modes: modes.to_vec(),
             impulse: Vec::new(),
@@ -530,7 +528,14 @@ impl Found<'_> {
         }
     }
 
-    fn reject(&mut self, number: usize, modes: &[Mode], because: Because, margin: Option<f64>, motion: Option<Motion>) {
+    fn reject(
+        &mut self,
+        number: usize,
+        modes: &[Mode],
+        because: RejectionReason,
+        margin: Option<f64>,
+        motion: Option<Motion>,
+    ) {
         if self.asked.explain.tells(modes) {
             let (margin, motion) = (margin.filter(|margin| margin.is_finite()), motion.filter(Motion::is_finite));
             self.rejected.push((number, Rejection { modes: modes.to_vec(), because, margin, motion }));
@@ -541,6 +546,7 @@ impl Found<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::Friction;
 
     #[test]
     fn more_contacts_than_are_tried_are_refused() {

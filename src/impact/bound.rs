@@ -13,8 +13,9 @@
 //! makes every bound infinite. The bounds' own rounding is covered by [`SLACK`].
 
 use super::enumerate::Tableau;
-use super::mode::{Friction, Mode};
 use super::sign::Scale;
+use crate::law::Impulse;
+use crate::planar::Vector;
 
 /// Half the distance from 1 to the next f64.
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -168,7 +169,7 @@ impl Bounds {
             given: delassus + noise,
             ..Bound::default()
         };
-        self.depths[0] = start.measured(self.sizes(tableau, 0, |_| None));
+        self.depths[0] = start.measured(self.sizes(tableau, 0));
     }
 
     /// The bound of the tableau of this depth.
@@ -177,41 +178,28 @@ impl Bounds {
     }
 
     /// Follows the elimination of `contact` from the tableau of depth `source`.
-    pub fn follow(&mut self, tableau: &Tableau<f64>, friction: &[Friction], contact: usize, source: usize) {
-        let (mode, pivot) = tableau.decided(contact);
+    pub fn follow(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
+        let (impulse, pivot) = tableau.decided(contact);
         let [t, n] = [self.inverse[2 * contact], self.inverse[2 * contact + 1]];
-        let next = if mode == Mode::Stick && !friction[contact].is_zero() {
-            self.depths[source].stick((pivot * (t * n) * (t * n)).abs())
-        } else {
-            self.depths[source].slide((pivot * n / self.ray(contact, friction[contact], mode)).abs())
+        let next = match impulse {
+            Impulse::Zero => self.depths[source],
+            Impulse::Along(ray) => self.depths[source].slide((pivot * n / self.size(contact, ray)).abs()),
+            Impulse::Free => self.depths[source].stick((pivot * (t * n) * (t * n)).abs()),
         };
         // The last contact leaves no coefficients, and no later step asks how large its constants are.
         let last = contact + 2 == self.depths.len();
-        self.depths[contact + 1] = if last {
-            next
-        } else {
-            let of = |decided: usize| {
-                let mode = (decided <= contact).then(|| tableau.decided(decided).0)?;
-                (mode != Mode::Separate).then_some((mode, friction[decided]))
-            };
-            next.measured(self.sizes(tableau, contact + 1, of))
-        };
+        self.depths[contact + 1] = if last { next } else { next.measured(self.sizes(tableau, contact + 1)) };
     }
 
     /// The largest of the scaled entries that later steps read: coefficients and constants of velocity rows, then of
-    /// impulse rows; `closed` tells mode and friction of the contacts that are decided to be closed.
-    fn sizes(
-        &self,
-        tableau: &Tableau<f64>,
-        depth: usize,
-        closed: impl Fn(usize) -> Option<(Mode, Friction)>,
-    ) -> [f64; 4] {
+    /// impulse rows; as many contacts are decided as the depth says.
+    fn sizes(&self, tableau: &Tableau<f64>, depth: usize) -> [f64; 4] {
         let mut sizes = [0.0_f64; 4];
         for row in 0..self.inverse.len() {
             let (contact, normal) = (row / 2, row % 2 == 1);
-            let impulse = match closed(contact) {
-                Some((Mode::Stick, friction)) if !friction.is_zero() => Some(1.0 / self.inverse[row]),
-                Some((mode, friction)) if normal => Some(self.ray(contact, friction, mode)),
+            let impulse = match (contact < depth).then(|| tableau.decided(contact).0) {
+                Some(Impulse::Free) => Some(1.0 / self.inverse[row]),
+                Some(Impulse::Along(ray)) if normal => Some(self.size(contact, ray)),
                 _ => None,
             };
             let (class, factor, speed) = match impulse {
@@ -227,10 +215,9 @@ impl Bounds {
         sizes
     }
 
-    /// The size of a ray (-+a, b) in the scale: the sum of its parts a sqrt(G_tt) and b sqrt(G_nn).
-    fn ray(&self, contact: usize, friction: Friction, mode: Mode) -> f64 {
-        let (a, b) = if mode.slides() { friction.pair() } else { (0.0, 1.0) };
-        a / self.inverse[2 * contact] + b / self.inverse[2 * contact + 1]
+    /// The size of a ray in the scale: the sum of the sizes of its entries times sqrt(G_tt) and sqrt(G_nn).
+    fn size(&self, contact: usize, ray: Vector<f64>) -> f64 {
+        ray[0].abs() / self.inverse[2 * contact] + ray[1].abs() / self.inverse[2 * contact + 1]
     }
 }
 
@@ -239,6 +226,7 @@ mod tests {
     use super::super::enumerate::Leaf;
     use super::super::problem::{ContactProblem, Errors};
     use super::*;
+    use crate::law::Friction;
     use crate::scalar::{Interval, Ordered, Real};
     use proptest::prelude::*;
 
@@ -252,7 +240,7 @@ mod tests {
 
     impl super::super::enumerate::Visitor<f64> for Watch<'_> {
         fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
-            self.bounds.follow(tableau, self.problem.friction(), contact, source);
+            self.bounds.follow(tableau, contact, source);
         }
 
         fn leaf(&mut self, leaf: &Leaf<'_, f64>) {

@@ -12,12 +12,12 @@
 use super::analysis::{index_of, motion};
 use super::enumerate::Tableau;
 use super::linear::{Unsettled, solve};
-use super::mode::Mode;
 use super::outcome::{Effort, Motion};
 use super::problem::{ContactProblem, Source};
 use super::reading::{Reading, read_signed};
 use super::redundant::{Judged, judge};
 use super::sign::Scale;
+use crate::law::Mode;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Sign};
 
 /// Digits of the last layers \[bit\].

@@ -2,18 +2,18 @@
 //!
 //! ```text
 //!     c = c_free + G L           xi_n = c_n + bounce
-//!     separate  L = 0            stick  c_t = xi_n = 0            slide+-  xi_n = 0,  L = lambda (-+a, b)
+//!     separate  L = 0            stick  c_t = xi_n = 0            slide+-  xi_n = 0,  L = lambda ray
 //! ```
 //!
 //! Contacts are decided one after the other. Deciding one eliminates its impulses from a tableau that expresses everything
 //! by the impulses of the contacts not yet decided, so that combinations share their beginnings: a tree of Schur
-//! complements. The friction cone a L_n >= b |L_t| is a homogeneous pair, which makes zero, finite and infinite friction
-//! one case. The product of the pivots is det A (paper, section 2); no number is compared with another here.
+//! complements. The contact law says which impulses a mode has. The product of the pivots is det A (paper, section 2); no
+//! number is compared with another here.
 //!
-//! Cost: 4^n leaves (2^k 4^(n-k) where k contacts are frictionless: their modes share one elimination), each O(n).
+//! Cost: 4^n leaves (2^k 4^(n-k) if k contacts are frictionless: their modes share one elimination), each O(n).
 
-use super::mode::{Friction, Mode};
 use super::problem::ContactProblem;
+use crate::law::{ContactLaw, Friction, Impulse, Law, Mode};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
@@ -21,8 +21,8 @@ use crate::scalar::Real;
 #[derive(Debug, Clone)]
 pub struct Tableau<T> {
     contacts: usize,
-    friction: Vec<Friction>,
-    /// Whether the modes of a closed frictionless contact are visited as one.
+    laws: Vec<Law>,
+    /// Whether modes with the same impulses are visited as one.
     shares: bool,
     /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns of
     /// decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and lambda where
@@ -35,13 +35,12 @@ pub struct Tableau<T> {
 /// One combination of modes and the numbers that it leads to.
 #[derive(Debug)]
 pub struct Leaf<'a, T> {
-    /// One mode per contact; a closed frictionless contact, whose tangential velocity alone tells its mode, is given as
-    /// [`Mode::Stick`] where its modes are visited as one.
+    /// One mode per contact; it stands for all with the same impulses if these are visited as one.
     pub modes: &'a [Mode],
     /// One pivot per contact; their product is det A, its sign the index. A separating contact's is one.
     pub pivots: &'a [T],
     tableau: &'a [T],
-    friction: &'a [Friction],
+    laws: &'a [Law],
     depth: usize,
 }
 
@@ -63,18 +62,11 @@ impl<T, F: FnMut(&Leaf<'_, T>)> Visitor<T> for F {
 impl<T: Real> Tableau<T> {
     /// Scratch without a problem.
     pub fn new() -> Self {
-        Self {
-            contacts: 0,
-            friction: Vec::new(),
-            shares: true,
-            depths: Vec::new(),
-            modes: Vec::new(),
-            pivots: Vec::new(),
-        }
+        Self { contacts: 0, laws: Vec::new(), shares: true, depths: Vec::new(), modes: Vec::new(), pivots: Vec::new() }
     }
 
-    /// Whether the modes of a closed contact without friction are visited as one, which they are unless it is said here.
-    pub fn share_frictionless(&mut self, shares: bool) {
+    /// Whether modes with the same impulses are visited as one (the default).
+    pub fn share_equal_impulses(&mut self, shares: bool) {
         self.shares = shares;
     }
 
@@ -83,8 +75,8 @@ impl<T: Real> Tableau<T> {
         let n = problem.contacts();
         let width = 2 * n + 1;
         self.contacts = n;
-        self.friction.clear();
-        self.friction.extend_from_slice(problem.friction());
+        self.laws.clear();
+        self.laws.extend_from_slice(problem.laws());
         self.depths.resize_with(n + 1, Vec::new);
         for depth in &mut self.depths {
             depth.resize(2 * n * width, T::zero());
@@ -106,14 +98,14 @@ impl<T: Real> Tableau<T> {
         self.descend(0, 0, visitor);
     }
 
-    /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and tells after each; the
-    /// frictions that it was loaded with are lost.
-    pub fn stick_all(&mut self, mut tell: impl FnMut(&Self, usize)) {
-        self.friction.fill(Friction::Infinite);
+    /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and calls `visit` after
+    /// each. The laws that it was loaded with are lost.
+    pub fn stick_all(&mut self, mut visit: impl FnMut(&Self, usize)) {
+        self.laws.fill(Friction::Infinite.into());
         for contact in 0..self.contacts {
             self.modes[contact] = Mode::Stick;
             self.decide(contact, Mode::Stick, contact);
-            tell(self, contact);
+            visit(self, contact);
         }
     }
 
@@ -121,7 +113,7 @@ impl<T: Real> Tableau<T> {
     pub fn leaf(&mut self, modes: &[Mode]) -> Leaf<'_, T> {
         let mut source = 0;
         for (contact, &mode) in modes.iter().enumerate() {
-            let mode = if self.friction[contact].is_zero() && mode.slides() { Mode::Stick } else { mode };
+            let mode = self.laws[contact].representative(mode);
             self.modes[contact] = mode;
             source = self.decide(contact, mode, source);
         }
@@ -130,7 +122,7 @@ impl<T: Real> Tableau<T> {
 
     fn at(&self, depth: usize) -> Leaf<'_, T> {
         let tableau = &self.depths[depth];
-        Leaf { modes: &self.modes, pivots: &self.pivots, tableau, friction: &self.friction, depth }
+        Leaf { modes: &self.modes, pivots: &self.pivots, tableau, laws: &self.laws, depth }
     }
 
     fn descend(&mut self, contact: usize, source: usize, visitor: &mut impl Visitor<T>) {
@@ -138,14 +130,15 @@ impl<T: Real> Tableau<T> {
             visitor.leaf(&self.at(source));
             return;
         }
-        let modes = if self.shares && self.friction[contact].is_zero() { &Mode::ALL[..2] } else { &Mode::ALL[..] };
-        for &mode in modes {
-            self.modes[contact] = mode;
-            let depth = self.decide(contact, mode, source);
-            if mode != Mode::Separate {
-                visitor.eliminated(self, contact, source);
+        for group in self.laws[contact].modes() {
+            for &mode in if self.shares { &group[..1] } else { group } {
+                self.modes[contact] = mode;
+                let depth = self.decide(contact, mode, source);
+                if depth != source {
+                    visitor.eliminated(self, contact, source);
+                }
+                self.descend(contact + 1, depth, visitor);
             }
-            self.descend(contact + 1, depth, visitor);
         }
     }
 
@@ -154,8 +147,9 @@ impl<T: Real> Tableau<T> {
         let n = self.contacts;
         let width = 2 * n + 1;
         let (tangential, normal) = (2 * contact, 2 * contact + 1);
-        if mode == Mode::Separate {
-            // L = 0: its columns are simply not read any more.
+        let impulse = self.laws[contact].impulse(mode);
+        if impulse == Impulse::Zero {
+            // Its columns are simply not read any more.
             self.pivots[contact] = T::one();
             return source;
         }
@@ -163,9 +157,8 @@ impl<T: Real> Tableau<T> {
         let (old, new) = (&before[source], &mut after[0]);
         let entry = |row: usize, column: usize| old[row * width + column];
         let columns = normal + 1..width;
-        if mode.slides() || self.friction[contact].is_zero() {
-            let (a, b) = self.friction[contact].pair();
-            let ray = [T::from_f64(-mode.direction() * a), T::from_f64(b)];
+        if let Impulse::Along(ray) = impulse {
+            let ray = ray.map(T::from_f64);
             let along = |row: usize| ray[0] * entry(row, tangential) + ray[1] * entry(row, normal);
             let pivot = along(normal);
             self.pivots[contact] = pivot;
@@ -202,9 +195,9 @@ impl<T: Real> Tableau<T> {
 }
 
 impl<T: Copy> Tableau<T> {
-    /// The mode and the pivot of a decided contact.
-    pub fn decided(&self, contact: usize) -> (Mode, T) {
-        (self.modes[contact], self.pivots[contact])
+    /// The impulses and the pivot of a decided contact.
+    pub fn decided(&self, contact: usize) -> (Impulse, T) {
+        (self.laws[contact].impulse(self.modes[contact]), self.pivots[contact])
     }
 
     /// A row of the tableau of this depth: the coefficients of all impulses, then the constant.
@@ -231,8 +224,12 @@ impl<T: Real> Leaf<'_, T> {
         self.tableau[row * (columns + 1) + columns]
     }
 
-    /// The two numbers of a contact: `[c_t, xi_n]` where it separates, `[c_t, lambda]` where it slides or is frictionless
-    /// (L = lambda (-+a, b)), `[L_t, L_n]` where it sticks.
+    fn impulses(&self, contact: usize) -> Impulse {
+        self.laws[contact].impulse(self.modes[contact])
+    }
+
+    /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if L is lambda times a ray, `[L_t, L_n]` if L
+    /// is free.
     pub fn numbers(&self, contact: usize) -> Vector<T> {
         [self.constant(2 * contact), self.constant(2 * contact + 1)]
     }
@@ -240,24 +237,20 @@ impl<T: Real> Leaf<'_, T> {
     /// Impulse of a contact, [tangential, normal] \[N s\].
     pub fn impulse(&self, contact: usize) -> Vector<T> {
         let [first, second] = self.numbers(contact);
-        let mode = self.modes[contact];
-        if mode == Mode::Separate {
-            return [T::zero(); 2];
+        match self.impulses(contact) {
+            Impulse::Zero => [T::zero(); 2],
+            Impulse::Along(ray) => ray.map(|entry| T::from_f64(entry) * second),
+            Impulse::Free => [first, second],
         }
-        if mode == Mode::Stick && !self.friction[contact].is_zero() {
-            return [first, second];
-        }
-        let (a, b) = self.friction[contact].pair();
-        [T::from_f64(-mode.direction() * a) * second, T::from_f64(b) * second]
     }
 
     /// Velocity of a contact as `[c_t, xi_n]` \[m/s\]; c_n = xi_n - bounce.
     pub fn velocity(&self, contact: usize) -> Vector<T> {
         let [first, second] = self.numbers(contact);
-        match self.modes[contact] {
-            Mode::Separate => [first, second],
-            Mode::Stick if !self.friction[contact].is_zero() => [T::zero(); 2],
-            _ => [first, T::zero()],
+        match self.impulses(contact) {
+            Impulse::Zero => [first, second],
+            Impulse::Along(_) => [first, T::zero()],
+            Impulse::Free => [T::zero(); 2],
         }
     }
 }

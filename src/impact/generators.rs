@@ -1,11 +1,11 @@
 //! The impulses that a list of modes allows, as combinations of few generators.
 //!
 //! ```text
-//!     L = B lambda      separate: none    slide+-: the ray (-+a, b)    stick: both axes (frictionless: the normal)
+//!     L = B lambda      a column of B: a contact's ray, or one of both axes of a contact whose impulse is free
 //! ```
 
-use super::mode::{Friction, Mode};
 use super::problem::ContactProblem;
+use crate::law::{ContactLaw, Impulse, Law, Mode};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
@@ -17,23 +17,14 @@ pub struct Generators {
 }
 
 impl Generators {
-    /// Direction (-+a, b) of a sliding contact's impulse; of a frictionless one the normal.
-    pub fn slide_ray(friction: Friction, mode: Mode) -> Vector<f64> {
-        let (a, b) = friction.pair();
-        [-mode.direction() * a, b]
-    }
-
     /// Of a combination of modes.
-    pub fn of(modes: &[Mode], friction: &[Friction]) -> Self {
+    pub fn of(modes: &[Mode], laws: &[Law]) -> Self {
         let mut rays = Vec::new();
-        for (contact, (&mode, &friction)) in modes.iter().zip(friction).enumerate() {
-            if mode == Mode::Stick {
-                if !friction.is_zero() {
-                    rays.push((contact, [1.0, 0.0]));
-                }
-                rays.push((contact, [0.0, 1.0]));
-            } else if mode.slides() {
-                rays.push((contact, Self::slide_ray(friction, mode)));
+        for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
+            match law.impulse(mode) {
+                Impulse::Zero => {}
+                Impulse::Along(ray) => rays.push((contact, ray)),
+                Impulse::Free => rays.extend([(contact, [1.0, 0.0]), (contact, [0.0, 1.0])]),
             }
         }
         Self { rows: 2 * modes.len(), rays }
@@ -64,6 +55,14 @@ impl Generators {
         let entry =
             |&(contact, ray): &(usize, Vector<f64>)| T::from_f64(if contact == row / 2 { ray[row % 2] } else { 0.0 });
         self.rays.iter().map(entry).collect()
+    }
+
+    /// The coefficients by lambda of one of the two numbers that a contact's inequalities of impulses are functions of.
+    pub fn number_row<T: Real>(&self, contact: usize, which: usize) -> Vec<T> {
+        let own = self.rays.iter().take_while(|(other, _)| *other < contact).count();
+        let free = self.rays.get(own + 1).is_some_and(|(other, _)| *other == contact);
+        let place = own + usize::from(free && which == 1);
+        (0..self.count()).map(|at| if at == place { T::one() } else { T::zero() }).collect()
     }
 
     /// The impulse of every row \[N s\].

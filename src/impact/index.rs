@@ -4,26 +4,30 @@
 //!     B = G_NR - G_NS G_SS^+ G_SR     S: rows of sticking contacts, N: normal rows of sliding ones, R: their slide directions
 //! ```
 
-use super::generators::Generators;
 use super::linear::{Unsettled, settled};
-use super::mode::Mode;
 use super::problem::ContactProblem;
+use crate::law::{ContactLaw, Impulse, Mode};
+use crate::planar::Vector;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
 /// The sign of det B, or where it vanishes that of the lowest coefficient of det(B + s I) that does not; none where all do.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
-    let holds = |contact: &usize| modes[*contact] == Mode::Stick && !problem.friction()[*contact].is_zero();
-    let stuck: Vec<usize> = (0..modes.len()).filter(holds).flat_map(|contact| [2 * contact, 2 * contact + 1]).collect();
-    let sliding: Vec<usize> =
-        (0..modes.len()).filter(|contact| modes[*contact] != Mode::Separate && !holds(contact)).collect();
+    let mut stuck: Vec<usize> = Vec::new();
+    let mut sliding: Vec<(usize, Vector<T>)> = Vec::new();
+    for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
+        match law.impulse(mode) {
+            Impulse::Zero => {}
+            Impulse::Along(ray) => sliding.push((contact, ray.map(T::from_f64))),
+            Impulse::Free => stuck.extend([2 * contact, 2 * contact + 1]),
+        }
+    }
     // Rows S then N, columns S then R.
-    let rows = stuck.iter().copied().chain(sliding.iter().map(|contact| 2 * contact + 1));
+    let rows = stuck.iter().copied().chain(sliding.iter().map(|(contact, _)| 2 * contact + 1));
     let mut whole: Vec<Vec<T>> = rows
         .map(|row| {
             let held = stuck.iter().map(|&column| problem.delassus(row, column));
-            let slid = sliding.iter().map(|&contact| {
-                let [t, n] = Generators::slide_ray(problem.friction()[contact], modes[contact]).map(T::from_f64);
+            let slid = sliding.iter().map(|&(contact, [t, n])| {
                 problem.delassus(row, 2 * contact) * t + problem.delassus(row, 2 * contact + 1) * n
             });
             held.chain(slid).collect()

@@ -11,9 +11,9 @@
 
 use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
-use super::mode::Mode;
 use super::problem::{ContactProblem, Errors};
 use super::sign::{Scale, slacks};
+use crate::law::{ContactLaw, Impulse};
 
 /// The inequalities of all combinations of one problem.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -43,11 +43,10 @@ impl Inequalities {
                 true => 0.0,
                 false => leaf.pivots.iter().product::<f64>(),
             };
-            labels.start(leaf.modes, problem.friction(), true);
+            labels.start(leaf.modes, problem.laws(), true);
             while let Some(modes) = labels.next() {
-                slacks(leaf, modes, problem.friction(), |slack| {
-                    let friction = problem.friction()[slack.contact];
-                    let scaled = slack.number / scale.speed * scale.factor(slack.kind, slack.contact, friction);
+                slacks(leaf, modes, problem.laws(), |slack| {
+                    let scaled = scale.scaled(slack);
                     all.numerators.push(if determinant == 0.0 { 0.0 } else { slack.number * determinant });
                     all.negligible.push(determinant == 0.0 || scaled.abs() < NEGLIGIBLE);
                 });
@@ -73,24 +72,22 @@ const SINGULAR: f64 = 1e-10;
 
 /// Whether a pivot is zero up to rounding: contacts depend on each other, or an inequality is at a pole.
 fn is_singular(leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> bool {
-    let lost = |(contact, (&mode, &pivot)): (usize, (&Mode, &f64))| {
+    (0..problem.contacts()).any(|contact| {
         let entry = |row: usize, column: usize| problem.delassus(2 * contact + row, 2 * contact + column);
-        let friction = problem.friction()[contact];
-        let (a, b) = friction.pair();
-        let size = match mode {
-            Mode::Separate => return false,
-            Mode::Stick if !friction.is_zero() => entry(0, 0) * entry(1, 1),
-            _ => a * entry(0, 1).abs() + b * entry(1, 1),
+        let size = match problem.laws()[contact].impulse(leaf.modes[contact]) {
+            Impulse::Zero => return false,
+            Impulse::Along([t, n]) => t.abs() * entry(0, 1).abs() + n * entry(1, 1),
+            Impulse::Free => entry(0, 0) * entry(1, 1),
         };
-        pivot.abs() <= SINGULAR * size
-    };
-    leaf.modes.iter().zip(leaf.pivots).enumerate().any(lost)
+        leaf.pivots[contact].abs() <= SINGULAR * size
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::{Friction, analyse};
+    use crate::impact::analyse;
+    use crate::law::{Friction, Mode};
 
     #[test]
     fn a_combination_is_valid_where_all_its_inequalities_have_the_sign_of_the_determinant() {

@@ -8,9 +8,9 @@
 //! alone, before anything is solved.
 
 use super::linear::{Unsettled, settled, solve};
-use super::mode::Mode;
-use super::outcome::Because;
+use super::outcome::RejectionReason;
 use super::problem::ContactProblem;
+use crate::law::Mode;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
@@ -50,11 +50,11 @@ impl Kernel {
         Ok(Self { relations: solutions.directions.iter().map(relation).collect::<Result<_, _>>()? })
     }
 
-    /// Why no outcome can have these modes; none where the kernel does not tell.
-    pub fn excludes(&self, modes: &[Mode]) -> Option<Because> {
+    /// Why no outcome can have these modes; `None` if the kernel leaves it open.
+    pub fn excludes(&self, modes: &[Mode]) -> Option<RejectionReason> {
         let broken = self.relations.iter().find(|relation| relation.excludes(modes))?;
         // At rest on both sides the velocity belongs to other modes; else the equations contradict each other.
-        Some(if broken.constant.is_eq() { Because::RedundantTwin } else { Because::NoSolution })
+        Some(if broken.constant.is_eq() { RejectionReason::RedundantTwin } else { RejectionReason::NoSolution })
     }
 }
 
@@ -62,11 +62,10 @@ impl Relation {
     fn excludes(&self, modes: &[Mode]) -> bool {
         let mut sum = Ordering::Equal;
         for &(row, sign) in &self.terms {
-            let moves = match (modes[row / 2], row % 2 == 1) {
-                (Mode::Separate, true) | (Mode::SlidePlus, false) => Ordering::Greater,
-                (Mode::SlideMinus, false) => Ordering::Less,
-                (Mode::Separate, false) => return false,
-                _ => continue,
+            let moves = match modes[row / 2].velocity()[row % 2] {
+                None => return false,
+                Some(Ordering::Equal) => continue,
+                Some(moves) => moves,
             };
             let term = if moves == sign { Ordering::Greater } else { Ordering::Less };
             if sum.is_ne() && sum != term {
@@ -81,7 +80,7 @@ impl Relation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::Friction;
+    use crate::law::Friction;
     use crate::scalar::{Ball, Certified, Real};
 
     #[test]
@@ -105,6 +104,6 @@ mod tests {
         ] {
             assert_eq!(kernel.excludes(&modes).is_some(), excluded, "{modes:?}");
         }
-        assert_eq!(kernel.excludes(&[SlidePlus, Stick]), Some(Because::RedundantTwin));
+        assert_eq!(kernel.excludes(&[SlidePlus, Stick]), Some(RejectionReason::RedundantTwin));
     }
 }

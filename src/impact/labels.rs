@@ -1,24 +1,29 @@
 //! Which strict modes one combination of the enumeration stands for.
 
-use super::mode::{Friction, Mode};
+use crate::law::{ContactLaw, Law, Mode};
 
-/// The strict modes that one leaf stands for: a closed frictionless contact may slide either way or rest.
+/// The lists of modes that one leaf stands for: all whose impulses are the same.
 #[derive(Debug, Clone, Default)]
 pub struct Labels {
     modes: Vec<Mode>,
-    /// Contacts whose label varies.
-    open: Vec<usize>,
+    /// Contacts whose mode varies, and the modes.
+    open: Vec<(usize, &'static [Mode])>,
     started: bool,
 }
 
 impl Labels {
-    /// Begins with the labels of a leaf; its own modes alone, unless frictionless contacts `share` theirs.
-    pub fn start(&mut self, modes: &[Mode], friction: &[Friction], share: bool) {
+    /// Begins with the modes of a leaf; `shares` is whether modes with the same impulses are visited as one.
+    pub fn start(&mut self, modes: &[Mode], laws: &[Law], shares: bool) {
         self.modes.clear();
         self.modes.extend_from_slice(modes);
         self.open.clear();
-        let varies = |&contact: &usize| share && modes[contact] == Mode::Stick && friction[contact].is_zero();
-        self.open.extend((0..modes.len()).filter(varies));
+        if shares {
+            let group = |(contact, (mode, law)): (usize, (&Mode, &Law))| {
+                let group = law.modes().iter().find(|group| group[0] == *mode)?;
+                (group.len() > 1).then_some((contact, *group))
+            };
+            self.open.extend(modes.iter().zip(laws).enumerate().filter_map(group));
+        }
         self.started = false;
     }
 
@@ -28,13 +33,10 @@ impl Labels {
             self.started = true;
             return Some(&self.modes);
         }
-        for &contact in &self.open {
-            self.modes[contact] = match self.modes[contact] {
-                Mode::Stick => Mode::SlidePlus,
-                Mode::SlidePlus => Mode::SlideMinus,
-                _ => Mode::Stick,
-            };
-            if self.modes[contact] != Mode::Stick {
+        for &(contact, group) in &self.open {
+            let place = group.iter().position(|&mode| mode == self.modes[contact])?;
+            self.modes[contact] = group[(place + 1) % group.len()];
+            if place + 1 < group.len() {
                 return Some(&self.modes);
             }
         }
@@ -45,11 +47,12 @@ impl Labels {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::Friction;
 
     #[test]
     fn a_frictionless_contact_has_three_labels_where_it_is_closed() {
         let mut labels = Labels::default();
-        let friction = [Friction::ZERO, Friction::Infinite, Friction::ZERO];
+        let friction = [Friction::ZERO, Friction::Infinite, Friction::ZERO].map(Law::from);
         let count = |labels: &mut Labels| {
             let mut seen = std::collections::HashSet::new();
             while let Some(modes) = labels.next() {

@@ -14,7 +14,6 @@ mod kernel;
 mod labels;
 mod linear;
 mod lone;
-pub mod mode;
 pub mod outcome;
 pub mod problem;
 mod program;
@@ -23,8 +22,10 @@ mod redundant;
 mod region;
 pub mod sign;
 
+pub use crate::law::{Friction, Inequality, Law, Mode};
 pub use analysis::{Asked, CONTACT_LIMIT, Explain, Scratch, analyse};
 pub use inequalities::Inequalities;
-pub use mode::{Friction, Mode};
-pub use outcome::{Analysis, Because, Border, Effort, Explanation, Motion, Outcome, Region, Rejection, Verdict, Zero};
+pub use outcome::{
+    Analysis, Border, Effort, Explanation, ImpulseRegion, Motion, Outcome, Rejection, RejectionReason, Verdict,
+};
 pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

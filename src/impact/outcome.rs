@@ -1,6 +1,6 @@
 //! What an analysis says: outcomes, rejections, the verdict. Data only; [`super::analysis`] computes them.
 
-use super::mode::Mode;
+use crate::law::{Inequality, Mode};
 use crate::planar::Vector;
 use serde::Serialize;
 use std::fmt;
@@ -76,33 +76,9 @@ pub type Range = [Option<f64>; 2];
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Border {
     /// The contact, from 0, and what is zero there.
-    pub at_zero: Vec<(usize, Zero)>,
+    pub at_zero: Vec<(usize, Inequality)>,
     /// The lists of modes beyond; each differs in one contact. Where several inequalities are zero, so do combinations.
     pub neighbours: Vec<Vec<Mode>>,
-}
-
-/// An impulse inequality that is zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Zero {
-    /// The contact is closed without being pressed, L_n = 0.
-    NormalImpulse,
-    /// With infinite friction: it slides without friction, L_t = 0.
-    TangentialImpulse,
-    /// It sticks with all its friction, |L_t| = mu L_n.
-    FrictionCone,
-}
-
-impl fmt::Display for Zero {
-    /// As an equation.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::NormalImpulse => "L_n = 0",
-            Self::TangentialImpulse => "L_t = 0",
-            Self::FrictionCone => "|L_t| = mu L_n",
-        })
-    }
 }
 
 impl Outcome {
@@ -142,40 +118,22 @@ pub struct Rejection {
     /// One mode per contact.
     pub modes: Vec<Mode>,
     /// Why it is none.
-    pub because: Because,
+    pub because: RejectionReason,
     /// The smallest slack, negative and free of units; none where the combination has no solution at all.
     pub margin: Option<f64>,
     /// What it would have needed and led to; none where its equations have no solution.
     pub motion: Option<Motion>,
 }
 
-/// The inequality that excludes a combination most clearly; `contact` counts from 0.
+/// Why a combination is no outcome; `contact` counts from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Because {
-    /// A closed contact with L_n < 0.
-    Pulled {
+pub enum RejectionReason {
+    /// The inequality that is violated most clearly.
+    Violated {
         /// The contact.
         contact: usize,
-    },
-    /// A separating contact with xi_n < 0.
-    Penetrates {
-        /// The contact.
-        contact: usize,
-    },
-    /// A sticking contact with |L_t| > mu L_n.
-    NeedsFriction {
-        /// The contact.
-        contact: usize,
-    },
-    /// A sliding contact whose velocity after points against its mode.
-    SlidesBackward {
-        /// The contact.
-        contact: usize,
-    },
-    /// With infinite friction: a sliding contact whose friction impulse would drive the slide.
-    FrictionPushes {
-        /// The contact.
-        contact: usize,
+        /// Its inequality.
+        inequality: Inequality,
     },
     /// A frictionless contact that would stick although it moves along the ground.
     NothingHolds {
@@ -190,21 +148,15 @@ pub enum Because {
     OnBorder,
 }
 
-impl Because {
+impl RejectionReason {
     /// The reason as a clause about the contacts' names, as in `left_foot is pulled toward the ground`.
     pub fn describe(&self, names: &[String]) -> String {
         match *self {
-            Because::Pulled { contact } => format!("{} is pulled toward the ground", names[contact]),
-            Because::Penetrates { contact } => format!("{} moves into the ground", names[contact]),
-            Because::NeedsFriction { contact } => format!("{} needs more friction than there is", names[contact]),
-            Because::SlidesBackward { contact } => {
-                format!("{} moves against its own sliding direction", names[contact])
-            }
-            Because::FrictionPushes { contact } => format!("friction at {} drives the slide", names[contact]),
-            Because::NothingHolds { contact } => format!("{} slides and has no friction to stop it", names[contact]),
-            Because::NoSolution => "no solution".to_owned(),
-            Because::RedundantTwin => "covered by a redundant twin".to_owned(),
-            Because::OnBorder => "has the velocity of other modes, on their border".to_owned(),
+            Self::Violated { contact, inequality } => inequality.violated_by(&names[contact]),
+            Self::NothingHolds { contact } => format!("{} slides and has no friction to stop it", names[contact]),
+            Self::NoSolution => "no solution".to_owned(),
+            Self::RedundantTwin => "covered by a redundant twin".to_owned(),
+            Self::OnBorder => "has the velocity of other modes, on their border".to_owned(),
         }
     }
 }
@@ -217,13 +169,14 @@ pub struct Explanation {
     /// Angle of the impulse that the contact takes over from the rest, atan2(X_n, X_t) \[rad\].
     pub gamma: Vec<f64>,
     /// What infinite friction does there.
-    pub region: Vec<Region>,
+    pub region: Vec<ImpulseRegion>,
 }
 
 /// The paper's regions of the plane of gamma and beta, for infinite friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Region {
+#[cfg_attr(feature = "schema", schemars(rename = "Region"))]
+pub enum ImpulseRegion {
     /// Lift-off.
     A,
     /// Slides, whatever the friction.

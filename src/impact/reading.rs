@@ -2,10 +2,10 @@
 
 use super::bound::Bound;
 use super::enumerate::Leaf;
-use super::mode::{Friction, Mode};
-use super::outcome::Because;
+use super::outcome::RejectionReason;
 use super::problem::ContactProblem;
-use super::sign::{Scale, Slack, SlackKind, slacks};
+use super::sign::{Scale, Slack, slacks};
+use crate::law::{ContactLaw, Inequality, Law, Mode};
 use crate::scalar::{Ordered, Real, Sign};
 
 /// What the slacks of a combination say.
@@ -14,11 +14,11 @@ pub struct Reading {
     /// Valid, rejected or not told; never zero.
     pub sign: Sign,
     /// Why not, where rejected.
-    pub because: Because,
+    pub because: RejectionReason,
     /// The smallest slack, free of units.
     pub margin: Option<f64>,
     /// The impulse inequalities that are exactly zero, by contact.
-    pub at_zero: Vec<(usize, SlackKind)>,
+    pub at_zero: Vec<(usize, Inequality)>,
 }
 
 /// Reads a leaf's f64 numbers, known to `bound`.
@@ -31,58 +31,56 @@ pub fn read_f64(
     explain: bool,
 ) -> Reading {
     let (velocity, impulse) = (bound.velocity_error(), bound.impulse_error());
-    let factor = |slack: &Slack<f64>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
     let speed = |contact: usize, c_t: f64| Sign::within(c_t / scale.speed / scale.mobility[2 * contact], velocity);
-    read(leaf, modes, problem.friction(), explain, speed, |slack| {
-        let scaled = slack.number / scale.speed * factor(slack);
-        (Sign::within(scaled, if slack.kind.is_strict() { velocity } else { impulse }), scaled)
+    read(leaf, modes, problem.laws(), explain, speed, |slack| {
+        let scaled = scale.scaled(*slack);
+        (Sign::within(scaled, if slack.condition.inequality.is_strict() { velocity } else { impulse }), scaled)
     })
 }
 
 /// Reads a leaf whose numbers know their own sign.
 pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Reading {
-    let factor = |slack: &Slack<T>| scale.factor(slack.kind, slack.contact, problem.friction()[slack.contact]);
-    read(
-        leaf,
-        modes,
-        problem.friction(),
-        true,
-        |_, c_t| c_t.sign(),
-        |slack| (slack.number.sign(), slack.number.to_f64() / scale.speed * factor(slack)),
-    )
+    let scaled = |slack: &Slack<T>| scale.scaled((*slack).map(T::to_f64));
+    read(leaf, modes, problem.laws(), true, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
 }
 
 /// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one.
 fn read<T: Real>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
-    friction: &[Friction],
+    laws: &[Law],
     explain: bool,
     speed: impl Fn(usize, T) -> Sign,
     slack: impl Fn(&Slack<T>) -> (Sign, f64),
 ) -> Reading {
-    let mut reading = Reading { sign: Sign::Positive, because: Because::NoSolution, margin: None, at_zero: Vec::new() };
-    for (contact, &mode) in modes.iter().enumerate() {
-        if mode == Mode::Stick && friction[contact].is_zero() {
+    let mut reading =
+        Reading { sign: Sign::Positive, because: RejectionReason::NoSolution, margin: None, at_zero: Vec::new() };
+    for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
+        if law.is_unheld(mode) {
             match speed(contact, leaf.numbers(contact)[0]) {
                 Sign::Zero => {}
                 Sign::Undecided => reading.sign = Sign::Undecided,
                 Sign::Positive | Sign::Negative => {
                     // Two equations for one impulse: no slack measures how far they are from agreeing.
-                    return Reading { sign: Sign::Negative, because: Because::NothingHolds { contact }, ..reading };
+                    return Reading {
+                        sign: Sign::Negative,
+                        because: RejectionReason::NothingHolds { contact },
+                        ..reading
+                    };
                 }
             }
         }
     }
     let mut done = false;
-    slacks(leaf, modes, friction, |entry| {
+    slacks(leaf, modes, laws, |entry| {
         if done {
             return;
         }
         let (sign, scaled) = slack(&entry);
+        let (contact, inequality) = (entry.contact, entry.condition.inequality);
         let violated = match sign {
-            Sign::Negative => Some(entry.kind.violation(entry.contact)),
-            Sign::Zero if entry.kind.is_strict() => Some(Because::OnBorder),
+            Sign::Negative => Some(RejectionReason::Violated { contact, inequality }),
+            Sign::Zero if inequality.is_strict() => Some(RejectionReason::OnBorder),
             _ => None,
         };
         let least = reading.margin.is_none_or(|margin| scaled < margin);
@@ -95,9 +93,8 @@ fn read<T: Real>(
         } else if sign == Sign::Undecided && reading.sign == Sign::Positive {
             reading.sign = Sign::Undecided;
         }
-        let place = (entry.contact, entry.kind);
-        if sign == Sign::Zero && !reading.at_zero.contains(&place) {
-            reading.at_zero.push(place);
+        if sign == Sign::Zero && !reading.at_zero.contains(&(contact, inequality)) {
+            reading.at_zero.push((contact, inequality));
         }
         if least {
             reading.margin = Some(scaled);

@@ -13,11 +13,11 @@
 use super::generators::Generators;
 use super::index::index;
 use super::linear::{Affine, Solutions, Unsettled, maximize, settled, solve, widest};
-use super::mode::{Friction, Mode};
-use super::outcome::{Because, Motion, Range};
+use super::outcome::{Motion, Range, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
-use super::sign::{Scale, SlackKind};
+use super::sign::Scale;
+use crate::law::{Condition, ContactLaw, Inequality, Mode};
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
@@ -30,7 +30,7 @@ pub enum Judged {
     /// It is no outcome.
     Rejected {
         /// Why.
-        because: Because,
+        because: RejectionReason,
         /// The smallest slack, where there is one.
         margin: Option<f64>,
         /// What it would have been, where its equations have a solution.
@@ -54,7 +54,7 @@ pub struct Member {
     /// Least and greatest of every impulse's entry; none where the impulse is the only one.
     pub range: Option<Vec<[Range; 2]>>,
     /// The impulse inequalities that are zero for every admissible impulse, by contact.
-    pub at_zero: Vec<(usize, SlackKind)>,
+    pub at_zero: Vec<(usize, Inequality)>,
     /// Sign of det B; none on a border.
     pub index: Option<i8>,
     /// How far velocity and impulse may be off, in the scale of margins.
@@ -62,9 +62,9 @@ pub struct Member {
 }
 
 /// An inequality on the solutions, in the scale of margins.
-struct Inequality<T> {
+struct Constraint<T> {
     contact: usize,
-    kind: SlackKind,
+    inequality: Inequality,
     function: Affine<T>,
 }
 
@@ -75,7 +75,7 @@ pub fn judge<T: Ordered>(
     scale: &Scale,
     modes: &[Mode],
 ) -> Result<Judged, Unsettled> {
-    let generators = Generators::of(modes, problem.friction());
+    let generators = Generators::of(modes, problem.laws());
     let equations = zero_rows(modes)
         .map(|row| {
             let mut equation = generators.velocity_row(problem, row);
@@ -84,18 +84,15 @@ pub fn judge<T: Ordered>(
         })
         .collect();
     let Some(solutions) = solve(generators.count(), equations)? else {
-        return Ok(Judged::Rejected { because: Because::NoSolution, margin: None, motion: None });
+        return Ok(Judged::Rejected { because: RejectionReason::NoSolution, margin: None, motion: None });
     };
     Combination { problem, rounded, scale, modes, generators }.weigh(&solutions)
 }
 
 /// The velocity rows that a combination sets to zero.
 fn zero_rows(modes: &[Mode]) -> impl Iterator<Item = usize> {
-    modes.iter().enumerate().flat_map(|(contact, &mode)| {
-        let tangential = (mode == Mode::Stick).then_some(2 * contact);
-        let normal = (mode != Mode::Separate).then_some(2 * contact + 1);
-        tangential.into_iter().chain(normal)
-    })
+    let rows = modes.iter().flat_map(|mode| mode.velocity()).enumerate();
+    rows.filter_map(|(row, sign)| (sign == Some(Ordering::Equal)).then_some(row))
 }
 
 /// A combination of modes and all that it is read with.
@@ -111,9 +108,9 @@ impl<T: Ordered> Combination<'_, T> {
     fn weigh(&self, solutions: &Solutions<T>) -> Result<Judged, Unsettled> {
         let inequalities = self.inequalities(solutions);
         let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
-        for inequality in inequalities.iter().filter(|inequality| inequality.kind.is_strict()) {
+        for inequality in inequalities.iter().filter(|inequality| inequality.inequality.is_strict()) {
             if inequality.function.is_constant()? && settled(inequality.function.constant)?.is_eq() {
-                return Ok(Judged::Rejected { because: Because::RedundantTwin, margin: None, motion: None });
+                return Ok(Judged::Rejected { because: RejectionReason::RedundantTwin, margin: None, motion: None });
             }
         }
         let dimension = solutions.directions.len();
@@ -132,7 +129,7 @@ impl<T: Ordered> Combination<'_, T> {
         }
         // The rim of a family belongs to other modes; some velocity of its own must be left.
         if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
-            return Ok(Judged::Rejected { because: Because::RedundantTwin, margin: None, motion: None });
+            return Ok(Judged::Rejected { because: RejectionReason::RedundantTwin, margin: None, motion: None });
         }
         let ends = [T::one(), -T::one()].map(|sign| self.end(solutions, &inside, sign));
         let [greatest, least] = ends;
@@ -149,68 +146,51 @@ impl<T: Ordered> Combination<'_, T> {
     }
 
     /// Every inequality of the modes.
-    fn inequalities(&self, solutions: &Solutions<T>) -> Vec<Inequality<T>> {
+    fn inequalities(&self, solutions: &Solutions<T>) -> Vec<Constraint<T>> {
         let problem = self.problem;
         let by_speed = T::one() / T::from_f64(self.scale.speed);
         let mut all = Vec::new();
-        for (contact, (&mode, &friction)) in self.modes.iter().zip(problem.friction()).enumerate() {
-            let (t, n) = (2 * contact, 2 * contact + 1);
-            let mut tell = |kind, constant: T, coefficients: Vec<T>| {
-                let factor = T::from_f64(self.scale.factor(kind, contact, friction)) * by_speed;
-                let coefficients: Vec<T> = coefficients.into_iter().map(|entry| factor * entry).collect();
-                let function = solutions.affine(factor * constant, &coefficients);
-                all.push(Inequality { contact, kind, function });
-            };
-            let (along, pressed) = (self.generators.impulse_row::<T>(t), self.generators.impulse_row::<T>(n));
-            match mode {
-                Mode::Separate => {
-                    tell(SlackKind::Separation, problem.free_row(n), self.generators.velocity_row(problem, n));
-                }
-                Mode::Stick => {
-                    if let Friction::Finite(mu) = friction
-                        && mu > 0.0
-                    {
-                        for side in [-1.0, 1.0] {
-                            let (reach, side) = (T::from_f64(mu), T::from_f64(side));
-                            let cone = pressed.iter().zip(&along).map(|(&l_n, &l_t)| reach * l_n + side * l_t);
-                            tell(SlackKind::Cone, T::zero(), cone.collect());
-                        }
+        for (contact, (&mode, law)) in self.modes.iter().zip(problem.laws()).enumerate() {
+            law.conditions(mode, |condition: Condition| {
+                let rows: [(T, Vec<T>); 2] = [0, 1].map(|which| match condition.inequality.is_strict() {
+                    true => {
+                        let row = 2 * contact + which;
+                        (problem.free_row(row), self.generators.velocity_row(problem, row))
                     }
-                    tell(SlackKind::Pressure, T::zero(), pressed);
-                }
-                Mode::SlidePlus | Mode::SlideMinus => {
-                    let direction = T::from_f64(mode.direction());
-                    match friction {
-                        Friction::Infinite => {
-                            tell(SlackKind::Drag, T::zero(), along.iter().map(|&entry| -direction * entry).collect());
-                        }
-                        Friction::Finite(_) => tell(SlackKind::Pressure, T::zero(), pressed),
-                    }
-                    let slip = self.generators.velocity_row(problem, t);
-                    let slip = slip.iter().map(|&entry| direction * entry).collect();
-                    tell(SlackKind::Slip, direction * problem.free_row(t), slip);
-                }
-            }
+                    false => (T::zero(), self.generators.number_row(contact, which)),
+                });
+                let factor = T::from_f64(self.scale.factor(contact, &condition)) * by_speed;
+                let scaled = |number: &dyn Fn(usize) -> T| factor * condition.function.at(number, T::from_f64);
+                let coefficients: Vec<T> =
+                    (0..self.generators.count()).map(|at| scaled(&|which| rows[which].1[at])).collect();
+                let function = solutions.affine(scaled(&|which| rows[which].0), &coefficients);
+                all.push(Constraint { contact, inequality: condition.inequality, function });
+            });
         }
         all
     }
 
-    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Inequality<T>], y: &[T]) -> Judged {
+    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Constraint<T>], y: &[T]) -> Judged {
         let values = inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
-        let worst = values.min_by(|a, b| a.1.total_cmp(&b.1));
+        // The linear program makes several equally bad; of one contact's the cone is named.
+        let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
+        let worst = values.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| order(a.0).cmp(&order(b.0))));
         Judged::Rejected {
-            because: worst.map_or(Because::NoSolution, |(worst, _)| worst.kind.violation(worst.contact)),
+            because: worst.map_or(RejectionReason::NoSolution, |(worst, _)| RejectionReason::Violated {
+                contact: worst.contact,
+                inequality: worst.inequality,
+            }),
             margin: worst.map(|(_, value)| value),
             motion: Some(self.motion(solutions, y, self.modes)),
         }
     }
 
     /// Whether some point where no inequality is negative has every strict one above zero.
-    fn has_own_velocity(&self, inequalities: &[Inequality<T>], inside: &[T]) -> Result<bool, Unsettled> {
+    fn has_own_velocity(&self, inequalities: &[Constraint<T>], inside: &[T]) -> Result<bool, Unsettled> {
         // Unknowns y and s, s at most every strict inequality and at most 1: can it be positive?
-        let shifted = |inequality: &Inequality<T>| {
+        let shifted = |inequality: &Constraint<T>| {
             let mut coefficients = inequality.function.coefficients.clone();
-            coefficients.push(if inequality.kind.is_strict() { -T::one() } else { T::zero() });
+            coefficients.push(if inequality.inequality.is_strict() { -T::one() } else { T::zero() });
             Affine { constant: inequality.function.at(inside), coefficients }
         };
         let mut rows: Vec<Affine<T>> = inequalities.iter().map(shifted).collect();
@@ -269,11 +249,7 @@ impl<T: Ordered> Combination<'_, T> {
         for (contact, mode) in modes.iter_mut().enumerate() {
             let closed = *mode != Mode::Separate || settled(self.velocity(space, 2 * contact + 1).constant)?.is_eq();
             if closed && *mode != Mode::Stick {
-                *mode = match settled(self.velocity(space, 2 * contact).constant)? {
-                    Ordering::Greater => Mode::SlidePlus,
-                    Ordering::Equal => Mode::Stick,
-                    Ordering::Less => Mode::SlideMinus,
-                };
+                *mode = Mode::closed(settled(self.velocity(space, 2 * contact).constant)?);
             }
         }
         Ok(modes)
@@ -284,13 +260,13 @@ impl<T: Ordered> Combination<'_, T> {
         let inequalities = self.inequalities(space);
         let dimension = space.directions.len();
         // Velocities are settled; only impulses still depend on y.
-        let pressing: Vec<&Inequality<T>> =
-            inequalities.iter().filter(|inequality| !inequality.kind.is_strict()).collect();
+        let pressing: Vec<&Constraint<T>> =
+            inequalities.iter().filter(|inequality| !inequality.inequality.is_strict()).collect();
         let shifted: Vec<Affine<T>> = pressing
             .iter()
             .map(|each| Affine { constant: each.function.at(inside), coefficients: each.function.coefficients.clone() })
             .collect();
-        let mut at_zero: Vec<(usize, SlackKind)> = Vec::new();
+        let mut at_zero: Vec<(usize, Inequality)> = Vec::new();
         if settled(least)?.is_eq() {
             for (inequality, function) in pressing.iter().zip(&shifted) {
                 let vanishes = settled(function.constant)?.is_eq()
@@ -298,7 +274,7 @@ impl<T: Ordered> Combination<'_, T> {
                         Some(best) => settled(function.at(&best))?.is_eq(),
                         None => false,
                     };
-                let entry = (inequality.contact, inequality.kind);
+                let entry = (inequality.contact, inequality.inequality);
                 if vanishes && !at_zero.contains(&entry) {
                     at_zero.push(entry);
                 }

@@ -8,7 +8,7 @@
 //!
 //! All other contacts stick.
 
-use super::outcome::{Explanation, Region};
+use super::outcome::{Explanation, ImpulseRegion};
 use super::problem::ContactProblem;
 use super::sign::Scale;
 use nalgebra::{DMatrix, DVector};
@@ -39,16 +39,16 @@ pub fn explanation(problem: &ContactProblem, scale: &Scale) -> Option<Explanatio
 }
 
 /// The region of the paper's figure 10 for beta < 0, and its mirror image for beta > 0.
-fn region(beta: f64, gamma: f64) -> Region {
+fn region(beta: f64, gamma: f64) -> ImpulseRegion {
     let (beta, gamma) = if beta <= 0.0 { (beta, gamma) } else { (-beta, mirrored(gamma)) };
     if beta < gamma && gamma < 0.0 {
-        Region::E
+        ImpulseRegion::E
     } else if 0.0 < gamma && gamma < PI + beta {
-        Region::A
+        ImpulseRegion::A
     } else if PI + beta < gamma && gamma < PI {
-        Region::B
+        ImpulseRegion::B
     } else {
-        Region::C
+        ImpulseRegion::C
     }
 }
 
@@ -60,10 +60,11 @@ fn mirrored(gamma: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::{Errors, Friction};
+    use crate::impact::Errors;
+    use crate::law::Friction;
 
     /// The paper's body: m = 1, CoG at (-1, 1), j = 1; beta = -26.565 degrees.
-    fn explain(taken: [f64; 2]) -> (f64, f64, Region) {
+    fn explain(taken: [f64; 2]) -> (f64, f64, ImpulseRegion) {
         // c = G X.
         let before = [2.0 * taken[0] + taken[1], taken[0] + 2.0 * taken[1]];
         let problem =
@@ -78,12 +79,12 @@ mod tests {
     fn the_paper_s_body_has_its_regions() {
         let beta = (-0.5_f64).atan();
         for (gamma, expected) in [
-            (beta / 2.0, Region::E),
-            (beta - 0.1, Region::C),
-            (1.0, Region::A),
-            (PI + beta - 0.01, Region::A),
-            (PI + beta + 0.01, Region::B),
-            (-PI + 0.1, Region::C),
+            (beta / 2.0, ImpulseRegion::E),
+            (beta - 0.1, ImpulseRegion::C),
+            (1.0, ImpulseRegion::A),
+            (PI + beta - 0.01, ImpulseRegion::A),
+            (PI + beta + 0.01, ImpulseRegion::B),
+            (-PI + 0.1, ImpulseRegion::C),
         ] {
             let (found_beta, found_gamma, region) = explain([gamma.cos(), gamma.sin()]);
             assert_eq!(region, expected, "gamma {gamma}");
@@ -97,6 +98,6 @@ mod tests {
         for gamma in [-3.0, -1.5, -0.2, 0.2, 1.5, 2.9] {
             assert_eq!(region(-0.4, gamma), region(0.4, mirrored(gamma)));
         }
-        assert_eq!(region(0.4, 0.2), Region::B);
+        assert_eq!(region(0.4, 0.2), ImpulseRegion::B);
     }
 }

@@ -1,96 +1,47 @@
-//! From numbers to signs: the slacks of a combination's inequalities and what they say.
-//!
-//! ```text
-//!     separate  xi_n > 0      stick  L_n >= 0,  a L_n -+ b L_t >= 0      slide+-  +-c_t > 0,  lambda >= 0
-//! ```
-//!
-//! A [`Sign`](crate::scalar::Sign) is told only where the number's error bound allows it.
+//! From numbers to signs: the slacks of a combination's inequalities, free of units.
 
 use super::enumerate::Leaf;
-use super::mode::{Friction, Mode};
-use super::outcome::Because;
 use super::problem::{ContactProblem, Errors};
+use crate::law::{Condition, ContactLaw, Law, Mode};
 use crate::planar::Vector;
 use crate::scalar::{Ordered, Real};
 
-/// What an inequality is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SlackKind {
-    /// xi_n of a separating contact; must be positive.
-    Separation,
-    /// L_n of a closed contact.
-    Pressure,
-    /// a L_n - b |L_t| of a sticking contact, as two slacks.
-    Cone,
-    /// +-c_t of a sliding contact; must be positive.
-    Slip,
-    /// With infinite friction: -+L_t of a sliding contact.
-    Drag,
-}
-
-/// One inequality of a combination: `number >= 0`, or `> 0` where it is strict.
+/// One inequality of a combination and its value.
 #[derive(Debug, Clone, Copy)]
 pub struct Slack<T> {
     /// The contact, from 0.
     pub contact: usize,
-    /// What it is about.
-    pub kind: SlackKind,
+    /// The inequality.
+    pub condition: Condition,
     /// Its value, with its unit.
     pub number: T,
 }
 
-impl SlackKind {
-    /// Whether the strict modes exclude zero (a velocity of zero belongs to another list of modes).
-    pub fn is_strict(self) -> bool {
-        matches!(self, SlackKind::Separation | SlackKind::Slip)
-    }
-
-    /// What a negative slack means.
-    pub fn violation(self, contact: usize) -> Because {
-        match self {
-            SlackKind::Separation => Because::Penetrates { contact },
-            SlackKind::Pressure => Because::Pulled { contact },
-            SlackKind::Cone => Because::NeedsFriction { contact },
-            SlackKind::Slip => Because::SlidesBackward { contact },
-            SlackKind::Drag => Because::FrictionPushes { contact },
-        }
+impl<T> Slack<T> {
+    /// The same in another number.
+    #[inline]
+    pub fn map<U>(self, number: impl FnOnce(T) -> U) -> Slack<U> {
+        Slack { contact: self.contact, condition: self.condition, number: number(self.number) }
     }
 }
 
-/// Calls `visitor` with every slack of the combination `modes` (frictionless contacts have their own mode here, not the
-/// leaf's common one). A frictionless contact that sticks has the equality c_t = 0, which is no slack.
-pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], friction: &[Friction], mut visitor: impl FnMut(Slack<T>)) {
-    for (contact, (&mode, &friction)) in modes.iter().zip(friction).enumerate() {
-        let [first, second] = leaf.numbers(contact);
-        let mut tell = |kind, number| visitor(Slack { contact, kind, number });
-        match mode {
-            Mode::Separate => tell(SlackKind::Separation, second),
-            Mode::Stick => {
-                tell(SlackKind::Pressure, second);
-                if let Friction::Finite(mu) = friction
-                    && mu > 0.0
-                {
-                    let reach = T::from_f64(mu) * second;
-                    tell(SlackKind::Cone, reach - first);
-                    tell(SlackKind::Cone, reach + first);
-                }
-            }
-            Mode::SlidePlus | Mode::SlideMinus => {
-                let kind = if friction == Friction::Infinite { SlackKind::Drag } else { SlackKind::Pressure };
-                tell(kind, second);
-                tell(SlackKind::Slip, if mode == Mode::SlidePlus { first } else { -first });
-            }
-        }
+/// Calls `visitor` with every slack of the combination `modes`, which the leaf's modes stand for.
+pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], mut visitor: impl FnMut(Slack<T>)) {
+    for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
+        let numbers = leaf.numbers(contact);
+        law.conditions(mode, |condition| {
+            let number = condition.function.at(|which| numbers[which], T::from_f64);
+            visitor(Slack { contact, condition, number });
+        });
     }
 }
 
 /// The problem's own magnitudes, which make slacks free of units.
 ///
-/// With S = max |c_free| / sqrt(G_ii) \[sqrt J\]: a velocity counts c_i / (S sqrt(G_ii)), an impulse L_i sqrt(G_ii) / S, a
-/// cone (a L_n - b |L_t|) / (S sqrt(a^2 / G_nn + b^2 / G_tt)).
+/// With S = max |c_free| / sqrt(G_ii) \[sqrt J\]; see [`Condition::scale`].
 #[derive(Debug, Clone, Default)]
 pub struct Scale {
-    /// S \[sqrt J\]; 1 where nothing moves.
+    /// S \[sqrt J\]; 1 if nothing moves.
     pub speed: f64,
     /// sqrt(G_ii) of every row \[1/sqrt(kg)\]; of a row that nothing moves the largest of the others.
     pub mobility: Vec<f64>,
@@ -131,19 +82,16 @@ impl Scale {
         }
     }
 
-    /// What a slack of this kind, divided by S, is multiplied by to be free of units.
-    pub fn factor(&self, kind: SlackKind, contact: usize, friction: Friction) -> f64 {
-        let (d_t, d_n) = (self.mobility[2 * contact], self.mobility[2 * contact + 1]);
-        match kind {
-            SlackKind::Separation => 1.0 / d_n,
-            SlackKind::Slip => 1.0 / d_t,
-            SlackKind::Pressure => d_n,
-            SlackKind::Drag => d_t,
-            SlackKind::Cone => {
-                let (a, b) = friction.pair();
-                1.0 / (a / d_n).hypot(b / d_t)
-            }
-        }
+    /// A slack's value free of units.
+    #[inline]
+    pub fn scaled(&self, slack: Slack<f64>) -> f64 {
+        slack.number / self.speed * self.factor(slack.contact, &slack.condition)
+    }
+
+    /// What the value of a contact's inequality, divided by S, is multiplied by to be free of units.
+    #[inline]
+    pub fn factor(&self, contact: usize, condition: &Condition) -> f64 {
+        condition.scale([self.mobility[2 * contact], self.mobility[2 * contact + 1]])
     }
 
     /// How far velocities and impulses, by row, may be off: the largest error in the scale, relative to the largest of them

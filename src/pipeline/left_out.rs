@@ -2,7 +2,7 @@
 
 use super::Pipeline;
 use crate::contact::Contact;
-use crate::impact::Friction;
+use crate::law::{Friction, Law};
 use crate::state::Scene;
 
 /// Something that this scene does not need.
@@ -26,7 +26,7 @@ impl Pipeline<'_> {
         &self,
         scene: &Scene,
         contacts: &[Contact],
-        friction: &[Friction],
+        laws: &[Law],
         out_of_reach: usize,
     ) -> Vec<LeftOut> {
         let mut all = Vec::new();
@@ -39,8 +39,8 @@ impl Pipeline<'_> {
             None if out_of_reach > 0 => all.push(LeftOut::OutOfReach(out_of_reach)),
             _ => {}
         }
-        let with = |wanted: Friction| (0..contacts.len()).filter(|&at| friction[at] == wanted).collect::<Vec<_>>();
-        let [none, infinite] = [with(Friction::ZERO), with(Friction::Infinite)];
+        let with = |wanted: Law| (0..contacts.len()).filter(|&at| laws[at] == wanted).collect::<Vec<_>>();
+        let [none, infinite] = [Friction::ZERO, Friction::Infinite].map(|friction| with(friction.into()));
         if self.options.reductions.frictionless && !none.is_empty() {
             all.push(LeftOut::Tangential(none));
         }

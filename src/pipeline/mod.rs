@@ -22,7 +22,8 @@ use crate::dynamics::{
     contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::{Analysis, Asked, ContactProblem, Errors, Explain, Friction, Mode, Scratch};
+use crate::impact::{Analysis, Asked, ContactProblem, Errors, Explain, Scratch};
+use crate::law::{Friction, Mode};
 use crate::pipeline::robust::Holds;
 use crate::planar::{Rotation, Vector, scaled, sum};
 use crate::reductions::Reductions;
@@ -203,7 +204,7 @@ impl<'r> Pipeline<'r> {
             contacts: &contacts,
             resting: &resting,
             constraints: Constraints { kept: &kept, rows: &loops.rows },
-            friction: problem.friction(),
+            laws: problem.laws(),
             restitution: problem.restitution(),
             errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
         };
@@ -235,7 +236,7 @@ impl<'r> Pipeline<'r> {
             loop_impulse,
             matrices: self.options.matrices.then(|| self.matrices()),
             holds: None,
-            left_out: self.left_out(scene, &contacts, problem.friction(), out_of_reach),
+            left_out: self.left_out(scene, &contacts, problem.laws(), out_of_reach),
             analysis,
             placement,
             contacts,

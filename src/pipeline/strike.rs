@@ -7,7 +7,8 @@ use crate::dynamics::{
     articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix,
     orthogonalize, point_velocity,
 };
-use crate::impact::{ContactProblem, Errors, Friction, Source};
+use crate::impact::{ContactProblem, Errors, Source};
+use crate::law::Law;
 use crate::planar::{Vector, dot, sum};
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Trigonometry};
@@ -30,7 +31,7 @@ pub struct Strike<'a> {
     pub resting: &'a [bool],
     /// The joints that keep their rates although they have columns, and the rows of the loops that count.
     pub constraints: Constraints<'a>,
-    pub friction: &'a [Friction],
+    pub laws: &'a [Law],
     pub restitution: &'a [f64],
     pub errors: Errors<'a>,
 }
@@ -137,7 +138,7 @@ impl Strike<'_> {
 impl Source for Strike<'_> {
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
         let Contacts { delassus, before, free } = self.contacts(self.inputs());
-        ContactProblem::of_parts(delassus, before, free, self.friction.to_vec(), self.restitution.to_vec())
+        ContactProblem::of_parts(delassus, before, free, self.laws.to_vec(), self.restitution.to_vec())
     }
 
     fn errors(&self) -> Errors<'_> {

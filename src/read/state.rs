@@ -2,7 +2,7 @@
 
 use super::json::{Node, Value, id_in};
 use super::uncertainty::{self, uncertainty};
-use crate::impact::Friction;
+use crate::law::Friction;
 use crate::robot::Base;
 use crate::state::{AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, State};
 use crate::{Error, Reason, Result, Robot};

@@ -8,7 +8,7 @@ pub use ground::{Ground, Profile};
 pub use scene::{AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene};
 pub use uncertainty::Uncertainty;
 
-use crate::impact::Friction;
+use crate::law::Friction;
 
 /// A state just before the impact; every name in it is resolved to an index of its robot.
 #[derive(Debug, Clone, Default)]

@@ -1,7 +1,7 @@
 //! What surrounds the robot: ground, friction, restitution, held joints, loops, applied impulses.
 
 use super::ground::Ground;
-use crate::impact::Friction;
+use crate::law::Friction;
 use crate::planar::Vector;
 
 /// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).

@@ -9,7 +9,8 @@ use super::model::{Model, Solver};
 use super::parallel::Workers;
 use super::regime::Regime;
 use super::survey::{Region, Survey};
-use crate::impact::{Analysis, Explanation, Mode, Motion, Outcome};
+use crate::impact::{Analysis, Explanation, Motion, Outcome};
+use crate::law::Mode;
 use std::f64::consts::PI;
 
 /// The places of one region, ascending.

@@ -165,7 +165,8 @@ pub fn stretches(first: Point, last: Point, brackets: &[Bracket], resolution: f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::{Inequalities, Mode};
+    use crate::impact::Inequalities;
+    use crate::law::Mode;
 
     /// A landscape of one contact, which sticks where all its numbers are positive, and slides where they are not.
     struct Made<F>(F);

@@ -29,7 +29,7 @@ pub use model::{Model, Solver, WATCHED_CONTACTS, Watched};
 pub use parallel::Workers;
 pub use regime::Regime;
 pub use survey::{Border, Region, Survey};
-pub use turn::{Inequality, Side, Turn, Turns};
+pub use turn::{Side, Turn, Turns};
 
 use crate::Error;
 use std::sync::Arc;

@@ -3,7 +3,8 @@
 use super::Study;
 use super::regime::Regime;
 use crate::description::Description;
-use crate::impact::{Analysis, Inequalities, Mode, Verdict};
+use crate::impact::{Analysis, Inequalities, Verdict};
+use crate::law::Mode;
 use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
 use crate::state::{Defaults, State};

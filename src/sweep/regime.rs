@@ -1,6 +1,6 @@
 //! What happens at a point: the whole set of valid outcomes, or why there is none to tell.
 
-use crate::impact::Mode;
+use crate::law::Mode;
 use crate::pipeline::Impact;
 use crate::{Error, Reason, Result};
 use std::mem::{Discriminant, discriminant};

@@ -7,7 +7,8 @@
 use super::line::Bracket;
 use super::model::Solver;
 use super::regime::Regime;
-use crate::impact::{Analysis, Because, Mode, Outcome};
+use crate::impact::{Analysis, Outcome, RejectionReason};
+use crate::law::{Inequality, Mode};
 use crate::{Error, Result};
 use serde::Serialize;
 
@@ -41,47 +42,6 @@ impl Side {
         match self {
             Self::Below => Self::Above,
             Self::Above => Self::Below,
-        }
-    }
-}
-
-/// What of a contact is zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Inequality {
-    /// xi_n of a contact that separates.
-    NormalVelocity,
-    /// L_n of a closed contact.
-    NormalImpulse,
-    /// mu L_n - |L_t| of a sticking contact.
-    FrictionCone,
-    /// c_t+ of a sliding contact.
-    TangentialVelocity,
-    /// With infinite friction: L_t of a sliding contact.
-    TangentialImpulse,
-}
-
-impl Inequality {
-    /// As an equation.
-    pub fn equation(self) -> &'static str {
-        match self {
-            Self::NormalVelocity => "c_n+ = 0",
-            Self::NormalImpulse => "L_n = 0",
-            Self::FrictionCone => "|L_t| = mu L_n",
-            Self::TangentialVelocity => "c_t+ = 0",
-            Self::TangentialImpulse => "L_t = 0",
-        }
-    }
-
-    fn of(because: Because) -> Option<(usize, Self)> {
-        match because {
-            Because::Penetrates { contact } => Some((contact, Self::NormalVelocity)),
-            Because::Pulled { contact } => Some((contact, Self::NormalImpulse)),
-            Because::NeedsFriction { contact } => Some((contact, Self::FrictionCone)),
-            Because::SlidesBackward { contact } => Some((contact, Self::TangentialVelocity)),
-            Because::FrictionPushes { contact } => Some((contact, Self::TangentialImpulse)),
-            Because::NothingHolds { .. } | Because::NoSolution | Because::RedundantTwin | Because::OnBorder => None,
         }
     }
 }
@@ -164,7 +124,7 @@ fn ending((names, here): &(Vec<String>, Analysis), there: &Analysis, side: Side)
             return None;
         }
         let rejection = there.rejected.iter().find(|rejection| rejection.modes == *modes)?;
-        let (contact, inequality) = Inequality::of(rejection.because)?;
+        let RejectionReason::Violated { contact, inequality } = rejection.because else { return None };
         Some(Turn { modes: modes.clone(), side, contact: names.get(contact)?.clone(), inequality })
     };
     here.outcomes.iter().filter_map(turn).collect()

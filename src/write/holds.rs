@@ -2,7 +2,8 @@
 
 use super::NamedVelocities;
 use crate::Robot;
-use crate::impact::{Friction, Mode, Verdict};
+use crate::impact::Verdict;
+use crate::law::{Friction, Mode};
 use crate::pipeline::robust;
 use crate::state::State;
 use crate::state::{ByLink, Ground};

@@ -2,7 +2,7 @@
 
 use crate::Robot;
 use crate::impact::outcome::{self, Range};
-use crate::impact::{Mode, Zero};
+use crate::law::{Inequality, Mode};
 use crate::planar::Vector;
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
@@ -70,7 +70,19 @@ pub struct AtZero<'a> {
     /// The contact's name.
     pub contact: &'a str,
     /// What is zero there.
-    pub inequality: Zero,
+    #[cfg_attr(feature = "schema", schemars(schema_with = "of_impulses"))]
+    pub inequality: Inequality,
+}
+
+/// The inequalities that an outcome's border can have: a velocity of zero belongs to another outcome.
+#[cfg(feature = "schema")]
+fn of_impulses(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    let mut schema = <Inequality as schemars::JsonSchema>::json_schema(generator);
+    if let Some(serde_json::Value::Array(names)) = schema.get_mut("oneOf") {
+        let known = Inequality::OF_IMPULSES.map(|inequality| serde_json::json!(inequality));
+        names.retain(|name| known.contains(&name["const"]));
+    }
+    schema
 }
 
 /// Velocities by name, written as an object in the order of q.
@@ -112,7 +124,7 @@ fn is_false(flag: &bool) -> bool {
 
 impl<'a> Outcome<'a> {
     pub(super) fn new(outcome: &'a outcome::Outcome, name: impl Fn(usize) -> &'a str) -> Self {
-        let at_zero = |&(contact, inequality): &(usize, Zero)| AtZero { contact: name(contact), inequality };
+        let at_zero = |&(contact, inequality): &(usize, Inequality)| AtZero { contact: name(contact), inequality };
         Self {
             modes: &outcome.modes,
             impulse: &outcome.impulse,

@@ -9,7 +9,8 @@ use super::outcome::{Outcome, OutcomeInBrief};
 #[cfg(feature = "schema")]
 use super::schema::Id;
 use super::touchdown::{CarriedFields, Touchdown};
-use crate::impact::{Analysis, Explanation, Mode, Region, Verdict, outcome};
+use crate::impact::{Analysis, Explanation, ImpulseRegion, Verdict, outcome};
+use crate::law::Mode;
 use crate::pipeline::{Impact, Matrices};
 use crate::planar::Vector;
 use crate::read::Problem;
@@ -189,7 +190,7 @@ pub struct Explained<'a> {
     /// Angle of the impulse that the contact takes over from the rest \[rad\].
     pub gamma: &'a [f64],
     /// What infinite friction does there.
-    pub region: &'a [Region],
+    pub region: &'a [ImpulseRegion],
 }
 
 /// The result in brief.

@@ -1,7 +1,8 @@
 //! Names, modes, verdicts and grades in words.
 
 use super::text::table::number;
-use crate::impact::{Mode, Verdict};
+use crate::impact::Verdict;
+use crate::law::Mode;
 use serde_json::Value;
 
 /// `ramone (k17)`.

@@ -5,7 +5,8 @@ use super::moving::Moving;
 use crate::Result;
 use crate::accuracy::pose::Pose;
 use crate::dynamics::{add_impulse, kinetic_energy};
-use crate::impact::{Analysis, ContactProblem, Mode, Outcome};
+use crate::impact::{Analysis, ContactProblem, Outcome};
+use crate::law::Mode;
 use crate::planar::{Vector, scaled, sum};
 use serde::Serialize;
 
@@ -207,7 +208,7 @@ fn by_stiffness_of_moving(
     outcomes: &[Outcome],
     energy: f64,
 ) -> Result<Vec<ByStiffness>> {
-    let (computation, friction) = (pose.computed(), problem.friction().to_vec());
+    let (computation, friction) = (pose.computed(), problem.friction().collect::<Vec<_>>());
     let (plan, workspace) = (computation.plan(), computation.workspace());
     let before = computation.velocity();
     let after = |impulse: &[Vector<f64>]| {

@@ -11,7 +11,8 @@
 //! Source: Brogliato, *Nonsmooth Mechanics* (2016), section 2.1.
 
 use super::integrate::{End, Equations, Limits, integrate};
-use crate::impact::{ContactProblem, Friction};
+use crate::impact::ContactProblem;
+use crate::law::Friction;
 use crate::planar::Vector;
 use crate::{Reason, Result};
 use differential_equations::linalg::Matrix;
@@ -113,8 +114,7 @@ impl Model {
             free: problem.velocity_free().iter().map(|c| c.map(|entry| entry / speed)).collect(),
             friction: problem
                 .friction()
-                .iter()
-                .map(|friction| match *friction {
+                .map(|friction| match friction {
                     Friction::Finite(mu) => mu.min(GREATEST_FRICTION),
                     Friction::Infinite => GREATEST_FRICTION,
                 })

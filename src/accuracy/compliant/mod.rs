@@ -19,7 +19,8 @@ pub use moving::Moving;
 mod tests {
     use super::*;
     use crate::accuracy::{Pose, robots};
-    use crate::impact::{ContactProblem, Friction, analyse};
+    use crate::impact::{ContactProblem, analyse};
+    use crate::law::Friction;
     use crate::pipeline::{Options, Pipeline};
     use crate::state::{Defaults, State};
 

@@ -14,7 +14,7 @@ use crate::dynamics::plan::{Motion, Plan, Posture};
 use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
-use crate::impact::Friction;
+use crate::law::Friction;
 use crate::planar::{Vector, difference, dot, scaled, sum, turned};
 use crate::{Error, Reason};
 use differential_equations::ode::ODE;

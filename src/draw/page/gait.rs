@@ -5,7 +5,8 @@ use crate::draw::ListedKeyframe;
 use crate::draw::plot::{
     self, Arrangement, Band, Colour, Entry, Key, Legend, Mark, Panel, Picture, Rendered, Shape, Stroke,
 };
-use crate::impact::{Mode, Verdict};
+use crate::impact::Verdict;
+use crate::law::Mode;
 use serde_json::Value;
 
 /// States in their order, at most [`STILLS`] of them: of more every second, third ... one is kept.

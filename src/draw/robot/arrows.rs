@@ -6,7 +6,7 @@
 
 use super::{Drawing, Touch};
 use crate::contact::Contact;
-use crate::impact::Mode;
+use crate::law::Mode;
 use crate::pipeline::Impact;
 use crate::planar::Vector;
 use crate::robot::Robot;

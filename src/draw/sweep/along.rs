@@ -187,7 +187,7 @@ fn shown(points: &[Point]) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
     use crate::draw::plot::Key;
-    use crate::impact::Mode;
+    use crate::law::Mode;
     use crate::sweep::Regime;
 
     #[test]

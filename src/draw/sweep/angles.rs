@@ -10,7 +10,7 @@
 
 use super::place::{Box, clear_of};
 use crate::draw::plot::{Anchor, Axis, Colour, Entry, Key, Label, Panel, Point, Shape, Stroke};
-use crate::impact::{Explanation, Region};
+use crate::impact::{Explanation, ImpulseRegion};
 use crate::sweep::{Course, Survey};
 use std::f64::consts::PI;
 
@@ -94,9 +94,12 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
     let walls = borders.iter().map(|&at| vec![pixel((at, -PI)), pixel((at, PI))]);
     let all: Vec<Vec<Point>> = curve.iter().cloned().chain(walls).collect();
     shapes.extend(gamma.into_iter().map(|points| Shape::Line { points, stroke: GAMMA }));
-    for (region, words) in
-        [(Region::A, "lifts off"), (Region::B, "slides"), (Region::C, "stays"), (Region::E, "all three")]
-    {
+    for (region, words) in [
+        (ImpulseRegion::A, "lifts off"),
+        (ImpulseRegion::B, "slides"),
+        (ImpulseRegion::C, "stays"),
+        (ImpulseRegion::E, "all three"),
+    ] {
         let strips = |run: &Vec<Angles>| run.iter().map(|angles| strip(region, angles.beta, angles.at)).collect();
         let strips: Vec<Vec<(Point, Point)>> = runs.iter().map(strips).collect();
         let strips: Vec<Vec<(Point, Point)>> =
@@ -120,16 +123,16 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
 }
 
 /// The lower and the upper end of a region of gamma.
-fn strip(region: Region, beta: f64, at: f64) -> (Point, Point) {
+fn strip(region: ImpulseRegion, beta: f64, at: f64) -> (Point, Point) {
     let (low, high) = match (region, beta <= 0.0) {
-        (Region::A, true) => (0.0, PI + beta),
-        (Region::A, false) => (beta, PI),
-        (Region::B, true) => (PI + beta, PI),
-        (Region::B, false) => (0.0, beta),
-        (Region::C, true) => (-PI, beta),
-        (Region::C, false) => (beta - PI, 0.0),
-        (Region::E, true) => (beta, 0.0),
-        (Region::E, false) => (-PI, beta - PI),
+        (ImpulseRegion::A, true) => (0.0, PI + beta),
+        (ImpulseRegion::A, false) => (beta, PI),
+        (ImpulseRegion::B, true) => (PI + beta, PI),
+        (ImpulseRegion::B, false) => (0.0, beta),
+        (ImpulseRegion::C, true) => (-PI, beta),
+        (ImpulseRegion::C, false) => (beta - PI, 0.0),
+        (ImpulseRegion::E, true) => (beta, 0.0),
+        (ImpulseRegion::E, false) => (-PI, beta - PI),
     };
     ((at, low), (at, high))
 }
@@ -211,13 +214,14 @@ mod tests {
     #[test]
     fn strips_share_out_the_whole_turn() {
         for beta in [-1.2, -0.3, 0.3, 1.2] {
-            let strips = [Region::A, Region::B, Region::C, Region::E].map(|region| strip(region, beta, 0.0));
+            let strips = [ImpulseRegion::A, ImpulseRegion::B, ImpulseRegion::C, ImpulseRegion::E]
+                .map(|region| strip(region, beta, 0.0));
             let widths: f64 = strips.iter().map(|((_, low), (_, high))| high - low).sum();
             assert!((widths - 2.0 * PI).abs() < 1e-12, "{beta}");
             assert!(strips.iter().all(|((_, low), (_, high))| low < high && -PI <= *low && *high <= PI), "{beta}");
         }
         // Each the mirror image of the other: gamma against pi - gamma.
-        assert_eq!(strip(Region::B, -0.3, 0.0), ((0.0, PI - 0.3), (0.0, PI)));
-        assert_eq!(strip(Region::B, 0.3, 0.0), ((0.0, 0.0), (0.0, 0.3)));
+        assert_eq!(strip(ImpulseRegion::B, -0.3, 0.0), ((0.0, PI - 0.3), (0.0, PI)));
+        assert_eq!(strip(ImpulseRegion::B, 0.3, 0.0), ((0.0, 0.0), (0.0, 0.3)));
     }
 }

@@ -128,7 +128,7 @@ fn outline(Box { middle: (x, y), half: (across, up) }: &Box) -> Vec<Pixel> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::Mode;
+    use crate::law::Mode;
     use crate::sweep::Regime;
     use crate::sweep::{Curve, Turns};
 

@@ -2,7 +2,7 @@
 
 use super::{Kind, angles, is_seen};
 use crate::draw::plot::{Colour, Dash, Entry, Key, Stroke};
-use crate::impact::Mode;
+use crate::law::Mode;
 use crate::sweep::Survey;
 use crate::write::words;
 

@@ -2,7 +2,7 @@
 
 use super::ContactProblem;
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::mode::Friction;
+use crate::law::{ContactLaw, Friction};
 
 /// Matrices are formed for at most so many contacts, whether or not their outcomes are sought.
 pub const MATRIX_LIMIT: usize = 500;
@@ -57,7 +57,7 @@ impl ContactProblem {
             for entry in self.velocity_free[contact] {
                 finite(entry, || format!("the velocity of contact {contact} after the applied impulses"))?;
             }
-            if let Friction::Finite(mu) = self.friction[contact]
+            if let Friction::Finite(mu) = self.laws[contact].friction()
                 && !(mu.is_finite() && mu >= 0.0)
             {
                 let allowed = "zero, positive or \"infinite\"";

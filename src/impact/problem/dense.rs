@@ -3,7 +3,7 @@
 use super::checks::check_matrix_size;
 use super::{ContactProblem, Origin};
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::mode::Friction;
+use crate::law::Law;
 use crate::planar::Vector;
 use crate::scalar::Real;
 
@@ -64,7 +64,7 @@ impl ContactProblem {
         mass_matrix: &[Vec<f64>],
         contact_jacobian: &[Vec<f64>],
         velocity: &[f64],
-        friction: Vec<Friction>,
+        friction: Vec<impl Into<Law>>,
         restitution: Vec<f64>,
     ) -> Result<Self> {
         let dofs = velocity.len();

@@ -17,10 +17,10 @@ pub use source::{Errors, Source};
 
 use self::dense::Dynamics;
 use self::mend::{Rows, is_semidefinite};
-use super::mode::Friction;
 use crate::error::{Error, Reason, Result, finite};
+use crate::law::{ContactLaw, Friction, Law, restitution};
 use crate::planar::Vector;
-use crate::scalar::{Ordered, Real, Sign};
+use crate::scalar::{Ordered, Real};
 
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
 ///
@@ -35,7 +35,7 @@ pub struct ContactProblem<T = f64> {
     velocity_free: Vec<Vector<T>>,
     /// min(c_n-, 0) \[m/s\].
     approach: Vec<T>,
-    friction: Vec<Friction>,
+    laws: Vec<Law>,
     restitution: Vec<f64>,
     origin: Origin,
 }
@@ -72,9 +72,14 @@ impl<T: Real> ContactProblem<T> {
         &self.velocity_free
     }
 
+    /// The law of each contact.
+    pub fn laws(&self) -> &[Law] {
+        &self.laws
+    }
+
     /// Friction of each contact.
-    pub fn friction(&self) -> &[Friction] {
-        &self.friction
+    pub fn friction(&self) -> impl Iterator<Item = Friction> {
+        self.laws.iter().map(Law::friction)
     }
 
     /// Newton restitution of each contact.
@@ -84,7 +89,7 @@ impl<T: Real> ContactProblem<T> {
 
     /// What Newton's law adds to c_n+: e min(c_n-, 0), so that xi_n = c_n+ + bounce (Moreau's form) \[m/s\].
     pub fn bounce(&self, contact: usize) -> T {
-        T::from_f64(self.restitution[contact]) * self.approach[contact]
+        restitution::bounce(self.restitution[contact], self.approach[contact])
     }
 
     /// A row's velocity without impulses, with the bounce on a normal row: c_t, or xi_n = c_n + bounce.
@@ -101,7 +106,7 @@ impl<T: Real> ContactProblem<T> {
             velocity_before: vectors(&self.velocity_before),
             velocity_free: vectors(&self.velocity_free),
             approach: self.approach.iter().map(|&entry| number(entry)).collect(),
-            friction: self.friction.clone(),
+            laws: self.laws.clone(),
             restitution: self.restitution.clone(),
             origin: Origin::Given,
         }
@@ -109,22 +114,16 @@ impl<T: Real> ContactProblem<T> {
 }
 
 impl<T: Ordered> ContactProblem<T> {
-    /// A problem from numbers whose signs hang on their precision, already known to be one in f64.
+    /// A problem from numbers whose signs depend on their precision, already known to be one in f64.
     pub(crate) fn of_parts(
         delassus: Vec<T>,
         velocity_before: Vec<Vector<T>>,
         velocity_free: Vec<Vector<T>>,
-        friction: Vec<Friction>,
+        laws: Vec<Law>,
         restitution: Vec<f64>,
     ) -> Self {
-        let approach = |c: &Vector<T>| match c[1].sign() {
-            Sign::Negative => c[1],
-            Sign::Zero | Sign::Positive => T::zero(),
-            // No number at all, so that whatever hangs on it stays open.
-            Sign::Undecided => T::one() / T::zero(),
-        };
-        let approach = velocity_before.iter().map(approach).collect();
-        Self { delassus, velocity_before, velocity_free, approach, friction, restitution, origin: Origin::Given }
+        let approach = velocity_before.iter().map(|c| restitution::approach(c[1])).collect();
+        Self { delassus, velocity_before, velocity_free, approach, laws, restitution, origin: Origin::Given }
     }
 }
 
@@ -139,7 +138,7 @@ impl ContactProblem {
     pub fn new(
         delassus: Vec<f64>,
         velocity_before: Vec<Vector<f64>>,
-        friction: Vec<Friction>,
+        friction: Vec<impl Into<Law>>,
         restitution: Vec<f64>,
     ) -> Result<Self> {
         let contacts = velocity_before.len();
@@ -182,7 +181,7 @@ impl ContactProblem {
     pub(crate) fn checked(
         delassus: Vec<f64>,
         (velocity_before, velocity_free): (Vec<Vector<f64>>, Vec<Vector<f64>>),
-        (friction, restitution): (Vec<Friction>, Vec<f64>),
+        (friction, restitution): (Vec<impl Into<Law>>, Vec<f64>),
     ) -> Result<Self> {
         let contacts = velocity_before.len();
         for (place, length) in [("friction", friction.len()), ("restitution", restitution.len())] {
@@ -193,8 +192,9 @@ impl ContactProblem {
             }
         }
         let approach = velocity_before.iter().map(|c| c[1].min(0.0)).collect();
+        let laws = friction.into_iter().map(Into::into).collect();
         let problem =
-            Self { delassus, velocity_before, velocity_free, approach, friction, restitution, origin: Origin::Given };
+            Self { delassus, velocity_before, velocity_free, approach, laws, restitution, origin: Origin::Given };
         problem.check_contacts()?;
         problem.check_range()?;
         Ok(problem)

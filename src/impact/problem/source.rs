@@ -42,8 +42,8 @@ impl Source for ContactProblem {
             Origin::Given => self.map(T::from_f64),
             Origin::Dynamics(dynamics) => {
                 let (delassus, before) = dynamics.numbers();
-                let (friction, restitution) = (self.friction.clone(), self.restitution.clone());
-                ContactProblem::of_parts(delassus, before.clone(), before, friction, restitution)
+                let (laws, restitution) = (self.laws.clone(), self.restitution.clone());
+                ContactProblem::of_parts(delassus, before.clone(), before, laws, restitution)
             }
             Origin::Mended(rows) => ContactProblem { delassus: rows.delassus(), ..self.map(T::from_f64) },
         }

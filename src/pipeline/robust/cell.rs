@@ -1,7 +1,7 @@
 //! Boxes of states.
 
 use crate::dynamics::plan::{Plan, Posture};
-use crate::impact::Friction;
+use crate::law::Friction;
 use crate::robot::{Axis, Base, Mover, Robot};
 use crate::scalar::{Affine, Real, Trigonometry};
 use crate::state::{State, Uncertainty};

@@ -6,19 +6,8 @@
 //!
 //! Unknowns: two impulses of a sticking contact, one along the ray of a sliding (or frictionless closed) one.
 
-use crate::impact::Mode;
+use crate::law::{ContactLaw, Impulse, Inequality, Law, Mode};
 use crate::scalar::{Ordered, Sign};
-
-/// The friction of a contact.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Cone<T> {
-    /// Exactly none.
-    Zero,
-    /// mu; it may reach down to zero.
-    Finite(T),
-    /// No bound on the tangential impulse.
-    Infinite,
-}
 
 /// A contact problem on a box.
 #[derive(Debug)]
@@ -28,18 +17,7 @@ pub(crate) struct Numbers<T> {
     /// Per row the velocity without impulses, on a normal row with its bounce \[m/s\].
     pub free: Vec<T>,
     /// Per contact.
-    pub cones: Vec<Cone<T>>,
-}
-
-/// How an inequality reads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Greater than zero.
-    Strict,
-    /// At least zero.
-    Closed,
-    /// Equal to zero: c_t of a frictionless contact that sticks.
-    Equal,
+    pub laws: Vec<Law<T>>,
 }
 
 /// A combination's equations and inequalities, all times det A.
@@ -47,8 +25,9 @@ pub(crate) enum Kind {
 pub(crate) struct Combination<T> {
     /// det A, up to a sign that it shares with the numerators.
     pub determinant: Option<T>,
-    /// What must be zero or more after a division by det A.
-    pub numerators: Vec<(Kind, T)>,
+    /// What must keep its inequality after a division by det A; without one it is c_t of a frictionless contact that sticks,
+    /// and must be zero.
+    pub numerators: Vec<(Option<Inequality>, T)>,
     /// Unknowns: row in which the equation stands, contact, and the ray's entries [tangential, normal].
     columns: Vec<(usize, usize, [T; 2])>,
     minors: Vec<T>,
@@ -62,7 +41,7 @@ impl<T> Default for Combination<T> {
 
 impl<T: Ordered> Numbers<T> {
     pub fn contacts(&self) -> usize {
-        self.cones.len()
+        self.laws.len()
     }
 
     fn entry(&self, row: usize, (_, contact, ray): (usize, usize, [T; 2])) -> T {
@@ -74,18 +53,15 @@ impl<T: Ordered> Numbers<T> {
     pub fn combine(&self, modes: &[Mode], into: &mut Combination<T>) {
         let [zero, one] = [T::zero(), T::one()];
         into.columns.clear();
-        for (contact, &mode) in modes.iter().enumerate() {
+        for (contact, (&mode, law)) in modes.iter().zip(&self.laws).enumerate() {
             let (tangential, normal) = (2 * contact, 2 * contact + 1);
-            let direction = T::from_f64(-mode.direction());
-            match (mode, self.cones[contact]) {
-                (Mode::Separate, _) => {}
-                (_, Cone::Zero) => into.columns.push((normal, contact, [zero, one])),
-                (Mode::Stick, _) => {
+            match law.impulse(mode) {
+                Impulse::Zero => {}
+                Impulse::Along(ray) => into.columns.push((normal, contact, ray)),
+                Impulse::Free => {
                     into.columns.push((tangential, contact, [one, zero]));
                     into.columns.push((normal, contact, [zero, one]));
                 }
-                (_, Cone::Finite(mu)) => into.columns.push((normal, contact, [direction * mu, one])),
-                (_, Cone::Infinite) => into.columns.push((normal, contact, [direction, zero])),
             }
         }
         self.expand(into);
@@ -133,34 +109,26 @@ impl<T: Ordered> Numbers<T> {
         };
         numerators.clear();
         let mut column = 0;
-        for (contact, &mode) in modes.iter().enumerate() {
+        for (contact, (&mode, law)) in modes.iter().zip(&self.laws).enumerate() {
             let (tangential, normal) = (2 * contact, 2 * contact + 1);
-            match (mode, self.cones[contact]) {
-                (Mode::Separate, _) => {
-                    numerators.push((Kind::Strict, velocity(normal)));
-                    continue;
-                }
-                (Mode::Stick, Cone::Zero) => {
-                    numerators.push((Kind::Closed, numerator(column)));
-                    numerators.push((Kind::Equal, velocity(tangential)));
-                }
-                (Mode::Stick, cone) => {
-                    let [along, across] = [numerator(column), numerator(column + 1)];
-                    numerators.push((Kind::Closed, across));
-                    if let Cone::Finite(mu) = cone {
-                        let reach = mu * across;
-                        numerators.extend([(Kind::Closed, reach - along), (Kind::Closed, reach + along)]);
-                    }
-                    column += 1;
-                }
-                (Mode::SlidePlus | Mode::SlideMinus, _) => {
-                    let slip = velocity(tangential);
-                    let forward = mode == Mode::SlidePlus;
-                    numerators.push((Kind::Closed, numerator(column)));
-                    numerators.push((Kind::Strict, if forward { slip } else { -slip }));
-                }
+            let impulse = law.impulse(mode);
+            let number = |which: usize| match (impulse, which) {
+                (Impulse::Zero, _) => velocity(normal),
+                (Impulse::Along(_), 0) => velocity(tangential),
+                (Impulse::Along(_), _) => numerator(column),
+                (Impulse::Free, which) => numerator(column + which),
+            };
+            law.conditions(mode, |condition| {
+                numerators.push((Some(condition.inequality), condition.function.at(number, |mu| mu)));
+            });
+            if law.is_unheld(mode) {
+                numerators.push((None, velocity(tangential)));
             }
-            column += 1;
+            column += match impulse {
+                Impulse::Zero => 0,
+                Impulse::Along(_) => 1,
+                Impulse::Free => 2,
+            };
         }
         *determinant = Some(whole);
     }
@@ -169,11 +137,13 @@ impl<T: Ordered> Numbers<T> {
 impl<T: Ordered> Combination<T> {
     /// Whether it is an outcome of every state of the box, or of none; none where that was not shown.
     pub fn is_valid(&self) -> Option<bool> {
-        let signs = || self.numerators.iter().map(|&(kind, number)| (kind, number.sign()));
-        let has = |wanted: Sign| signs().any(|(kind, sign)| kind != Kind::Equal && sign == wanted);
-        let unequal = |(kind, sign)| kind == Kind::Equal && matches!(sign, Sign::Negative | Sign::Positive);
+        let signs = || self.numerators.iter().map(|&(inequality, number)| (inequality, number.sign()));
+        let has = |wanted: Sign| signs().any(|(inequality, sign)| inequality.is_some() && sign == wanted);
+        let unequal = |(inequality, sign): (Option<_>, _)| {
+            inequality.is_none() && matches!(sign, Sign::Negative | Sign::Positive)
+        };
         if signs().any(unequal) {
-            // Where det A = 0, a numerator that is not zero says that the equations contradict each other.
+            // If det A = 0, a numerator that is not zero says that the equations contradict each other.
             return Some(false);
         }
         let (good, bad) = match self.determinant.map(T::sign) {
@@ -182,14 +152,14 @@ impl<T: Ordered> Combination<T> {
             // Whatever the sign of det A: one of two opposite numerators has the other sign.
             _ => return (has(Sign::Positive) && has(Sign::Negative)).then_some(false),
         };
-        let violated = |(kind, sign): (Kind, Sign)| sign == bad || (kind == Kind::Strict && sign == Sign::Zero);
+        let violated = |(inequality, sign): (Option<Inequality>, Sign)| {
+            sign == bad || (sign == Sign::Zero && inequality.is_some_and(Inequality::is_strict))
+        };
         if signs().any(violated) {
             return Some(false);
         }
-        let satisfied = |(kind, sign): (Kind, Sign)| match kind {
-            Kind::Equal => sign == Sign::Zero,
-            _ => sign == good || sign == Sign::Zero,
-        };
+        let satisfied =
+            |(inequality, sign): (Option<_>, Sign)| sign == Sign::Zero || (sign == good && inequality.is_some());
         signs().all(satisfied).then_some(true)
     }
 }
@@ -197,8 +167,9 @@ impl<T: Ordered> Combination<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::ContactProblem;
     use crate::impact::enumerate::Tableau;
-    use crate::impact::{ContactProblem, Friction};
+    use crate::law::{Coulomb, Friction, Unbounded};
     use crate::scalar::Real;
     use proptest::prelude::*;
 
@@ -223,18 +194,15 @@ mod tests {
             };
             let delassus: Vec<f64> = (0..rows * rows).map(|at| entry(at / rows, at % rows)).collect();
             let friction = vec![Friction::Finite(mu), Friction::Infinite, Friction::Finite(2.0 * mu)];
-            let cones = vec![Cone::Finite(mu), Cone::Infinite, Cone::Finite(2.0 * mu)];
             let velocity: Vec<[f64; 2]> = before.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
             let problem = ContactProblem::new(delassus.clone(), velocity, friction.clone(), vec![0.0; COUNT]).unwrap();
             let ball = crate::scalar::Ball::<f64>::from_f64;
             let numbers = Numbers {
                 delassus: delassus.into_iter().map(ball).collect(),
                 free: before.into_iter().map(ball).collect(),
-                cones: cones.into_iter().map(|cone| match cone {
-                    Cone::Finite(mu) => Cone::Finite(ball(mu)),
-                    Cone::Infinite => Cone::Infinite,
-                    Cone::Zero => Cone::Zero,
-                }).collect(),
+                laws: [Some(mu), None, Some(2.0 * mu)]
+                    .map(|mu| mu.map_or(Law::Unbounded(Unbounded), |mu| Law::Coulomb(Coulomb { mu: ball(mu) })))
+                    .into(),
             };
             let (mut tableau, mut found) = (Tableau::<f64>::new(), Combination::default());
             tableau.load(&problem);
@@ -245,7 +213,7 @@ mod tests {
                 let product: f64 = leaf.pivots.iter().product();
                 prop_assert!((determinant.mid - product).abs() <= 1e-9 * (1.0 + product.abs()), "{modes:?}");
                 let mut expected = Vec::new();
-                crate::impact::sign::slacks(&leaf, &modes, &friction, |slack| expected.push(slack.number));
+                crate::impact::sign::slacks(&leaf, &modes, problem.laws(), |slack| expected.push(slack.number));
                 prop_assert_eq!(expected.len(), found.numerators.len());
                 for (slack, (_, numerator)) in expected.into_iter().zip(&found.numerators) {
                     // A pivot near zero costs the elimination its digits.
@@ -261,7 +229,8 @@ mod tests {
     fn opposite_numerators_reject_across_a_pole() {
         let wide = |mid: f64| crate::scalar::Ball { mid, radius: 0.1 };
         let mut found = Combination { determinant: Some(wide(0.0)), ..Combination::default() };
-        found.numerators = vec![(Kind::Closed, wide(1.0)), (Kind::Strict, wide(-1.0))];
+        found.numerators =
+            vec![(Some(Inequality::NormalImpulse), wide(1.0)), (Some(Inequality::NormalVelocity), wide(-1.0))];
         assert_eq!(found.is_valid(), Some(false));
         found.numerators[1].1 = wide(1.0);
         assert_eq!(found.is_valid(), None);
@@ -275,11 +244,13 @@ mod tests {
     fn exact_zeros_count_as_the_strict_modes_have_it() {
         let ball = crate::scalar::Ball::<f64>::from_f64;
         let mut found = Combination { determinant: Some(ball(1.0)), ..Combination::default() };
-        for (kind, valid) in [(Kind::Closed, true), (Kind::Equal, true), (Kind::Strict, false)] {
-            found.numerators = vec![(kind, ball(0.0))];
+        for (inequality, valid) in
+            [(Some(Inequality::NormalImpulse), true), (None, true), (Some(Inequality::NormalVelocity), false)]
+        {
+            found.numerators = vec![(inequality, ball(0.0))];
             assert_eq!(found.is_valid(), Some(valid));
         }
-        found.numerators = vec![(Kind::Equal, ball(-0.5))];
+        found.numerators = vec![(None, ball(-0.5))];
         assert_eq!(found.is_valid(), Some(false));
     }
 }

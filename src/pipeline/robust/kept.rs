@@ -2,10 +2,11 @@
 
 use super::super::strike::{Contacts, Inputs, Strike};
 use super::super::{Answer, Impact, Pipeline};
-use super::{CONTACT_LIMIT, Cell, Cone, Counterexample, Found, Holds, Model, Numbers, Quantity, search};
+use super::{CONTACT_LIMIT, Cell, Counterexample, Found, Holds, Model, Numbers, Quantity, search};
 use crate::contact::Contact;
 use crate::dynamics::Constraints;
-use crate::impact::{Analysis, Friction, Mode};
+use crate::impact::Analysis;
+use crate::law::{Coulomb, Friction, Frictionless, Law, Mode, Unbounded};
 use crate::planar::{difference, dot};
 use crate::robot::Robot;
 use crate::scalar::{Affine, Real};
@@ -137,7 +138,7 @@ impl Model for Kept<'_, '_> {
             contacts: &impact.contacts,
             resting,
             constraints: Constraints::default(),
-            friction: &self.friction,
+            laws: &[],
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,
         };
@@ -151,15 +152,17 @@ impl Model for Kept<'_, '_> {
             let bounce = restitution * before[contact][1].min_zero();
             [free[contact][0], free[contact][1] + bounce]
         };
-        let cone = |(&friction, &link): (&Friction, &usize)| match friction {
-            Friction::Infinite => Cone::Infinite,
-            Friction::Finite(mu) if mu == 0.0 && !cell.quantities.contains(&Quantity::Friction(link)) => Cone::Zero,
-            Friction::Finite(mu) => Cone::Finite(cell.number(Quantity::Friction(link), mu)),
+        let law = |(&friction, &link): (&Friction, &usize)| match friction {
+            Friction::Infinite => Law::Unbounded(Unbounded),
+            Friction::Finite(mu) if mu == 0.0 && !cell.quantities.contains(&Quantity::Friction(link)) => {
+                Law::Frictionless(Frictionless)
+            }
+            Friction::Finite(mu) => Law::Coulomb(Coulomb { mu: cell.number(Quantity::Friction(link), mu) }),
         };
         Numbers {
             delassus,
             free: self.links.iter().enumerate().flat_map(row).collect(),
-            cones: self.friction.iter().zip(&self.links).map(cone).collect(),
+            laws: self.friction.iter().zip(&self.links).map(law).collect(),
         }
     }
 

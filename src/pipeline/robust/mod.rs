@@ -22,10 +22,11 @@ mod combination;
 mod search;
 
 pub(crate) use cell::{Cell, Quantity};
-pub(crate) use combination::{Cone, Numbers};
+pub(crate) use combination::Numbers;
 pub(crate) use search::{Found, Model, search};
 
-use crate::impact::{Mode, Verdict};
+use crate::impact::Verdict;
+use crate::law::Mode;
 use crate::state::State;
 
 /// More contacts than this are not tried on a box.

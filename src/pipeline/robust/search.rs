@@ -1,8 +1,8 @@
 //! Halving a box until every combination is decided, or a state is found whose outcomes differ.
 
 use super::cell::Cell;
-use super::combination::{Combination, Kind, Numbers};
-use crate::impact::Mode;
+use super::combination::{Combination, Numbers};
+use crate::law::Mode;
 use crate::scalar::{Affine, Ordered, Sign};
 
 /// What the boxes are boxes of.
@@ -139,7 +139,7 @@ fn point_out<const N: usize>(
     let Some(determinant) = combination.determinant else { return };
     let sign = if determinant.centre() < 0.0 { -1.0 } else { 1.0 };
     // How far each inequality is from being decided: 1 on its border, 0 in its middle.
-    let slacks = combination.numerators.iter().filter(|(kind, _)| *kind != Kind::Equal);
+    let slacks = combination.numerators.iter().filter(|(inequality, _)| inequality.is_some());
     let slacks = slacks.map(|(_, number)| (number, sign * number.centre() / number.radius()));
     let undecided = |number: &Affine<N>| number.sign() == Sign::Undecided;
     // What is not linear hangs above all on what moves det A.

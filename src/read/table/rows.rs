@@ -3,7 +3,7 @@
 use super::header::{Column, Header, SpatialColumns, short};
 use super::records::place_of;
 use crate::gait::spatial::{Spatial, project};
-use crate::impact::Friction;
+use crate::law::Friction;
 use crate::robot::Base;
 use crate::state::{ByLink, Scene};
 use crate::state::{Defaults, State};

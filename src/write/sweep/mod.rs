@@ -17,8 +17,9 @@ pub use samples::{Sample, columns};
 
 use super::{ErrorObject, Palette};
 use crate::Error;
-use crate::impact::{Mode, Verdict};
-use crate::sweep::{self, Findings, Inequality, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
+use crate::impact::Verdict;
+use crate::law::{Inequality, Mode};
+use crate::sweep::{self, Findings, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
 use serde::Serialize;
 
 /// What is known of a study of one parameter, without its samples.

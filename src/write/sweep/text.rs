@@ -84,7 +84,7 @@ impl Turns<'_> {
                 Side::Below => below,
                 Side::Above => above,
             };
-            format!("{contact} has {} where {} of {side} ends", inequality.equation(), modes.join("/"))
+            format!("{contact} has {} where {} of {side} ends", inequality, modes.join("/"))
         };
         let alone = |contact: &String, side: &str| format!("{contact} touches the ground in {side} alone");
         let opening = self.opening.iter().map(|contact| alone(contact, below));

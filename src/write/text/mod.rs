@@ -11,7 +11,8 @@ use super::list::list;
 use super::result::{Contact, Report};
 use super::{Detail, words};
 use crate::Robot;
-use crate::impact::{Analysis, Friction, Mode, Region, Verdict};
+use crate::impact::{Analysis, ImpulseRegion, Verdict};
+use crate::law::{Friction, Mode};
 use crate::pipeline::Impact;
 use crate::read::Problem;
 use crate::robot::{Axis, Base};
@@ -68,7 +69,7 @@ impl<'a> Subject<'a> {
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
         Self {
             title: words::titled("contact problem", &problem.id),
-            friction: problem.contact.friction().iter().copied().map(Some).collect(),
+            friction: problem.contact.friction().map(Some).collect(),
             units: Vec::new(),
             analysis: Some(analysis),
         }
@@ -287,11 +288,11 @@ fn touching(contacts: &[Contact]) -> String {
     }
 }
 
-fn described(region: Region) -> &'static str {
+fn described(region: ImpulseRegion) -> &'static str {
     match region {
-        Region::A => "A: lifts off",
-        Region::B => "B: slides whatever the friction",
-        Region::C => "C: stays",
-        Region::E => "E: three outcomes are valid",
+        ImpulseRegion::A => "A: lifts off",
+        ImpulseRegion::B => "B: slides whatever the friction",
+        ImpulseRegion::C => "C: stays",
+        ImpulseRegion::E => "E: three outcomes are valid",
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Palette;
 use super::Writer;
-use crate::impact::Mode;
+use crate::law::Mode;
 use crate::write::outcome::Outcome;
 use crate::write::text::table::{Table, number, scale};
 use crate::write::words;

@@ -1,7 +1,8 @@
 //! Why there is nothing else.
 
 use super::Writer;
-use crate::impact::{Because, Mode};
+use crate::impact::RejectionReason;
+use crate::law::Mode;
 use crate::write::text::table::{Table, scale};
 use std::fmt::Write;
 
@@ -84,17 +85,13 @@ impl Writer<'_> {
 }
 
 /// A reason without its contact, to stand after `because`.
-fn in_general(because: Because) -> &'static str {
+fn in_general(because: RejectionReason) -> &'static str {
     match because {
-        Because::Pulled { .. } => "the ground would have to pull",
-        Because::Penetrates { .. } => "a contact would move into the ground",
-        Because::NeedsFriction { .. } => "sticking would need more friction",
-        Because::SlidesBackward { .. } => "a contact would slide against its own direction",
-        Because::FrictionPushes { .. } => "friction would drive the slide",
-        Because::NothingHolds { .. } => "a contact would stick without friction",
-        Because::NoSolution => "the conditions contradict each other",
-        Because::RedundantTwin => "a redundant twin already has that velocity",
-        Because::OnBorder => "its velocity is that of other modes, on their border",
+        RejectionReason::Violated { inequality, .. } => inequality.violation(),
+        RejectionReason::NothingHolds { .. } => "a contact would stick without friction",
+        RejectionReason::NoSolution => "the conditions contradict each other",
+        RejectionReason::RedundantTwin => "a redundant twin already has that velocity",
+        RejectionReason::OnBorder => "its velocity is that of other modes, on their border",
     }
 }
 

@@ -1,6 +1,9 @@
-//! How a contact ends, and how much friction it has.
+//! How a contact ends, and which velocity that is.
 
+use super::condition::{Condition, Function};
+use super::inequality::Inequality;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::fmt;
 
 /// How a contact ends; strict, so that every velocity after the impact has exactly one list of modes (paper, section 2).
@@ -25,7 +28,38 @@ impl Mode {
     /// All modes, in the order in which combinations are tried.
     pub const ALL: [Mode; 4] = [Mode::Separate, Mode::Stick, Mode::SlidePlus, Mode::SlideMinus];
 
-    /// The sign of the sliding velocity along t: +1, -1, or 0 where the contact does not slide.
+    /// The signs of the velocity after, [c_t, xi_n]; `None` of an entry that the mode leaves open.
+    pub fn velocity(self) -> [Option<Ordering>; 2] {
+        match self {
+            Mode::Separate => [None, Some(Ordering::Greater)],
+            Mode::Stick => [Some(Ordering::Equal); 2],
+            Mode::SlidePlus => [Some(Ordering::Greater), Some(Ordering::Equal)],
+            Mode::SlideMinus => [Some(Ordering::Less), Some(Ordering::Equal)],
+        }
+    }
+
+    /// The mode of a closed contact whose tangential velocity has this sign.
+    pub fn closed(velocity: Ordering) -> Self {
+        match velocity {
+            Ordering::Greater => Mode::SlidePlus,
+            Ordering::Equal => Mode::Stick,
+            Ordering::Less => Mode::SlideMinus,
+        }
+    }
+
+    /// The inequality of the velocity.
+    #[inline]
+    pub fn velocity_condition<T>(self) -> Option<Condition<T>> {
+        let (inequality, function) = match self {
+            Mode::Separate => (Inequality::NormalVelocity, Function::Second),
+            Mode::Stick => return None,
+            Mode::SlidePlus => (Inequality::TangentialVelocity, Function::First),
+            Mode::SlideMinus => (Inequality::TangentialVelocity, Function::MinusFirst),
+        };
+        Some(Condition { inequality, function })
+    }
+
+    /// The sign of the sliding velocity along t: +1, -1, or 0 if the contact does not slide.
     pub fn direction(self) -> f64 {
         match self {
             Mode::SlidePlus => 1.0,
@@ -48,41 +82,5 @@ impl fmt::Display for Mode {
             Mode::SlidePlus => "slide+",
             Mode::SlideMinus => "slide-",
         })
-    }
-}
-
-/// Coulomb friction of a contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Friction {
-    /// The coefficient mu, from 0 on.
-    Finite(f64),
-    /// No bound on the tangential impulse; a case of its own, not a big number (paper, section 2).
-    Infinite,
-}
-
-impl Friction {
-    /// No friction at all.
-    pub const ZERO: Friction = Friction::Finite(0.0);
-
-    /// The homogeneous pair (a, b) of the cone a L_n >= b |L_t|: (mu, 1), or (1, 0) where mu is infinite.
-    pub fn pair(self) -> (f64, f64) {
-        match self {
-            Friction::Finite(mu) => (mu, 1.0),
-            Friction::Infinite => (1.0, 0.0),
-        }
-    }
-
-    /// Whether mu = 0.
-    pub fn is_zero(self) -> bool {
-        self == Friction::ZERO
-    }
-}
-
-impl fmt::Display for Friction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Friction::Finite(mu) => mu.fmt(f),
-            Friction::Infinite => f.pad("infinite"),
-        }
     }
 }

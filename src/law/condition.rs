@@ -1,0 +1,61 @@
+//! An inequality as a linear function of the two numbers that an elimination leaves of a contact.
+//!
+//! ```text
+//!     [first, second] = [c_t, xi_n] if L = 0,   [c_t, lambda] if L lies along a ray,   [L_t, L_n] if L is free
+//! ```
+
+use super::inequality::Inequality;
+use crate::scalar::Real;
+
+/// A linear function of a contact's two numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Function<T = f64> {
+    /// The first.
+    First,
+    /// Minus the first.
+    MinusFirst,
+    /// The second.
+    Second,
+    /// mu times the second minus the first.
+    ConeMinus(T),
+    /// mu times the second plus the first.
+    ConePlus(T),
+}
+
+/// An inequality of a mode: `function >= 0`, or `> 0` if it is strict.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Condition<T = f64> {
+    /// Which it is.
+    pub inequality: Inequality,
+    /// The function.
+    pub function: Function<T>,
+}
+
+impl<T: Real> Function<T> {
+    /// The value at the contact's numbers, first (0) and second (1), with the law's coefficients put into their kind.
+    #[inline]
+    pub fn at<N: Real>(self, number: impl Fn(usize) -> N, coefficient: impl Fn(T) -> N) -> N {
+        match self {
+            Self::First => number(0),
+            Self::MinusFirst => -number(0),
+            Self::Second => number(1),
+            Self::ConeMinus(mu) => coefficient(mu) * number(1) - number(0),
+            Self::ConePlus(mu) => coefficient(mu) * number(1) + number(0),
+        }
+    }
+}
+
+impl Condition {
+    /// What the value is multiplied by to be free of units, once divided by S; `mobility` is sqrt(G_ii) of the contact's
+    /// rows \[1/sqrt(kg)\]. A velocity counts c_i / sqrt(G_ii), an impulse L_i sqrt(G_ii), a cone
+    /// (mu L_n - |L_t|) / sqrt(mu^2 / G_nn + 1 / G_tt).
+    #[inline]
+    pub fn scale(&self, mobility: [f64; 2]) -> f64 {
+        let own = mobility[self.inequality.row()];
+        match self.function {
+            Function::ConeMinus(mu) | Function::ConePlus(mu) => 1.0 / (mu / mobility[1]).hypot(1.0 / mobility[0]),
+            _ if self.inequality.is_strict() => 1.0 / own,
+            _ => own,
+        }
+    }
+}
