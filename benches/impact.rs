@@ -10,7 +10,7 @@ use heelstrike::dynamics::{
     kinematics, mass_matrix,
 };
 use heelstrike::impact::enumerate::{Leaf, Tableau};
-use heelstrike::impact::{Asked, ContactProblem, Friction, Mode, Scratch};
+use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::planar::Rotation;
 use heelstrike::state::NamedContact;
@@ -116,7 +116,7 @@ fn analysis(bencher: Bencher) {
     let robot = ramone();
     let problem = problem(&robot, &state(&robot));
     let mut scratch = Scratch::default();
-    bencher.bench_local(move || scratch.analyse(black_box(&problem), black_box(&problem), Asked::default()));
+    bencher.bench_local(move || scratch.analyse(black_box(&problem), black_box(&problem), AnalysisOptions::default()));
 }
 
 /// A state as numbers to its whole answer.

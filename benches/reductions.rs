@@ -5,7 +5,7 @@
 use divan::{Bencher, black_box};
 use heelstrike::Robot;
 use heelstrike::description::Description;
-use heelstrike::impact::{Asked, ContactProblem, Friction, Scratch};
+use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::Reduction;
@@ -76,7 +76,7 @@ fn analysis(bencher: Bencher, files: Files, contacts: usize, friction: Friction,
     let delassus = impact.matrices.expect("asked for").delassus.concat();
     let (friction, restitution) = (vec![friction; contacts], vec![0.0; contacts]);
     let problem = ContactProblem::new(delassus, impact.velocity_before, friction, restitution).expect("a good problem");
-    let (mut scratch, asked) = (Scratch::default(), Asked { reductions, ..Asked::default() });
+    let (mut scratch, asked) = (Scratch::default(), AnalysisOptions { reductions, ..AnalysisOptions::default() });
     bencher.bench_local(|| scratch.analyse(black_box(&problem), black_box(&problem), asked));
 }
 

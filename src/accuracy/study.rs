@@ -7,7 +7,7 @@ use super::reference::{PRECISION, Reference, distance, relative, with_precision,
 use super::suite::Subject;
 use super::timing::{Budget, Spread, time};
 use crate::impact::enumerate::Tableau;
-use crate::impact::{Analysis, Asked, ContactProblem, Scratch, Verdict};
+use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Scratch, Verdict};
 use crate::pipeline::{Options, Pipeline};
 use crate::planar::Vector;
 use crate::robot::Robot;
@@ -181,7 +181,8 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
     let mut study = Study::of(name, None);
     study.contacts = problem.contacts();
     let mut scratch = Scratch::default();
-    let mut analyse = |prove| scratch.analyse(problem, problem, Asked { prove, ..Asked::default() });
+    let mut analyse =
+        |prove| scratch.analyse(problem, problem, AnalysisOptions { prove, ..AnalysisOptions::default() });
     let analysis = match analyse(prove) {
         Ok(analysis) => analysis,
         Err(error) => return study.refuse(error),

@@ -4,7 +4,7 @@ use super::options::{DetailOptions, ReductionOptions, SceneOptions};
 use super::output::{Format, OutputOptions};
 use super::stream::{Answers, SUMMED_UP, answer_all};
 use super::{Outcome, input};
-use heelstrike::impact::{Analysis, Asked, Scratch};
+use heelstrike::impact::{Analysis, AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
 use heelstrike::reductions::Reductions;
 use heelstrike::state::Defaults;
@@ -57,7 +57,7 @@ struct Problems {
 
 impl Problems {
     fn analyse(&mut self, problem: &Problem, explain: bool) -> Result<Analysis> {
-        let asked = Asked { explain: explain.into(), prove: self.prove, reductions: self.reductions };
+        let asked = AnalysisOptions { rejections: explain.into(), prove: self.prove, reductions: self.reductions };
         self.scratch.analyse(&problem.contact, &problem.contact, asked)
     }
 }

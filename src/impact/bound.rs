@@ -13,7 +13,7 @@
 //! makes every bound infinite. The bounds' own rounding is covered by [`SLACK`].
 
 use super::enumerate::Tableau;
-use super::sign::Scale;
+use super::slack::Scale;
 use crate::law::Impulse;
 use crate::planar::Vector;
 

@@ -12,7 +12,7 @@
 use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
 use super::problem::{ContactProblem, Errors};
-use super::sign::{Scale, slacks};
+use super::slack::{Scale, slacks};
 use crate::law::{ContactLaw, Impulse};
 
 /// The inequalities of all combinations of one problem.

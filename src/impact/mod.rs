@@ -1,29 +1,32 @@
 //! From a contact problem to every outcome; knows no robot.
 //!
-//! Read [`problem`], then [`enumerate`] (numbers), [`sign`] (signs), and [`analysis`], where they meet.
+//! Read [`problem`], then [`enumerate`] (numbers), [`slack`] (inequalities), and [`analysis`], where they meet.
 
-pub mod analysis;
-mod border;
-mod bound;
-pub mod certify;
-pub mod enumerate;
-mod generators;
-mod index;
-pub mod inequalities;
-mod kernel;
-mod labels;
 mod linear;
-mod lone;
 pub mod outcome;
 pub mod problem;
-mod program;
+pub mod enumerate;
+pub mod slack;
+mod bound;
+mod labels;
+pub mod inequalities;
 mod reading;
-mod redundant;
-mod region;
-pub mod sign;
+mod kernel;
+mod generators;
+mod index;
+mod program;
+mod singular;
+mod combination;
+mod border;
+mod explanation;
+mod rank;
+mod collected;
+mod passes;
+pub mod analysis;
 
 pub use crate::law::{Friction, Inequality, Law, Mode};
-pub use analysis::{Asked, CONTACT_LIMIT, Explain, Scratch, analyse};
+pub use analysis::{CONTACT_LIMIT, Scratch, analyse};
+pub use collected::{AnalysisOptions, ListedRejections};
 pub use inequalities::Inequalities;
 pub use outcome::{
     Analysis, Border, Effort, Explanation, ImpulseRegion, Motion, Outcome, Rejection, RejectionReason, Verdict,

@@ -187,7 +187,7 @@ pub enum ImpulseRegion {
     E,
 }
 
-/// How many combinations each layer of the proof settled (see [`super::certify`]).
+/// How many combinations each layer of the proof settled (see more digits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Effort {
     /// f64 with an error bound.

@@ -2,18 +2,18 @@
 
 use super::bound::Bound;
 use super::enumerate::Leaf;
-use super::outcome::RejectionReason;
+use super::outcome::{Motion, RejectionReason};
 use super::problem::ContactProblem;
-use super::sign::{Scale, Slack, slacks};
+use super::slack::{Scale, Slack, slacks};
 use crate::law::{ContactLaw, Inequality, Law, Mode};
 use crate::scalar::{Ordered, Real, Sign};
 
 /// What the slacks of a combination say.
 #[derive(Debug)]
 pub struct Reading {
-    /// Valid, rejected or not told; never zero.
+    /// Valid, rejected or undecided; never zero.
     pub sign: Sign,
-    /// Why not, where rejected.
+    /// Why not, if rejected.
     pub because: RejectionReason,
     /// The smallest slack, free of units.
     pub margin: Option<f64>,
@@ -21,18 +21,18 @@ pub struct Reading {
     pub at_zero: Vec<(usize, Inequality)>,
 }
 
-/// Reads a leaf's f64 numbers, known to `bound`.
+/// Reads a leaf's f64 numbers, known to `bound`; unless `complete`, up to the first violation.
 pub fn read_f64(
     leaf: &Leaf<'_, f64>,
     modes: &[Mode],
     problem: &ContactProblem,
     scale: &Scale,
     bound: &Bound,
-    explain: bool,
+    complete: bool,
 ) -> Reading {
     let (velocity, impulse) = (bound.velocity_error(), bound.impulse_error());
     let speed = |contact: usize, c_t: f64| Sign::within(c_t / scale.speed / scale.mobility[2 * contact], velocity);
-    read(leaf, modes, problem.laws(), explain, speed, |slack| {
+    read(leaf, modes, problem.laws(), complete, speed, |slack| {
         let scaled = scale.scaled(*slack);
         (Sign::within(scaled, if slack.condition.inequality.is_strict() { velocity } else { impulse }), scaled)
     })
@@ -49,7 +49,7 @@ fn read<T: Real>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
     laws: &[Law],
-    explain: bool,
+    complete: bool,
     speed: impl Fn(usize, T) -> Sign,
     slack: impl Fn(&Slack<T>) -> (Sign, f64),
 ) -> Reading {
@@ -89,7 +89,7 @@ fn read<T: Real>(
                 reading.because = because;
             }
             reading.sign = Sign::Negative;
-            done = !explain;
+            done = !complete;
         } else if sign == Sign::Undecided && reading.sign == Sign::Positive {
             reading.sign = Sign::Undecided;
         }
@@ -101,4 +101,23 @@ fn read<T: Real>(
         }
     });
     reading
+}
+
+/// Impulses and velocities of a leaf.
+pub fn motion<T: Real>(
+    leaf: &Leaf<'_, T>,
+    modes: &[Mode],
+    problem: &ContactProblem,
+    nearest: impl Fn(T) -> f64,
+) -> Motion {
+    let contacts = 0..problem.contacts();
+    let velocity = |contact: usize| {
+        let [c_t, xi_n] = leaf.velocity(contact).map(&nearest);
+        let c_t = if modes[contact] == Mode::Stick { 0.0 } else { c_t };
+        [c_t, xi_n - problem.bounce(contact)]
+    };
+    Motion {
+        impulse: contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)).collect(),
+        velocity_after: contacts.map(velocity).collect(),
+    }
 }

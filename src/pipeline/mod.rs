@@ -22,7 +22,7 @@ use crate::dynamics::{
     contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::{Analysis, Asked, ContactProblem, Errors, Explain, Scratch};
+use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch};
 use crate::law::{Friction, Mode};
 use crate::pipeline::robust::Holds;
 use crate::planar::{Rotation, Vector, scaled, sum};
@@ -210,8 +210,8 @@ impl<'r> Pipeline<'r> {
         };
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
         let Options { no_proof, reductions, .. } = self.options;
-        let explain = chosen.map_or(explain.into(), Explain::Only);
-        let asked = Asked { explain, prove: !no_proof, reductions };
+        let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
+        let asked = AnalysisOptions { rejections, prove: !no_proof, reductions };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
         if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {

@@ -82,7 +82,7 @@ impl Problem {
             )
         };
         let vague_from = |condition: &f64| *condition > VAGUE && self.contact.is_given();
-        let notes = self.contact.is_mended().then(mended).into_iter();
+        let notes = self.contact.is_repaired().then(mended).into_iter();
         notes.chain(analysis.condition.filter(vague_from).map(vague)).chain(analysis.energy_note()).collect()
     }
 

@@ -6,7 +6,7 @@ use crate::open;
 use crate::watch::watched;
 use dashu::rational::RBig;
 use heelstrike::Error;
-use heelstrike::impact::{Analysis, Asked, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
+use heelstrike::impact::{Analysis, AnalysisOptions, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
 use heelstrike::read::Problem;
 use heelstrike::write::Report;
 use std::cell::RefCell;
@@ -267,7 +267,7 @@ fn answer(case: &Case, json: &str) -> bool {
     check_analysis(&analysis, contacts, json);
     let kept = keeps_index_theorem(&analysis, contacts) || open::is_far(json) || !case.is_definite();
     assert!(kept, "the indices do not sum to 1: {analysis:?}\n{json}");
-    let asked = Asked { explain: case.explain.into(), ..Asked::default() };
+    let asked = AnalysisOptions { rejections: case.explain.into(), ..AnalysisOptions::default() };
     let again = KEPT.with_borrow_mut(|kept| kept.analyse(&problem, &problem, asked));
     let same = again.as_ref().is_ok_and(|again| format!("{again:?}") == format!("{analysis:?}"));
     assert!(same, "memory that was used before tells another answer: {again:?}\n{analysis:?}\n{json}");

@@ -7,16 +7,18 @@
 //! with the laws of each contact (paper, section 2). It can be built from matrices alone and knows no robot.
 
 mod checks;
-mod dense;
-mod mend;
 mod source;
+mod precision;
+mod dense;
+mod repair;
 
 pub use checks::MATRIX_LIMIT;
 pub(crate) use checks::check_matrix_size;
+pub(super) use precision::{Precision, PrecisionTask, escalate};
 pub use source::{Errors, Source};
 
 use self::dense::Dynamics;
-use self::mend::{Rows, is_semidefinite};
+use self::repair::{Rows, is_semidefinite};
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::{ContactLaw, Friction, Law, restitution};
 use crate::planar::Vector;
@@ -47,8 +49,8 @@ enum Origin {
     Given,
     /// G and c- were computed from M, J and v.
     Dynamics(Box<Dynamics>),
-    /// A given G was indefinite by its rounding, and is now Z Z^T.
-    Mended(Rows),
+    /// A given G was indefinite by its rounding, and was replaced by Z Z^T.
+    Repaired(Rows),
 }
 
 impl<T: Real> ContactProblem<T> {
@@ -161,7 +163,7 @@ impl ContactProblem {
             return Ok(problem);
         }
         let rows = Rows::of(&problem);
-        Ok(Self { delassus: rows.delassus(), origin: Origin::Mended(rows), ..problem })
+        Ok(Self { delassus: rows.delassus(), origin: Origin::Repaired(rows), ..problem })
     }
 
     /// Whether G and c- themselves were given, and every digit of them is meant.
@@ -170,8 +172,8 @@ impl ContactProblem {
     }
 
     /// Whether the G that was given is indefinite, by rounding alone, and was replaced by one that is not.
-    pub fn is_mended(&self) -> bool {
-        matches!(self.origin, Origin::Mended(_))
+    pub fn is_repaired(&self) -> bool {
+        matches!(self.origin, Origin::Repaired(_))
     }
 
     /// A problem from parts that the dynamics computed: G, c-, and c- with the change by applied impulses.

@@ -45,7 +45,7 @@ impl Source for ContactProblem {
                 let (laws, restitution) = (self.laws.clone(), self.restitution.clone());
                 ContactProblem::of_parts(delassus, before.clone(), before, laws, restitution)
             }
-            Origin::Mended(rows) => ContactProblem { delassus: rows.delassus(), ..self.map(T::from_f64) },
+            Origin::Repaired(rows) => ContactProblem { delassus: rows.delassus(), ..self.map(T::from_f64) },
         }
     }
 
@@ -54,6 +54,6 @@ impl Source for ContactProblem {
     }
 
     fn is_exact(&self) -> bool {
-        !self.is_mended()
+        !self.is_repaired()
     }
 }

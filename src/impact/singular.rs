@@ -16,7 +16,7 @@ use super::linear::{Affine, Solutions, Unsettled, maximize, settled, solve, wide
 use super::outcome::{Motion, Range, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
-use super::sign::Scale;
+use super::slack::Scale;
 use crate::law::{Condition, ContactLaw, Inequality, Mode};
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
@@ -26,25 +26,35 @@ const UNBOUNDED: f64 = 1e3;
 
 /// What became of a combination.
 #[derive(Debug, Clone)]
-pub enum Judged {
+pub enum SingularCase {
     /// It is no outcome.
-    Rejected {
-        /// Why.
-        because: RejectionReason,
-        /// The smallest slack, where there is one.
-        margin: Option<f64>,
-        /// What it would have been, where its equations have a solution.
-        motion: Option<Motion>,
-    },
+    Rejected(Rejected),
     /// Its velocity is the only one of these modes.
-    Valid(Member),
+    Valid(SingularOutcome),
     /// Its velocities form a set: the two ends. An end's own modes may be others, where it lies on the set's rim.
-    Family([Member; 2]),
+    Family([SingularOutcome; 2]),
+}
+
+/// Why a combination is no outcome, and what it would have been.
+#[derive(Debug, Clone)]
+pub struct Rejected {
+    /// Why.
+    pub because: RejectionReason,
+    /// The smallest slack; `None` if there is none.
+    pub margin: Option<f64>,
+    /// What it would have been; `None` if its equations have no solution.
+    pub motion: Option<Motion>,
+}
+
+impl Rejected {
+    fn without_motion(because: RejectionReason) -> SingularCase {
+        SingularCase::Rejected(Self { because, margin: None, motion: None })
+    }
 }
 
 /// One velocity and the impulses that lead to it.
 #[derive(Debug, Clone)]
-pub struct Member {
+pub struct SingularOutcome {
     /// The strict modes of the velocity.
     pub modes: Vec<Mode>,
     /// The velocity and the least impulse.
@@ -69,12 +79,12 @@ struct Constraint<T> {
 }
 
 /// Judges one combination; frictionless contacts have their own mode here. `rounded` is the same problem in f64.
-pub fn judge<T: Ordered>(
+pub fn solve_singular<T: Ordered>(
     problem: &ContactProblem<T>,
     rounded: &ContactProblem,
     scale: &Scale,
     modes: &[Mode],
-) -> Result<Judged, Unsettled> {
+) -> Result<SingularCase, Unsettled> {
     let generators = Generators::of(modes, problem.laws());
     let equations = zero_rows(modes)
         .map(|row| {
@@ -84,7 +94,7 @@ pub fn judge<T: Ordered>(
         })
         .collect();
     let Some(solutions) = solve(generators.count(), equations)? else {
-        return Ok(Judged::Rejected { because: RejectionReason::NoSolution, margin: None, motion: None });
+        return Ok(Rejected::without_motion(RejectionReason::NoSolution));
     };
     Combination { problem, rounded, scale, modes, generators }.weigh(&solutions)
 }
@@ -105,12 +115,12 @@ struct Combination<'a, T> {
 }
 
 impl<T: Ordered> Combination<'_, T> {
-    fn weigh(&self, solutions: &Solutions<T>) -> Result<Judged, Unsettled> {
+    fn weigh(&self, solutions: &Solutions<T>) -> Result<SingularCase, Unsettled> {
         let inequalities = self.inequalities(solutions);
         let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
         for inequality in inequalities.iter().filter(|inequality| inequality.inequality.is_strict()) {
             if inequality.function.is_constant()? && settled(inequality.function.constant)?.is_eq() {
-                return Ok(Judged::Rejected { because: RejectionReason::RedundantTwin, margin: None, motion: None });
+                return Ok(Rejected::without_motion(RejectionReason::RedundantTwin));
             }
         }
         let dimension = solutions.directions.len();
@@ -125,20 +135,20 @@ impl<T: Ordered> Combination<'_, T> {
             family |= !velocity.is_constant()?;
         }
         if !family {
-            return Ok(Judged::Valid(self.member(solutions, self.modes.to_vec(), &inside, least)?));
+            return Ok(SingularCase::Valid(self.member(solutions, self.modes.to_vec(), &inside, least)?));
         }
         // The rim of a family belongs to other modes; some velocity of its own must be left.
         if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
-            return Ok(Judged::Rejected { because: RejectionReason::RedundantTwin, margin: None, motion: None });
+            return Ok(Rejected::without_motion(RejectionReason::RedundantTwin));
         }
         let ends = [T::one(), -T::one()].map(|sign| self.end(solutions, &inside, sign));
         let [greatest, least] = ends;
         let (greatest, least) = (greatest?, least?);
         if self.same_velocity(&greatest, &least)? {
             // What the equations leave free, the inequalities do not.
-            return Ok(Judged::Valid(Member { margin: Some(0.0), ..self.end_member(&greatest)? }));
+            return Ok(SingularCase::Valid(SingularOutcome { margin: Some(0.0), ..self.end_member(&greatest)? }));
         }
-        Ok(Judged::Family([self.end_member(&greatest)?, self.end_member(&least)?]))
+        Ok(SingularCase::Family([self.end_member(&greatest)?, self.end_member(&least)?]))
     }
 
     fn velocity(&self, solutions: &Solutions<T>, row: usize) -> Affine<T> {
@@ -170,19 +180,19 @@ impl<T: Ordered> Combination<'_, T> {
         all
     }
 
-    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Constraint<T>], y: &[T]) -> Judged {
+    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Constraint<T>], y: &[T]) -> SingularCase {
         let values = inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
         // The linear program makes several equally bad; of one contact's the cone is named.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
         let worst = values.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| order(a.0).cmp(&order(b.0))));
-        Judged::Rejected {
+        SingularCase::Rejected(Rejected {
             because: worst.map_or(RejectionReason::NoSolution, |(worst, _)| RejectionReason::Violated {
                 contact: worst.contact,
                 inequality: worst.inequality,
             }),
             margin: worst.map(|(_, value)| value),
             motion: Some(self.motion(solutions, y, self.modes)),
-        }
+        })
     }
 
     /// Whether some point where no inequality is negative has every strict one above zero.
@@ -235,7 +245,7 @@ impl<T: Ordered> Combination<'_, T> {
         Ok(space)
     }
 
-    fn end_member(&self, space: &Solutions<T>) -> Result<Member, Unsettled> {
+    fn end_member(&self, space: &Solutions<T>) -> Result<SingularOutcome, Unsettled> {
         let modes = self.modes_of(space)?;
         let y = vec![T::zero(); space.directions.len()];
         let mut member = self.member(space, modes, &y, T::zero())?;
@@ -256,7 +266,13 @@ impl<T: Ordered> Combination<'_, T> {
     }
 
     /// The only velocity of `space`, with its impulses; at `inside` no inequality is negative, and the smallest is `least`.
-    fn member(&self, space: &Solutions<T>, modes: Vec<Mode>, inside: &[T], least: T) -> Result<Member, Unsettled> {
+    fn member(
+        &self,
+        space: &Solutions<T>,
+        modes: Vec<Mode>,
+        inside: &[T],
+        least: T,
+    ) -> Result<SingularOutcome, Unsettled> {
         let inequalities = self.inequalities(space);
         let dimension = space.directions.len();
         // Velocities are settled; only impulses still depend on y.
@@ -315,7 +331,7 @@ impl<T: Ordered> Combination<'_, T> {
         let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
         let margin = (!inequalities.is_empty() && bounded).then(|| least.to_f64());
         let (motion, error) = self.motion_of(space, &lambda, &modes);
-        Ok(Member {
+        Ok(SingularOutcome {
             motion,
             error,
             margin,

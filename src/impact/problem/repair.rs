@@ -1,11 +1,11 @@
-//! A Delassus matrix that its own rounding made indefinite: no impact has one, so the nearest that is semidefinite serves.
+//! A Delassus matrix that rounding made indefinite is replaced by the nearest that is semidefinite: no impact has another.
 
 use super::ContactProblem;
-use crate::impact::certify::{Layer, Question, settle};
+use super::precision::{Precision, PrecisionTask, escalate};
 use crate::impact::linear::{Unsettled, settled};
 use crate::scalar::{Ordered, Real};
 
-/// Rows Z of G = Z Z^T, each digit meant.
+/// Rows Z of G = Z Z^T, taken exactly.
 #[derive(Debug, Clone)]
 pub(super) struct Rows(Vec<Vec<f64>>);
 
@@ -49,14 +49,14 @@ impl Rows {
     }
 }
 
-/// Whether a matrix, every digit of it meant, is symmetric and has no negative eigenvalue.
+/// Whether a matrix, taken exactly, is symmetric and has no negative eigenvalue.
 pub(super) fn is_semidefinite(problem: &ContactProblem) -> bool {
     let rows = 0..2 * problem.contacts();
     if rows.clone().any(|i| rows.clone().any(|j| problem.delassus(i, j) != problem.delassus(j, i))) {
         return false;
     }
     let mut definiteness = Definiteness { found: false };
-    settle(problem, Layer::Ball, &mut definiteness);
+    escalate(problem, Precision::Ball, &mut definiteness);
     definiteness.found
 }
 
@@ -64,8 +64,8 @@ struct Definiteness {
     found: bool,
 }
 
-impl Question for Definiteness {
-    fn ask<T: Ordered>(&mut self, problem: &ContactProblem<T>, _: Layer) -> bool {
+impl PrecisionTask for Definiteness {
+    fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, _: Precision) -> bool {
         match semidefinite(problem) {
             Ok(found) => {
                 self.found = found;
@@ -76,7 +76,7 @@ impl Question for Definiteness {
     }
 }
 
-/// By symmetric elimination: a zero on the diagonal must have zeros beside it.
+/// By symmetric elimination: the row of a zero on the diagonal must be zero.
 fn semidefinite<T: Ordered>(problem: &ContactProblem<T>) -> Result<bool, Unsettled> {
     let count = 2 * problem.contacts();
     let mut rest: Vec<Vec<T>> = (0..count).map(|i| (0..count).map(|j| problem.delassus(i, j)).collect()).collect();

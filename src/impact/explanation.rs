@@ -10,7 +10,7 @@
 
 use super::outcome::{Explanation, ImpulseRegion};
 use super::problem::ContactProblem;
-use super::sign::Scale;
+use super::slack::Scale;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 

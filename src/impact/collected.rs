@@ -1,0 +1,237 @@
+//! What the passes over all combinations have found so far.
+
+use super::border::border;
+use super::combination::Solved;
+use super::outcome::{Effort, Motion, Outcome, Rejection, RejectionReason};
+use super::problem::ContactProblem;
+use super::reading::Reading;
+use super::singular::{Rejected, SingularCase, SingularOutcome};
+use super::slack::Scale;
+use crate::law::{Inequality, Mode};
+use crate::reductions::Reductions;
+use crate::scalar::Sign;
+
+/// Which rejected combinations an analysis lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ListedRejections<'a> {
+    /// None.
+    Nothing,
+    /// All, and the paper's section 4 for each contact.
+    Everything,
+    /// Those with these modes.
+    Only(&'a [Vec<Mode>]),
+}
+
+impl ListedRejections<'_> {
+    /// Whether a combination is listed if it is rejected.
+    pub fn contain(self, modes: &[Mode]) -> bool {
+        match self {
+            Self::Nothing => false,
+            Self::Everything => true,
+            Self::Only(chosen) => chosen.iter().any(|chosen| chosen == modes),
+        }
+    }
+}
+
+impl From<bool> for ListedRejections<'_> {
+    fn from(all: bool) -> Self {
+        if all { Self::Everything } else { Self::Nothing }
+    }
+}
+
+/// Options of an analysis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AnalysisOptions<'a> {
+    /// Which rejected combinations are listed.
+    pub rejections: ListedRejections<'a>,
+    /// Whether the errors of the source are bounds, so that what is decided is proven.
+    pub prove: bool,
+    /// What of the enumeration is left out if a problem does not need it.
+    pub reductions: Reductions,
+}
+
+impl Default for AnalysisOptions<'_> {
+    fn default() -> Self {
+        Self { rejections: ListedRejections::Nothing, prove: true, reductions: Reductions::ALL }
+    }
+}
+
+/// A combination of modes and its place among all.
+#[derive(Debug, Clone)]
+pub struct Candidate<M> {
+    /// Its number, from 0.
+    pub number: usize,
+    /// One mode per contact.
+    pub modes: M,
+}
+
+impl Candidate<&[Mode]> {
+    /// The same to keep.
+    pub fn pending(&self) -> Candidate<Vec<Mode>> {
+        Candidate { number: self.number, modes: self.modes.to_vec() }
+    }
+}
+
+impl Candidate<Vec<Mode>> {
+    /// The same to look at.
+    pub fn borrowed(&self) -> Candidate<&[Mode]> {
+        Candidate { number: self.number, modes: &self.modes }
+    }
+}
+
+/// An outcome and the combination that led to it.
+struct Numbered {
+    number: usize,
+    /// An end of a family whose own modes are not those of the combination.
+    on_rim: bool,
+    outcome: Outcome,
+}
+
+/// Outcomes and rejected combinations of a problem.
+pub struct Collected<'a> {
+    pub problem: &'a ContactProblem,
+    pub scale: &'a Scale,
+    pub options: AnalysisOptions<'a>,
+    /// Combinations in all.
+    pub total: usize,
+    pub effort: Effort,
+    outcomes: Vec<Numbered>,
+    rejected: Vec<(usize, Rejection)>,
+}
+
+impl<'a> Collected<'a> {
+    /// Nothing yet.
+    pub fn new(problem: &'a ContactProblem, scale: &'a Scale, options: AnalysisOptions<'a>) -> Self {
+        let (outcomes, rejected) = (Vec::new(), Vec::new());
+        Self { problem, scale, options, total: 0, effort: Effort::default(), outcomes, rejected }
+    }
+
+    /// Adds a combination that was solved with more digits than f64 has.
+    pub fn add(&mut self, candidate: Candidate<&[Mode]>, solved: Solved) {
+        match solved {
+            Solved::Regular { reading, index, motion, .. } => self.add_regular(candidate, reading, index, || motion),
+            Solved::Singular(SingularCase::Rejected(rejection)) => self.reject(candidate, rejection),
+            Solved::Singular(SingularCase::Valid(own)) => {
+                let outcome = self.singular_outcome(own);
+                self.outcomes.push(Numbered { number: candidate.number, on_rim: false, outcome });
+            }
+            Solved::Singular(SingularCase::Family(ends)) => {
+                for end in ends {
+                    let on_rim = end.modes != candidate.modes;
+                    let outcome = Outcome { family: true, ..self.singular_outcome(end) };
+                    self.outcomes.push(Numbered { number: candidate.number, on_rim, outcome });
+                }
+            }
+        }
+    }
+
+    /// Adds a combination whose equations have one solution.
+    pub fn add_regular(
+        &mut self,
+        candidate: Candidate<&[Mode]>,
+        reading: Reading,
+        index: i8,
+        motion: impl FnOnce() -> Motion,
+    ) {
+        if reading.sign == Sign::Negative {
+            let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
+            let motion = (self.options.rejections.contain(candidate.modes) && solved).then(motion);
+            self.reject(candidate, Rejected { because: reading.because, margin: reading.margin, motion });
+            return;
+        }
+        let mut outcome = self.outcome(candidate.modes.to_vec(), motion(), &reading.at_zero);
+        outcome.index = reading.at_zero.is_empty().then_some(index);
+        outcome.margin = reading.margin.map(|margin| margin + 0.0);
+        self.outcomes.push(Numbered { number: candidate.number, on_rim: false, outcome });
+    }
+
+    /// Adds a combination that no precision decided, with zeros for the impulses that are not known.
+    pub fn add_undecided(&mut self, candidate: Candidate<Vec<Mode>>) {
+        let Candidate { number, modes } = candidate;
+        let velocity_after = self.problem.velocity_free().to_vec();
+        let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
+        let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, motion, &[]) };
+        self.outcomes.push(Numbered { number, on_rim: false, outcome });
+    }
+
+    /// Adds a rejected combination, if it is to be listed.
+    pub fn reject(&mut self, candidate: Candidate<&[Mode]>, rejection: Rejected) {
+        if self.options.rejections.contain(candidate.modes) {
+            let Rejected { because, margin, motion } = rejection;
+            let (margin, motion) = (margin.filter(|margin| margin.is_finite()), motion.filter(Motion::is_finite));
+            let modes = candidate.modes.to_vec();
+            self.rejected.push((candidate.number, Rejection { modes, because, margin, motion }));
+        }
+    }
+
+    /// Takes the outcomes of a combination out again.
+    pub fn remove(&mut self, number: usize) {
+        self.outcomes.retain(|own| own.number != number);
+    }
+
+    /// All outcomes and the listed rejections in the order of the combinations.
+    pub fn finish(mut self) -> (Vec<Outcome>, Vec<Rejection>, Effort) {
+        self.join_families();
+        self.outcomes.sort_by_key(|own| own.number);
+        self.rejected.sort_by_key(|(number, _)| *number);
+        self.effort.bound = self.total - self.effort.ball - self.effort.double_double - self.effort.precise;
+        let outcomes = self.outcomes.into_iter().map(|own| own.outcome).collect();
+        (outcomes, self.rejected.into_iter().map(|(_, rejection)| rejection).collect(), self.effort)
+    }
+
+    fn singular_outcome(&self, own: SingularOutcome) -> Outcome {
+        Outcome {
+            index: own.index,
+            margin: own.margin,
+            impulse_unique: own.range.is_none(),
+            impulse_range: own.range,
+            ..self.outcome(own.modes, own.motion, &own.at_zero)
+        }
+    }
+
+    /// A decided outcome with a unique impulse; the caller sets index and margin.
+    fn outcome(&self, modes: Vec<Mode>, motion: Motion, at_zero: &[(usize, Inequality)]) -> Outcome {
+        let border = border(&modes, self.problem.laws(), at_zero, &motion);
+        let mut outcome = Outcome {
+            modes,
+            impulse: Vec::new(),
+            velocity_after: Vec::new(),
+            energy_loss: 0.0,
+            impulse_unique: true,
+            impulse_range: None,
+            friction_needed: Vec::new(),
+            index: None,
+            margin: None,
+            border,
+            family: false,
+            proven: self.options.prove,
+            decided: true,
+        };
+        outcome.set_motion(motion, self.problem.velocity_before());
+        outcome
+    }
+
+    /// An end of a family on its rim is the outcome, or the end, of other modes, and is listed once, as theirs.
+    fn join_families(&mut self) {
+        let same = |a: &Outcome, b: &Outcome| {
+            a.modes == b.modes && self.scale.same_velocity(&a.velocity_after, &b.velocity_after)
+        };
+        let mut index = 0;
+        while index < self.outcomes.len() {
+            let end = &self.outcomes[index];
+            let twin = self.outcomes.iter().enumerate().position(|(other, own)| {
+                let again = end.on_rim || own.number == end.number;
+                end.outcome.family && other != index && again && same(&own.outcome, &end.outcome)
+            });
+            match twin {
+                Some(twin) => {
+                    let outcome = &mut self.outcomes[twin].outcome;
+                    outcome.family = true;
+                    outcome.index = None;
+                    self.outcomes.remove(index);
+                }
+                None => index += 1,
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! One combination of modes, solved in numbers that know their own signs.
+
+use super::enumerate::Tableau;
+use super::linear::Unsettled;
+use super::outcome::Motion;
+use super::problem::ContactProblem;
+use super::reading::{Reading, motion, read_signed};
+use super::singular::{Rejected, SingularCase, solve_singular};
+use super::slack::Scale;
+use crate::law::Mode;
+use crate::scalar::{Ordered, Sign};
+
+/// The solution of a combination.
+#[derive(Debug)]
+pub enum Solved {
+    /// Its equations have one solution.
+    Regular {
+        /// Its signs.
+        reading: Reading,
+        /// Sign of det A.
+        index: i8,
+        /// The solution.
+        motion: Motion,
+        /// How far it may be off, in the scale of margins.
+        error: f64,
+    },
+    /// Its equations are singular.
+    Singular(SingularCase),
+}
+
+impl Solved {
+    /// How far an outcome's numbers may be off, in the scale of margins; `None` of a rejected combination.
+    pub fn error(&self) -> Option<f64> {
+        match self {
+            Self::Regular { reading, error, .. } => (reading.sign != Sign::Negative).then_some(*error),
+            Self::Singular(SingularCase::Valid(member)) => Some(member.error),
+            Self::Singular(SingularCase::Family([one, other])) => Some(one.error.max(other.error)),
+            Self::Singular(SingularCase::Rejected(_)) => None,
+        }
+    }
+
+    /// Whether some number of a rejected combination is not finite.
+    pub fn is_vague(&self) -> bool {
+        match self {
+            Self::Regular { reading, motion, .. } => !(motion.is_finite() && reading.margin.is_none_or(f64::is_finite)),
+            Self::Singular(SingularCase::Rejected(Rejected { margin, motion, .. })) => {
+                !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
+            }
+            Self::Singular(_) => false,
+        }
+    }
+}
+
+/// Solves a combination in these numbers; `exact` is `problem` in them.
+///
+/// # Errors
+/// [`Unsettled`] if a sign needs more digits.
+pub fn solve_combination<T: Ordered>(
+    tableau: &mut Tableau<T>,
+    exact: &ContactProblem<T>,
+    problem: &ContactProblem,
+    scale: &Scale,
+    modes: &[Mode],
+) -> Result<Solved, Unsettled> {
+    let leaf = tableau.leaf(modes);
+    let mut index = 1;
+    for &pivot in leaf.pivots {
+        match pivot.sign() {
+            Sign::Undecided => return Err(Unsettled),
+            Sign::Zero => return solve_singular(exact, problem, scale, modes).map(Solved::Singular),
+            Sign::Negative => index = -index,
+            Sign::Positive => {}
+        }
+    }
+    let reading = read_signed(&leaf, modes, problem, scale);
+    if reading.sign == Sign::Undecided {
+        return Err(Unsettled);
+    }
+    let contacts = 0..modes.len();
+    let velocity = contacts.clone().flat_map(|contact| leaf.velocity(contact));
+    let error = scale.error(velocity, contacts.flat_map(|contact| leaf.impulse(contact)));
+    Ok(Solved::Regular { reading, index, motion: motion(&leaf, modes, problem, T::to_f64), error })
+}

@@ -1,0 +1,147 @@
+//! The passes over all combinations: first in f64, then with more digits those that need them.
+
+use super::bound::Bounds;
+use super::collected::{Candidate, Collected};
+use super::combination::{Solved, solve_combination};
+use super::enumerate::{Leaf, Tableau, Visitor};
+use super::kernel::Kernel;
+use super::labels::Labels;
+use super::linear::Unsettled;
+use super::problem::{ContactProblem, Precision, PrecisionTask};
+use super::reading::{motion, read_f64};
+use super::singular::Rejected;
+use crate::law::{ContactLaw, Impulse, Mode};
+use crate::scalar::{Ordered, Sign};
+
+/// Beyond this growth of rounding, f64 has lost the digits that an answer is expected to have.
+const F64_SERVES: f64 = 1e4;
+
+/// What an answer's numbers may be off by, in the scale of margins.
+const DIGITS: f64 = 1e-12;
+
+type Pending = Candidate<Vec<Mode>>;
+
+/// All combinations in f64.
+pub struct F64Pass<'a, 'm> {
+    pub bounds: &'m mut Bounds,
+    pub labels: &'m mut Labels,
+    /// Whether G was shown to be regular.
+    pub regular: bool,
+    /// What f64 does not decide.
+    pub undecided: Vec<Pending>,
+    /// Outcomes that f64 decides, but with few digits.
+    pub coarse: Vec<Pending>,
+    pub collected: Collected<'a>,
+}
+
+impl Visitor<f64> for F64Pass<'_, '_> {
+    fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
+        self.bounds.follow(tableau, contact, source);
+    }
+
+    fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
+        let Collected { problem, scale, options, .. } = self.collected;
+        let bound = self.bounds.at(leaf.depth());
+        // If every impulse is free, the pivots are those of the whole matrix.
+        self.regular |= bound.impulse_error().is_finite()
+            && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
+        self.labels.start(leaf.modes, problem.laws(), options.reductions.frictionless);
+        while let Some(modes) = self.labels.next() {
+            let candidate = Candidate { number: self.collected.total, modes };
+            let reading = read_f64(leaf, modes, problem, scale, bound, options.rejections.contain(modes));
+            if reading.sign == Sign::Undecided {
+                self.undecided.push(candidate.pending());
+            } else {
+                if reading.sign != Sign::Negative && bound.growth() > F64_SERVES {
+                    self.coarse.push(candidate.pending());
+                }
+                let index = leaf.pivots.iter().fold(1, |sign, &pivot| if pivot < 0.0 { -sign } else { sign });
+                let motion = || motion(leaf, modes, problem, |number| number);
+                self.collected.add_regular(candidate, reading, index, motion);
+            }
+            self.collected.total += 1;
+        }
+    }
+}
+
+/// Combinations whose signs need more digits than f64 has.
+pub struct UndecidedPass<'a, 'c> {
+    pub undecided: Vec<Pending>,
+    /// Outcomes that were decided with fewer digits than an answer is expected to have.
+    pub coarse: Vec<Pending>,
+    pub collected: &'c mut Collected<'a>,
+}
+
+impl PrecisionTask for UndecidedPass<'_, '_> {
+    fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, precision: Precision) -> bool {
+        let mut solver = Solver::new(exact);
+        let before = self.undecided.len();
+        let Self { undecided, coarse, collected } = self;
+        // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
+        let kernel = T::freeing(|| Kernel::of(exact)).unwrap_or_default();
+        let mut left = precision.combinations();
+        undecided.retain(|pending| {
+            if let Some(because) = kernel.excludes(&pending.modes) {
+                collected.reject(pending.borrowed(), Rejected { because, margin: None, motion: None });
+                return false;
+            }
+            if left == 0 {
+                return true;
+            }
+            left -= 1;
+            let Ok(solved) = solver.solve(pending, collected) else { return true };
+            let listed = collected.options.rejections.contain(&pending.modes);
+            if listed && precision != Precision::Interval && solved.is_vague() {
+                return true;
+            }
+            if solved.error().is_some_and(|error| error > DIGITS) {
+                coarse.push(pending.clone());
+            }
+            collected.add(pending.borrowed(), solved);
+            false
+        });
+        precision.count(&mut collected.effort, before - undecided.len());
+        undecided.is_empty()
+    }
+}
+
+/// Outcomes whose numbers need more digits.
+pub struct CoarsePass<'a, 'c> {
+    pub coarse: Vec<Pending>,
+    pub collected: &'c mut Collected<'a>,
+}
+
+impl PrecisionTask for CoarsePass<'_, '_> {
+    fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, _: Precision) -> bool {
+        let mut solver = Solver::new(exact);
+        let Self { coarse, collected } = self;
+        coarse.retain(|pending| match solver.solve(pending, collected) {
+            Ok(solved) if solved.error().is_some_and(|error| error <= DIGITS) => {
+                collected.remove(pending.number);
+                collected.add(pending.borrowed(), solved);
+                false
+            }
+            _ => true,
+        });
+        coarse.is_empty()
+    }
+}
+
+/// A problem in these numbers and its elimination.
+struct Solver<'e, T> {
+    exact: &'e ContactProblem<T>,
+    tableau: Tableau<T>,
+}
+
+impl<'e, T: Ordered> Solver<'e, T> {
+    fn new(exact: &'e ContactProblem<T>) -> Self {
+        let mut tableau = Tableau::<T>::new();
+        tableau.load(exact);
+        Self { exact, tableau }
+    }
+
+    fn solve(&mut self, pending: &Pending, collected: &Collected<'_>) -> Result<Solved, Unsettled> {
+        let Collected { problem, scale, .. } = *collected;
+        T::freeing(|| solve_combination(&mut self.tableau, self.exact, problem, scale, &pending.modes))
+    }
+}

@@ -1,0 +1,71 @@
+//! Numbers with more and more digits, tried one after the other.
+//!
+//! ```text
+//!     f64 with an error bound --> balls --> balls around pairs of f64 --> intervals of 256, 1024, 4096 bits
+//! ```
+//!
+//! From the balls on, each number also has a residue that shows whether it is exactly zero (see
+//! [`Residue`](crate::scalar::Residue)). So borders and dependent contacts are recognized, and a number that is not zero
+//! shows its sign once it has enough digits.
+
+use super::{ContactProblem, Source};
+use crate::impact::outcome::Effort;
+use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered};
+
+/// Digits of the last numbers \[bit\].
+const BITS: [usize; 3] = [256, 1024, 4096];
+
+/// Combinations that are tried in each of them.
+const PRECISE_COMBINATIONS: usize = 2_000;
+
+/// A question about a problem that more digits may answer.
+pub trait PrecisionTask {
+    /// Tries to answer it in these numbers; true if nothing is left open.
+    fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, precision: Precision) -> bool;
+}
+
+/// A kind of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Precision {
+    /// Balls around f64.
+    Ball,
+    /// Balls around pairs of f64.
+    DoubleDouble,
+    /// Intervals of many digits.
+    Interval,
+}
+
+impl Precision {
+    /// How many combinations are tried: many digits of many contacts take too long, and what is left is undecided.
+    pub fn combinations(self) -> usize {
+        match self {
+            Self::Ball | Self::DoubleDouble => usize::MAX,
+            Self::Interval => PRECISE_COMBINATIONS,
+        }
+    }
+
+    /// Counts the combinations that it decided.
+    pub fn count(self, effort: &mut Effort, combinations: usize) {
+        match self {
+            Self::Ball => effort.ball += combinations,
+            Self::DoubleDouble => effort.double_double += combinations,
+            Self::Interval => effort.precise += combinations,
+        }
+    }
+}
+
+/// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open.
+pub fn escalate<S: Source>(source: &S, first: Precision, task: &mut impl PrecisionTask) {
+    if first <= Precision::Ball && task.attempt(&source.problem::<Certified<Ball>>(), Precision::Ball) {
+        return;
+    }
+    if task.attempt(&source.problem::<Certified<Ball<DoubleDouble>>>(), Precision::DoubleDouble) {
+        return;
+    }
+    for bits in BITS {
+        let problem = || source.problem::<Certified<Interval>>();
+        if Interval::scope(bits, || task.attempt(&problem(), Precision::Interval)) {
+            return;
+        }
+    }
+}

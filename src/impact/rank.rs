@@ -1,0 +1,100 @@
+//! Rank and condition of the Delassus matrix.
+
+use super::bound::Bounds;
+use super::enumerate::Tableau;
+use super::linear::solve;
+use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
+use super::slack::Scale;
+use crate::reductions::Reductions;
+use crate::scalar::Ordered;
+use nalgebra::DMatrix;
+
+/// Whether f64 shows that G is regular: for problems none of whose combinations solves for all impulses.
+pub fn shows_regular(tableau: &mut Tableau<f64>, bounds: &mut Bounds, contacts: usize) -> bool {
+    tableau.stick_all(|tableau, contact| bounds.follow(tableau, contact, contact));
+    bounds.at(contacts).impulse_error().is_finite()
+}
+
+/// Rank of G and, where it is regular, the condition number of G scaled to a unit diagonal.
+pub fn rank_and_condition<S: Source>(
+    problem: &ContactProblem,
+    source: &S,
+    scale: &Scale,
+    regular: bool,
+    reductions: Reductions,
+) -> (usize, Option<f64>) {
+    let rows = 2 * problem.contacts();
+    if rows == 0 {
+        return (0, None);
+    }
+    let mobility = &scale.mobility;
+    let [least, greatest] = match problem.contacts() {
+        1 if reductions.lone => eigenvalues_of_one(problem, mobility),
+        _ => {
+            let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
+            let values = scaled.symmetric_eigenvalues();
+            [values.min(), values.max()]
+        }
+    };
+    if regular && greatest < F64_CONDITION_LIMIT * least {
+        return (rows, Some(greatest / least));
+    }
+    let mut inverse = Inverse { mobility: mobility.clone(), ..Inverse::default() };
+    escalate(source, Precision::Ball, &mut inverse);
+    match inverse.rank {
+        Some(rank) if rank < rows => (rank, None),
+        Some(rank) => {
+            let inverse = DMatrix::from_fn(rows, rows, |i, j| 0.5 * (inverse.rows[i][j] + inverse.rows[j][i]));
+            let condition = greatest * inverse.symmetric_eigenvalues().max();
+            (rank, condition.is_finite().then_some(condition))
+        }
+        // No precision shows whether the rank is full.
+        None => (rows, None),
+    }
+}
+
+/// Beyond this the least eigenvalue of G has lost half of its digits.
+const F64_CONDITION_LIMIT: f64 = 1e8;
+
+/// The least and the greatest eigenvalue of a single contact's G, scaled to a unit diagonal: [[1, r], [r, 1]].
+fn eigenvalues_of_one(problem: &ContactProblem, mobility: &[f64]) -> [f64; 2] {
+    // Twice the same off-diagonal entry, as it was given.
+    let coupling = problem.delassus(0, 1) / (mobility[0] * mobility[1]);
+    [1.0 - coupling.abs(), 1.0 + coupling.abs()]
+}
+
+/// The rank of G, and its inverse in the scale if it is regular.
+#[derive(Debug, Default)]
+struct Inverse {
+    /// The rank; `None` if no precision shows it.
+    rank: Option<usize>,
+    /// Rows of the inverse of G scaled to a unit diagonal.
+    rows: Vec<Vec<f64>>,
+    /// sqrt(G_ii).
+    mobility: Vec<f64>,
+}
+
+impl PrecisionTask for Inverse {
+    fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, _: Precision) -> bool {
+        let count = 2 * problem.contacts();
+        let equations = |right: Option<usize>| -> Vec<Vec<T>> {
+            let row = |i: usize| {
+                let entries = (0..count).map(|j| problem.delassus(i, j));
+                entries.chain([if right == Some(i) { T::one() } else { T::zero() }]).collect()
+            };
+            (0..count).map(row).collect()
+        };
+        let Ok(Some(kernel)) = solve(count, equations(None)) else { return false };
+        self.rank = Some(count - kernel.directions.len());
+        if self.rank == Some(count) {
+            let columns = (0..count).map(|column| match solve(count, equations(Some(column))) {
+                Ok(Some(found)) => Some(found.origin),
+                _ => None,
+            });
+            let Some(columns) = columns.collect::<Option<Vec<Vec<T>>>>() else { return false };
+            let entry = |i: usize, j: usize| columns[j][i].to_f64() * self.mobility[i] * self.mobility[j];
+            self.rows = (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect();
+        }
+        true
+    }
+}
