@@ -213,7 +213,7 @@ mod tests {
                 let product: f64 = leaf.pivots.iter().product();
                 prop_assert!((determinant.mid - product).abs() <= 1e-9 * (1.0 + product.abs()), "{modes:?}");
                 let mut expected = Vec::new();
-                crate::impact::sign::slacks(&leaf, &modes, problem.laws(), |slack| expected.push(slack.number));
+                crate::impact::slack::slacks(&leaf, &modes, problem.laws(), |slack| expected.push(slack.number));
                 prop_assert_eq!(expected.len(), found.numerators.len());
                 for (slack, (_, numerator)) in expected.into_iter().zip(&found.numerators) {
                     // A pivot near zero costs the elimination its digits.
