@@ -2,7 +2,9 @@
 //! d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
 
 use heelstrike::accuracy::compliant::{Biped, Map, NEAR};
-use heelstrike::draw::plot::{Arrangement, Axis, Colour, Entry, Key, Legend, Mark, Panel, Picture, Shape, Stroke};
+use heelstrike::draw::plot::{
+    Arrangement, Color, Legend, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, Shape, Stroke,
+};
 use heelstrike::impact::{Friction, Mode};
 use std::error::Error;
 use std::fmt::Write;
@@ -66,21 +68,21 @@ fn picture(map: &Map) -> Picture {
     };
     let border = map.separatrix.iter().zip(&map.ratios).filter_map(|(speed, &ratio)| speed.map(|speed| (speed, ratio)));
     let drawn = [
-        ("lifts off", ends(Mode::Separate), Mark::Circle, Colour::SkyBlue),
-        ("stops", ends(Mode::Stick), Mark::Square, Colour::Orange),
-        ("no rigid outcome within 1 %", none(map), Mark::Triangle, Colour::Black),
+        ("lifts off", ends(Mode::Separate), Mark::Circle, Color::SkyBlue),
+        ("stops", ends(Mode::Stick), Mark::Square, Color::Orange),
+        ("no rigid outcome within 1 %", none(map), Mark::Triangle, Color::Black),
     ];
-    let stroke = Stroke::solid(Colour::Vermilion, 2.0);
-    let marks = drawn.iter().map(|&(name, _, mark, colour)| (name, Key::Mark(mark, colour)));
-    let keys = marks.chain([("separatrix", Key::Line(stroke))]);
-    let entries = keys.map(|(name, key)| Entry { name: name.into(), key }).collect();
-    let shapes = drawn.into_iter().map(|(_, points, mark, colour)| Shape::Marks { points, mark, colour, size: 3.0 });
-    let x = Axis { label: "approach speed of the trailing foot [m/s]".into(), ..Axis::default() };
-    let y = Axis { label: "d_t / d_n".into(), logarithmic: true, ..Axis::default() };
+    let stroke = Stroke::solid(Color::Vermilion, 2.0);
+    let marks = drawn.iter().map(|&(name, _, mark, color)| (name, LegendKey::Mark(mark, color)));
+    let keys = marks.chain([("separatrix", LegendKey::Line(stroke))]);
+    let entries = keys.map(|(name, key)| LegendEntry { name: name.into(), key }).collect();
+    let shapes = drawn.into_iter().map(|(_, points, mark, color)| Shape::Marks { points, mark, color, size: 3.0 });
+    let x = PlotAxis { label: "approach speed of the trailing foot [m/s]".into(), ..PlotAxis::default() };
+    let y = PlotAxis { label: "d_t / d_n".into(), logarithmic: true, ..PlotAxis::default() };
     let line = Shape::Line { points: border.collect(), stroke };
     Picture {
         title: "Minimalistic biped at α = 1.4, overdamped contact".into(),
         rows: vec![vec![Panel { shapes: shapes.chain([line]).collect(), ..Panel::new(x, y) }]],
-        legend: Legend { entries, arrangement: Arrangement::Beside },
+        legend: Legend { entries, arrangement: Arrangement::Right },
     }
 }

@@ -1,7 +1,9 @@
 //! Errors against run time as a picture: a panel for G and one for the outcomes.
 
 use crate::accuracy::{Errors, Factorization, Method, Study};
-use crate::draw::plot::{Arrangement, Axis, Colour, Entry, Key, Legend, MARK, Mark, Panel, Picture, Point, Shape};
+use crate::draw::plot::{
+    Arrangement, Color, Legend, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, Shape,
+};
 use crate::write::accuracy::{Accuracy, name_of};
 
 /// Marks by which cases are told from each other; where there are more cases they are not.
@@ -19,37 +21,37 @@ impl Accuracy {
         };
         let mark = |case: usize| if named { MARKS[case] } else { Mark::Circle };
         let methods = || self.studies.iter().flat_map(|study| &study.methods).filter(|method| is_drawn(method));
-        let mut legend: Vec<Entry> = Vec::new();
+        let mut legend: Vec<LegendEntry> = Vec::new();
         for method in methods() {
             let name = name_of(method);
             if !legend.iter().any(|entry| entry.name == name) {
-                legend.push(Entry { name, key: Key::Mark(Mark::Circle, colour(method)) });
+                legend.push(LegendEntry { name, key: LegendKey::Mark(Mark::Circle, color(method)) });
             }
         }
         if named && self.studies.len() > 1 {
             let cases = self.studies.iter().enumerate().filter(|(_, study)| study.methods.iter().any(is_drawn));
-            let entry = |(at, study): (usize, &Study)| Entry {
+            let entry = |(at, study): (usize, &Study)| LegendEntry {
                 name: study.name.clone(),
                 // A mark of any method.
-                key: Key::Mark(mark(at), Colour::Grey),
+                key: LegendKey::Mark(mark(at), Color::Gray),
             };
             legend.extend(cases.map(entry));
         }
         let panel = |what: &str, pick: fn(&Errors) -> Option<f64>| {
-            let mut series: Vec<(Mark, Colour, Vec<Point>)> = Vec::new();
+            let mut series: Vec<(Mark, Color, Vec<PlotPoint>)> = Vec::new();
             for (case, study) in self.studies.iter().enumerate() {
                 for method in study.methods.iter().filter(|method| is_drawn(method)) {
                     let error = method.error.as_ref().and_then(pick);
                     let (Some(time), Some(error)) = (method.time, error) else { continue };
-                    let (mark, colour, point) = (mark(case), colour(method), (time.median, error));
-                    match series.iter_mut().find(|series| (series.0, series.1) == (mark, colour)) {
+                    let (mark, color, point) = (mark(case), color(method), (time.median, error));
+                    match series.iter_mut().find(|series| (series.0, series.1) == (mark, color)) {
                         Some((_, _, points)) => points.push(point),
-                        None => series.push((mark, colour, vec![point])),
+                        None => series.push((mark, color, vec![point])),
                     }
                 }
             }
-            let marks = |(mark, colour, points)| Shape::Marks { points, mark, colour, size: MARK };
-            let axis = |label: &str| Axis { label: label.into(), logarithmic: true, ..Axis::default() };
+            let marks = |(mark, color, points)| Shape::Marks { points, mark, color, size: MARK };
+            let axis = |label: &str| PlotAxis { label: label.into(), logarithmic: true, ..PlotAxis::default() };
             let shapes = series.into_iter().map(marks).collect();
             Panel { shapes, ..Panel::new(axis("time from state to G [s]"), axis(what)) }
         };
@@ -59,7 +61,7 @@ impl Accuracy {
         ];
         let range = span_of(&panels);
         panels.iter_mut().for_each(|panel| panel.y.range = range);
-        Picture { title, rows: vec![panels], legend: Legend { entries: legend, arrangement: Arrangement::Beside } }
+        Picture { title, rows: vec![panels], legend: Legend { entries: legend, arrangement: Arrangement::Right } }
     }
 }
 
@@ -82,15 +84,15 @@ fn is_drawn(method: &Method) -> bool {
     method.number != "reference" && method.factorization.is_some() && method.time.is_some() && method.error.is_some()
 }
 
-/// The colour of a method.
-fn colour(method: &Method) -> Colour {
+/// The color of a method.
+fn color(method: &Method) -> Color {
     match (method.number, method.factorization) {
-        ("f32", Some(Factorization::ArticulatedBodies)) => Colour::Vermilion,
-        ("f32", _) => Colour::Orange,
-        ("f64", Some(Factorization::ArticulatedBodies)) => Colour::Blue,
-        ("f64", Some(Factorization::DenseCholesky)) => Colour::SkyBlue,
-        ("f64", _) => Colour::Green,
-        (_, Some(Factorization::ArticulatedBodies)) => Colour::Black,
-        _ => Colour::Purple,
+        ("f32", Some(Factorization::ArticulatedBodies)) => Color::Vermilion,
+        ("f32", _) => Color::Orange,
+        ("f64", Some(Factorization::ArticulatedBodies)) => Color::Blue,
+        ("f64", Some(Factorization::DenseCholesky)) => Color::SkyBlue,
+        ("f64", _) => Color::Green,
+        (_, Some(Factorization::ArticulatedBodies)) => Color::Black,
+        _ => Color::Purple,
     }
 }

@@ -3,7 +3,7 @@
 use super::{Axis, Page, Region, STILLS, Still};
 use crate::draw::ListedKeyframe;
 use crate::draw::plot::{
-    self, Arrangement, Band, Colour, Entry, Key, Legend, Mark, Panel, Picture, Rendered, Shape, Stroke,
+    self, Arrangement, Band, Color, Legend, LegendEntry, LegendKey, Mark, Panel, Picture, Rendered, Shape, Stroke,
 };
 use crate::impact::Verdict;
 use crate::law::Mode;
@@ -69,13 +69,13 @@ impl Gait {
     pub fn picture(&self, robot: &str) -> Picture {
         let (name, order) = self.order();
         let runs = self.runs(&order);
-        let axis = |label: &str| plot::Axis { label: label.into(), ..plot::Axis::default() };
+        let axis = |label: &str| plot::PlotAxis { label: label.into(), ..plot::PlotAxis::default() };
         let label = if name == "time" { "time [s]" } else { name };
         let shapes = runs.iter().flat_map(Run::shapes).collect();
         let bands = bands(&runs);
         let panel = Panel { size: (640.0, 260.0), bands, shapes, ..Panel::new(axis(label), axis("margin")) };
         let told = |kind: &Kind| runs.iter().any(|run| run.kind() == *kind);
-        let entry = |kind: Kind| Entry { name: kind.words().into(), key: Key::Fill(kind.fill()) };
+        let entry = |kind: Kind| LegendEntry { name: kind.words().into(), key: LegendKey::Fill(kind.fill()) };
         Picture {
             title: format!("{robot}: margins of all outcomes"),
             rows: vec![vec![panel]],
@@ -149,20 +149,20 @@ impl Run<'_> {
     /// A line for each outcome, or a mark where there is a single state.
     fn shapes(&self) -> Vec<Shape> {
         let kind = self.kind();
-        let marks = |points| Shape::Marks { points, mark: kind.mark(), colour: kind.colour(), size: plot::MARK };
+        let marks = |points| Shape::Marks { points, mark: kind.mark(), color: kind.color(), size: plot::MARK };
         let outcomes =
             |state: &ListedKeyframe| state.keyframe.answer.as_ref().map_or(0, |answer| answer.outcomes.len());
         if kind == Kind::Refused {
             return vec![marks(self.at.iter().map(|&at| (at, 0.0)).collect())];
         }
-        let curve = |outcome: usize| -> Vec<plot::Point> {
+        let curve = |outcome: usize| -> Vec<plot::PlotPoint> {
             let margin = |state: &ListedKeyframe| state.keyframe.answer.as_ref().ok()?.outcomes.get(outcome)?.margin;
             self.at.iter().zip(self.states).map(|(&at, state)| (at, margin(state).unwrap_or(f64::NAN))).collect()
         };
         let count = self.states.first().map_or(0, outcomes);
         let shape = |outcome: usize| match self.states {
             [_] => marks(curve(outcome)),
-            _ => Shape::Line { points: curve(outcome), stroke: Stroke::solid(kind.colour(), 1.6) },
+            _ => Shape::Line { points: curve(outcome), stroke: Stroke::solid(kind.color(), 1.6) },
         };
         (0..count).map(shape).collect()
     }
@@ -198,26 +198,26 @@ impl Kind {
         }
     }
 
-    fn colour(self) -> Colour {
+    fn color(self) -> Color {
         match self {
-            Self::Answered(Verdict::Unique) => Colour::Blue,
-            Self::Answered(Verdict::Ambiguous) => Colour::Vermilion,
-            Self::Answered(Verdict::None) | Self::Refused => Colour::Black,
-            Self::Answered(Verdict::Undecided) => Colour::Purple,
-            Self::Answered(Verdict::NoImpact) => Colour::Green,
-            Self::Answered(Verdict::NoContact) => Colour::Grey,
+            Self::Answered(Verdict::Unique) => Color::Blue,
+            Self::Answered(Verdict::Ambiguous) => Color::Vermilion,
+            Self::Answered(Verdict::None) | Self::Refused => Color::Black,
+            Self::Answered(Verdict::Undecided) => Color::Purple,
+            Self::Answered(Verdict::NoImpact) => Color::Green,
+            Self::Answered(Verdict::NoContact) => Color::Gray,
         }
     }
 
     /// Behind the slider and under words.
-    fn fill(self) -> Colour {
+    fn fill(self) -> Color {
         match self {
-            Self::Answered(Verdict::Unique) => Colour::Tint(3),
-            Self::Answered(Verdict::Ambiguous) => Colour::Tint(1),
-            Self::Answered(Verdict::None | Verdict::Undecided) => Colour::Tint(5),
-            Self::Answered(Verdict::NoImpact) => Colour::Tint(2),
-            Self::Answered(Verdict::NoContact) => Colour::White,
-            Self::Refused => Colour::Pale,
+            Self::Answered(Verdict::Unique) => Color::Tint(3),
+            Self::Answered(Verdict::Ambiguous) => Color::Tint(1),
+            Self::Answered(Verdict::None | Verdict::Undecided) => Color::Tint(5),
+            Self::Answered(Verdict::NoImpact) => Color::Tint(2),
+            Self::Answered(Verdict::NoContact) => Color::White,
+            Self::Refused => Color::Pale,
         }
     }
 

@@ -21,7 +21,7 @@ pub use gait::Gait;
 pub use study::Stops;
 
 use super::Keyframe;
-use super::plot::{Rendered, Window};
+use super::plot::{PlotWindow, Rendered};
 use frame::{Frame, Scale};
 use part::{Part, Parts};
 use serde::Serialize;
@@ -42,7 +42,7 @@ pub struct Page {
     parts: Vec<Part>,
     texts: Vec<String>,
     scale: Scale,
-    windows: Vec<Window>,
+    windows: Vec<PlotWindow>,
     notes: Vec<String>,
     #[serde(skip)]
     svg: String,
@@ -60,7 +60,7 @@ struct Axis {
 struct Region {
     /// A letter, or a word.
     name: String,
-    /// The colour of its part of the track.
+    /// The color of its part of the track.
     fill: &'static str,
     /// Where it ends, and what turns there.
     borders: Vec<[String; 2]>,

@@ -50,8 +50,8 @@ impl Part {
             place([dot(arm, turn), dot(arm, across)], unit)
         };
         let outline = |outline: &Outline| match outline {
-            Outline::Disc { centre, radius } => {
-                Outline::Disc { centre: local(*centre), radius: super::number::to_unit(*radius, unit) }
+            Outline::Disc { center, radius } => {
+                Outline::Disc { center: local(*center), radius: super::number::to_unit(*radius, unit) }
             }
             Outline::Polygon(corners) => Outline::Polygon(corners.iter().copied().map(local).collect()),
         };
@@ -68,7 +68,7 @@ impl Part {
         let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * unit;
         let near_points = |a: &Vector<f64>, b: &Vector<f64>| near(a[0], b[0]) && near(a[1], b[1]);
         let near_outlines = |(a, b): (&Outline, &Outline)| match (a, b) {
-            (Outline::Disc { centre: a, radius: s }, Outline::Disc { centre: b, radius: r }) => {
+            (Outline::Disc { center: a, radius: s }, Outline::Disc { center: b, radius: r }) => {
                 near_points(a, b) && near(*s, *r)
             }
             (Outline::Polygon(a), Outline::Polygon(b)) => {

@@ -1,24 +1,22 @@
 //! Axes: what they span, and where their ticks are.
 
-use super::font;
-use kuva::render::layout::TickFormat;
+use super::{Pixel, PlotPoint, PlotWindow};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// An axis of a panel.
 #[derive(Debug, Clone, Default)]
-pub struct Axis {
-    /// What is measured, with its unit.
+pub struct PlotAxis {
+    /// The quantity, with its unit.
     pub label: String,
-    /// Whether its scale is logarithmic; what is not positive is then not drawn.
+    /// Whether its scale is logarithmic; values that are not positive are then not drawn.
     pub logarithmic: bool,
-    /// From where to where it goes, of a logarithmic one outward to whole powers of ten; none for all that is drawn.
+    /// Its ends, which a logarithmic one moves outward to whole powers of ten; `None` to span all that is drawn.
     pub range: Option<(f64, f64)>,
-    /// Where it has no range: what lies beyond these values does not widen it.
+    /// If it has no range: values beyond these do not widen it.
     pub within: Option<(f64, f64)>,
-    /// Whether it has neither ticks nor label, for another panel beside it has the same.
+    /// Whether it has neither ticks nor label, because a neighboring panel has the same axis.
     pub bare: bool,
-    /// Whether it measures angles \[rad\] whose ticks are parts of pi.
+    /// Whether it measures angles \[rad\] whose ticks are multiples of pi / 2.
     pub in_pi: bool,
 }
 
@@ -35,19 +33,59 @@ pub(super) struct Span {
     power: i32,
 }
 
-/// What an axis has beyond all points, on either side, as a part of them.
+/// A tick of an axis.
+#[derive(Debug)]
+pub(super) struct Tick {
+    /// Where it is, 0 at the beginning of the axis and 1 at its end.
+    pub share: f64,
+    pub text: String,
+}
+
+/// Both axes of a panel on the screen.
+#[derive(Debug)]
+pub(super) struct PlotArea {
+    pub x: Span,
+    pub y: Span,
+    /// Inside of the axes.
+    pub size: Pixel,
+}
+
+impl PlotArea {
+    /// Where a point is, from the upper left corner of the axes; `None` if it has no place on them.
+    pub fn place(&self, (x, y): PlotPoint) -> Option<Pixel> {
+        let at = (self.size.0 * self.x.share(x), self.size.1 * (1.0 - self.y.share(y)));
+        (at.0.is_finite() && at.1.is_finite()).then_some(at)
+    }
+
+    /// The inside of the axes, with its upper left corner there.
+    pub fn window(&self, corner: Pixel) -> PlotWindow {
+        PlotWindow { corner, size: self.size, x: self.x.ends(), y: self.y.ends() }
+    }
+
+    /// Whether a pixel is inside of the axes.
+    pub fn holds(&self, (x, y): Pixel) -> bool {
+        (0.0..=self.size.0).contains(&x) && (0.0..=self.size.1).contains(&y)
+    }
+
+    /// The pixels of one unit of the x axis.
+    pub fn scale(&self) -> f64 {
+        self.x.scale(self.size.0)
+    }
+}
+
+/// Room beyond all points on either side, as a share of what they span.
 const ROOM: f64 = 0.04;
-/// What a mark takes of a logarithmic axis.
+/// The share of a logarithmic axis that a mark takes.
 const MARK: f64 = 0.02;
-/// Values that agree to this part of them are the same.
+/// Values that agree to this share of them are the same.
 const ROUNDING: f64 = 1e-10;
-/// About how far ticks are apart \[px\], and into how many parts they divide a short axis.
+/// About the distance between ticks \[px\], and the parts into which they divide a short axis.
 const PITCH: f64 = 75.0;
-const TICKS: f64 = 4.0;
+const PARTS: f64 = 4.0;
 
 impl Span {
     /// Of an axis of this `length` \[px\] along which `values` lie.
-    pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, length: f64) -> Self {
+    pub fn new(axis: &PlotAxis, values: impl Iterator<Item = f64>, length: f64) -> Self {
         let usable = values.filter(|value| value.is_finite() && (!axis.logarithmic || *value > 0.0));
         let (lowest, highest) = axis.within.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let usable = usable.map(|value| value.max(lowest).min(highest));
@@ -76,7 +114,7 @@ impl Span {
 
     fn set_step(&mut self, length: f64) {
         if !self.logarithmic {
-            let least = (self.high - self.low) * PITCH.min(length / TICKS) / length;
+            let least = (self.high - self.low) * PITCH.min(length / PARTS) / length;
             // Halves of pi, or whole multiples.
             self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
         }
@@ -97,7 +135,7 @@ impl Span {
         Self { low, high, step, logarithmic: true, in_pi: false, power: 0 }
     }
 
-    /// The number that stands at a value's tick.
+    /// The number at a value's tick.
     fn shown(&self, value: f64) -> f64 {
         match (self.logarithmic, self.power) {
             (true, _) => libm::log10(value),
@@ -117,23 +155,23 @@ impl Span {
         (value(self.low), value(self.high))
     }
 
-    /// Where on the axis a value is, 0 at its beginning and 1 at its end; of what has no place not finite.
+    /// Where on the axis a value is, 0 at its beginning and 1 at its end; not finite if it has no place there.
     pub fn share(&self, value: f64) -> f64 {
         (self.shown(value) - self.low) / (self.high - self.low)
     }
 
-    /// How many pixels a unit takes on an axis of this `length` \[px\].
+    /// The pixels of one unit on an axis of this `length` \[px\].
     pub fn scale(&self, length: f64) -> f64 {
         length * (self.share(1.0) - self.share(0.0))
     }
 
-    /// The axis, of this `length` \[px\], from its middle so many times as long.
+    /// Makes the axis, of this `length` \[px\], span so many times as much about its middle.
     pub fn widen(&mut self, factor: f64, length: f64) {
         let more = 0.5 * (factor - 1.0) * (self.high - self.low);
         self.extend(more, more, length);
     }
 
-    /// The axis, of this `length` \[px\], with `room` \[px\] left free at its end.
+    /// Leaves `room` \[px\] free at the end of the axis, of this `length` \[px\].
     pub fn leave(&mut self, room: f64, length: f64) {
         self.extend(0.0, (self.high - self.low) * room / (length - room), length);
     }
@@ -143,23 +181,30 @@ impl Span {
         self.set_step(length);
     }
 
-    /// How kuva writes a tick.
-    pub fn format(&self) -> TickFormat {
-        if self.logarithmic {
-            return TickFormat::Custom(Arc::new(power_of_ten));
+    /// The ticks, from its beginning to its end.
+    pub fn ticks(&self) -> Vec<Tick> {
+        let first = (self.low / self.step - ROUNDING).ceil() as i64;
+        let last = (self.high / self.step + ROUNDING).floor() as i64;
+        let tick = |count: i64| {
+            let at = count as f64 * self.step;
+            Tick { share: (at - self.low) / (self.high - self.low), text: self.text(at) }
+        };
+        (first..=last).map(tick).collect()
+    }
+
+    /// The text at a tick.
+    fn text(&self, at: f64) -> String {
+        match (self.logarithmic, self.in_pi) {
+            (true, _) => power_of_ten(at),
+            (_, true) => multiple_of_pi(at),
+            _ => fixed(at, decimals(self.step)),
         }
-        if self.in_pi {
-            return TickFormat::Custom(Arc::new(part_of_pi));
-        }
-        let decimals = decimals(self.step);
-        TickFormat::Custom(Arc::new(move |value| fixed(value, decimals)))
     }
 
     /// The label, with the power of ten that the ticks leave out in its unit.
     pub fn label(&self, label: &str) -> String {
-        let label = font::printable(label);
         if self.power == 0 {
-            return label;
+            return label.to_owned();
         }
         let power = power_of_ten(f64::from(self.power));
         match label.rsplit_once('[') {
@@ -180,12 +225,12 @@ fn step(least: f64) -> f64 {
         .unwrap_or(10.0 * unit)
 }
 
-/// How many decimals tell ticks apart.
+/// The decimals that distinguish ticks.
 fn decimals(step: f64) -> usize {
     (-libm::floor(libm::log10(step) + 1e-9)).clamp(0.0, 17.0) as usize
 }
 
-/// With so many decimals, and zero without a sign.
+/// A number with so many decimals, and zero without a sign.
 fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -196,7 +241,7 @@ fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// A multiple of half of pi, as in −π/2.
-fn part_of_pi(share: f64) -> String {
+fn multiple_of_pi(share: f64) -> String {
     let halves = (2.0 * share).round();
     let sign = if halves < 0.0 { "−" } else { "" };
     let (whole, divisor) = if halves % 2.0 == 0.0 { (0.5 * halves.abs(), "") } else { (halves.abs(), "/2") };
@@ -221,7 +266,7 @@ mod tests {
     use super::*;
 
     fn span(range: (f64, f64)) -> Span {
-        Span::new(&Axis { range: Some(range), ..Axis::default() }, std::iter::empty(), 400.0)
+        Span::new(&PlotAxis { range: Some(range), ..PlotAxis::default() }, std::iter::empty(), 400.0)
     }
 
     #[test]
@@ -231,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_are_round_and_have_the_decimals_that_tell_them_apart() {
+    fn ticks_are_round_and_distinct() {
         for (range, step, at, text) in [
             ((0.0, 1.57), 0.5, 0.5, "0.5"),
             ((-1.0, 1.0), 0.5, -1e-17, "0.0"),
@@ -240,13 +285,13 @@ mod tests {
         ] {
             let span = span(range);
             assert_eq!(span.step, step, "{range:?}");
-            assert_eq!(span.format().format(at), text, "{range:?}");
+            assert_eq!(span.text(at), text, "{range:?}");
             assert_eq!(span.label("a [m]"), "a [m]");
         }
     }
 
     #[test]
-    fn magnitudes_beside_one_move_into_the_label() {
+    fn powers_of_ten_move_into_the_label() {
         for (scale, power) in [(1e-7, "10⁻⁷"), (1e9, "10⁹"), (1e-310, "10⁻³¹⁰")] {
             let span = span((0.0, 4.0 * scale));
             assert_eq!(span.label("p [N s]"), format!("p [{power} N s]"));
@@ -257,17 +302,17 @@ mod tests {
     }
 
     #[test]
-    fn angles_are_parts_of_pi() {
-        let axis = Axis { range: Some((-PI, PI)), in_pi: true, ..Axis::default() };
+    fn angles_are_multiples_of_pi() {
+        let axis = PlotAxis { range: Some((-PI, PI)), in_pi: true, ..PlotAxis::default() };
         let span = Span::new(&axis, std::iter::empty(), 320.0);
         assert_eq!((span.low, span.high, span.step), (-1.0, 1.0, 0.5));
-        let ticks = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|at| span.format().format(at));
+        let ticks = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|at| span.text(at));
         assert_eq!(ticks, ["−π", "−π/2", "0", "π/2", "π", "3π/2", "2π"]);
     }
 
     #[test]
-    fn a_spike_beyond_what_is_asked_for_widens_nothing() {
-        let axis = Axis { within: Some((-1.0, 1.0)), ..Axis::default() };
+    fn a_spike_beyond_the_limits_widens_nothing() {
+        let axis = PlotAxis { within: Some((-1.0, 1.0)), ..PlotAxis::default() };
         let span = Span::new(&axis, [-0.5, 0.5, 1e6].into_iter(), 400.0);
         assert!((span.share(0.25) - 0.5).abs() < 1e-9 && span.share(1e6) > 1.0);
     }
@@ -275,7 +320,7 @@ mod tests {
     #[test]
     fn a_single_value_has_room_about_it() {
         for value in [0.0, -3.0, 1e-200] {
-            let span = Span::new(&Axis::default(), [value, value * (1.0 + 1e-15)].into_iter(), 400.0);
+            let span = Span::new(&PlotAxis::default(), [value, value * (1.0 + 1e-15)].into_iter(), 400.0);
             assert!((span.share(value) - 0.5).abs() < 1e-9);
         }
     }

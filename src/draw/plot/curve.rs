@@ -1,20 +1,20 @@
-//! A curve on the screen: cut where it leaves the panel, and thinned out where nobody sees it.
+//! A curve on the screen, cut where it leaves the panel and without corners that nobody sees.
 //!
 //! ```text
 //!     points [px] --parts inside--> pieces --Douglas and Peucker 1973--> the fewest corners within a tenth of a pixel
 //! ```
 
-type Pixel = (f64, f64);
+use super::Pixel;
 
-/// What is left out lies no farther from the curve than this \[px\].
+/// Corners that are left out lie no farther from the curve than this \[px\].
 const SEEN: f64 = 0.1;
 /// A curve that needs more corners than this is drawn more coarsely.
 const MOST: usize = 4000;
-/// How far beyond the panel a curve goes on \[px\]: its end and the corners of wide strokes are not seen.
+/// How far beyond the panel a curve goes on \[px\], so that its end and the corners of wide strokes are not seen.
 const BEYOND: f64 = 20.0;
 
 /// The pieces of the curve through `points` that lie within `width` and `height` \[px\], or just beyond.
-pub(super) fn visible(points: &[Pixel], (width, height): (f64, f64)) -> Vec<Vec<Pixel>> {
+pub(super) fn visible(points: &[Pixel], (width, height): Pixel) -> Vec<Vec<Pixel>> {
     let mut pieces: Vec<Vec<Pixel>> = Vec::new();
     let mut open = false;
     for pair in points.windows(2) {
@@ -32,7 +32,7 @@ pub(super) fn visible(points: &[Pixel], (width, height): (f64, f64)) -> Vec<Vec<
 }
 
 /// The part of the area within a closed loop of `corners` that lies within the panel, or just beyond: its corners.
-pub(super) fn enclosed(corners: &[Pixel], (width, height): (f64, f64)) -> Vec<Pixel> {
+pub(super) fn enclosed(corners: &[Pixel], (width, height): Pixel) -> Vec<Pixel> {
     let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
     // A loop's ends are one point; where it has gone half its way it is cut, so that each half is a curve with two ends.
     let (once, again) = rest.split_at(rest.len() / 2);
@@ -43,7 +43,7 @@ pub(super) fn enclosed(corners: &[Pixel], (width, height): (f64, f64)) -> Vec<Pi
         half.pop();
         half
     });
-    // Where each side begins, how far a point is inside of it.
+    // For each side, how far a point is inside of it.
     let sides: [fn(Pixel, f64, f64) -> f64; 4] = [
         |(x, _), _, _| x + BEYOND,
         |(x, _), width, _| width + BEYOND - x,
@@ -71,7 +71,7 @@ fn cut(corners: &[Pixel], inside: impl Fn(Pixel) -> f64) -> Vec<Pixel> {
 }
 
 /// The part of a segment inside of the panel (Liang and Barsky 1984).
-fn within(from: Pixel, to: Pixel, (width, height): (f64, f64)) -> Option<(Pixel, Pixel)> {
+fn within(from: Pixel, to: Pixel, (width, height): Pixel) -> Option<(Pixel, Pixel)> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
     let sides =
@@ -123,7 +123,7 @@ fn corners(points: &[Pixel], tolerance: f64) -> Vec<Pixel> {
     points.iter().zip(kept).filter(|(_, kept)| *kept).map(|(&point, _)| point).collect()
 }
 
-/// Of a point to a segment.
+/// The distance of a point from a segment.
 fn distance(point: Pixel, from: Pixel, to: Pixel) -> f64 {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (px, py) = (point.0 - from.0, point.1 - from.1);
@@ -137,13 +137,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_straight_line_keeps_its_ends_and_a_bend_its_corner() {
+    fn a_bent_line_keeps_its_ends_and_its_corner() {
         let line: Vec<Pixel> = (0..=100).map(|at| (f64::from(at), 2.0 * f64::from(at.min(50)))).collect();
         assert_eq!(visible(&line, (200.0, 200.0)), [[(0.0, 0.0), (50.0, 100.0), (100.0, 100.0)]]);
     }
 
     #[test]
-    fn no_point_of_a_thinned_curve_is_farther_than_is_seen() {
+    fn a_thinned_curve_stays_within_a_tenth_of_a_pixel() {
         let curve: Vec<Pixel> =
             (0..20_000).map(|at| f64::from(at) * 0.03).map(|x| (x, 200.0 + 150.0 * libm::sin(0.05 * x))).collect();
         let pieces = visible(&curve, (600.0, 400.0));
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_outside_is_cut_away_without_bending_the_rest() {
+    fn a_curve_is_cut_at_the_panel() {
         let pole = [(0.0, 50.0), (50.0, 1e12), (100.0, 50.0), (300.0, 50.0)];
         let pieces = visible(&pole, (100.0, 100.0));
         assert_eq!(pieces.len(), 2);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn an_area_is_cut_at_the_panel_and_keeps_its_corners_within() {
+    fn an_area_is_cut_at_the_panel() {
         let square = [(10.0, 10.0), (90.0, 10.0), (90.0, 90.0), (10.0, 90.0)];
         assert_eq!(enclosed(&square, (100.0, 100.0)), square);
         let huge = [(50.0, 50.0), (1e9, 50.0), (1e9, 1e9), (50.0, 1e9)];

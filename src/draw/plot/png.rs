@@ -1,24 +1,157 @@
-//! A picture's SVG as pixels.
+//! A picture as pixels (the only user of tiny-skia).
 
+use super::canvas::{Anchor, Canvas, Element, Layer, RIM, Stroke, Text};
+use super::color::Color;
 use super::font;
 use crate::{Error, Reason, Result};
-use resvg::{tiny_skia, usvg};
+use tiny_skia::{FillRule, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, Rect, StrokeDash, Transform};
+use ttf_parser::OutlineBuilder;
 
 /// How much larger it is than the SVG says.
 const SCALE: f32 = 2.0;
 
-/// The PNG of an SVG.
+/// The PNG of a picture.
 ///
 /// # Errors
-/// [`Reason::Unsupported`] if it cannot be rendered.
-pub(super) fn png(svg: &str) -> Result<Vec<u8>> {
+/// [`Reason::Unsupported`] if the picture is too large, or cannot be written as PNG.
+pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>> {
     let refused = |what: &str| Error::new(Reason::Unsupported(format!("a picture {what}"))).hint("take an SVG");
-    let mut options = usvg::Options { font_family: font::NAME.into(), ..usvg::Options::default() };
-    options.fontdb_mut().load_font_data(font::BYTES.to_vec());
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|error| refused(&error.to_string()))?;
-    let size = tree.size().to_int_size().scale_by(SCALE).ok_or_else(|| refused("of no size"))?;
-    let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height()).ok_or_else(|| refused("of no size"))?;
+    let [width, height] = [canvas.size.0, canvas.size.1].map(|side| (side * f64::from(SCALE)).ceil() as u32);
+    let mut pixels = Pixmap::new(width, height).ok_or_else(|| refused("of this size"))?;
     pixels.fill(tiny_skia::Color::WHITE);
-    resvg::render(&tree, tiny_skia::Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    Brush { pixels: &mut pixels, place: Transform::from_scale(SCALE, SCALE), clip: None }.layer(&canvas.layer);
     pixels.encode_png().map_err(|error| refused(&error.to_string()))
+}
+
+/// What paints a layer.
+struct Brush<'p> {
+    pixels: &'p mut Pixmap,
+    /// From the layer to the pixels.
+    place: Transform,
+    clip: Option<Mask>,
+}
+
+impl Brush<'_> {
+    fn layer(&mut self, layer: &Layer) {
+        for element in &layer.0 {
+            match element {
+                Element::Path { pieces, closed, fill, stroke } => {
+                    let mut path = PathBuilder::new();
+                    for piece in pieces {
+                        for (at, &(x, y)) in piece.iter().enumerate() {
+                            let (x, y) = (x as f32, y as f32);
+                            if at == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+                        }
+                        if *closed {
+                            path.close();
+                        }
+                    }
+                    self.shape(path.finish(), *fill, *stroke);
+                }
+                &Element::Circle { center: (x, y), radius, fill, stroke } => {
+                    self.shape(PathBuilder::from_circle(x as f32, y as f32, radius as f32), fill, stroke);
+                }
+                Element::Text(text) => self.text(text),
+                Element::Window { corner, size, layer } => self.window(*corner, *size, layer),
+            }
+        }
+    }
+
+    fn window(&mut self, corner: (f64, f64), size: (f64, f64), layer: &Layer) {
+        let place = self.place.pre_translate(corner.0 as f32, corner.1 as f32);
+        let rectangle = Rect::from_xywh(0.0, 0.0, size.0 as f32, size.1 as f32);
+        let mask = Mask::new(self.pixels.width(), self.pixels.height());
+        let (Some(mut mask), Some(rectangle)) = (mask, rectangle) else { return };
+        mask.fill_path(&PathBuilder::from_rect(rectangle), FillRule::Winding, true, place);
+        Brush { pixels: self.pixels, place, clip: Some(mask) }.layer(layer);
+    }
+
+    fn shape(&mut self, path: Option<Path>, fill: Option<Color>, stroke: Option<Stroke>) {
+        let Some(path) = path else { return };
+        if let Some(color) = fill {
+            self.fill(&path, color, FillRule::EvenOdd, self.place);
+        }
+        if let Some(Stroke { color, width, dash }) = stroke {
+            let dash = StrokeDash::new(dash.lengths().to_vec(), 0.0);
+            self.stroke(&path, color, width as f32, dash, self.place);
+        }
+    }
+
+    fn text(&mut self, text: &Text) {
+        let Some(face) = font::face() else { return };
+        let scale = text.size as f32 / f32::from(face.units_per_em());
+        let mut outline = Outline { path: PathBuilder::new(), left: 0.0, scale };
+        for (glyph, advance) in font::glyphs(&face, &text.content) {
+            face.outline_glyph(glyph, &mut outline);
+            outline.left += scale * advance as f32;
+        }
+        let before = match text.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5 * outline.left,
+            Anchor::End => outline.left,
+        };
+        let Some(path) = outline.path.finish() else { return };
+        let place = self.place.pre_translate(text.at.0 as f32, text.at.1 as f32);
+        let place = if text.upward { place.pre_rotate(-90.0) } else { place }.pre_translate(-before, 0.0);
+        if text.rim {
+            self.stroke(&path, Color::White, 2.0 * RIM as f32, None, place);
+        }
+        self.fill(&path, text.color, FillRule::Winding, place);
+    }
+
+    fn fill(&mut self, path: &Path, color: Color, rule: FillRule, place: Transform) {
+        self.pixels.fill_path(path, &paint(color), rule, place, self.clip.as_ref());
+    }
+
+    fn stroke(&mut self, path: &Path, color: Color, width: f32, dash: Option<StrokeDash>, place: Transform) {
+        let stroke = tiny_skia::Stroke { width, dash, line_join: LineJoin::Round, ..tiny_skia::Stroke::default() };
+        self.pixels.stroke_path(path, &paint(color), &stroke, place, self.clip.as_ref());
+    }
+}
+
+fn paint(color: Color) -> Paint<'static> {
+    let [red, green, blue] = color.rgb();
+    let mut paint = Paint { anti_alias: true, ..Paint::default() };
+    paint.set_color_rgba8(red, green, blue, 255);
+    paint
+}
+
+/// The outline of a line of text; glyphs have their y axis upward.
+struct Outline {
+    path: PathBuilder,
+    /// Where the next glyph begins.
+    left: f32,
+    scale: f32,
+}
+
+impl Outline {
+    fn at(&self, x: f32, y: f32) -> (f32, f32) {
+        (self.left + self.scale * x, -self.scale * y)
+    }
+}
+
+impl OutlineBuilder for Outline {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.at(x, y);
+        self.path.move_to(x, y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.at(x, y);
+        self.path.line_to(x, y);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let ((x1, y1), (x, y)) = (self.at(x1, y1), self.at(x, y));
+        self.path.quad_to(x1, y1, x, y);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let ((x1, y1), (x2, y2), (x, y)) = (self.at(x1, y1), self.at(x2, y2), self.at(x, y));
+        self.path.cubic_to(x1, y1, x2, y2, x, y);
+    }
+
+    fn close(&mut self) {
+        self.path.close();
+    }
 }

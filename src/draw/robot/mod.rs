@@ -194,7 +194,7 @@ impl Body {
         };
         self.bones.retain(is_long);
         if self.last || self.bones.is_empty() {
-            self.bones.extend(self.outlines.iter().map(Outline::centre).filter(is_long));
+            self.bones.extend(self.outlines.iter().map(Outline::center).filter(is_long));
         }
         let drawn = self.bones.iter().copied().chain([origin]).chain(self.outlines.iter().flat_map(Outline::corners));
         let drawn = Extent::of(drawn).widened(short);

@@ -11,8 +11,8 @@ use serde::Serialize;
 pub enum Outline {
     /// A disc, or with radius 0 a point.
     Disc {
-        /// Its centre \[m\].
-        centre: Vector<f64>,
+        /// Its center \[m\].
+        center: Vector<f64>,
         /// Its radius \[m\].
         radius: f64,
     },
@@ -27,7 +27,7 @@ impl Outline {
     /// The outline of a shape that is rigid in the frame of `body`.
     pub(super) fn of_shape(shape: &FootShape, placement: &Placement, body: usize) -> Self {
         match (shape.corners(), shape.rim()) {
-            (&[centre], Rim::Circle { radius }) => Self::Disc { centre: placement.world(body, centre), radius },
+            (&[center], Rim::Circle { radius }) => Self::Disc { center: placement.world(body, center), radius },
             (corners, rim) => {
                 let corners = if rim.bound() == 0.0 { corners.to_vec() } else { swept(corners, rim) };
                 let world: Vec<Vector<f64>> = corners.iter().map(|&corner| placement.world(body, corner)).collect();
@@ -39,17 +39,17 @@ impl Outline {
     /// Points that it lies between.
     pub(super) fn corners(&self) -> Vec<Vector<f64>> {
         match self {
-            &Self::Disc { centre, radius } => {
-                [[-radius, 0.0], [radius, 0.0], [0.0, -radius], [0.0, radius]].map(|out| sum(centre, out)).to_vec()
+            &Self::Disc { center, radius } => {
+                [[-radius, 0.0], [radius, 0.0], [0.0, -radius], [0.0, radius]].map(|out| sum(center, out)).to_vec()
             }
             Self::Polygon(corners) => corners.clone(),
         }
     }
 
     /// The middle of what it spans.
-    pub(super) fn centre(&self) -> Vector<f64> {
+    pub(super) fn center(&self) -> Vector<f64> {
         match self {
-            Self::Disc { centre, .. } => *centre,
+            Self::Disc { center, .. } => *center,
             Self::Polygon(corners) => {
                 let share = 1.0 / corners.len().max(1) as f64;
                 corners.iter().fold([0.0; 2], |middle, corner| sum(middle, corner.map(|entry| entry * share)))
@@ -60,7 +60,7 @@ impl Outline {
     /// Changes every place.
     pub(super) fn places(&mut self, change: impl FnMut(&mut Vector<f64>)) {
         match self {
-            Self::Disc { centre, .. } => std::slice::from_mut(centre).iter_mut().for_each(change),
+            Self::Disc { center, .. } => std::slice::from_mut(center).iter_mut().for_each(change),
             Self::Polygon(corners) => corners.iter_mut().for_each(change),
         }
     }

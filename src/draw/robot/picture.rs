@@ -3,7 +3,7 @@
 use super::{Body, Drawing, Effect, Extent, Outline};
 use crate::contact::Placement;
 use crate::draw::plot::{
-    Arrangement, Axis, Colour, Dash, Entry, Key, Legend, Mark, Panel, Picture, Point, Shape, Stroke,
+    Arrangement, Color, Dash, Legend, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, Shape, Stroke,
 };
 use crate::impact::outcome::Outcome;
 use crate::pipeline::Impact;
@@ -14,17 +14,17 @@ use crate::state::State;
 use crate::write::text::table::number;
 use crate::write::words;
 
-const IMPULSE: Stroke = Stroke::solid(Colour::Vermilion, 3.0);
-const APPLIED: Stroke = Stroke { dash: Dash::Dotted, ..Stroke::solid(Colour::Purple, 3.0) };
-const AFTER: Stroke = Stroke::solid(Colour::Blue, 2.2);
-const BEFORE: Stroke = Stroke { dash: Dash::Dashed, ..Stroke::solid(Colour::Black, 1.4) };
-const BONE: Stroke = Stroke::solid(Colour::Grey, 4.0);
-const EDGE: Stroke = Stroke::solid(Colour::Grey, 0.8);
-const SURFACE: Stroke = Stroke::solid(Colour::Black, 1.6);
-const NORMAL: Stroke = Stroke { dash: Dash::Dotted, ..Stroke::solid(Colour::Black, 1.0) };
+const IMPULSE: Stroke = Stroke::solid(Color::Vermilion, 3.0);
+const APPLIED: Stroke = Stroke { dash: Dash::Dotted, ..Stroke::solid(Color::Purple, 3.0) };
+const AFTER: Stroke = Stroke::solid(Color::Blue, 2.2);
+const BEFORE: Stroke = Stroke { dash: Dash::Dashed, ..Stroke::solid(Color::Black, 1.4) };
+const BONE: Stroke = Stroke::solid(Color::Gray, 4.0);
+const EDGE: Stroke = Stroke::solid(Color::Gray, 0.8);
+const SURFACE: Stroke = Stroke::solid(Color::Black, 1.6);
+const NORMAL: Stroke = Stroke { dash: Dash::Dotted, ..Stroke::solid(Color::Black, 1.0) };
 /// What nothing hangs on, feet and hands.
-const LAST: Colour = Colour::Tint(1);
-const SHAPE: Colour = Colour::Tint(0);
+const LAST: Color = Color::Tint(1);
+const SHAPE: Color = Color::Tint(0);
 
 /// Panels side by side.
 const COLUMNS: usize = 4;
@@ -74,14 +74,15 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     let mut shapes = drawing.scene();
     let axes = [[1.0, 0.0], [0.0, 1.0]].map(tip);
     shapes.extend(axes.map(|tip| Shape::Arrow { from: point(root), to: point(tip), stroke: AFTER }));
-    let mut names: Vec<(Point, String)> = axes.into_iter().map(point).zip(["x".to_owned(), "z".to_owned()]).collect();
+    let mut names: Vec<(PlotPoint, String)> =
+        axes.into_iter().map(point).zip(["x".to_owned(), "z".to_owned()]).collect();
     if robot.bodies.len() <= NAMED {
         // The root's name stands between its axes.
         let places = [tip([0.2, 0.2])].into_iter().chain(drawing.bodies.iter().skip(1).map(Body::middle));
         names.extend(places.map(point).zip(robot.bodies.iter().map(|body| body.name.clone())));
     }
     shapes.push(Shape::Names { names, below: false });
-    let axis = |label: &str, range| Axis { label: label.into(), range, ..Axis::default() };
+    let axis = |label: &str, range| PlotAxis { label: label.into(), range, ..PlotAxis::default() };
     let Extent { low, high } = drawing.extent();
     let view = Extent::of([low, high].into_iter().chain(axes)).with_room().panel(1);
     let panel = Panel {
@@ -95,13 +96,14 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     let joints = robot.joints.len() + robot.followers.len();
     let shaped = |last: bool| drawing.bodies.iter().any(|body| body.last == last && !body.outlines.is_empty());
     let entries = [
-        (joints > 0, Key::Mark(Mark::Ring, Colour::Black), "joint"),
-        (true, Key::Mark(Mark::Centre, Colour::Black), "CoG, its area by mass"),
-        (shaped(true), Key::Fill(LAST), "shape of an outermost body"),
-        (shaped(false), Key::Fill(SHAPE), "shape of an inner body"),
-        (true, Key::Line(AFTER), "axes of the root link"),
+        (joints > 0, LegendKey::Mark(Mark::Ring, Color::Black), "joint"),
+        (true, LegendKey::Mark(Mark::Center, Color::Black), "CoG, its area by mass"),
+        (shaped(true), LegendKey::Fill(LAST), "shape of an outermost body"),
+        (shaped(false), LegendKey::Fill(SHAPE), "shape of an inner body"),
+        (true, LegendKey::Line(AFTER), "axes of the root link"),
     ];
-    let entry = |(is_drawn, key, name): (bool, Key, &str)| is_drawn.then(|| Entry { name: name.into(), key });
+    let entry =
+        |(is_drawn, key, name): (bool, LegendKey, &str)| is_drawn.then(|| LegendEntry { name: name.into(), key });
     Picture {
         title: format!("{}: {} bodies, {joints} joints, {} kg", robot.name, robot.bodies.len(), number(robot.mass())),
         rows: vec![vec![panel]],
@@ -137,7 +139,7 @@ impl Extent {
 
     /// An empty panel of this extent, of so many.
     fn panel(self, panels: usize) -> Panel {
-        let axis = |of: usize| Axis { range: Some((self.low[of], self.high[of])), ..Axis::default() };
+        let axis = |of: usize| PlotAxis { range: Some((self.low[of], self.high[of])), ..PlotAxis::default() };
         let [across, up] = [self.high[0] - self.low[0], self.high[1] - self.low[1]];
         let width = [460.0, 460.0, 380.0, 320.0, 280.0][panels.min(COLUMNS)];
         let height = width * (up / across).clamp(0.4, 1.5);
@@ -191,22 +193,22 @@ impl Drawing {
         if let ([.., right], [left, ..]) = (&self.ground[..], &self.ground[..]) {
             let depth = self.view().low[1].min(left[1]).min(right[1]) - 10.0 * self.extent().size();
             let below = [(right[0], depth), (left[0], depth)];
-            let surface: Vec<Point> = self.ground.iter().copied().map(point).collect();
+            let surface: Vec<PlotPoint> = self.ground.iter().copied().map(point).collect();
             let soil = surface.iter().copied().chain(below).collect();
-            shapes.push(Shape::Area { loops: vec![soil], fill: Some(Colour::Pale), stroke: None });
+            shapes.push(Shape::Area { loops: vec![soil], fill: Some(Color::Pale), stroke: None });
             shapes.push(Shape::Line { points: surface, stroke: SURFACE });
         }
         for body in &self.bodies {
             let fill = Some(if body.last { LAST } else { SHAPE });
             shapes.extend(body.outlines.iter().map(|outline| match outline {
-                Outline::Disc { centre, radius: 0.0 } => Shape::Marks {
-                    points: vec![point(*centre)],
+                Outline::Disc { center, radius: 0.0 } => Shape::Marks {
+                    points: vec![point(*center)],
                     mark: Mark::Circle,
-                    colour: BONE.colour,
+                    color: BONE.color,
                     size: BONE.width,
                 },
-                &Outline::Disc { centre, radius } => {
-                    Shape::Circle { centre: point(centre), radius, fill, stroke: Some(EDGE) }
+                &Outline::Disc { center, radius } => {
+                    Shape::Circle { center: point(center), radius, fill, stroke: Some(EDGE) }
                 }
                 Outline::Polygon(corners) => {
                     let corners = corners.iter().copied().map(point).collect();
@@ -222,10 +224,10 @@ impl Drawing {
         for body in &self.bodies {
             let Some(com) = body.com else { continue };
             let size = LIGHT + (HEAVY - LIGHT) * libm::sqrt(body.mass / heaviest);
-            shapes.push(Shape::Marks { points: vec![point(com)], mark: Mark::Centre, colour: Colour::Black, size });
+            shapes.push(Shape::Marks { points: vec![point(com)], mark: Mark::Center, color: Color::Black, size });
         }
         let joints = self.joints.iter().copied().map(point).collect();
-        shapes.push(Shape::Marks { points: joints, mark: Mark::Ring, colour: Colour::Black, size: 3.6 });
+        shapes.push(Shape::Marks { points: joints, mark: Mark::Ring, color: Color::Black, size: 3.6 });
         shapes
     }
 
@@ -243,7 +245,7 @@ impl Drawing {
             shapes.push(Shape::Line { points: ends.map(point).to_vec(), stroke: NORMAL });
         }
         let points = self.contacts.iter().map(|contact| point(contact.point)).collect();
-        shapes.push(Shape::Marks { points, mark: Mark::Circle, colour: Colour::Black, size: 3.0 });
+        shapes.push(Shape::Marks { points, mark: Mark::Circle, color: Color::Black, size: 3.0 });
         for applied in &self.applied {
             shapes.push(arrow(applied.point, self.impulse_scale, applied.vector, APPLIED));
         }
@@ -265,11 +267,11 @@ impl Drawing {
     }
 
     /// What the arrows are, with a round one for each scale.
-    fn legend(&self) -> Vec<Entry> {
+    fn legend(&self) -> Vec<LegendEntry> {
         let key = |stroke: Stroke, scale: f64, unit: &str, what: &str| {
             let round = round(KEY * self.extent().size() / scale)?;
             let name = format!("{what}: {round} {unit}");
-            Some(Entry { name, key: Key::Arrow { stroke, length: round * scale } })
+            Some(LegendEntry { name, key: LegendKey::Arrow { stroke, length: round * scale } })
         };
         let has = |vectors: &[Vector<f64>]| vectors.iter().any(|vector| *vector != [0.0; 2]);
         let struck = self.outcomes.iter().any(|outcome| has(&outcome.impulse));
@@ -282,12 +284,12 @@ impl Drawing {
             (moved, BEFORE, self.velocity_scale, "m/s", "velocity before"),
         ];
         let arrows = arrows.into_iter().filter(|(is_drawn, ..)| *is_drawn);
-        let mut entries: Vec<Entry> =
+        let mut entries: Vec<LegendEntry> =
             arrows.filter_map(|(_, stroke, scale, unit, what)| key(stroke, scale, unit, what)).collect();
         if self.contacts.is_empty() {
             return entries;
         }
-        entries.push(Entry { name: "contact".into(), key: Key::Mark(Mark::Circle, Colour::Black) });
+        entries.push(LegendEntry { name: "contact".into(), key: LegendKey::Mark(Mark::Circle, Color::Black) });
         entries
     }
 }
@@ -301,6 +303,6 @@ fn round(most: f64) -> Option<f64> {
     [5.0, 2.0, 1.0].into_iter().map(|times| times * unit).find(|round| *round <= most)
 }
 
-fn point([x, z]: Vector<f64>) -> Point {
+fn point([x, z]: Vector<f64>) -> PlotPoint {
     (x, z)
 }

@@ -32,7 +32,7 @@ fn bodies_stand_where_the_state_puts_them() {
     ));
     let [ball, arm] = &drawing.bodies[..] else { panic!("{drawing:?}") };
     assert_eq!((ball.origin, ball.com, ball.last), ([3.0, 0.5], Some([3.0, 0.5]), false));
-    assert!(ball.bones.is_empty(), "the joint is at its centre");
+    assert!(ball.bones.is_empty(), "the joint is at its center");
     // A positive angle tips up toward forward.
     assert_eq!((arm.bones.as_slice(), arm.com, arm.last), (&[[4.0, 0.5]][..], Some([3.5, 0.5]), true));
     assert_eq!(drawing.joints, [[3.0, 0.5]]);

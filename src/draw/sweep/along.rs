@@ -2,7 +2,7 @@
 
 use super::style::{COMPONENTS, Styles};
 use super::{Kind, WIDTH, angles, fills_along, is_seen};
-use crate::draw::plot::{Arrangement, Axis, Band, Colour, Legend, Panel, Picture, Point, Shape, Stroke};
+use crate::draw::plot::{Arrangement, Band, Color, Legend, Panel, Picture, PlotAxis, PlotPoint, Shape, Stroke};
 use crate::impact::Motion;
 use crate::planar::Vector;
 use crate::sweep::{Course, Place, Region, Survey};
@@ -35,34 +35,34 @@ const BESIDE_POLE: f64 = 1.5;
 const ZERO: f64 = 1e-12;
 
 /// What the regions of a survey look like, whose outcomes follow these courses.
-pub fn picture(x: Axis, survey: &Survey, courses: &[Course]) -> Picture {
+pub fn picture(x: PlotAxis, survey: &Survey, courses: &[Course]) -> Picture {
     let kinds = kinds(survey);
     let styles = Styles::of(survey, &kinds);
     let whole = Whole { survey, courses, styles: &styles };
     let mut panels = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect::<Vec<_>>();
     if panels.is_empty() {
-        let nothing = Axis { bare: true, ..Axis::default() };
-        panels.push(Panel { size: (WIDTH, STRIP), ..Panel::new(Axis::default(), nothing) });
+        let nothing = PlotAxis { bare: true, ..PlotAxis::default() };
+        panels.push(Panel { size: (WIDTH, STRIP), ..Panel::new(PlotAxis::default(), nothing) });
     }
     for (index, panel) in panels.iter_mut().enumerate() {
         let letter = |kind: &Kind| if index == 0 { kind.letter.clone() } else { String::new() };
-        panel.bands = bands(survey, &kinds, |kind| (letter(kind), kind.colour));
+        panel.bands = bands(survey, &kinds, |kind| (letter(kind), kind.color));
     }
     let mut explained = angles::panels(survey, courses);
     let angles = !explained.is_empty();
     // These have letters of their own.
-    explained.iter_mut().for_each(|panel| panel.bands = bands(survey, &kinds, |_| (String::new(), Colour::White)));
+    explained.iter_mut().for_each(|panel| panel.bands = bands(survey, &kinds, |_| (String::new(), Color::White)));
     panels.extend(explained);
     let last = panels.len() - 1;
     for (index, panel) in panels.iter_mut().enumerate() {
-        panel.x = Axis { bare: index < last, ..x.clone() };
+        panel.x = PlotAxis { bare: index < last, ..x.clone() };
     }
     let legend = Legend { entries: styles.legend(&kinds, angles), arrangement: Arrangement::Columns };
     Picture { title: String::new(), rows: panels.into_iter().map(|panel| vec![panel]).collect(), legend }
 }
 
-/// The regions, each with a letter and a colour.
-fn bands(survey: &Survey, kinds: &[Kind], look: impl Fn(&Kind) -> (String, Colour)) -> Vec<Band> {
+/// The regions, each with a letter and a color.
+fn bands(survey: &Survey, kinds: &[Kind], look: impl Fn(&Kind) -> (String, Color)) -> Vec<Band> {
     let band = |region: &Region| {
         let (letter, fill) = look(&kinds[region.kind]);
         Band { from: region.from, to: region.to, letter, fill }
@@ -81,8 +81,8 @@ fn kinds(survey: &Survey) -> Vec<Kind<'_>> {
     firsts
         .iter()
         .zip(fills_along(survey))
-        .map(|(region, colour)| {
-            Kind::new(region.kind, Happening::of(&region.regime, region.verdict, region.refused.as_ref()), colour)
+        .map(|(region, color)| {
+            Kind::new(region.kind, Happening::of(&region.regime, region.verdict, region.refused.as_ref()), color)
         })
         .collect()
 }
@@ -150,11 +150,11 @@ impl<'a> Whole<'a> {
                     continue;
                 };
                 for (branch, (modes, _)) in first.outcomes.iter().enumerate() {
-                    let point = |place: &Place| -> Option<Point> {
+                    let point = |place: &Place| -> Option<PlotPoint> {
                         let (_, motion) = place.outcomes.get(branch)?;
                         Some((place.at, (quantity.of)(motion).get(index)?[axis]))
                     };
-                    let points: Vec<Point> = course.places.iter().filter_map(point).collect();
+                    let points: Vec<PlotPoint> = course.places.iter().filter_map(point).collect();
                     // Nobody sees a curve in a region that is but a line.
                     ranges.extend(shown(&points).filter(|_| is_seen(region, self.survey)));
                     let stroke = Stroke { dash: self.styles.dash(contacts, modes), ..stroke };
@@ -163,13 +163,13 @@ impl<'a> Whole<'a> {
             }
         }
         let within = ranges.into_iter().reduce(|(low, high), (least, most)| (low.min(least), high.max(most)));
-        let y = Axis { label: quantity.label.into(), within, ..Axis::default() };
-        Panel { shapes, size: (WIDTH, HEIGHT), ..Panel::new(Axis::default(), y) }
+        let y = PlotAxis { label: quantity.label.into(), within, ..PlotAxis::default() };
+        Panel { shapes, size: (WIDTH, HEIGHT), ..Panel::new(PlotAxis::default(), y) }
     }
 }
 
 /// What of a curve's values a panel has to show: all of them, but not what grows like 1 / x toward a pole at its end.
-fn shown(points: &[Point]) -> Option<(f64, f64)> {
+fn shown(points: &[PlotPoint]) -> Option<(f64, f64)> {
     let (&(from, _), &(to, _)) = (points.first()?, points.last()?);
     let largest = |least: f64, most: f64| {
         let inner = points.iter().filter(|(at, _)| (least..=most).contains(&(at - from)));
@@ -186,7 +186,7 @@ fn shown(points: &[Point]) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::plot::Key;
+    use crate::draw::plot::LegendKey;
     use crate::law::Mode;
     use crate::sweep::Regime;
 
@@ -234,13 +234,13 @@ mod tests {
     #[test]
     fn a_crowd_of_regions_and_outcomes_is_a_small_file() {
         let (survey, courses) = crowd();
-        let x = Axis { range: Some((0.0, 1.0)), ..Axis::default() };
+        let x = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
         let picture = picture(x, &survey, &courses);
         let lines: usize = picture.rows.iter().flatten().map(|panel| panel.shapes.len()).sum();
         assert_eq!(lines, 4 * 2 * 60);
         let svg = picture.svg().expect("a picture");
         assert!(svg.len() < 500_000, "{} bytes", svg.len());
-        let told = picture.legend.entries.iter().filter(|entry| matches!(entry.key, Key::Line(_))).count();
+        let told = picture.legend.entries.iter().filter(|entry| matches!(entry.key, LegendKey::Line(_))).count();
         assert_eq!(told, COMPONENTS.len() + 15, "each outcome once");
     }
 
@@ -252,7 +252,7 @@ mod tests {
         {
             motion.velocity_after[1] = [0.0, 1e-17];
         }
-        let picture = picture(Axis::default(), &survey, &courses);
+        let picture = picture(PlotAxis::default(), &survey, &courses);
         let titles: Vec<&str> = picture.rows.iter().flatten().map(|panel| panel.title.as_str()).collect();
         assert_eq!(titles, ["left_foot", "", "right_foot\nvelocity after is zero in every outcome"]);
     }

@@ -9,13 +9,13 @@
 //! ```
 
 use super::place::{Box, clear_of};
-use crate::draw::plot::{Anchor, Axis, Colour, Entry, Key, Label, Panel, Point, Shape, Stroke};
+use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, PlotAxis, PlotPoint, Shape, Stroke};
 use crate::impact::{Explanation, ImpulseRegion};
 use crate::sweep::{Course, Survey};
 use std::f64::consts::PI;
 
-const BETA: Stroke = Stroke::solid(Colour::Black, 1.0);
-const GAMMA: Stroke = Stroke::solid(Colour::Green, 2.4);
+const BETA: Stroke = Stroke::solid(Color::Black, 1.0);
+const GAMMA: Stroke = Stroke::solid(Color::Green, 2.4);
 
 /// Inside of the axes \[px\].
 const SIZE: (f64, f64) = (super::WIDTH, 220.0);
@@ -41,8 +41,8 @@ pub fn panels(survey: &Survey, courses: &[Course]) -> Vec<Panel> {
 }
 
 /// What the lines of such panels mean.
-pub fn legend() -> [Entry; 2] {
-    let entry = |name: &str, stroke| Entry { name: name.into(), key: Key::Line(stroke) };
+pub fn legend() -> [LegendEntry; 2] {
+    let entry = |name: &str, stroke| LegendEntry { name: name.into(), key: LegendKey::Line(stroke) };
     [entry("γ", GAMMA), entry("0, β and β ± π", BETA)]
 }
 
@@ -84,15 +84,16 @@ fn runs(name: &str, survey: &Survey, courses: &[Course]) -> Vec<Vec<Angles>> {
 fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f64]) -> Panel {
     let mut shapes = Vec::new();
     for run in runs {
-        let line = |turn: f64| -> Vec<Point> { run.iter().map(|angles| (angles.at, angles.beta + turn)).collect() };
+        let line = |turn: f64| -> Vec<PlotPoint> { run.iter().map(|angles| (angles.at, angles.beta + turn)).collect() };
         shapes.extend([-PI, 0.0, PI].map(|turn| Shape::Line { points: line(turn), stroke: BETA }));
     }
     shapes.push(Shape::Line { points: vec![(from, 0.0), (to, 0.0)], stroke: BETA });
-    let gamma: Vec<Vec<Point>> = runs.iter().flat_map(|run| unbroken(run)).collect();
-    let pixel = |(x, y): Point| (SIZE.0 * (x - from) / (to - from), SIZE.1 * (y + PI) / (2.0 * PI));
-    let curve: Vec<Vec<Point>> = gamma.iter().map(|piece| piece.iter().map(|&point| pixel(point)).collect()).collect();
+    let gamma: Vec<Vec<PlotPoint>> = runs.iter().flat_map(|run| unbroken(run)).collect();
+    let pixel = |(x, y): PlotPoint| (SIZE.0 * (x - from) / (to - from), SIZE.1 * (y + PI) / (2.0 * PI));
+    let curve: Vec<Vec<PlotPoint>> =
+        gamma.iter().map(|piece| piece.iter().map(|&point| pixel(point)).collect()).collect();
     let walls = borders.iter().map(|&at| vec![pixel((at, -PI)), pixel((at, PI))]);
-    let all: Vec<Vec<Point>> = curve.iter().cloned().chain(walls).collect();
+    let all: Vec<Vec<PlotPoint>> = curve.iter().cloned().chain(walls).collect();
     shapes.extend(gamma.into_iter().map(|points| Shape::Line { points, stroke: GAMMA }));
     for (region, words) in [
         (ImpulseRegion::A, "lifts off"),
@@ -101,29 +102,25 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
         (ImpulseRegion::E, "all three"),
     ] {
         let strips = |run: &Vec<Angles>| run.iter().map(|angles| strip(region, angles.beta, angles.at)).collect();
-        let strips: Vec<Vec<(Point, Point)>> = runs.iter().map(strips).collect();
-        let strips: Vec<Vec<(Point, Point)>> =
+        let strips: Vec<Vec<(PlotPoint, PlotPoint)>> = runs.iter().map(strips).collect();
+        let strips: Vec<Vec<(PlotPoint, PlotPoint)>> =
             strips.iter().map(|run| run.iter().map(|&(low, high)| (pixel(low), pixel(high))).collect()).collect();
         // Rather on a border than nowhere.
         if let Some((x, y)) = room(&strips, &all, words).or_else(|| room(&strips, &curve, words)) {
-            shapes.push(Shape::Text(Label {
+            shapes.push(Shape::Text {
                 at: (from + (to - from) * x / SIZE.0, 2.0 * PI * y / SIZE.1 - PI),
-                offset: (0.0, 0.0),
                 text: words.into(),
-                anchor: Anchor::Middle,
                 size: LETTERS,
-                colour: Colour::Black,
-                rim: true,
-            }));
+            });
         }
     }
-    let y = Axis { label: "angle [rad]".into(), range: Some((-PI, PI)), in_pi: true, ..Axis::default() };
+    let y = PlotAxis { label: "angle [rad]".into(), range: Some((-PI, PI)), in_pi: true, ..PlotAxis::default() };
     let title = format!("{name}\nwith infinite friction, while all other contacts stick");
-    Panel { title, shapes, size: SIZE, ..Panel::new(Axis::default(), y) }
+    Panel { title, shapes, size: SIZE, ..Panel::new(PlotAxis::default(), y) }
 }
 
 /// The lower and the upper end of a region of gamma.
-fn strip(region: ImpulseRegion, beta: f64, at: f64) -> (Point, Point) {
+fn strip(region: ImpulseRegion, beta: f64, at: f64) -> (PlotPoint, PlotPoint) {
     let (low, high) = match (region, beta <= 0.0) {
         (ImpulseRegion::A, true) => (0.0, PI + beta),
         (ImpulseRegion::A, false) => (beta, PI),
@@ -138,8 +135,8 @@ fn strip(region: ImpulseRegion, beta: f64, at: f64) -> (Point, Point) {
 }
 
 /// gamma in pieces that neither wrap from pi to -pi nor jump.
-fn unbroken(run: &[Angles]) -> Vec<Vec<Point>> {
-    let mut pieces: Vec<Vec<Point>> = vec![Vec::new()];
+fn unbroken(run: &[Angles]) -> Vec<Vec<PlotPoint>> {
+    let mut pieces: Vec<Vec<PlotPoint>> = vec![Vec::new()];
     let mut before: Option<Angles> = None;
     for &angles in run {
         if let Some(last) = before {
@@ -163,9 +160,9 @@ fn unbroken(run: &[Angles]) -> Vec<Vec<Point>> {
 }
 
 /// Where a text fits between the ends of `strips` and beside the curve \[px\]: the place with the most room about it.
-fn room(strips: &[Vec<(Point, Point)>], curve: &[Vec<Point>], text: &str) -> Option<Point> {
+fn room(strips: &[Vec<(PlotPoint, PlotPoint)>], curve: &[Vec<PlotPoint>], text: &str) -> Option<PlotPoint> {
     let half = Box::half_of(text, LETTERS);
-    let mut best: Option<(f64, Point)> = None;
+    let mut best: Option<(f64, PlotPoint)> = None;
     for run in strips {
         for &((x, low), (_, high)) in run.iter() {
             for share in [0.5, 0.35, 0.65, 0.2, 0.8] {

@@ -3,7 +3,7 @@
 use super::place::{Box, clear_of, freest};
 use super::{Kind, fills_of_map};
 use crate::draw::plot::{
-    Anchor, Arrangement, Axis, Colour, Entry, Key, Label, Legend, Panel, Picture, Pixel, Point, Shape, Stroke,
+    Arrangement, Color, Legend, LegendEntry, LegendKey, Panel, Picture, Pixel, PlotAxis, PlotPoint, Shape, Stroke,
 };
 use crate::planar::Vector;
 use crate::sweep::{Area, Map};
@@ -14,9 +14,9 @@ const SIZE: Pixel = (540.0, 420.0);
 /// Of letters \[px\].
 const LETTERS: u32 = 15;
 /// A border's line.
-const BORDER: Stroke = Stroke::solid(Colour::Black, 1.0);
+const BORDER: Stroke = Stroke::solid(Color::Black, 1.0);
 /// From a letter to a small area that it belongs to.
-const LEADER: Stroke = Stroke::solid(Colour::Black, 0.7);
+const LEADER: Stroke = Stroke::solid(Color::Black, 0.7);
 /// How far a letter stands from borders at least \[px\].
 const CLEAR: f64 = 1.0;
 /// A letter of a small area stands at one of these distances \[px\], in one of so many directions.
@@ -24,16 +24,19 @@ const AWAY: [f64; 4] = [26.0, 38.0, 52.0, 70.0];
 const DIRECTIONS: usize = 24;
 
 /// What the areas of a map look like.
-pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
+pub fn picture([x, y]: [PlotAxis; 2], map: &Map) -> Picture {
     let mut shapes: Vec<Shape> = Vec::new();
     let mut entries = Vec::new();
-    for ((index, area), colour) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
+    for ((index, area), color) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
         let Kind { letter, happening, .. } =
-            Kind::new(index, Happening::of(&area.regime, area.verdict, area.refused.as_ref()), colour);
+            Kind::new(index, Happening::of(&area.regime, area.verdict, area.refused.as_ref()), color);
         let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
         // The seam between two fills lies under the border's line.
-        shapes.push(Shape::Area { loops, fill: Some(colour), stroke: None });
-        entries.push(Entry { name: format!("{letter}: {}", happening.lines().join("\n")), key: Key::Fill(colour) });
+        shapes.push(Shape::Area { loops, fill: Some(color), stroke: None });
+        entries.push(LegendEntry {
+            name: format!("{letter}: {}", happening.lines().join("\n")),
+            key: LegendKey::Fill(color),
+        });
     }
     for curve in &map.curves {
         shapes.push(Shape::Line { points: curve.points.iter().map(|&[x, y]| (x, y)).collect(), stroke: BORDER });
@@ -48,24 +51,16 @@ pub fn picture([x, y]: [Axis; 2], map: &Map) -> Picture {
 }
 
 /// The letters of all areas: within each part that has room for it, or beside the largest part, with a line to it.
-fn letters(x: &Axis, y: &Axis, map: &Map) -> Vec<Shape> {
+fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<Shape> {
     let (Some(x), Some(y)) = (x.range, y.range) else { return Vec::new() };
     let pixel = |[a, b]: Vector<f64>| (SIZE.0 * (a - x.0) / (x.1 - x.0), SIZE.1 * (b - y.0) / (y.1 - y.0));
-    let point = |(a, b): Pixel| -> Point { (x.0 + (x.1 - x.0) * a / SIZE.0, y.0 + (y.1 - y.0) * b / SIZE.1) };
+    let point = |(a, b): Pixel| -> PlotPoint { (x.0 + (x.1 - x.0) * a / SIZE.0, y.0 + (y.1 - y.0) * b / SIZE.1) };
     let pixels = |points: &Vec<Vector<f64>>| points.iter().copied().map(pixel).collect();
     let mut taken: Vec<Vec<Pixel>> = map.curves.iter().map(|curve| pixels(&curve.points)).collect();
     let text = |index: usize, at: Pixel| {
         let (letter, half) = lettered(index);
-        let label = Label {
-            at: point(at),
-            offset: (0.0, 0.0),
-            text: letter,
-            anchor: Anchor::Middle,
-            size: LETTERS,
-            colour: Colour::Black,
-            rim: true,
-        };
-        (Box { middle: at, half }, Shape::Text(label))
+        let label = Shape::Text { at: point(at), text: letter, size: LETTERS };
+        (Box { middle: at, half }, label)
     };
     let mut shapes = Vec::new();
     let mut small: Vec<(usize, &Area)> = Vec::new();
@@ -156,8 +151,8 @@ mod tests {
         Map { areas, curves, dependent: false }
     }
 
-    fn axes() -> [Axis; 2] {
-        [(); 2].map(|()| Axis { range: Some((0.0, 1.0)), ..Axis::default() })
+    fn axes() -> [PlotAxis; 2] {
+        [(); 2].map(|()| PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() })
     }
 
     #[test]
@@ -171,17 +166,17 @@ mod tests {
         let widths = [0.5, 0.01, 0.49];
         let map = strips(&widths);
         let shapes = letters(&axes()[0], &axes()[1], &map);
-        let texts: Vec<(&str, Point)> = shapes
+        let texts: Vec<(&str, PlotPoint)> = shapes
             .iter()
             .filter_map(|shape| match shape {
-                Shape::Text(label) => Some((label.text.as_str(), label.at)),
+                Shape::Text { at, text, .. } => Some((text.as_str(), *at)),
                 _ => None,
             })
             .collect();
         let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();
         assert_eq!(names, ["A", "C", "B"]);
         assert!((0.0..0.5).contains(&texts[0].1.0) && (0.51..1.0).contains(&texts[1].1.0));
-        let leaders: Vec<&Vec<Point>> = shapes
+        let leaders: Vec<&Vec<PlotPoint>> = shapes
             .iter()
             .filter_map(|shape| match shape {
                 Shape::Line { points, .. } => Some(points),

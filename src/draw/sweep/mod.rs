@@ -12,7 +12,7 @@ mod map;
 mod place;
 mod style;
 
-use crate::draw::plot::{Axis, Colour, Picture};
+use crate::draw::plot::{Color, Picture, PlotAxis};
 use crate::sweep::{Course, Findings, Map, Model, Regime, Region, Survey, Workers};
 use crate::write::sweep::{Happening, letter};
 
@@ -36,14 +36,14 @@ pub fn work(model: &Model, findings: &Findings) -> usize {
 }
 
 /// The axis of a parameter.
-fn axis(model: &Model, parameter: usize) -> Axis {
-    let Some(known) = model.study.parameters().get(parameter) else { return Axis::default() };
+fn axis(model: &Model, parameter: usize) -> PlotAxis {
+    let Some(known) = model.study.parameters().get(parameter) else { return PlotAxis::default() };
     let name = with_greek_letters(&known.name);
     let label = match model.unit(parameter) {
         Some(unit) => format!("{name} [{unit}]"),
         None => name,
     };
-    Axis { label, range: Some((known.from, known.to)), ..Axis::default() }
+    PlotAxis { label, range: Some((known.from, known.to)), ..PlotAxis::default() }
 }
 
 /// A name whose parts are letters of the Greek alphabet where they are called so: `delta_alpha` is δ_α.
@@ -82,13 +82,13 @@ fn with_greek_letters(name: &str) -> String {
 /// What happens where a regime holds, by the letter of its kind.
 struct Kind<'a> {
     letter: String,
-    colour: Colour,
+    color: Color,
     happening: Happening<'a>,
 }
 
 impl<'a> Kind<'a> {
-    fn new(kind: usize, happening: Happening<'a>, colour: Colour) -> Self {
-        Self { letter: letter(kind), colour, happening }
+    fn new(kind: usize, happening: Happening<'a>, color: Color) -> Self {
+        Self { letter: letter(kind), color, happening }
     }
 }
 
@@ -98,8 +98,8 @@ fn is_seen(region: &Region, survey: &Survey) -> bool {
     WIDTH * (region.to - region.from) >= range
 }
 
-/// The colour of every kind of region along a parameter, in the order of letters.
-pub(crate) fn fills_along(survey: &Survey) -> Vec<Colour> {
+/// The color of every kind of region along a parameter, in the order of letters.
+pub(crate) fn fills_along(survey: &Survey) -> Vec<Color> {
     let mut firsts: Vec<&Regime> = Vec::new();
     for region in &survey.regions {
         if region.kind == firsts.len() {
@@ -107,19 +107,19 @@ pub(crate) fn fills_along(survey: &Survey) -> Vec<Colour> {
         }
     }
     let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
-    colours(&firsts, &borders)
+    colors(&firsts, &borders)
 }
 
-/// The colour of every area of a map, in the order of letters.
-pub(crate) fn fills_of_map(map: &Map) -> Vec<Colour> {
+/// The color of every area of a map, in the order of letters.
+pub(crate) fn fills_of_map(map: &Map) -> Vec<Color> {
     let regimes: Vec<&Regime> = map.areas.iter().map(|area| &*area.regime).collect();
     let borders: Vec<[usize; 2]> = map.curves.iter().map(|curve| curve.sides).collect();
-    colours(&regimes, &borders)
+    colors(&regimes, &borders)
 }
 
-/// A colour for each of `regimes`, the kinds in their order: neighbours, which `borders` part, differ in hue, and where that
+/// A color for each of `regimes`, the kinds in their order: neighbours, which `borders` part, differ in hue, and where that
 /// can be in lightness.
-fn colours(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Colour> {
+fn colors(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Color> {
     let mut tints: Vec<Option<usize>> = Vec::new();
     for (kind, regime) in regimes.iter().enumerate() {
         let neighbour =
@@ -131,10 +131,10 @@ fn colours(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Colour> {
             (count(&|other| other == tint), count(&|other| other % 2 == tint % 2), used, *tint)
         };
         let answered = matches!(regime, Regime::Answered { .. });
-        let tint = answered.then(|| (0..Colour::TINTS).min_by_key(cost)).flatten();
+        let tint = answered.then(|| (0..Color::TINTS).min_by_key(cost)).flatten();
         tints.push(tint);
     }
-    tints.into_iter().map(|tint| tint.map_or(Colour::Pale, Colour::Tint)).collect()
+    tints.into_iter().map(|tint| tint.map_or(Color::Pale, Color::Tint)).collect()
 }
 
 #[cfg(test)]
@@ -148,16 +148,16 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_never_have_one_colour() {
+    fn neighbours_never_have_one_color() {
         let regime = Regime::Answered { contacts: Vec::new(), outcomes: Vec::new(), undecided: Vec::new() };
         let regimes = [&regime; 20];
-        // Each kind borders on the one before it, and on the one that would have its colour, were they dealt out in turn.
+        // Each kind borders on the one before it, and on the one that would have its color, were they dealt out in turn.
         let borders: Vec<[usize; 2]> =
             (1..20).map(|kind| [kind - 1, kind]).chain((8..20).map(|k| [k, k - 8])).collect();
-        let colours = colours(&regimes, &borders);
-        assert_eq!(colours.len(), 20);
+        let colors = colors(&regimes, &borders);
+        assert_eq!(colors.len(), 20);
         for [a, b] in borders {
-            assert_ne!(colours[a], colours[b], "{a} and {b}");
+            assert_ne!(colors[a], colors[b], "{a} and {b}");
         }
     }
 }

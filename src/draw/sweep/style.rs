@@ -1,14 +1,14 @@
-//! How lines along a parameter are drawn, and the legend that tells it: colours for components, dashes for outcomes.
+//! How lines along a parameter are drawn, and the legend that tells it: colors for components, dashes for outcomes.
 
 use super::{Kind, angles, is_seen};
-use crate::draw::plot::{Colour, Dash, Entry, Key, Stroke};
+use crate::draw::plot::{Color, Dash, LegendEntry, LegendKey, Stroke};
 use crate::law::Mode;
 use crate::sweep::Survey;
 use crate::write::words;
 
 /// The components and their lines: where both are the same, the wider one is seen behind the other.
 pub(super) const COMPONENTS: [(&str, Stroke); 2] =
-    [("tangential", Stroke::solid(Colour::Blue, 2.8)), ("normal", Stroke::solid(Colour::Vermilion, 1.6))];
+    [("tangential", Stroke::solid(Color::Blue, 2.8)), ("normal", Stroke::solid(Color::Vermilion, 1.6))];
 
 /// How the lines of each outcome are drawn.
 pub(super) struct Styles<'a>(Vec<Style<'a>>);
@@ -19,7 +19,7 @@ struct Style<'a> {
     /// Its own dashes; none where it needs none to be told from others, and is known by its region.
     dash: Option<Dash>,
     /// Of the first region in which it is valid.
-    colour: Colour,
+    color: Color,
     /// The letters of the regions in which it is valid.
     letters: Vec<String>,
     /// Whether another outcome is valid beside it somewhere.
@@ -35,7 +35,7 @@ impl<'a> Styles<'a> {
         let mut styles: Vec<Style> = Vec::new();
         for region in &survey.regions {
             let contacts = region.regime.contacts();
-            let Kind { letter, colour, .. } = &kinds[region.kind];
+            let Kind { letter, color, .. } = &kinds[region.kind];
             let outcomes = region.regime.outcomes().unwrap_or_default();
             for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
                 let ambiguous = outcomes.len() > 1 && is_seen(region, survey);
@@ -53,7 +53,7 @@ impl<'a> Styles<'a> {
                             contacts,
                             modes,
                             dash: None,
-                            colour: *colour,
+                            color: *color,
                             letters,
                             ambiguous,
                             seen: is_seen(region, survey),
@@ -75,25 +75,30 @@ impl<'a> Styles<'a> {
     }
 
     /// Components, what angles there are, outcomes with the letters of their regions, regions without any.
-    pub fn legend(&self, kinds: &[Kind], angles: bool) -> Vec<Entry> {
+    pub fn legend(&self, kinds: &[Kind], angles: bool) -> Vec<LegendEntry> {
         let mut entries = Vec::new();
         if !self.0.is_empty() {
-            entries.extend(COMPONENTS.map(|(name, stroke)| Entry { name: name.into(), key: Key::Line(stroke) }));
+            entries.extend(
+                COMPONENTS.map(|(name, stroke)| LegendEntry { name: name.into(), key: LegendKey::Line(stroke) }),
+            );
         }
         if angles {
             entries.extend(angles::legend());
         }
-        entries.extend(self.0.iter().map(|Style { contacts, modes, dash, colour, letters, .. }| {
+        entries.extend(self.0.iter().map(|Style { contacts, modes, dash, color, letters, .. }| {
             let sentence = words::modes(contacts.iter().map(String::as_str), modes);
-            let line = |dash| Key::Line(Stroke { dash, ..Stroke::solid(Colour::Black, 1.6) });
-            let key = dash.map_or(Key::Fill(*colour), line);
-            Entry { name: format!("{}: {sentence}", letters.join(", ")), key }
+            let line = |dash| LegendKey::Line(Stroke { dash, ..Stroke::solid(Color::Black, 1.6) });
+            let key = dash.map_or(LegendKey::Fill(*color), line);
+            LegendEntry { name: format!("{}: {sentence}", letters.join(", ")), key }
         }));
-        for Kind { letter, colour, happening } in kinds {
+        for Kind { letter, color, happening } in kinds {
             let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
             let lines = if answered { happening.not_excluded() } else { happening.lines() };
             if !lines.is_empty() {
-                entries.push(Entry { name: format!("{letter}: {}", lines.join("\n")), key: Key::Fill(*colour) });
+                entries.push(LegendEntry {
+                    name: format!("{letter}: {}", lines.join("\n")),
+                    key: LegendKey::Fill(*color),
+                });
             }
         }
         entries

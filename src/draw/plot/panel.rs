@@ -1,0 +1,283 @@
+//! A panel: its axes on the screen, and shapes within them.
+
+use super::axis::{PlotArea, PlotAxis, Span};
+use super::canvas::{Anchor, Layer, Stroke, Text};
+use super::color::Color;
+use super::shape::Shape;
+use super::{Pixel, PlotPoint, font};
+
+/// Shapes over two axes.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// Above it; lines after the first are smaller.
+    pub title: String,
+    /// The axis below it.
+    pub x: PlotAxis,
+    /// The axis to its left.
+    pub y: PlotAxis,
+    /// Width and height inside of the axes \[px\].
+    pub size: Pixel,
+    /// Whether the axes are drawn.
+    pub framed: bool,
+    /// Whether a unit is as long on both axes, which then may span more than they must.
+    pub equal: bool,
+    /// Shaded intervals in the background, in the order of x.
+    pub bands: Vec<Band>,
+    /// What is drawn, the first one below the others.
+    pub shapes: Vec<Shape>,
+}
+
+/// An interval of x that is shaded; a narrow one is a line.
+#[derive(Debug, Clone)]
+pub struct Band {
+    /// Its beginning.
+    pub from: f64,
+    /// Its end.
+    pub to: f64,
+    /// The letter at its upper end.
+    pub letter: String,
+    /// Its color, a pale one.
+    pub fill: Color,
+}
+
+/// The room that a panel needs around its axes \[px\].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Margins {
+    pub left: f64,
+    pub right: f64,
+    pub top: f64,
+    pub bottom: f64,
+}
+
+/// Heights of fonts \[px\].
+const LABEL: u32 = 14;
+const NUMBER: u32 = 12;
+const TITLE: u32 = 14;
+const LETTER: u32 = 14;
+/// From one line of a panel's title to the next \[px\].
+const LINE: f64 = 18.0;
+/// The length of a tick, and from a tick to its number \[px\].
+const TICK: f64 = 5.0;
+const NEAR: f64 = 3.0;
+/// The room of the labels of the x axis and of the y axis \[px\].
+const BELOW: f64 = 22.0;
+const LEFT: f64 = 30.0;
+/// Around a panel without axes, and above one with axes \[px\].
+const BARE: f64 = 6.0;
+const ABOVE: f64 = 10.0;
+/// From the axes to the letters of bands, and from one letter to the next below it \[px\].
+const MARGIN: f64 = 6.0;
+const STORY: f64 = 16.0;
+/// Letters of bands closer than this stand below each other \[px\], at most so many.
+const ROOM: f64 = 14.0;
+const STORIES: usize = 4;
+
+const AXIS: Stroke = Stroke::solid(Color::Black, 1.0);
+const GRID: Stroke = Stroke::solid(Color::Pale, 1.0);
+const EDGE: Stroke = Stroke::solid(Color::Gray, 0.8);
+
+impl Panel {
+    /// A panel of the usual size with these axes and nothing in it.
+    pub fn new(x: PlotAxis, y: PlotAxis) -> Self {
+        let (title, bands, shapes) = (String::new(), Vec::new(), Vec::new());
+        Self { title, x, y, size: (540.0, 420.0), framed: true, equal: false, bands, shapes }
+    }
+
+    /// Whether anything in it has a place on its axes.
+    fn is_drawn(&self) -> bool {
+        let on = |value: f64, axis: &PlotAxis| value.is_finite() && (!axis.logarithmic || value > 0.0);
+        let mut points = self.shapes.iter().flat_map(Shape::extent);
+        points.any(|(x, y)| on(x, &self.x) && on(y, &self.y)) || !self.bands.is_empty()
+    }
+
+    /// The title, broken where the panel ends, and which lines belong to its first one.
+    fn title_lines(&self) -> Vec<(String, bool)> {
+        let (first, rest) = self.title.split_once('\n').unwrap_or((&self.title, ""));
+        let lines = |text, size| font::lines(text, size, self.size.0);
+        let first = lines(first, TITLE).into_iter().map(|line| (line, true));
+        first.chain(lines(rest, NUMBER).into_iter().map(|line| (line, false))).collect()
+    }
+}
+
+/// A panel whose axes have their place on the screen.
+#[derive(Debug)]
+pub(super) struct PlacedPanel<'p> {
+    panel: &'p Panel,
+    pub area: PlotArea,
+}
+
+impl<'p> PlacedPanel<'p> {
+    /// The panel; `None` if nothing in it has a place on its axes.
+    pub fn new(panel: &'p Panel) -> Option<Self> {
+        let (width, height) = panel.size;
+        let points: Vec<PlotPoint> = panel.shapes.iter().flat_map(Shape::extent).collect();
+        let along = points.iter().map(|point| point.0).chain(panel.bands.iter().flat_map(|band| [band.from, band.to]));
+        let mut x = Span::new(&panel.x, along, width);
+        let mut y = Span::new(&panel.y, points.iter().map(|point| point.1), height);
+        if panel.equal {
+            let ratio = x.scale(width) / y.scale(height);
+            if ratio > 1.0 { x.widen(ratio, width) } else { y.widen(1.0 / ratio, height) }
+        }
+        let mut placed = Self { panel, area: PlotArea { x, y, size: panel.size } };
+        let stories = placed.letters().iter().map(|letter| letter.story + 1).max();
+        if let (Some(stories), None) = (stories, panel.y.range) {
+            // No curve runs through the letters.
+            placed.area.y.leave(MARGIN + stories as f64 * STORY, height);
+        }
+        panel.is_drawn().then_some(placed)
+    }
+
+    /// The room that it needs around its axes.
+    pub fn margins(&self) -> Margins {
+        let Panel { x, y, framed, .. } = self.panel;
+        let title = self.panel.title_lines().len() as f64 * LINE;
+        let top = if title > 0.0 { title + ABOVE } else { ABOVE };
+        if !framed {
+            return Margins { left: BARE, right: BARE, top, bottom: BARE };
+        }
+        let label = |axis: &PlotAxis, room: f64| if axis.label.is_empty() { 0.0 } else { room };
+        let bottom = if x.bare { 4.0 } else { TICK + NEAR + f64::from(NUMBER) + BARE + label(x, BELOW) };
+        let widths = self.area.y.ticks().into_iter().map(|tick| font::width(&tick.text, NUMBER));
+        let left = if y.bare { ABOVE } else { widths.fold(0.0, f64::max) + TICK + NEAR + label(y, LEFT) };
+        // Half the last number may stand beyond the axis.
+        let last = self.area.x.ticks().last().map_or(0.0, |tick| 0.5 * font::width(&tick.text, NUMBER));
+        Margins { left, right: last.max(ABOVE), top, bottom }
+    }
+
+    /// Draws it with the upper left corner inside of its axes at `corner`; its label is so far to the `left` of them.
+    pub fn draw(&self, corner: Pixel, left: f64, out: &mut Layer) {
+        let panel = self.panel;
+        let title = panel.title_lines();
+        for (line, (content, is_first)) in title.iter().enumerate() {
+            let (size, color) = if *is_first { (TITLE, Color::Black) } else { (NUMBER, Color::Gray) };
+            let baseline = corner.1 - 8.0 - LINE * (title.len() - 1 - line) as f64;
+            let at = (corner.0 + 0.5 * panel.size.0, baseline);
+            out.text(Text { color, ..Text::new(at, content, size, Anchor::Middle) });
+        }
+        let mut inside = Layer::default();
+        if panel.bands.is_empty() {
+            self.grid(&mut inside);
+        }
+        panel.bands.iter().for_each(|band| self.band(band, &mut inside));
+        let mut taken = panel.shapes.iter().flat_map(|shape| shape.marked(&self.area)).collect();
+        panel.shapes.iter().for_each(|shape| shape.draw(&self.area, &mut taken, &mut inside));
+        self.letters().iter().for_each(|letter| letter.draw(&mut inside));
+        out.window(corner, panel.size, inside);
+        if panel.framed {
+            self.axes(corner, left, out);
+        }
+    }
+
+    /// Lines at the ticks.
+    fn grid(&self, out: &mut Layer) {
+        let (width, height) = self.area.size;
+        if self.panel.framed && !self.panel.x.bare {
+            let lines = self.area.x.ticks().into_iter().map(|tick| width * tick.share);
+            lines.for_each(|x| out.line(vec![(x, 0.0), (x, height)], GRID));
+        }
+        if self.panel.framed && !self.panel.y.bare {
+            let lines = self.area.y.ticks().into_iter().map(|tick| height * (1.0 - tick.share));
+            lines.for_each(|y| out.line(vec![(0.0, y), (width, y)], GRID));
+        }
+    }
+
+    /// Both axes with their ticks, numbers and labels.
+    fn axes(&self, (left, top): Pixel, room: f64, out: &mut Layer) {
+        let Panel { x, y, size: (width, height), .. } = self.panel;
+        let (middle, bottom) = ((left + 0.5 * width, top + 0.5 * height), top + height);
+        if !x.bare {
+            let baseline = bottom + TICK + NEAR + font::CAPITAL * f64::from(NUMBER);
+            for tick in self.area.x.ticks() {
+                let at = left + width * tick.share;
+                out.line(vec![(at, bottom), (at, bottom + TICK)], AXIS);
+                out.text(Text::new((at, baseline), &tick.text, NUMBER, Anchor::Middle));
+            }
+            let label = self.area.x.label(&x.label);
+            out.text(Text::new((middle.0, baseline + BELOW), &label, LABEL, Anchor::Middle));
+        }
+        if !y.bare {
+            for tick in self.area.y.ticks() {
+                let at = bottom - height * tick.share;
+                out.line(vec![(left - TICK, at), (left, at)], AXIS);
+                let baseline = (left - TICK - NEAR, Text::baseline(at, NUMBER));
+                out.text(Text::new(baseline, &tick.text, NUMBER, Anchor::End));
+            }
+            let at = (left - room + font::CAPITAL * f64::from(LABEL), middle.1);
+            let label = self.area.y.label(&y.label);
+            out.text(Text { upward: true, ..Text::new(at, &label, LABEL, Anchor::Middle) });
+        }
+        out.rectangle((left, top), (*width, *height), None, Some(AXIS));
+    }
+
+    /// Where a band begins and ends \[px\].
+    fn sides(&self, band: &Band) -> Option<(f64, f64)> {
+        let side = |value| Some(self.area.size.0 * self.area.x.share(value)).filter(|side| side.is_finite());
+        let (from, to) = (side(band.from)?, side(band.to)?);
+        Some((from.min(to), from.max(to)))
+    }
+
+    fn band(&self, band: &Band, out: &mut Layer) {
+        let Some((from, to)) = self.sides(band) else { return };
+        let height = self.area.size.1;
+        let edge = |x: f64| vec![(x, 0.0), (x, height)];
+        if to - from < EDGE.width {
+            return out.line(edge(0.5 * (from + to)), EDGE);
+        }
+        out.rectangle((from, 0.0), (to - from, height), Some(band.fill), None);
+        out.lines(vec![edge(from), edge(to)], EDGE);
+    }
+
+    /// The letters of bands; those of narrow bands stand below each other.
+    fn letters(&self) -> Vec<BandLetter<'p>> {
+        let width = self.area.size.0;
+        let mut ends = [f64::NEG_INFINITY; STORIES];
+        let mut letters = Vec::new();
+        for band in self.panel.bands.iter().filter(|band| !band.letter.is_empty()) {
+            let Some((from, to)) = self.sides(band) else { continue };
+            let (from, to) = (from.max(0.0), to.min(width));
+            if from > to {
+                continue;
+            }
+            let half = 0.5 * font::width(&band.letter, LETTER).max(ROOM);
+            let middle = (0.5 * (from + to)).min(width - half).max(half);
+            let story = ends.iter().position(|end| middle - half >= *end).unwrap_or(STORIES - 1);
+            ends[story] = middle + half;
+            letters.push(BandLetter { text: &band.letter, middle, story, is_wide: to - from < 2.0 * half });
+        }
+        letters
+    }
+}
+
+/// The letter of a band.
+struct BandLetter<'a> {
+    text: &'a str,
+    /// The middle of its width \[px\].
+    middle: f64,
+    /// How many other letters stand above it.
+    story: usize,
+    /// Whether it is wider than its band.
+    is_wide: bool,
+}
+
+impl BandLetter<'_> {
+    fn draw(&self, out: &mut Layer) {
+        let baseline = MARGIN + font::CAPITAL * f64::from(LETTER) + self.story as f64 * STORY;
+        let text = Text::new((self.middle, baseline), self.text, LETTER, Anchor::Middle);
+        out.text(Text { rim: self.is_wide, ..text });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_axes_have_units_of_one_length() {
+        let corners = Shape::Line { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke: AXIS };
+        let axes = || PlotAxis::default();
+        let panel = Panel { equal: true, size: (300.0, 200.0), shapes: vec![corners], ..Panel::new(axes(), axes()) };
+        let area = PlacedPanel::new(&panel).unwrap().area;
+        let [origin, right, up] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|point| area.place(point).unwrap());
+        assert!(((right.0 - origin.0) - (origin.1 - up.1)).abs() < 1e-9);
+    }
+}
