@@ -14,6 +14,7 @@ use self::before::Before;
 pub use self::before::Unsolved;
 pub use self::left_out::LeftOut;
 use self::loops::Loops;
+use self::robust::Robustness;
 use self::strike::Strike;
 use crate::contact::{Contact, Feet, Placement};
 use crate::dynamics::plan::{Plan, Posture};
@@ -24,7 +25,6 @@ use crate::dynamics::{
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch};
 use crate::law::{Friction, Mode};
-use crate::pipeline::robust::Holds;
 use crate::planar::{Rotation, Vector, scaled, sum};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
@@ -71,7 +71,7 @@ pub struct Impact {
     /// Impulse on point a of each loop, in the world's axes, for each outcome of the analysis \[N s\]; on b the opposite acts.
     pub loop_impulse: Vec<Vec<Vector<f64>>>,
     /// Whether the outcomes are the same on the box of the state's uncertainty; none where it has none.
-    pub holds: Option<Holds>,
+    pub holds: Option<Robustness>,
     /// The matrices, if asked for.
     pub matrices: Option<Matrices>,
     /// What of the scene does not enter the analysis.
@@ -157,7 +157,7 @@ impl<'r> Pipeline<'r> {
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
         let mut answer = self.answer(state, None)?;
         if let Some(uncertainty) = &state.uncertainty {
-            answer.impact.holds = Some(self.holds(state, uncertainty, &answer));
+            answer.impact.holds = Some(self.robustness(state, uncertainty, &answer));
         }
         Ok(answer.impact)
     }

@@ -33,12 +33,12 @@ impl Serialize for Holds {
     }
 }
 
-impl From<&robust::Holds> for Holds {
-    fn from(holds: &robust::Holds) -> Self {
+impl From<&robust::Robustness> for Holds {
+    fn from(holds: &robust::Robustness) -> Self {
         match holds {
-            robust::Holds::Everywhere => Self::Yes,
-            robust::Holds::Not(_) => Self::No,
-            robust::Holds::Unknown => Self::Unknown,
+            robust::Robustness::Everywhere => Self::Yes,
+            robust::Robustness::Not(_) => Self::No,
+            robust::Robustness::Unknown => Self::Unknown,
         }
     }
 }
@@ -57,8 +57,8 @@ pub struct Counterexample<'a> {
 
 impl<'a> Counterexample<'a> {
     /// The counterexample of what was found about a state of `robot`; none where there is none.
-    pub fn of(robot: &'a Robot, holds: &'a robust::Holds) -> Option<Self> {
-        let robust::Holds::Not(found) = holds else { return None };
+    pub fn of(robot: &'a Robot, holds: &'a robust::Robustness) -> Option<Self> {
+        let robust::Robustness::Not(found) = holds else { return None };
         let state = StateFields { robot, state: &found.state };
         Some(Self { state, verdict: found.verdict, outcomes: &found.outcomes })
     }

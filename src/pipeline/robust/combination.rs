@@ -11,7 +11,7 @@ use crate::scalar::{Ordered, Sign};
 
 /// A contact problem on a box.
 #[derive(Debug)]
-pub(crate) struct Numbers<T> {
+pub(super) struct UncertainProblem<T> {
     /// G, 2n x 2n by rows \[1/kg\].
     pub delassus: Vec<T>,
     /// Per row the velocity without impulses, on a normal row with its bounce \[m/s\].
@@ -22,7 +22,7 @@ pub(crate) struct Numbers<T> {
 
 /// A combination's equations and inequalities, all times det A.
 #[derive(Debug)]
-pub(crate) struct Combination<T> {
+pub(super) struct BoxCombination<T> {
     /// det A, up to a sign that it shares with the numerators.
     pub determinant: Option<T>,
     /// What must keep its inequality after a division by det A; without one it is c_t of a frictionless contact that sticks,
@@ -33,13 +33,13 @@ pub(crate) struct Combination<T> {
     minors: Vec<T>,
 }
 
-impl<T> Default for Combination<T> {
+impl<T> Default for BoxCombination<T> {
     fn default() -> Self {
         Self { determinant: None, numerators: Vec::new(), columns: Vec::new(), minors: Vec::new() }
     }
 }
 
-impl<T: Ordered> Numbers<T> {
+impl<T: Ordered> UncertainProblem<T> {
     pub fn contacts(&self) -> usize {
         self.laws.len()
     }
@@ -50,7 +50,7 @@ impl<T: Ordered> Numbers<T> {
     }
 
     /// Fills in the combination `modes`.
-    pub fn combine(&self, modes: &[Mode], into: &mut Combination<T>) {
+    pub fn combine(&self, modes: &[Mode], into: &mut BoxCombination<T>) {
         let [zero, one] = [T::zero(), T::one()];
         into.columns.clear();
         for (contact, (&mode, law)) in modes.iter().zip(&self.laws).enumerate() {
@@ -69,8 +69,8 @@ impl<T: Ordered> Numbers<T> {
     }
 
     /// All minors of [A | f] of full height, each without one column, by expansion along one row after the other.
-    fn expand(&self, into: &mut Combination<T>) {
-        let Combination { columns, minors, .. } = into;
+    fn expand(&self, into: &mut BoxCombination<T>) {
+        let BoxCombination { columns, minors, .. } = into;
         let unknowns = columns.len();
         let width = unknowns + 1;
         minors.clear();
@@ -93,8 +93,8 @@ impl<T: Ordered> Numbers<T> {
         }
     }
 
-    fn read(&self, modes: &[Mode], into: &mut Combination<T>) {
-        let Combination { determinant, numerators, columns, minors } = into;
+    fn read(&self, modes: &[Mode], into: &mut BoxCombination<T>) {
+        let BoxCombination { determinant, numerators, columns, minors } = into;
         let unknowns = columns.len();
         let all = (1usize << (unknowns + 1)) - 1;
         let numerator = |column: usize| {
@@ -134,8 +134,8 @@ impl<T: Ordered> Numbers<T> {
     }
 }
 
-impl<T: Ordered> Combination<T> {
-    /// Whether it is an outcome of every state of the box, or of none; none where that was not shown.
+impl<T: Ordered> BoxCombination<T> {
+    /// Whether it is an outcome of every state of the box, or of none; `None` if that was not shown.
     pub fn is_valid(&self) -> Option<bool> {
         let signs = || self.numerators.iter().map(|&(inequality, number)| (inequality, number.sign()));
         let has = |wanted: Sign| signs().any(|(inequality, sign)| inequality.is_some() && sign == wanted);
@@ -197,14 +197,14 @@ mod tests {
             let velocity: Vec<[f64; 2]> = before.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
             let problem = ContactProblem::new(delassus.clone(), velocity, friction.clone(), vec![0.0; COUNT]).unwrap();
             let ball = crate::scalar::Ball::<f64>::from_f64;
-            let numbers = Numbers {
+            let numbers = UncertainProblem {
                 delassus: delassus.into_iter().map(ball).collect(),
                 free: before.into_iter().map(ball).collect(),
                 laws: [Some(mu), None, Some(2.0 * mu)]
                     .map(|mu| mu.map_or(Law::Unbounded(Unbounded), |mu| Law::Coulomb(Coulomb { mu: ball(mu) })))
                     .into(),
             };
-            let (mut tableau, mut found) = (Tableau::<f64>::new(), Combination::default());
+            let (mut tableau, mut found) = (Tableau::<f64>::new(), BoxCombination::default());
             tableau.load(&problem);
             for modes in lists() {
                 numbers.combine(&modes, &mut found);
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn opposite_numerators_reject_across_a_pole() {
         let wide = |mid: f64| crate::scalar::Ball { mid, radius: 0.1 };
-        let mut found = Combination { determinant: Some(wide(0.0)), ..Combination::default() };
+        let mut found = BoxCombination { determinant: Some(wide(0.0)), ..BoxCombination::default() };
         found.numerators =
             vec![(Some(Inequality::NormalImpulse), wide(1.0)), (Some(Inequality::NormalVelocity), wide(-1.0))];
         assert_eq!(found.is_valid(), Some(false));
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn exact_zeros_count_as_the_strict_modes_have_it() {
         let ball = crate::scalar::Ball::<f64>::from_f64;
-        let mut found = Combination { determinant: Some(ball(1.0)), ..Combination::default() };
+        let mut found = BoxCombination { determinant: Some(ball(1.0)), ..BoxCombination::default() };
         for (inequality, valid) in
             [(Some(Inequality::NormalImpulse), true), (None, true), (Some(Inequality::NormalVelocity), false)]
         {

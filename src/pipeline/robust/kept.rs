@@ -1,73 +1,33 @@
-//! Whether a state's verdict holds on its box: the state's contacts kept, its numbers varied.
+//! A state whose numbers vary in a box while its contacts are kept.
 
 use super::super::strike::{Contacts, Inputs, Strike};
 use super::super::{Answer, Impact, Pipeline};
-use super::{CONTACT_LIMIT, Cell, Counterexample, Found, Holds, Model, Numbers, Quantity, search};
+use super::Counterexample;
+use super::combination::UncertainProblem;
+use super::state_box::{Quantity, StateBox};
 use crate::contact::Contact;
 use crate::dynamics::Constraints;
 use crate::impact::Analysis;
-use crate::law::{Coulomb, Friction, Frictionless, Law, Mode, Unbounded};
+use crate::law::{ContactLaw, Coulomb, Friction, Frictionless, Law, Mode, Unbounded};
 use crate::planar::{difference, dot};
 use crate::robot::Robot;
 use crate::scalar::{Affine, Real};
-use crate::state::{ByLink, NamedContact};
-use crate::state::{State, Uncertainty};
-
-impl Pipeline<'_> {
-    /// Whether the answer to `state` holds on the box of its uncertainty.
-    pub(in crate::pipeline) fn holds(&mut self, state: &State, uncertainty: &Uncertainty, answer: &Answer) -> Holds {
-        let Some(expected) = answer.impact.analysis.as_ref().ok().and_then(proven_modes) else {
-            return Holds::Unknown;
-        };
-        let links: Vec<usize> = answer.impact.contacts.iter().map(|contact| contact.link).collect();
-        if links.is_empty() {
-            return Holds::Everywhere;
-        }
-        let tied = !self.robot.followers.is_empty() || !state.scene.loops.is_empty();
-        if links.len() > CONTACT_LIMIT || tied {
-            return Holds::Unknown;
-        }
-        let whole = Cell::new(self.robot, state, uncertainty, &links);
-        let quantities = whole.quantities.len();
-        let mut model = Kept {
-            friction: links.iter().filter_map(|&link| state.scene.friction.of(link)).collect(),
-            links,
-            named: with_named_contacts(self.robot, state, answer),
-            quantities: whole.quantities.clone(),
-            state,
-            answer,
-            pipeline: self,
-        };
-        // Sizes of the affine numbers; what goes beyond the last counts as unrelated errors.
-        let found = match quantities {
-            0 => Found::Same,
-            1..=8 => search::<8>(&mut model, whole, &expected),
-            9..=16 => search::<16>(&mut model, whole, &expected),
-            17..=32 => search::<32>(&mut model, whole, &expected),
-            _ => search::<64>(&mut model, whole, &expected),
-        };
-        match found {
-            Found::Same => Holds::Everywhere,
-            Found::Nothing => Holds::Unknown,
-            Found::Differing(point) => model.counterexample(&point),
-        }
-    }
-}
+use crate::state::{ByLink, NamedContact, State};
 
 /// A state whose contacts, stance and resting contacts are kept while its numbers vary.
-struct Kept<'a, 'r> {
-    pipeline: &'a mut Pipeline<'r>,
-    state: &'a State,
-    answer: &'a Answer,
+pub(super) struct KeptContacts<'a, 'r> {
+    pub pipeline: &'a mut Pipeline<'r>,
+    pub state: &'a State,
+    pub answer: &'a Answer,
     /// The state with its contacts by name.
-    named: State,
+    pub named: State,
     /// Of each contact.
-    links: Vec<usize>,
-    friction: Vec<Friction>,
-    quantities: Vec<Quantity>,
+    pub links: Vec<usize>,
+    pub friction: Vec<Friction>,
+    pub quantities: Vec<Quantity>,
 }
 
-impl Kept<'_, '_> {
+impl KeptContacts<'_, '_> {
     /// The state at a point of the box.
     fn at(&self, point: &[f64]) -> State {
         let mut state = self.named.clone();
@@ -108,24 +68,29 @@ impl Kept<'_, '_> {
         (1e-12 * self.pipeline.feet.size()).powi(2)
     }
 
-    fn counterexample(&mut self, point: &[f64]) -> Holds {
-        match self.analysis(point) {
-            Some((state, analysis)) => Holds::Not(Box::new(Counterexample {
-                state,
-                verdict: analysis.verdict,
-                outcomes: analysis.outcomes.into_iter().map(|outcome| outcome.modes).collect(),
-            })),
-            None => Holds::Unknown,
+    /// The state at a point, if its proven outcomes are not the `expected` ones (lists of modes, sorted).
+    pub fn counterexample(&mut self, point: &[f64], expected: &[Vec<Mode>]) -> Option<Counterexample> {
+        let (state, analysis) = self.analysis(point)?;
+        (proven_modes(&analysis)? != expected).then(|| Counterexample {
+            state,
+            verdict: analysis.verdict,
+            outcomes: analysis.outcomes.into_iter().map(|outcome| outcome.modes).collect(),
+        })
+    }
+
+    /// Every combination of the modes that the contacts may take, the first contact's changing fastest.
+    pub fn combinations(&self) -> Vec<Vec<Mode>> {
+        let mut all = vec![Vec::new()];
+        for &friction in self.friction.iter().rev() {
+            let modes: Vec<Mode> = Law::from(friction).modes().concat();
+            let with = |rest: &Vec<Mode>| modes.iter().map(|&mode| [&[mode], &rest[..]].concat()).collect::<Vec<_>>();
+            all = all.iter().flat_map(with).collect();
         }
-    }
-}
-
-impl Model for Kept<'_, '_> {
-    fn contacts(&self) -> usize {
-        self.links.len()
+        all
     }
 
-    fn numbers<const N: usize>(&self, cell: &Cell) -> Numbers<Affine<N>> {
+    /// The contact problems of all states of the box.
+    pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
         let Answer { impact, foot, stance, resting } = self.answer;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
         let strike = Strike {
@@ -143,9 +108,9 @@ impl Model for Kept<'_, '_> {
             errors: crate::impact::Errors::UNKNOWN,
         };
         let Contacts { delassus, before, free } = strike.contacts(Inputs {
-            posture: cell.posture::<N>(robot, &self.state.position),
-            velocity: cell.velocity(&self.state.velocity),
-            plan: cell.plan(robot, &scene.held, &scene.rotor_inertia),
+            posture: whole.posture::<N>(robot, &self.state.position),
+            velocity: whole.velocity(&self.state.velocity),
+            plan: whole.plan(robot, &scene.held, &scene.rotor_inertia),
         });
         let row = |(contact, link): (usize, &usize)| {
             let restitution = Affine::from_f64(scene.restitution.of(*link).unwrap_or(0.0));
@@ -154,25 +119,21 @@ impl Model for Kept<'_, '_> {
         };
         let law = |(&friction, &link): (&Friction, &usize)| match friction {
             Friction::Infinite => Law::Unbounded(Unbounded),
-            Friction::Finite(mu) if mu == 0.0 && !cell.quantities.contains(&Quantity::Friction(link)) => {
+            Friction::Finite(mu) if mu == 0.0 && !whole.quantities.contains(&Quantity::Friction(link)) => {
                 Law::Frictionless(Frictionless)
             }
-            Friction::Finite(mu) => Law::Coulomb(Coulomb { mu: cell.number(Quantity::Friction(link), mu) }),
+            Friction::Finite(mu) => Law::Coulomb(Coulomb { mu: whole.number(Quantity::Friction(link), mu) }),
         };
-        Numbers {
+        UncertainProblem {
             delassus,
             free: self.links.iter().enumerate().flat_map(row).collect(),
             laws: self.friction.iter().zip(&self.links).map(law).collect(),
         }
     }
-
-    fn outcomes(&mut self, point: &[f64]) -> Option<Vec<Vec<Mode>>> {
-        self.analysis(point).and_then(|(_, analysis)| proven_modes(&analysis))
-    }
 }
 
 /// The lists of modes of a proven analysis, sorted.
-fn proven_modes(analysis: &Analysis) -> Option<Vec<Vec<Mode>>> {
+pub(super) fn proven_modes(analysis: &Analysis) -> Option<Vec<Vec<Mode>>> {
     let mut modes: Vec<Vec<Mode>> = analysis.outcomes.iter().map(|outcome| outcome.modes.clone()).collect();
     modes.sort();
     // Both ends of a family may have the same modes.
@@ -181,7 +142,7 @@ fn proven_modes(analysis: &Analysis) -> Option<Vec<Vec<Mode>>> {
 }
 
 /// The state with every contact named, so that it stays one whatever its height.
-fn with_named_contacts(robot: &Robot, state: &State, answer: &Answer) -> State {
+pub(super) fn with_named_contacts(robot: &Robot, state: &State, answer: &Answer) -> State {
     let Impact { contacts, .. } = &answer.impact;
     let mut named = State { id: None, uncertainty: None, ..state.clone() };
     let name = |contact: &Contact| NamedContact {

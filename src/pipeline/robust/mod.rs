@@ -1,4 +1,4 @@
-//! Whether a verdict holds while the state's numbers are known to an interval each.
+//! Whether a verdict holds if each of the state's numbers is known to an interval.
 //!
 //! ```text
 //!     box of states --affine numbers--> G, c, mu --minors--> det A, numerators --signs--> every combination decided: it holds
@@ -7,23 +7,19 @@
 //! ```
 //!
 //! The set of outcomes, as lists of modes, is the same on a box if every combination of modes is valid on all of it or
-//! rejected on all of it. The numbers of a box are [`Affine`](crate::scalar::Affine): what they owe to the same uncertain
-//! quantity cancels, and what is left over is of second order in the half-widths. A combination's unknowns are numerators
-//! over det A by Cramer's rule; they are polynomials, so that a pole inside the box (det A = 0) blurs nothing. A box that
-//! leaves combinations open is halved, within a fixed effort. The contact set is taken as that of the given state.
-//! Dependent contacts stay unknown (det A is zero everywhere), and so do long chains, through whose elimination the second
-//! order grows from link to link.
+//! rejected on all of it. The numbers of a box are [`Affine`](crate::scalar::Affine): parts that depend on the same uncertain
+//! quantity cancel, and the rest is of second order in the half-widths. A combination's unknowns are numerators
+//! over det A by Cramer's rule. Numerators are polynomials, so that a pole inside the box (det A = 0) widens nothing. A box that
+//! leaves combinations open is halved, within a fixed effort. The contact set is that of the given state.
+//! Dependent contacts stay unknown (det A is zero everywhere), and so do long chains, in which the second order grows from
+//! link to link.
 //!
 //! Cost: O(P) for each operation of the dynamics with P uncertain quantities, and 2n 9^n of them for the minors.
 
-mod kept;
-mod cell;
+mod state_box;
 mod combination;
+mod kept;
 mod search;
-
-pub(crate) use cell::{Cell, Quantity};
-pub(crate) use combination::Numbers;
-pub(crate) use search::{Found, Model, search};
 
 use crate::impact::Verdict;
 use crate::law::Mode;
@@ -34,10 +30,10 @@ pub const CONTACT_LIMIT: usize = 5;
 
 /// Whether the set of outcomes, as lists of modes, is the same for every state of a box.
 #[derive(Debug, Clone)]
-pub enum Holds {
-    /// It is; shown by bounds that include all rounding.
+pub enum Robustness {
+    /// It is, by bounds that include all rounding.
     Everywhere,
-    /// It is not.
+    /// It is not: a state of the box has others.
     Not(Box<Counterexample>),
     /// Neither was shown within the effort spent.
     Unknown,

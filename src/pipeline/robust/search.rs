@@ -1,33 +1,13 @@
 //! Halving a box until every combination is decided, or a state is found whose outcomes differ.
 
-use super::cell::Cell;
-use super::combination::{Combination, Numbers};
+use super::super::{Answer, Pipeline};
+use super::combination::BoxCombination;
+use super::kept::{KeptContacts, proven_modes, with_named_contacts};
+use super::state_box::StateBox;
+use super::{CONTACT_LIMIT, Counterexample, Robustness};
 use crate::law::Mode;
 use crate::scalar::{Affine, Ordered, Sign};
-
-/// What the boxes are boxes of.
-pub(crate) trait Model {
-    /// Number of contacts.
-    fn contacts(&self) -> usize;
-
-    /// The contact problems of all states of the box.
-    fn numbers<const N: usize>(&self, cell: &Cell) -> Numbers<Affine<N>>;
-
-    /// The proven lists of modes of the state whose uncertain numbers are `point`, sorted; none where they are not proven
-    /// or belong to other contacts.
-    fn outcomes(&mut self, point: &[f64]) -> Option<Vec<Vec<Mode>>>;
-}
-
-/// What a search found.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Found {
-    /// The outcomes are the same on the whole box.
-    Same,
-    /// They differ at this point.
-    Differing(Vec<f64>),
-    /// Neither was shown.
-    Nothing,
-}
+use crate::state::{State, Uncertainty};
 
 /// Boxes times combinations that are tried at most, with up to [`USUAL`] uncertain quantities.
 const EFFORT: usize = 2048;
@@ -35,93 +15,132 @@ const EFFORT: usize = 2048;
 /// With more uncertain quantities a box costs more, and fewer are tried.
 const USUAL: usize = 16;
 
-/// Corners of the whole box that are tried beside those in which the numbers point.
+/// Corners of the whole box that are tried next to those in which the numbers point.
 const RANDOM_CORNERS: usize = 8;
 
-/// Looks for a point of the box whose outcomes are not `expected` (lists of modes, sorted), until none is left.
-pub(crate) fn search<const N: usize>(model: &mut impl Model, whole: Cell, expected: &[Vec<Mode>]) -> Found {
-    let lists = 1usize << (2 * model.contacts());
-    let mut search: Search<'_, _, N> =
-        Search { model, expected, tried: Vec::new(), combination: Combination::default(), ways: Vec::new() };
+impl Pipeline<'_> {
+    /// Whether the answer to `state` holds on the box of its uncertainty.
+    pub(in crate::pipeline) fn robustness(
+        &mut self,
+        state: &State,
+        uncertainty: &Uncertainty,
+        answer: &Answer,
+    ) -> Robustness {
+        let Some(expected) = answer.impact.analysis.as_ref().ok().and_then(proven_modes) else {
+            return Robustness::Unknown;
+        };
+        let links: Vec<usize> = answer.impact.contacts.iter().map(|contact| contact.link).collect();
+        if links.is_empty() {
+            return Robustness::Everywhere;
+        }
+        let tied = !self.robot.followers.is_empty() || !state.scene.loops.is_empty();
+        if links.len() > CONTACT_LIMIT || tied {
+            return Robustness::Unknown;
+        }
+        let whole = StateBox::new(self.robot, state, uncertainty, &links);
+        let quantities = whole.quantities.len();
+        let mut kept = KeptContacts {
+            friction: links.iter().filter_map(|&link| state.scene.friction.of(link)).collect(),
+            links,
+            named: with_named_contacts(self.robot, state, answer),
+            quantities: whole.quantities.clone(),
+            state,
+            answer,
+            pipeline: self,
+        };
+        // Sizes of the affine numbers; what goes beyond the last counts as unrelated errors.
+        match quantities {
+            0 => Robustness::Everywhere,
+            1..=8 => search::<8>(&mut kept, whole, &expected),
+            9..=16 => search::<16>(&mut kept, whole, &expected),
+            17..=32 => search::<32>(&mut kept, whole, &expected),
+            _ => search::<64>(&mut kept, whole, &expected),
+        }
+    }
+}
+
+/// Looks for a state of the box whose outcomes are not `expected` (lists of modes, sorted), until none is left.
+fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expected: &[Vec<Mode>]) -> Robustness {
+    let mut boxes = vec![(whole, kept.combinations())];
+    let mut search: Search<'_, '_, '_, N> =
+        Search { kept, expected, tried: Vec::new(), combination: BoxCombination::default(), ways: Vec::new() };
     let mut effort = EFFORT * USUAL / N.max(USUAL);
-    let mut cells = vec![(whole, (0..lists).collect::<Vec<usize>>())];
     let mut first = true;
-    while let Some((cell, open)) = cells.pop() {
+    while let Some((own, open)) = boxes.pop() {
         if !first {
-            // The whole box is looked at in any case.
-            let Some(rest) = effort.checked_sub(open.len()) else { return Found::Nothing };
+            // The whole box is examined in any case.
+            let Some(rest) = effort.checked_sub(open.len()) else { return Robustness::Unknown };
             effort = rest;
         }
-        let Examined { open, split } = search.examine(&cell, &open);
+        let Examined { open, split } = search.examine(&own, open);
         if open.is_empty() {
             continue;
         }
-        if let Some(point) = search.differing(&cell, first) {
-            return Found::Differing(point);
+        if let Some(found) = search.counterexample(&own, first) {
+            return Robustness::Not(Box::new(found));
         }
         first = false;
-        let Some(halves) = split.and_then(|index| cell.halves(index)) else { return Found::Nothing };
-        cells.extend(halves.map(|half| (half, open.clone())));
+        let Some(halves) = split.and_then(|index| own.halves(index)) else { return Robustness::Unknown };
+        boxes.extend(halves.map(|half| (half, open.clone())));
     }
-    Found::Same
+    Robustness::Everywhere
 }
 
 /// What is left of a box.
 struct Examined {
     /// The combinations that are not decided.
-    open: Vec<usize>,
-    /// The quantity to halve; none where nothing is known to matter.
+    open: Vec<Vec<Mode>>,
+    /// The quantity to halve; `None` if nothing is known to matter.
     split: Option<usize>,
 }
 
-struct Search<'a, M, const N: usize> {
-    model: &'a mut M,
+struct Search<'a, 'k, 'r, const N: usize> {
+    kept: &'a mut KeptContacts<'k, 'r>,
     expected: &'a [Vec<Mode>],
     /// Points whose outcomes are as expected.
     tried: Vec<Vec<f64>>,
-    combination: Combination<Affine<N>>,
+    combination: BoxCombination<Affine<N>>,
     /// Directions in which open combinations of the last box change first.
     ways: Vec<Vec<f64>>,
 }
 
-impl<M: Model, const N: usize> Search<'_, M, N> {
-    fn examine(&mut self, cell: &Cell, lists: &[usize]) -> Examined {
-        let numbers = self.model.numbers::<N>(cell);
-        let contacts = self.model.contacts();
-        let mut influence = vec![0.0; cell.ends.len()];
-        let mut open = Vec::new();
+impl<const N: usize> Search<'_, '_, '_, N> {
+    fn examine(&mut self, own: &StateBox, mut open: Vec<Vec<Mode>>) -> Examined {
+        let problem = self.kept.problem::<N>(own);
+        let mut influence = vec![0.0; own.ends.len()];
         self.ways.clear();
-        for &list in lists {
-            let modes = modes_of(list, contacts);
-            numbers.combine(&modes, &mut self.combination);
-            let valid = self.expected.binary_search(&modes).is_ok();
-            if self.combination.is_valid() != Some(valid) {
-                open.push(list);
-                point_out(&self.combination, valid, &mut influence, &mut self.ways);
+        open.retain(|modes| {
+            problem.combine(modes, &mut self.combination);
+            let valid = self.expected.binary_search(modes).is_ok();
+            let is_open = self.combination.is_valid() != Some(valid);
+            if is_open {
+                weigh_open(&self.combination, valid, &mut influence, &mut self.ways);
             }
-        }
+            is_open
+        });
         if influence.iter().all(|&own| own == 0.0) {
-            // The box is too wide to tell anything.
-            influence = cell.spreads();
+            // The box is too wide to show anything.
+            influence = own.spreads();
         }
         let most = influence.iter().copied().fold(0.0, f64::max);
         Examined { open, split: influence.iter().position(|&own| own == most && most > 0.0) }
     }
 
-    /// A point of the box whose outcomes are not the expected ones.
-    fn differing(&mut self, cell: &Cell, whole: bool) -> Option<Vec<f64>> {
-        let mut points = vec![cell.centre()];
-        points.extend(self.ways.iter().map(|way| cell.corner(way)));
+    /// A state of the box whose outcomes are not the expected ones.
+    fn counterexample(&mut self, own: &StateBox, whole: bool) -> Option<Counterexample> {
+        let mut points = vec![own.centre()];
+        points.extend(self.ways.iter().map(|way| own.corner(way)));
         if whole {
             let mut random = 0x9e37_79b9_7f4a_7c15;
-            points.extend((0..RANDOM_CORNERS).map(|_| cell.corner(&signs(&mut random, cell.ends.len()))));
+            points.extend((0..RANDOM_CORNERS).map(|_| own.corner(&signs(&mut random, own.ends.len()))));
         }
         for point in points {
             if self.tried.contains(&point) {
                 continue;
             }
-            if self.model.outcomes(&point).is_some_and(|outcomes| outcomes != self.expected) {
-                return Some(point);
+            let found = self.kept.counterexample(&point, self.expected);
+            if found.is_some() {
+                return found;
             }
             self.tried.push(point);
         }
@@ -129,9 +148,9 @@ impl<M: Model, const N: usize> Search<'_, M, N> {
     }
 }
 
-/// Adds what the open combination hangs on to `influence`, and where it changes to `ways`.
-fn point_out<const N: usize>(
-    combination: &Combination<Affine<N>>,
+/// Adds to `influence` what the open combination depends on, and to `ways` the directions in which it changes.
+fn weigh_open<const N: usize>(
+    combination: &BoxCombination<Affine<N>>,
     valid: bool,
     influence: &mut [f64],
     ways: &mut Vec<Vec<f64>>,
@@ -142,7 +161,7 @@ fn point_out<const N: usize>(
     let slacks = combination.numerators.iter().filter(|(inequality, _)| inequality.is_some());
     let slacks = slacks.map(|(_, number)| (number, sign * number.centre() / number.radius()));
     let undecided = |number: &Affine<N>| number.sign() == Sign::Undecided;
-    // What is not linear hangs above all on what moves det A.
+    // Nonlinear parts depend above all on what moves det A.
     let moved = determinant.slopes().iter().map(|slope| slope.abs()).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut weigh = |number: &Affine<N>| {
         let radius = number.radius();
@@ -180,11 +199,6 @@ fn point_out<const N: usize>(
         ways.push(way(number, sign));
         ways.push(all);
     }
-}
-
-/// The list of modes of that number.
-fn modes_of(list: usize, contacts: usize) -> Vec<Mode> {
-    (0..contacts).map(|contact| Mode::ALL[list >> (2 * contact) & 3]).collect()
 }
 
 /// Random signs (SplitMix64: Steele, Lea and Flood 2014).

@@ -2,7 +2,7 @@
 
 use crate::uncertainty::states::{impact, ramone, read};
 use heelstrike::impact::{Friction, Mode, Verdict};
-use heelstrike::pipeline::robust::{Counterexample, Holds};
+use heelstrike::pipeline::robust::{Counterexample, Robustness};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::{Robot, state::State};
 use serde_json::{Value, json};
@@ -25,15 +25,15 @@ fn falling(robot: &Robot, speed: f64, friction: f64, uncertainty: Value) -> Stat
 
 fn holds(impact: &Impact) -> Option<bool> {
     match impact.holds.as_ref().expect("the state is uncertain") {
-        Holds::Everywhere => Some(true),
-        Holds::Not(_) => Some(false),
-        Holds::Unknown => None,
+        Robustness::Everywhere => Some(true),
+        Robustness::Not(_) => Some(false),
+        Robustness::Unknown => None,
     }
 }
 
 fn counterexample(impact: &Impact) -> &Counterexample {
     match &impact.holds {
-        Some(Holds::Not(found)) => found,
+        Some(Robustness::Not(found)) => found,
         other => panic!("{other:?}"),
     }
 }

@@ -6,7 +6,7 @@ mod by_hand;
 mod states;
 
 use crate::support::random::Random;
-use heelstrike::pipeline::robust::Holds;
+use heelstrike::pipeline::robust::Robustness;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::{Robot, state::State};
 use states::{between, impact, in_the_box, modes, on_both_feet, ramone, walking};
@@ -24,7 +24,7 @@ struct Shares {
 fn count(robot: &Robot, state: &State, random: &mut Random, shares: &mut Shares) {
     let answer = impact(robot, state);
     match answer.holds.as_ref().expect("the state is uncertain") {
-        Holds::Everywhere => {
+        Robustness::Everywhere => {
             shares.holds += 1;
             for _ in 0..20 {
                 let corner = in_the_box(robot, state, || if random.once_in(2) { 1.0 } else { -1.0 });
@@ -33,14 +33,14 @@ fn count(robot: &Robot, state: &State, random: &mut Random, shares: &mut Shares)
                 assert_eq!(modes(&impact(robot, &within)), modes(&answer), "{within:?}");
             }
         }
-        Holds::Not(found) => {
+        Robustness::Not(found) => {
             shares.differs += 1;
             let other = impact(robot, &found.state);
             assert_ne!(modes(&other), modes(&answer), "{:?}", found.state);
             assert_eq!(other.analysis.ok().map(|analysis| analysis.verdict), Some(found.verdict));
             states::assert_in_the_box(state, &found.state);
         }
-        Holds::Unknown => shares.unknown += 1,
+        Robustness::Unknown => shares.unknown += 1,
     }
 }
 
@@ -99,9 +99,9 @@ fn shares_and_times_by_half_width() {
             let answer = pipeline.impact(&state).expect("an answer");
             times.push(begin.elapsed());
             match answer.holds.expect("the state is uncertain") {
-                Holds::Everywhere => shares.holds += 1,
-                Holds::Not(_) => shares.differs += 1,
-                Holds::Unknown => shares.unknown += 1,
+                Robustness::Everywhere => shares.holds += 1,
+                Robustness::Not(_) => shares.differs += 1,
+                Robustness::Unknown => shares.unknown += 1,
             }
         }
         times.sort();

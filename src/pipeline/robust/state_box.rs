@@ -21,7 +21,7 @@ pub(crate) enum Quantity {
 
 /// A box: an interval for each uncertain number, closed, with f64 ends.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Cell {
+pub(crate) struct StateBox {
     pub quantities: Vec<Quantity>,
     /// Least and greatest value of each.
     pub ends: Vec<[f64; 2]>,
@@ -29,10 +29,10 @@ pub(crate) struct Cell {
     inner: Vec<[f64; 2]>,
 }
 
-impl Cell {
+impl StateBox {
     /// The whole box of a state whose contacts are on `links`.
     pub fn new(robot: &Robot, state: &State, uncertainty: &Uncertainty, links: &[usize]) -> Self {
-        let mut cell = Self { quantities: Vec::new(), ends: Vec::new(), inner: Vec::new() };
+        let mut whole = Self { quantities: Vec::new(), ends: Vec::new(), inner: Vec::new() };
         let base = robot.base_dofs();
         // Nothing depends on where the base is, and with a stance its velocity follows from the rest.
         let placed = robot.base == Base::Floating;
@@ -41,26 +41,26 @@ impl Cell {
             let bound = coordinate < base.min(2);
             if !(placed && bound) {
                 let (value, width) = (state.position[coordinate], uncertainty.position[coordinate]);
-                cell.add(Quantity::Position(coordinate), value, width, f64::NEG_INFINITY);
+                whole.add(Quantity::Position(coordinate), value, width, f64::NEG_INFINITY);
             }
             if !(follows && bound) {
                 let (value, width) = (state.velocity[coordinate], uncertainty.velocity[coordinate]);
-                cell.add(Quantity::Velocity(coordinate), value, width, f64::NEG_INFINITY);
+                whole.add(Quantity::Velocity(coordinate), value, width, f64::NEG_INFINITY);
             }
         }
         for (at, &link) in links.iter().enumerate().filter(|&(at, link)| !links[..at].contains(link)) {
             if let Some(Friction::Finite(mu)) = state.scene.friction.of(links[at]) {
-                cell.add(Quantity::Friction(link), mu, uncertainty.friction.of(link).unwrap_or(0.0), 0.0);
+                whole.add(Quantity::Friction(link), mu, uncertainty.friction.of(link).unwrap_or(0.0), 0.0);
             }
         }
         for (joint, &width) in uncertainty.rotor_inertia.iter().enumerate() {
             // A held joint has no equation of its own for its rotor to enter.
             if !state.scene.held.contains(&joint) {
                 let value = state.scene.rotor_inertia.get(joint).copied().unwrap_or(0.0);
-                cell.add(Quantity::RotorInertia(joint), value, width, 0.0);
+                whole.add(Quantity::RotorInertia(joint), value, width, 0.0);
             }
         }
-        cell
+        whole
     }
 
     fn add(&mut self, quantity: Quantity, value: f64, width: f64, least: f64) {
@@ -85,8 +85,7 @@ impl Cell {
         (0..self.ends.len()).map(|index| self.middle(index)).collect()
     }
 
-    /// The corner that lies in `direction`: the greatest value where it is positive, the least where it is negative, the
-    /// middle where it is zero or not told.
+    /// The corner in `direction`: the greatest value if it is positive, the least if it is negative, the middle if it is zero or not given.
     pub fn corner(&self, direction: &[f64]) -> Vec<f64> {
         let towards = |(index, &[low, high]): (usize, &[f64; 2])| match direction.get(index) {
             Some(&along) if along > 0.0 => high.min(self.inner[index][1]),
@@ -96,18 +95,18 @@ impl Cell {
         self.ends.iter().enumerate().map(towards).collect()
     }
 
-    /// Both halves along a quantity; none where no f64 lies between its ends.
+    /// Both halves along a quantity; `None` if no f64 lies between its ends.
     pub fn halves(&self, index: usize) -> Option<[Self; 2]> {
         let (middle, [low, high]) = (self.middle(index), self.ends[index]);
         let half = |ends: [f64; 2]| {
-            let mut cell = self.clone();
-            cell.ends[index] = ends;
-            cell
+            let mut half = self.clone();
+            half.ends[index] = ends;
+            half
         };
         (low < middle && middle < high).then(|| [half([low, middle]), half([middle, high])])
     }
 
-    /// How wide the positions are; all else enters linearly and counts nothing.
+    /// How wide the positions are; everything else enters linearly and counts zero.
     pub fn spreads(&self) -> Vec<f64> {
         let spread = |(quantity, [low, high]): (&Quantity, &[f64; 2])| match quantity {
             Quantity::Position(_) => high - low,
@@ -116,7 +115,7 @@ impl Cell {
         self.quantities.iter().zip(&self.ends).map(spread).collect()
     }
 
-    /// The quantity's whole interval; none where it is certain.
+    /// The quantity's whole interval; `None` if it is certain.
     fn find(&self, quantity: Quantity) -> Option<(usize, f64, f64)> {
         let index = self.quantities.iter().position(|own| *own == quantity)?;
         let (middle, [low, high]) = (self.middle(index), self.ends[index]);
@@ -124,7 +123,7 @@ impl Cell {
         Some((index, middle, (high - middle).max(middle - low) * (1.0 + f64::EPSILON)))
     }
 
-    /// The quantity as a number, `certain` where it is.
+    /// The quantity as a number; `certain` is its value if it is not uncertain.
     pub fn number<const N: usize>(&self, quantity: Quantity, certain: f64) -> Affine<N> {
         match self.find(quantity) {
             Some((index, middle, radius)) => Affine::varying(middle, radius, index),
@@ -173,7 +172,7 @@ impl Cell {
     }
 }
 
-/// The f64 nearest to `value` + `shift`, first beyond it and then short of it, seen from `value`; the same where it is one.
+/// The two f64 around `value` + `shift`, the farther from `value` first; equal if the sum is one itself.
 fn around(value: f64, shift: f64) -> (f64, f64) {
     let sum = value + shift;
     // Knuth's two-sum: what the rounded sum misses.
@@ -192,15 +191,15 @@ fn around(value: f64, shift: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    fn cell() -> Cell {
+    fn example() -> StateBox {
         let ends = vec![[1.0, 3.0], [0.0, 0.5]];
-        Cell { quantities: vec![Quantity::Position(2), Quantity::Friction(0)], inner: ends.clone(), ends }
+        StateBox { quantities: vec![Quantity::Position(2), Quantity::Friction(0)], inner: ends.clone(), ends }
     }
 
     #[test]
     fn a_corner_lies_in_its_direction() {
-        assert_eq!(cell().corner(&[-0.1, 2.0]), [1.0, 0.5]);
-        assert_eq!(cell().corner(&[0.0, f64::NAN]), cell().centre());
+        assert_eq!(example().corner(&[-0.1, 2.0]), [1.0, 0.5]);
+        assert_eq!(example().corner(&[0.0, f64::NAN]), example().centre());
     }
 
     #[test]
@@ -215,18 +214,18 @@ mod tests {
 
     #[test]
     fn halves_cover_the_whole_and_end_where_f64_ends() {
-        let [left, right] = cell().halves(0).expect("a wide interval");
+        let [left, right] = example().halves(0).expect("a wide interval");
         assert_eq!((left.ends[0], right.ends[0]), ([1.0, 2.0], [2.0, 3.0]));
         let ends = vec![[1.0, 1.0f64.next_up()]];
-        let thin = Cell { quantities: vec![Quantity::Position(2)], inner: ends.clone(), ends };
+        let thin = StateBox { quantities: vec![Quantity::Position(2)], inner: ends.clone(), ends };
         assert_eq!(thin.halves(0), None);
     }
 
     #[test]
     fn a_number_covers_its_interval() {
-        let number: Affine<2> = cell().number(Quantity::Friction(0), 9.0);
+        let number: Affine<2> = example().number(Quantity::Friction(0), 9.0);
         assert_eq!((number.centre(), number.slopes()[1] >= 0.25), (0.25, true));
-        let certain: Affine<2> = cell().number(Quantity::Velocity(0), 9.0);
+        let certain: Affine<2> = example().number(Quantity::Velocity(0), 9.0);
         assert_eq!(certain, Affine::from_f64(9.0));
     }
 }
