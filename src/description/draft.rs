@@ -1,11 +1,11 @@
 //! XML elements -> names, places, references, and a strict copy of all values for urdf-rs.
 //!
-//! The strict copy is URDF text that holds numbers, joint types and shapes alone: each checked, each element where urdf-rs
-//! wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
+//! The strict copy is URDF text that holds numbers, joint types and shapes alone: each checked, each element where
+//! urdf-rs wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
 //! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
 
-use super::mend::Mended;
 use super::named::{EXPAND, Named, WORLD, undefined_world};
+use super::repair::Repaired;
 use super::strict::{Range, copy, copy_axis, copy_origin, copy_required, write_attribute};
 use super::tally::Tally;
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
@@ -28,7 +28,8 @@ pub(super) struct Draft {
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
     pub(super) ignored: Vec<Ignored>,
-    /// The strict copy, in parts that are URDF texts of their own: first all of `links`, then all of `joints`, in order.
+    /// The strict copy, in parts that are URDF texts of their own: first all of `links`, then all of `joints`, in
+    /// order.
     pub(super) strict: Vec<String>,
 }
 
@@ -73,18 +74,18 @@ pub(super) struct Joint {
 
 /// Reads and checks `text`; see [`super::Description::from_urdf`] for what is refused.
 pub(super) fn read(text: &str) -> Result<Draft> {
-    let mut mended = Mended::new(text);
+    let mut repaired = Repaired::new(text);
     loop {
-        match xml::parse(&mended.text) {
+        match xml::parse(&repaired.text) {
             Ok(document) => {
-                let draft = read_document(&document).map_err(|error| mended.refusal(error));
-                return draft.map(|draft| draft.moved(|place| mended.in_file(place)));
+                let draft = read_document(&document).map_err(|error| repaired.refusal(error));
+                return draft.map(|draft| draft.moved(|place| repaired.in_file(place)));
             }
             Err(Unparsed::Prefix(prefix, refused)) => {
-                let refused = mended.refusal(refused);
-                mended = mended.declaring(&prefix).ok_or(refused)?;
+                let refused = repaired.refusal(refused);
+                repaired = repaired.declaring(&prefix).ok_or(refused)?;
             }
-            Err(Unparsed::Refused(refused)) => return Err(mended.refusal(refused)),
+            Err(Unparsed::Refused(refused)) => return Err(repaired.refusal(refused)),
         }
     }
 }
@@ -179,8 +180,8 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     })
 }
 
-/// Refuses macros that are still to be expanded, by their namespace or as they were written before there was one; a file that
-/// only declares the namespace is plain URDF.
+/// Refuses macros that are still to be expanded, by their namespace or as they were written before there was one; a
+/// file that only declares the namespace is plain URDF.
 fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
     let is_macro = |element: &Node| element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro"));
     let refused = |element: Node, what: String| {
@@ -337,13 +338,13 @@ impl JointElement<'_, '_> {
             copy_axis(axis, kind, strict)?;
         }
         let mut mimic = None;
-        if let Some(follower) = xml::child(element, "mimic")? {
-            let master = joints.find(follower, "joint")?;
+        if let Some(own) = xml::child(element, "mimic")? {
+            let mimicked = joints.find(own, "joint")?;
             strict.push_str("<mimic joint=\"\"");
-            copy(follower, "multiplier", 1, Range::Any, strict)?;
-            copy(follower, "offset", 1, Range::Any, strict)?;
+            copy(own, "multiplier", 1, Range::Any, strict)?;
+            copy(own, "offset", 1, Range::Any, strict)?;
             strict.push_str("/>");
-            mimic = Some(master);
+            mimic = Some(mimicked);
         }
         strict.push_str("</joint>");
 

@@ -1,4 +1,4 @@
-//! Joints that follow joints that follow joints -> the joint that leads them all.
+//! Chains of mimic joints, resolved to the joint at their end.
 //!
 //! ```text
 //!     q = m q' + o  and  q' = m' q" + o'   give   q = m m' q" + (m o' + o)
@@ -7,12 +7,12 @@
 use super::{Joint, Mimic};
 use crate::error::{Reason, Result};
 
-/// See [`super::Description::leaders`]. Linear in joints.
+/// See [`super::Description::leaders`]. Linear in the number of joints.
 pub(super) fn leaders(joints: &[Joint]) -> Result<Vec<Option<Mimic>>> {
     let mut leaders: Vec<Option<Mimic>> = vec![None; joints.len()];
     let mut on_the_way = vec![false; joints.len()];
     for start in 0..joints.len() {
-        // Out to a joint whose leader is known, and back.
+        // To a joint that is resolved already, and back.
         let (mut way, mut at) = (Vec::new(), start);
         while let (Some(mimic), None) = (&joints[at].mimic, &leaders[at]) {
             if on_the_way[at] {

@@ -1,17 +1,17 @@
-//! URDF text -> checked description: links and joints as the file gives them, in three dimensions, forming one tree
-//! (the only user of urdf-rs and roxmltree).
+//! Reads URDF text into a checked description: links and joints in three dimensions, as the file gives them, forming
+//! one tree. The only user of urdf-rs and roxmltree.
 //!
 //! ```text
-//!     text --mend, xml--> elements --draft--> names, places, strict copy --urdf-rs--> values --tree--> Description
+//!     text --repair, xml--> elements --draft--> names, places, strict copy --urdf-rs--> values --tree--> Description
 //! ```
 //!
-//! urdf-rs alone is too trusting and too strict: it drops what is no number out of a vector, takes a missing `<inertial>`
-//! for a mass of zero, and refuses a `<limit>` that nobody needs. So `draft` checks every element with its place in the
-//! text, writes what the analysis uses into a strict copy, and urdf-rs reads the values from that. Nothing here opens a
-//! file or starts a process, nothing recurses, and time and memory grow linearly with the text.
+//! urdf-rs alone is too trusting and too strict: it drops non-numbers from a vector, reads a missing `<inertial>` as a
+//! mass of zero, and refuses an incomplete `<limit>` that is not needed here. So `draft` checks every element with its
+//! place in the text, writes what the analysis uses into a strict copy, and urdf-rs reads the values from it. Nothing
+//! here opens a file, starts a process or recurses, and time and memory grow linearly with the text.
 
 mod draft;
-mod mend;
+mod repair;
 mod mesh;
 mod mimic;
 mod named;
@@ -37,7 +37,7 @@ pub struct Description {
     pub links: Vec<Link>,
     /// The joints in the file's order; no name twice, but a joint may be named like a link.
     pub joints: Vec<Joint>,
-    /// The link that is no joint's child (an index into [`Description::links`]); all others hang on it.
+    /// The link that is no joint's child (an index into [`Description::links`]).
     pub root: usize,
     /// Elements that were passed over, in the order in which they first occur.
     pub ignored: Vec<Ignored>,
@@ -48,11 +48,11 @@ pub struct Description {
 pub struct Link {
     /// Its name.
     pub name: String,
-    /// Its inertia; none where the file has no `<inertial>`, which is not the same as a mass of zero.
+    /// Its inertia; `None` if the file has no `<inertial>`, which differs from a mass of zero.
     pub inertial: Option<Inertial>,
     /// Its collision shapes in the file's order.
     pub collisions: Vec<Collision>,
-    /// The joint it hangs on (an index into [`Description::joints`]); none for the root.
+    /// The joint whose child it is (an index into [`Description::joints`]); `None` for the root.
     pub joint: Option<usize>,
     /// Where its element begins.
     pub location: Location,
@@ -65,7 +65,7 @@ pub struct Inertial {
     pub origin: Pose,
     /// Mass \[kg\], never negative.
     pub mass: f64,
-    /// Inertia about the CoG in the axes of `origin`, symmetric \[kg m^2\]; none where the file has no `<inertia>`.
+    /// Inertia about the CoG in the axes of `origin`, symmetric \[kg m^2\]; `None` if the file has no `<inertia>`.
     /// Finite, but otherwise as the file has it: many files give one that no body can have.
     pub inertia: Option<Matrix>,
 }
@@ -129,15 +129,16 @@ pub struct Joint {
     pub name: String,
     /// How it moves.
     pub kind: JointKind,
-    /// The link that it hangs on (an index into [`Description::links`]).
+    /// Its parent link (an index into [`Description::links`]).
     pub parent: usize,
-    /// The link that it moves; its frame is the joint's.
+    /// Its child link, whose frame is the joint's.
     pub child: usize,
     /// The joint's frame in the parent link's frame, at coordinate zero.
     pub origin: Pose,
-    /// Its axis in the joint's frame, of any length; not zero where `kind` has an axis. (1, 0, 0) where the file has none.
+    /// Its axis in the joint's frame, of any length; not zero where `kind` has an axis. (1, 0, 0) where the file has
+    /// none.
     pub axis: [f64; 3],
-    /// The joint that it follows, if it does.
+    /// The joint that it mimics, if any.
     pub mimic: Option<Mimic>,
     /// Where its element begins.
     pub location: Location,
@@ -146,24 +147,24 @@ pub struct Joint {
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointKind {
-    /// Not at all.
+    /// Does not move.
     Fixed,
-    /// It turns about its axis, between limits.
+    /// Rotates about its axis, between limits.
     Revolute,
-    /// It turns about its axis without limits.
+    /// Rotates about its axis without limits.
     Continuous,
-    /// It slides along its axis.
+    /// Translates along its axis.
     Prismatic,
-    /// It slides and turns in the plane normal to its axis.
+    /// Translates and rotates in the plane normal to its axis.
     Planar,
-    /// It does not hold its child at all.
+    /// Leaves all six degrees of freedom.
     Floating,
-    /// It turns about every axis (a later addition to URDF).
+    /// Rotates about every axis (a later addition to URDF).
     Spherical,
 }
 
 impl JointKind {
-    /// True where the joint's motion depends on its axis.
+    /// Whether the joint's motion depends on its axis.
     pub fn has_axis(self) -> bool {
         match self {
             Self::Revolute | Self::Continuous | Self::Prismatic | Self::Planar => true,
@@ -171,7 +172,7 @@ impl JointKind {
         }
     }
 
-    /// The file's word for it.
+    /// Its name in URDF.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fixed => "fixed",
@@ -185,21 +186,21 @@ impl JointKind {
     }
 }
 
-/// A joint's coordinate given by another's: `multiplier` times that one plus `offset`.
+/// A mimic joint's coordinate: `multiplier` times that of the mimicked joint plus `offset`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mimic {
-    /// The joint that is followed (an index into [`Description::joints`]).
+    /// The mimicked joint (an index into [`Description::joints`]).
     pub joint: usize,
-    /// The factor, 1 where the file has none; in m, rad and their quotients.
+    /// The factor, 1 if the file has none; in m, rad and their quotients.
     pub multiplier: f64,
-    /// What is added, 0 where the file has none \[rad or m\].
+    /// The summand, 0 if the file has none \[rad or m\].
     pub offset: f64,
 }
 
-/// Elements of one kind that were passed over.
+/// Elements of one kind that were ignored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
-    /// The tag of the element that they stand in: `robot`, `link` or `joint`.
+    /// The tag of their parent element: `robot`, `link` or `joint`.
     pub parent: &'static str,
     /// Their tag.
     pub tag: String,
@@ -210,21 +211,23 @@ pub struct Ignored {
 impl Description {
     /// Reads and checks the text of a URDF file.
     ///
-    /// Elements that are no part of URDF's mechanics (`gazebo`, `transmission`, `limit`, ...) are passed over and counted
-    /// in [`Description::ignored`]; `visual` and `material` are passed over in silence. URDF elements are those of the
-    /// namespace of `<robot>`, whichever it is.
+    /// Elements that are no part of URDF's mechanics (`gazebo`, `transmission`, `limit`, ...) are ignored and counted
+    /// in [`Description::ignored`]; `visual` and `material` are ignored silently. URDF elements are those in the
+    /// namespace of `<robot>`.
     ///
     /// # Errors
-    /// With line, column and name of the element: text that is no XML; a document type definition; elements nested deeper
-    /// than 200 or with more than 100 attributes; more than 10,000 links, joints or collision shapes, 2,000 joints that
-    /// move, 1,000,000 XML nodes or attributes, 1,000 namespaces or kinds of unknown elements, so that what is refused is refused within a second and 500 MB; another root than `<robot>`, or xacro elements;
-    /// no link; a name that is missing or given twice; a joint of unknown type or with an unknown link; anything but one
-    /// tree; text where a number belongs, or one that is not finite; a negative mass or size; a zero axis.
+    /// Each with line, column and name of the element:
+    /// * text that is not XML, a document type definition, a root other than `<robot>`, xacro elements;
+    /// * elements nested deeper than 200 or with more than 100 attributes; more than 10,000 links, joints or collision
+    ///   shapes, 2,000 moving joints, 1,000,000 XML nodes or attributes, 1,000 namespaces or kinds of unknown elements
+    ///   (a refusal takes at most a second and 500 MB);
+    /// * no link; a missing or duplicate name; a joint of unknown type or with an unknown link; anything but one tree;
+    /// * text in place of a number, a number that is not finite, a negative mass or size, a zero axis.
     pub fn from_urdf(text: &str) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let draft = draft::read(text)?;
         let mut description = values::join(draft)?;
-        description.root = tree::hang(&mut description.links, &description.joints)?;
+        description.root = tree::connect(&mut description.links, &description.joints)?;
         Ok(description)
     }
 
@@ -243,11 +246,11 @@ impl Description {
         tree::outward(self, link)
     }
 
-    /// For each joint that follows another the joint that leads in the end, which itself follows none: q = multiplier
-    /// q_leader + offset through all that stand between.
+    /// For each mimic joint the joint at the end of its chain, which mimics none, with the multiplier and offset of the
+    /// whole chain.
     ///
     /// # Errors
-    /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) for joints that follow each other in a circle.
+    /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) for joints that mimic each other in a circle.
     pub fn leaders(&self) -> Result<Vec<Option<Mimic>>> {
         mimic::leaders(&self.joints)
     }

@@ -41,14 +41,14 @@ impl<'a, 'input> Named<'a, 'input> {
     }
 }
 
-/// Where a joint names the parent link `world` that no element defines, as many files do: the world needs no description.
+/// The joint whose parent link `world` no element defines, as in many files: the world needs no description.
 pub(super) fn undefined_world(links: &Named, joints: &Named) -> Option<Location> {
     if links.by_name.contains_key(WORLD) {
         return None;
     }
-    let hangs_on_it = |element: Node| {
+    let is_its_child = |element: Node| {
         let mut parents = xml::children(element).filter(|child| child.tag_name().name() == "parent");
         parents.any(|parent| parent.attribute("link") == Some(WORLD))
     };
-    joints.elements.iter().find(|(_, element, _)| hangs_on_it(*element)).map(|&(_, _, location)| location)
+    joints.elements.iter().find(|(_, element, _)| is_its_child(*element)).map(|&(_, _, location)| location)
 }

@@ -3,12 +3,12 @@
 /// A 3 x 3 matrix, row by row.
 pub type Matrix = [[f64; 3]; 3];
 
-/// A frame in another one: moved by `xyz` and turned by `rpy`.
+/// A frame in another one: translated by `xyz` and rotated by `rpy`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
     /// The frame's origin in the outer frame \[m\].
     pub xyz: [f64; 3],
-    /// Roll, pitch and yaw \[rad\]: turns about the outer frame's fixed x, y and z axes, in this order.
+    /// Roll, pitch and yaw \[rad\]: rotations about the outer frame's fixed x, y and z axes, in this order.
     pub rpy: [f64; 3],
 }
 
@@ -49,7 +49,7 @@ pub fn unit(vector: [f64; 3]) -> [f64; 3] {
     [x / length, y / length, z / length]
 }
 
-/// The turn by `angle` \[rad\] about the vector `axis` of length one, by the right hand (Rodrigues).
+/// The right-handed rotation by `angle` \[rad\] about the unit vector `axis` (Rodrigues).
 pub fn turn(axis: [f64; 3], angle: f64) -> Matrix {
     let (sin, cos) = libm::sincos(angle);
     let [x, y, z] = axis;

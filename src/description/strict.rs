@@ -1,4 +1,4 @@
-//! Attributes -> the strict copy, each checked to hold the numbers that it must.
+//! Copies checked attributes into the strict copy.
 
 use super::JointKind;
 use super::xml;
@@ -56,7 +56,7 @@ pub(super) fn copy_required(
     copy(element, name, count, range, strict).map(|_| ())
 }
 
-/// Copies an attribute that must hold `count` numbers of `range`; tells whether it is there.
+/// Copies an attribute that must hold `count` numbers of `range`; returns whether it is present.
 pub(super) fn copy(element: Node<'_, '_>, name: &str, count: usize, range: Range, strict: &mut String) -> Result<bool> {
     let Some(value) = element.attribute(name) else { return Ok(false) };
     let what = || format!("{name} of <{}>", element.tag_name().name());

@@ -1,14 +1,14 @@
-//! Elements that are passed over, counted by kind.
+//! Counts ignored elements by kind.
 
 use super::{Ignored, xml};
 use crate::error::{Reason, Result};
 use roxmltree::Node;
 use std::collections::HashMap;
 
-/// The most kinds of elements that are passed over and told.
+/// The most kinds of ignored elements.
 const MOST_IGNORED: usize = 1000;
 
-/// Counts elements that are passed over.
+/// Counts of ignored elements.
 #[derive(Default)]
 pub(super) struct Tally {
     pub(super) kinds: Vec<Ignored>,
@@ -16,7 +16,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Counts `element`, which stands in a `parent`.
+    /// Counts `element`, a child of a `parent`.
     pub(super) fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
         let tag = element.tag_name().name();
         let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());

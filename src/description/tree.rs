@@ -1,15 +1,15 @@
-//! Joints -> one tree of links.
+//! Connects links and joints to one tree.
 
 use super::{Description, Joint, Link};
 use crate::error::{Reason, Result};
 
-/// Notes in each link the joint that it hangs on, and returns the root.
+/// Sets the joint of each link and returns the root.
 ///
 /// Linear in links and joints.
 ///
 /// # Errors
 /// A link with two parents, more than one root, or a cycle.
-pub(super) fn hang(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
+pub(super) fn connect(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
     for (index, joint) in joints.iter().enumerate() {
         if let Some(first) = links[joint.child].joint {
             let reason = format!(
@@ -31,27 +31,27 @@ pub(super) fn hang(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
     match (root, first_in_cycle(links, joints)) {
         (Some(root), None) => Ok(root),
         (_, Some(link)) => Err(cycle(links, joints, link)),
-        // Without a root every link hangs on a joint, so there is a cycle; without links there was nothing to join.
+        // Without a root every link is a child, so there is a cycle; without links there is nothing to connect.
         (None, None) => Err(Reason::Missing("a <link>".into()).into()),
     }
 }
 
 /// The joints outward from `link`: see [`Description::outward`].
 pub(super) fn outward(description: &Description, link: usize) -> Vec<usize> {
-    let mut hanging = vec![Vec::new(); description.links.len()];
+    let mut joints_of = vec![Vec::new(); description.links.len()];
     // Backward, since a stack is emptied from its end.
     for (index, joint) in description.joints.iter().enumerate().rev() {
-        hanging[joint.parent].push(index);
+        joints_of[joint.parent].push(index);
     }
-    let (mut order, mut waiting) = (Vec::with_capacity(description.joints.len()), hanging[link].clone());
+    let (mut order, mut waiting) = (Vec::with_capacity(description.joints.len()), joints_of[link].clone());
     while let Some(index) = waiting.pop() {
         order.push(index);
-        waiting.extend(&hanging[description.joints[index].child]);
+        waiting.extend(&joints_of[description.joints[index].child]);
     }
     order
 }
 
-/// A link whose line of ancestors comes back to it, if there is one.
+/// A link that is its own ancestor, if any.
 fn first_in_cycle(links: &[Link], joints: &[Joint]) -> Option<usize> {
     // The walk toward the root in which a link was first met, counted from 1.
     let mut met = vec![0; links.len()];

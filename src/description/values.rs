@@ -1,4 +1,4 @@
-//! The values of the strict copy, read by urdf-rs, joined with what the draft knows.
+//! Joins the values of the strict copy, read by urdf-rs, with the draft.
 
 use super::draft::{self, Draft, Shape, Stated};
 use super::{Collision, Description, Geometry, Inertial, Joint, Link, Mesh, Mimic, Pose};

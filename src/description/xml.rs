@@ -9,8 +9,8 @@ const DEEPEST: usize = 200;
 pub(super) const MOST_LINKS: usize = 10_000;
 /// The most attributes of one element that are accepted: roxmltree compares each with each.
 const MOST_ATTRIBUTES: usize = 100;
-/// The most nodes (elements, texts, comments) that are accepted, and the most attributes in all: 100 for each of the most
-/// links.
+/// The most nodes (elements, texts, comments) that are accepted, and the most attributes in all: 100 for each of the
+/// most links.
 const MOST_NODES: u32 = 1_000_000;
 /// The most namespace declarations that are accepted: roxmltree copies those in force into each element that adds one.
 const MOST_NAMESPACES: usize = 1000;
@@ -20,14 +20,14 @@ const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
 
 /// Why a text has no XML tree.
 pub(super) enum Unparsed {
-    /// A prefix that is not declared, and the refusal if that cannot be mended.
+    /// A prefix that is not declared, and the refusal if that cannot be repaired.
     Prefix(String, Error),
     /// Anything else.
     Refused(Error),
 }
 
 impl Unparsed {
-    /// The refusal of a text that nobody mends.
+    /// The refusal of a text that cannot be repaired.
     pub(super) fn into_error(self) -> Error {
         match self {
             Self::Prefix(_, refused) | Self::Refused(refused) => refused,
@@ -73,7 +73,7 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
         }
         Xml::NoRootNode => Error::new(Reason::Syntax("the text holds no XML element".into())).hint(NO_URDF),
         _ => {
-            // The message ends with the position, which is told apart from it.
+            // The message ends with the position, which is stored separately.
             let message = error.to_string();
             let message = message.rsplit_once(" at ").map_or(message.as_str(), |(message, _)| message);
             let place = error.pos();
@@ -93,8 +93,9 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
     }
 }
 
-/// Refuses more than [`MOST_LINKS`] tags `<link` before a tree is built of them, and what roxmltree would spend a square on:
-/// an element with more than [`MOST_ATTRIBUTES`], more than [`MOST_NAMESPACES`]. The place is that of the first one too many.
+/// Refuses more than [`MOST_LINKS`] tags `<link` before a tree is built of them, and what roxmltree would spend a
+/// square on: an element with more than [`MOST_ATTRIBUTES`], more than [`MOST_NAMESPACES`]. The place is that of the
+/// first one too many.
 ///
 /// An attribute value holds no `<`, so a tag and its attributes stand between one `<` and the next.
 fn refuse_many(text: &str) -> Result<()> {
@@ -190,7 +191,7 @@ pub(super) fn required_attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&
     }
 }
 
-/// Walks forward through a text and tells lines and columns, each character looked at once.
+/// Converts ascending byte offsets to lines and columns in one pass over a text.
 pub(super) struct Cursor<'a> {
     text: &'a str,
     offset: usize,

@@ -27,9 +27,10 @@ pub struct Excerpt {
 }
 
 impl Excerpt {
-    /// The line of `text` that holds `place`, where `text` begins on line `first`; bytes that are no UTF-8 are replaced.
+    /// The line of `text` that holds `place`, where `text` begins on line `first`; bytes that are no UTF-8 are
+    /// replaced.
     ///
-    /// None where `text` does not have that line, or it is empty.
+    /// `None` if `text` does not have that line, or if the line is empty.
     pub fn around(text: &[u8], first: usize, place: Location) -> Option<Self> {
         let line = text.split(|&byte| byte == b'\n').nth(place.line.checked_sub(first)?)?;
         let line = line.strip_suffix(b"\r").unwrap_or(line);
@@ -57,7 +58,7 @@ impl Excerpt {
         self.starts_later
     }
 
-    /// The bytes of [`Self::text`] that hold the word, string or tag at the place; none at the line's end.
+    /// The bytes of [`Self::text`] that hold the word, string or tag at the place; empty at the line's end.
     pub fn mark(&self) -> Range<usize> {
         self.mark.clone()
     }

@@ -1,7 +1,7 @@
-//! What is refused, where it stands and how to mend it.
+//! Errors: what was refused, where, and the remedy.
 //!
-//! Physics is a value, refusal is an error: "no outcome" or "on the border" are data, and an [`Error`] always means that
-//! an input was not accepted. Every error names its place and, where one is known, the remedy.
+//! Physics is a value, refusal is an error: "no outcome" or "on the border" are data, and an [`Error`] always means
+//! that an input was not accepted. Every error names its place and, where one is known, the remedy.
 
 pub mod excerpt;
 
@@ -166,7 +166,7 @@ impl Error {
         self
     }
 
-    /// Tells what to do.
+    /// Adds the remedy.
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.0.hint = Some(short(&hint.into()).into_owned());
         self
@@ -207,7 +207,7 @@ impl Error {
 }
 
 impl fmt::Display for Error {
-    /// `file:line:column: place: reason`, with whatever of it is known; the remedy is not part of it.
+    /// `file:line:column: place: reason`, as far as known, without the remedy.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Refusal { reason, file, location, place, .. } = &*self.0;
         if let Some(file) = file {

@@ -11,8 +11,8 @@ pub(super) struct Onward {
 }
 
 impl Onward {
-    /// From rows at `times` on, the last one first, for a moment no more than `most` \[s\] later; none where they are too
-    /// few or too near to each other for that.
+    /// From rows at `times` on, the last one first, for a moment no more than `most` \[s\] later; none where they are
+    /// too few or too near to each other for that.
     pub fn from(times: &[f64], most: f64) -> Option<Self> {
         let &[last, before, ..] = times else { return None };
         let step = last - before;
@@ -20,8 +20,8 @@ impl Onward {
         (most <= REACH * step).then_some(Self { steps: (step, earlier) })
     }
 
-    /// Slope and curvature at the last row of the parabola through the values at the rows, the last one first; of a line
-    /// where there are two.
+    /// Slope and curvature at the last row of the parabola through the values at the rows, the last one first; of a
+    /// line where there are two.
     fn shape(self, value: impl Fn(usize) -> f64) -> (f64, f64) {
         let (step, earlier) = self.steps;
         let slope = (value(0) - value(1)) / step;

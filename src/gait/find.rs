@@ -11,7 +11,8 @@ use crate::state::State;
 use crate::{Error, Reason, Result};
 use std::collections::VecDeque;
 
-/// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it; refused samples in their place.
+/// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it; refused samples in their
+/// place.
 ///
 /// # Errors
 /// [`Reason::Missing`] for a robot that has nothing to touch the ground with.
@@ -83,8 +84,8 @@ struct Descent {
 enum Moment {
     /// At a row as it is.
     Row(usize),
-    /// After the row `at` of the window and before the next, where the point is at `height` \[m\]; the rows up to `smooth`
-    /// are before the impact.
+    /// After the row `at` of the window and before the next, where the point is at `height` \[m\]; the rows up to
+    /// `smooth` are before the impact.
     After { at: usize, height: f64, smooth: usize },
 }
 
@@ -297,8 +298,8 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         self.window[row].places[point][1]
     }
 
-    /// How the motion of rows `first` to `at` goes on, and how much later the point is at `height`, if that is before the
-    /// next row.
+    /// How the motion of rows `first` to `at` goes on, and how much later the point is at `height`, if that is before
+    /// the next row.
     fn onward(&self, point: usize, first: usize, at: usize, height: f64) -> Option<(Onward, f64)> {
         let rows = (first..=at).rev().take(BEFORE);
         let times: Vec<f64> = rows.map(|row| self.window[row].sample.time).collect();

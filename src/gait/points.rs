@@ -54,8 +54,8 @@ impl<'r> Points<'r> {
         Placement::new(&self.plan, &self.workspace, base)
     }
 
-    /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them to
-    /// within `together` \[m\]; all are at `places`.
+    /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them
+    /// to within `together` \[m\]; all are at `places`.
     pub fn is_free(&self, point: usize, places: &[Vector<f64>], together: f64) -> bool {
         let [x, z] = places[point];
         // Over the slope m a point is z - m x high.
@@ -73,8 +73,9 @@ impl<'r> Points<'r> {
         least <= most
     }
 
-    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as well
-    /// (`also`) among them, `together` as in [`Points::is_free`]; gives the shift \[m\] and the striking one's name.
+    /// Shifts `state` along z so that the point `striking` is at z = 0, and names its contacts, those that strike as
+    /// well (`also`) among them, `together` as in [`Points::is_free`]; gives the shift \[m\] and the striking one's
+    /// name.
     pub fn touch(
         &mut self,
         state: &mut State,

@@ -1,7 +1,7 @@
 //! Velocities of a recording that has none: v = dq/dt by differences of rows.
 //!
-//! Rows of one time are an impact: no difference is taken across it, nor from one clip to the next, nor across a refused
-//! row. At such an end the difference is one-sided.
+//! Rows of one time are an impact: no difference is taken across it, nor from one clip to the next, nor across a
+//! refused row. At such an end the difference is one-sided.
 
 use super::clip::{Clock, Step};
 use super::{Sample, Sampled};
@@ -11,14 +11,14 @@ use std::collections::VecDeque;
 /// Which rows a velocity is taken from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Difference {
-    /// The one before and the one after: smooth, but next to an impact it blends both sides where the recording has no two
-    /// rows of its time.
+    /// The one before and the one after: smooth, but next to an impact it blends both sides where the recording has no
+    /// two rows of its time.
     Central,
     /// The one before and the row itself; of the first row of a clip the row itself and the one after.
     Backward,
 }
 
-/// Gives every sample of `samples` the velocity that its neighbours tell; see [`Differentiated`].
+/// Gives every sample of `samples` the velocity from its neighbors; see [`Differentiated`].
 pub fn rates<S, I: Iterator<Item = Sampled<S>>>(samples: I, difference: Difference) -> Differentiated<S, I> {
     Differentiated { samples, difference, clock: Clock::default(), before: None, pending: None, ready: VecDeque::new() }
 }
@@ -97,7 +97,7 @@ impl<S, I> Differentiated<S, I> {
                 Err((sample.source, Error::new(Reason::Inconsistent(reason)).at("time")))
             }
             None => {
-                let reason = "no other row of the clip tells the velocity of this one".to_owned();
+                let reason = "the clip has no other row to find the velocity of this one from".to_owned();
                 Err((sample.source, Error::new(Reason::Inconsistent(reason)).at("time")))
             }
         });

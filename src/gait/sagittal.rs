@@ -30,8 +30,8 @@ pub fn sagittal<S, I: Iterator<Item = Sampled<S>>>(samples: I, dropped: &Mutex<D
     Sagittal { samples, dropped, clock: Clock::default(), clip: Vec::new(), ready: VecDeque::new() }
 }
 
-/// The projected samples in their order, a clip late; those in the plane and the refused ones as they are. Samples of a clip
-/// that has no heading are refused.
+/// The projected samples in their order, a clip late; those in the plane and the refused ones as they are. Samples of a
+/// clip that has no heading are refused.
 #[derive(Debug)]
 pub struct Sagittal<'d, S, I> {
     samples: I,

@@ -6,8 +6,9 @@
 //!     h = sum of (f_x, f_y) over a clip, of length one        along = h . (x, y)        across = h x (x, y)
 //! ```
 //!
-//! P are the axes of the robot's plane ([`Plane`]). Heading is the clip's, not the row's: a body that yaws in its stride does
-//! not walk in circles. So turning or shifting a whole clip about the world's z changes nothing but where x begins.
+//! P are the axes of the robot's plane ([`Plane`]). Heading is the clip's, not the row's: a body that yaws in its
+//! stride does not walk in circles. So turning or shifting a whole clip about the world's z changes nothing but where x
+//! begins.
 
 use crate::description::{Matrix, apply};
 use crate::robot::Plane;
@@ -27,11 +28,12 @@ pub struct Spatial {
     pub roll: f64,
 }
 
-/// The pitch \[rad\] of a base at x and y `origin` \[m\] with the quaternion `[w, x, y, z]`, which is normalised, and the rest.
+/// The pitch \[rad\] of a base at x and y `origin` \[m\] with the quaternion `[w, x, y, z]`, which is normalised, and
+/// the rest.
 ///
 /// # Errors
-/// [`Reason::OutOfRange`] for a quaternion that is not of length one, [`Reason::Inconsistent`] for a robot upside down: its
-/// pitch is not between -pi/2 and pi/2, and a quaternion does not tell a roll from it.
+/// [`Reason::OutOfRange`] for a quaternion that is not of length one, [`Reason::Inconsistent`] for a robot upside down:
+/// its pitch is not between -pi/2 and pi/2, and a quaternion cannot distinguish a roll from it.
 pub fn project(origin: [f64; 2], quaternion: [f64; 4], plane: Plane) -> Result<(f64, Spatial)> {
     let length = quaternion.iter().fold(0.0, |length, &part| libm::hypot(length, part));
     if (length - 1.0).abs() > UNIT {
@@ -63,7 +65,7 @@ fn rotation([w, x, y, z]: [f64; 4]) -> Matrix {
 pub struct Heading([f64; 2]);
 
 impl Heading {
-    /// The mean of all these; none where it has no direction, as of a whole turn on the spot.
+    /// The mean of all these; `None` if it has no direction, as in a whole turn on the spot.
     pub fn mean<'s>(clip: impl Iterator<Item = &'s Spatial>) -> Option<Self> {
         let (mut x, mut y, mut count) = (0.0, 0.0, 0.0);
         for Spatial { forward, .. } in clip {

@@ -1,13 +1,12 @@
-//! Mesh files -> the vertices of collision meshes.
+//! Reads the vertices of collision meshes.
 //!
 //! ```text
 //!     file name --fetch, the caller's--> bytes --by the name's ending--> stl | obj | collada --> vertices
 //! ```
 //!
-//! The library opens no file: who calls it says what a name means and hands over the bytes. A mesh that is not there or
-//! cannot be read costs its link that shape, and the reason is kept for the user; a robot often comes without all of its
-//! meshes. Each file is asked for once, however often it is named. Time and memory grow no faster than n log n with the
-//! bytes, and the bytes are limited.
+//! The library opens no file: the caller resolves a name and supplies the bytes. A mesh that is missing or cannot be
+//! read is left out of its link with a reason, because robots often come without some of their meshes. Each file is
+//! requested once. Time and memory grow no faster than n log n with the bytes, and the bytes are limited.
 
 mod collada;
 mod obj;
@@ -20,24 +19,25 @@ use std::sync::Arc;
 
 /// The most bytes of all meshes of a robot that are read.
 const MOST_BYTES: usize = 256 << 20;
-/// How a file begins that stands for one which was not fetched.
+/// The beginning of a Git LFS pointer.
 const LFS_POINTER: &[u8] = b"version https://git-lfs";
 
-/// What is known of a mesh.
+/// The vertices of a mesh, or why there are none.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mesh {
-    /// Nothing: [`Description::read_meshes`] was not called.
+    /// Not read: [`Description::read_meshes`] was not called.
     Unread,
     /// It could not be read.
     LeftOut {
         /// Why, as in `no such file`.
         why: String,
     },
-    /// Its vertices in the mesh's own frame, before any factor of the URDF \[m\]; all are finite, there is at least one.
+    /// Its vertices in the mesh's own frame, before any factor of the URDF \[m\]; all are finite, there is at least
+    /// one.
     Vertices(Arc<[[f64; 3]]>),
 }
 
-/// What was found under the name of a mesh.
+/// The file that a mesh name refers to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fetched {
     /// The file's bytes.
@@ -50,12 +50,12 @@ pub enum Fetched {
 }
 
 impl Description {
-    /// Reads the collision meshes from what `fetch` finds under their names: STL, OBJ and COLLADA (DAE), told apart by the
-    /// ending of the name.
+    /// Reads the collision meshes from what `fetch` finds under their names: STL, OBJ and COLLADA (DAE), by the ending
+    /// of the name.
     ///
     /// Of COLLADA the visual scene counts, with the transformations of its nodes, the unit, and an up axis that is
     /// stated. Vertices of STL are rounded to f32, as the format has them; the other two keep all digits. A mesh that
-    /// cannot be read is kept as [`Mesh::LeftOut`], and [`Robot::left_out`](crate::Robot::left_out) tells why.
+    /// cannot be read is kept as [`Mesh::LeftOut`], and [`Robot::left_out`](crate::Robot::left_out) gives the reason.
     ///
     /// # Errors
     /// Those of `fetch`, at the link that names the mesh.

@@ -121,7 +121,8 @@ fn collada_is_turned_to_z_up_and_metres() {
     let millimetres = PYRAMID.map(|vertex| vertex.map(|number| 1000.0 * number));
     let found = vertices("a.dae", dae("<unit name=\"mm\" meter=\"0.001\"/>", &shown, &millimetres));
     assert_near(&found, &sorted(&PYRAMID));
-    // Y up: x stays, z up is the file's y, and what points to the viewer there is -y here. X up: right is -y of the file.
+    // Y up: x stays, z up is the file's y, and what points to the viewer there is -y here. X up: right is -y of the
+    // file.
     let y_up = PYRAMID.map(|[x, y, z]| [x, z, -y]);
     assert_eq!(vertices("a.dae", dae("<up_axis>Y_UP</up_axis>", &shown, &y_up)), sorted(&PYRAMID));
     let x_up = PYRAMID.map(|[x, y, z]| [z, -x, -y]);
@@ -179,15 +180,15 @@ fn what_cannot_be_read_is_told() {
 #[test]
 fn nodes_that_name_each_other_end() {
     let circle = r##"<node id="a"><instance_node url="#b"/></node><node id="b"><instance_node url="#a"/></node>"##;
-    let told = "cannot be read: its nodes are too many, or name each other in a circle";
-    assert_eq!(mesh("a.dae", dae("", &scene(circle), &PYRAMID)), Err(told.into()));
+    let reason = "cannot be read: its nodes are too many, or name each other in a circle";
+    assert_eq!(mesh("a.dae", dae("", &scene(circle), &PYRAMID)), Err(reason.into()));
     // Sixty nodes, each shown twice by the next: 2^60 in all.
     let doubled = |k: usize| {
         let twice = format!("<instance_node url=\"#n{}\"/>", k + 1).repeat(2);
         format!("<node id=\"n{k}\">{twice}</node>")
     };
     let laughs = format!("{}<node id=\"n60\"/>", (0..60).map(doubled).collect::<String>());
-    assert_eq!(mesh("a.dae", dae("", &scene(&laughs), &PYRAMID)), Err(told.into()));
+    assert_eq!(mesh("a.dae", dae("", &scene(&laughs), &PYRAMID)), Err(reason.into()));
 }
 
 #[test]

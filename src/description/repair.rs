@@ -1,8 +1,8 @@
-//! XML that real files have and the standard has not -> XML that can be parsed, every line and column where it was.
+//! Repairs common faults of URDF files so that their XML can be parsed; lines and columns stay where they were.
 //!
-//! Two things are mended: a declaration `<?xml ...?>` that is misspelt or does not come first becomes blanks (the text is
-//! UTF-8 already, so it has nothing to say), and prefixes that no element declares (`<sensor:camera>` of a robot without
-//! `xmlns:sensor`) are declared at the end of the root's tag.
+//! Two faults are repaired: a declaration `<?xml ...?>` that is misspelled or does not come first becomes blanks (the
+//! text is UTF-8 already, so it carries no information), and prefixes that no element declares (`<sensor:camera>` of a
+//! robot without `xmlns:sensor`) are declared at the end of the root's tag.
 
 use super::xml::Cursor;
 use crate::error::{Error, Location};
@@ -11,15 +11,15 @@ use std::borrow::Cow;
 /// The most prefixes that are declared: for each the text is parsed once more.
 const MOST_PREFIXES: usize = 10;
 
-/// A text, mended as far as it was needed.
-pub(super) struct Mended<'a> {
+/// A text after its repairs.
+pub(super) struct Repaired<'a> {
     pub(super) text: Cow<'a, str>,
     prefixes: Vec<String>,
     /// Where declarations were put in, and how many characters.
     inserted: Option<(Location, usize)>,
 }
 
-impl<'a> Mended<'a> {
+impl<'a> Repaired<'a> {
     /// `text` without its declaration.
     pub(super) fn new(text: &'a str) -> Self {
         let text = match declarations(text) {
@@ -35,7 +35,7 @@ impl<'a> Mended<'a> {
         Self { text, prefixes: Vec::new(), inserted: None }
     }
 
-    /// The text with one more prefix declared; none where that cannot help.
+    /// The text with one more prefix declared; `None` if that cannot help.
     pub(super) fn declaring(self, prefix: &str) -> Option<Self> {
         let Self { text, mut prefixes, inserted } = self;
         if prefixes.len() == MOST_PREFIXES || prefixes.iter().any(|known| known == prefix) {
@@ -52,7 +52,7 @@ impl<'a> Mended<'a> {
         Some(Self { text: Cow::Owned(text), prefixes, inserted: Some((begin, length)) })
     }
 
-    /// Where a place of the mended text is in the file.
+    /// Where a place of the repaired text is in the file.
     pub(super) fn in_file(&self, place: Location) -> Location {
         match self.inserted {
             Some((begin, length)) if place.line == begin.line && place.column > begin.column => {
@@ -124,29 +124,29 @@ mod tests {
 
     #[test]
     fn a_declaration_becomes_blanks_wherever_and_however_it_is_written() {
-        for (text, mended) in [
+        for (text, repaired) in [
             ("<?xml verison=\"1.0\"?>\n<robot/>", "                     \n<robot/>"),
             ("<?xml version=\"1.0\">\n<robot/>", "                    \n<robot/>"),
             ("\n <? xml\n?><robot/>", "\n       \n  <robot/>"),
             ("<!-- <?xml?> -->\n<?xml?>\n<robot/>", "<!-- <?xml?> -->\n       \n<robot/>"),
         ] {
-            assert_eq!(Mended::new(text).text, mended);
+            assert_eq!(Repaired::new(text).text, repaired);
         }
-        assert!(matches!(Mended::new("<robot/>").text, Cow::Borrowed(_)));
+        assert!(matches!(Repaired::new("<robot/>").text, Cow::Borrowed(_)));
     }
 
     #[test]
     fn declared_prefixes_stand_at_the_end_of_the_roots_tag_and_move_no_place() {
         let text = "<!-- <a> -->\n<robot name=\"a > b\"><x:y/><z:y/></robot>";
-        let mended = Mended::new(text).declaring("x").and_then(|mended| mended.declaring("z")).expect("a root");
+        let repaired = Repaired::new(text).declaring("x").and_then(|repaired| repaired.declaring("z")).expect("a root");
         let tag = "<robot name=\"a > b\" xmlns:x=\"undeclared:x\" xmlns:z=\"undeclared:z\">";
-        assert_eq!(mended.text, format!("<!-- <a> -->\n{tag}<x:y/><z:y/></robot>"));
-        let place = |column| mended.in_file(Location { line: 2, column }).column;
+        assert_eq!(repaired.text, format!("<!-- <a> -->\n{tag}<x:y/><z:y/></robot>"));
+        let place = |column| repaired.in_file(Location { line: 2, column }).column;
         assert_eq!(place(3), 3);
         // What follows the tag's `>` and the element z:y.
         assert_eq!((place(tag.len() + 1), place(tag.len() + 7)), (21, 27));
-        assert!(mended.declaring("x").is_none());
-        let alone = Mended::new("<robot/>").declaring("x").expect("a root");
+        assert!(repaired.declaring("x").is_none());
+        let alone = Repaired::new("<robot/>").declaring("x").expect("a root");
         assert_eq!(alone.text, "<robot xmlns:x=\"undeclared:x\"/>");
     }
 }
