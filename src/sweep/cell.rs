@@ -4,7 +4,7 @@ use super::line::{Bracket, Point, RESOLUTION, brackets, stretches};
 use super::map::{Along, place};
 use super::model::Solver;
 use super::regime::Regime;
-use super::turn::Turns;
+use super::transition::Transition;
 use crate::planar::Vector;
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ pub struct Crossing {
     /// The regimes at smaller and at greater values.
     pub below: Arc<Regime>,
     pub above: Arc<Regime>,
-    pub turns: Arc<Turns>,
+    pub turns: Arc<Transition>,
 }
 
 /// An edge of a cell, from its least to its greatest place.
@@ -61,7 +61,7 @@ pub struct Segment {
     /// On its right; of the frame that on its left.
     pub right: Arc<Regime>,
     /// What turns; none of the frame.
-    pub turns: Option<Arc<Turns>>,
+    pub turns: Option<Arc<Transition>>,
 }
 
 /// A cell: its least and its greatest corner, and its edges below, to the right, above and to the left.
@@ -87,7 +87,7 @@ struct Entry {
     before: Arc<Regime>,
     after: Arc<Regime>,
     /// What turns, with `before` below; none at a corner.
-    turns: Option<Arc<Turns>>,
+    turns: Option<Arc<Transition>>,
 }
 
 impl Edge {
@@ -101,7 +101,7 @@ impl Edge {
             at: bracket.at(),
             below: Arc::clone(&bracket.below.regime),
             above: Arc::clone(&bracket.above.regime),
-            turns: Arc::new(Turns::at(along.solver, bracket, |at| place(axis, fixed, at).to_vec())),
+            turns: Arc::new(Transition::at(along.solver, bracket, |at| place(axis, fixed, at).to_vec())),
         };
         let crossings = borders.iter().map(crossing).collect();
         let first = stretches.first().map_or(a.regime, |stretch| Arc::clone(&stretch.regime));

@@ -2,7 +2,7 @@
 
 use super::cell::Segment;
 use super::regime::Regime;
-use super::turn::Turns;
+use super::transition::Transition;
 use crate::planar::Vector;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub struct Chain {
     pub left: Arc<Regime>,
     pub right: Arc<Regime>,
     pub points: Vec<Vector<f64>>,
-    pub turns: Turns,
+    pub turns: Transition,
 }
 
 /// A point by its digits: ends that meet are the same numbers.

@@ -15,7 +15,7 @@ use super::line::{Landscape, Point, RESOLUTION};
 use super::model::{Model, Solver, Watched};
 use super::parallel::Workers;
 use super::regime::Regime;
-use super::turn::Turns;
+use super::transition::Transition;
 use crate::Error;
 use crate::impact::Verdict;
 use crate::planar::Vector;
@@ -66,7 +66,7 @@ pub struct Curve {
     /// Its points; of a closed one the first is the last.
     pub points: Vec<Vector<f64>>,
     /// What turns there; `below` is its left side.
-    pub turns: Turns,
+    pub turns: Transition,
 }
 
 /// The points of a line in the plane of two parameters.

@@ -3,7 +3,7 @@
 //! ```text
 //!     JSON --[study]--> Study: parameters, expressions     point --[model, variation]--> Robot, State --[pipeline]--> Impact
 //!     Impact --[regime]--> which outcomes are valid        inequalities of all combinations --[hunt]--> where they may change
-//!     samples --[line]--> borders, bisected to 1e-12 of the range --[turn]--> which inequality of which contact is zero there
+//!     samples --[line]--> borders, bisected to 1e-12 of the range --[transition]--> which inequality of which contact is zero there
 //!     one parameter --[survey]--> Survey --[course]--> Course    two parameters --[map, cell, chain]--> Map
 //! ```
 
@@ -18,7 +18,7 @@ mod model;
 mod parallel;
 mod regime;
 mod survey;
-mod turn;
+mod transition;
 mod unit;
 
 pub use crate::read::{Parameter, Study};
@@ -29,7 +29,7 @@ pub use model::{Model, Solver, WATCHED_CONTACTS, Watched};
 pub use parallel::Workers;
 pub use regime::Regime;
 pub use survey::{Border, Region, Survey};
-pub use turn::{Side, Turn, Turns};
+pub use transition::{EndedOutcome, Side, Transition};
 
 use crate::Error;
 use std::sync::Arc;

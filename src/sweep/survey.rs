@@ -4,7 +4,7 @@ use super::line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stre
 use super::model::{Model, Solver, Watched};
 use super::parallel::Workers;
 use super::regime::Regime;
-use super::turn::Turns;
+use super::transition::Transition;
 use crate::Error;
 use crate::impact::Verdict;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub struct Border {
     /// Where it is, to [`RESOLUTION`] of the parameter's range.
     pub at: f64,
     /// What turns.
-    pub turns: Turns,
+    pub turns: Transition,
 }
 
 /// The points of a study of one parameter.
@@ -98,7 +98,7 @@ impl Survey {
         let regions = stretches.into_iter().enumerate().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {
             let bracket: &Bracket = &brackets[index];
-            Border { at: bracket.at(), turns: Turns::at(solver, bracket, |at| vec![at]) }
+            Border { at: bracket.at(), turns: Transition::at(solver, bracket, |at| vec![at]) }
         };
         let quiet = Workers { done: &|| (), ..workers };
         Self { regions, borders: quiet.map(brackets.len(), begin, border), dependent }

@@ -181,8 +181,8 @@ impl<'a> Happening<'a> {
 
 impl<'a> Turns<'a> {
     /// What was found to turn.
-    pub fn new(turns: &'a sweep::Turns) -> Self {
-        let turn = |turn: &'a sweep::Turn| Turn {
+    pub fn new(turns: &'a sweep::Transition) -> Self {
+        let turn = |turn: &'a sweep::EndedOutcome| Turn {
             contact: &turn.contact,
             inequality: turn.inequality,
             modes: &turn.modes,

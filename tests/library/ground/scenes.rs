@@ -1,7 +1,7 @@
 //! Profiles beside what else a scene has: contacts by name, slopes, a stance, uncertainty.
 
 use super::*;
-use heelstrike::pipeline::robust::Holds;
+use heelstrike::pipeline::robust::Robustness;
 use heelstrike::state::{Ground, Profile};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -99,11 +99,11 @@ fn a_box_of_uncertainty_keeps_the_contacts_of_its_state() {
     let (sin, cos) = 0.4_f64.sin_cos();
     let text = state([0.5 * sin, 0.5 * cos, 0.0], FALLING, "0.6", &[[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]]);
     let found = impact(&disc(), &with(text, r#"{"position": 1e-3, "velocity": 1e-3}"#));
-    assert!(matches!(found.holds, Some(Holds::Everywhere)), "{:?}", found.holds);
+    assert!(matches!(found.holds, Some(Robustness::Everywhere)), "{:?}", found.holds);
     // On a tread at 0.9 m/s: L_t = 0.9 / (1 / m + r^2 / I) = 0.9, L_n = 2. It sticks where friction is more than 0.45.
     let text = state([-1.0, 0.5, 0.0], [-0.9, -1.0, 0.0], "0.5", &[[-3.0, 0.0], [3.0, 0.0]]);
     let found = impact(&disc(), &with(text, r#"{"friction": 0.25}"#));
-    let Some(Holds::Not(other)) = &found.holds else { panic!("{:?}", found.holds) };
+    let Some(Robustness::Not(other)) = &found.holds else { panic!("{:?}", found.holds) };
     assert_eq!(other.state.scene.ground, Ground::Profile(Profile::new(vec![[-3.0, 0.0], [3.0, 0.0]]).unwrap()));
     let again = Pipeline::new(&disc(), Options::default()).impact(&other.state).expect("an answer");
     let modes: Vec<_> = again.analysis.unwrap().outcomes.into_iter().map(|outcome| outcome.modes).collect();

@@ -1,7 +1,7 @@
-//! What happens at a border: the inequality that turns, and of which contact.
+//! What happens at a border: which outcomes end, and which inequality of which contact is zero there.
 //!
 //! ```text
-//!     an outcome that ends at a border is rejected behind it, because of the slack that is zero on it
+//!     an outcome that ends at a border is rejected beyond it, because of the slack that is zero on it
 //! ```
 
 use super::line::Bracket;
@@ -12,12 +12,12 @@ use crate::law::{Inequality, Mode};
 use crate::{Error, Result};
 use serde::Serialize;
 
-/// An inequality that is zero on a border.
+/// An outcome that ends at a border, and the inequality that is zero there.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Turn {
-    /// The outcome that begins or ends there.
+pub struct EndedOutcome {
+    /// Its modes.
     pub modes: Vec<Mode>,
-    /// On which side of the border it is one.
+    /// On which side of the border it is an outcome.
     pub side: Side,
     /// The contact's name.
     pub contact: String,
@@ -46,11 +46,11 @@ impl Side {
     }
 }
 
-/// What happens at a border.
+/// The change from one side of a border to the other.
 #[derive(Debug, Clone, Default)]
-pub struct Turns {
-    /// The inequalities that are zero there.
-    pub inequalities: Vec<Turn>,
+pub struct Transition {
+    /// The outcomes that end there.
+    pub inequalities: Vec<EndedOutcome>,
     /// Contacts that are closed on the lower side alone.
     pub opening: Vec<String>,
     /// Contacts that are closed on the upper side alone.
@@ -61,8 +61,8 @@ pub struct Turns {
     pub refused_above: Option<Error>,
 }
 
-impl Turns {
-    /// What turns between the sides of a `bracket`, which `place` puts into the space of all parameters.
+impl Transition {
+    /// What changes between the sides of a `bracket`, which `place` puts into the space of all parameters.
     pub fn at(solver: &mut Solver, bracket: &Bracket, place: impl Fn(f64) -> Vec<f64>) -> Self {
         let outcomes = |regime: &Regime| regime.outcomes().unwrap_or_default().to_vec();
         let below = solver.explained(&place(bracket.below.at), &outcomes(&bracket.above.regime));
@@ -72,9 +72,9 @@ impl Turns {
 
     /// The same, seen from the other side.
     pub fn reversed(&self) -> Self {
-        let turn = |turn: &Turn| Turn { side: turn.side.other(), ..turn.clone() };
+        let ended = |own: &EndedOutcome| EndedOutcome { side: own.side.other(), ..own.clone() };
         Self {
-            inequalities: self.inequalities.iter().map(turn).collect(),
+            inequalities: self.inequalities.iter().map(ended).collect(),
             opening: self.closing.clone(),
             closing: self.opening.clone(),
             refused_below: self.refused_above.clone(),
@@ -82,9 +82,9 @@ impl Turns {
         }
     }
 
-    /// Whether the same turns, in whatever order.
+    /// Whether the same changes, in any order.
     pub fn is_same_as(&self, other: &Self) -> bool {
-        let all = |one: &Self, two: &Self| one.inequalities.iter().all(|turn| two.inequalities.contains(turn));
+        let all = |one: &Self, two: &Self| one.inequalities.iter().all(|own| two.inequalities.contains(own));
         all(self, other)
             && all(other, self)
             && (&self.opening, &self.closing) == (&other.opening, &other.closing)
@@ -112,20 +112,20 @@ impl Turns {
     }
 }
 
-/// A margin beside a border is not greater than this, unless the state jumps there.
+/// A margin next to a border is at most this, unless the state jumps there.
 const ZERO: f64 = 1e-4;
 
-/// The outcomes of one side that the other rejects, and for which inequality.
-fn ending((names, here): &(Vec<String>, Analysis), there: &Analysis, side: Side) -> Vec<Turn> {
-    let turn = |outcome: &Outcome| {
+/// The outcomes of one side that the other rejects because of an inequality.
+fn ending((names, here): &(Vec<String>, Analysis), there: &Analysis, side: Side) -> Vec<EndedOutcome> {
+    let ended = |outcome: &Outcome| {
         let modes = &outcome.modes;
-        // An outcome far from its own borders ends where the state jumps, and no inequality is zero.
+        // An outcome far from its own borders ends because the state jumps, and no inequality is zero.
         if outcome.margin.is_some_and(|margin| margin > ZERO) {
             return None;
         }
         let rejection = there.rejected.iter().find(|rejection| rejection.modes == *modes)?;
         let RejectionReason::Violated { contact, inequality } = rejection.because else { return None };
-        Some(Turn { modes: modes.clone(), side, contact: names.get(contact)?.clone(), inequality })
+        Some(EndedOutcome { modes: modes.clone(), side, contact: names.get(contact)?.clone(), inequality })
     };
-    here.outcomes.iter().filter_map(turn).collect()
+    here.outcomes.iter().filter_map(ended).collect()
 }
