@@ -12,6 +12,7 @@ use super::radau::{Equations, Limits, integrate};
 use crate::impact::ContactProblem;
 use crate::planar::Vector;
 use crate::{Reason, Result};
+use nalgebra::DMatrix;
 
 /// Relative tolerance of the integration, unless another one is asked for.
 pub const TOLERANCE: f64 = 1e-10;
@@ -65,7 +66,11 @@ pub fn run(problem: &ContactProblem, ground: SoftGround, tolerance: f64) -> Resu
     let impulse = |i: usize| [0, 1].map(|k| end.state[2 * i + k] * speed / mean_mobility);
     Ok(CompliantRun {
         impulse: (0..contacts).map(impulse).collect(),
-        velocity_after: model.velocity(end.state.as_slice()).into_iter().map(|c| c.map(|entry| entry * speed)).collect(),
+        velocity_after: model
+            .velocity(end.state.as_slice())
+            .into_iter()
+            .map(|c| c.map(|entry| entry * speed))
+            .collect(),
         steps: end.steps,
         ended: end.ended,
     })
@@ -105,11 +110,34 @@ impl Equations for Frozen {
         forces.iter().flat_map(|(force, _)| *force).chain(depths).chain(forces.iter().map(|(_, rate)| *rate)).collect()
     }
 
+    fn jacobian(&self, state: &[f64], _: &[f64]) -> DMatrix<f64> {
+        let n = self.free.len();
+        let mut jacobian = DMatrix::zeros(4 * n, 4 * n);
+        for (i, c) in self.velocity(state).into_iter().enumerate() {
+            let parts = self.suspension.force_derivatives(i, state[2 * n + i], state[3 * n + i], c);
+            for (axis, [by_depth, by_stretch, by_slip, by_approach]) in parts.into_iter().enumerate() {
+                for at in 0..2 * n {
+                    let [slip, approach] = [2 * i, 2 * i + 1].map(|row| self.mobility[row * 2 * n + at]);
+                    jacobian[(2 * i + axis, at)] = by_slip * slip + by_approach * approach;
+                    jacobian[(2 * n + i, at)] = -approach;
+                }
+                jacobian[(2 * i + axis, 2 * n + i)] = by_depth;
+                jacobian[(2 * i + axis, 3 * n + i)] = by_stretch;
+            }
+            for at in 0..4 * n {
+                let tangential = jacobian[(2 * i, at)];
+                jacobian[(3 * n + i, at)] = self.suspension.stretch_derivative(tangential, at == 3 * n + i);
+            }
+        }
+        jacobian
+    }
+
     /// Whether all contacts are free or at rest.
     fn has_ended(&self, state: &[f64]) -> bool {
         let velocity = self.velocity(state);
         let settled = SETTLED * self.suspension.damping[1];
-        let pushed = self.forces(state, &velocity).iter().any(|(force, _)| force.iter().any(|part| part.abs() > settled));
+        let pushed =
+            self.forces(state, &velocity).iter().any(|(force, _)| force.iter().any(|part| part.abs() > settled));
         // A contact in the air that comes down strikes again.
         !pushed && velocity.iter().all(|c| c[1] >= -SETTLED.sqrt())
     }

@@ -61,6 +61,31 @@ impl Suspension {
         // What the damper in the row with friction carries moves the spring; the rest is slip.
         ([tangential, normal], -(tangential + spring) / self.damping[0])
     }
+
+    /// The derivatives of [`Self::force`]'s tangential and normal force by depth, stretch, and tangential and normal velocity.
+    pub fn force_derivatives(&self, contact: usize, depth: f64, stretch: f64, velocity: Vector<f64>) -> [[f64; 4]; 2] {
+        let ([tangential, normal], _) = self.force(contact, depth, stretch, velocity);
+        if normal <= 0.0 {
+            return [[0.0; 4]; 2];
+        }
+        let push = [self.stiffness[1], 0.0, 0.0, -self.damping[1]];
+        let mu = self.friction[contact];
+        let slips = tangential.abs() >= mu * normal;
+        [
+            if slips {
+                push.map(|part| mu * part * tangential.signum())
+            } else {
+                [0.0, -self.stiffness[0], -self.damping[0], 0.0]
+            },
+            push,
+        ]
+    }
+
+    /// The derivatives of the stretch's rate, from those of the tangential force.
+    pub fn stretch_derivative(&self, tangential: f64, by_stretch: bool) -> f64 {
+        let spring = if by_stretch { self.stiffness[0] } else { 0.0 };
+        -(tangential + spring) / self.damping[0]
+    }
 }
 
 /// Geometric mean of the contacts' G_nn \[1/kg\], from their logarithms.

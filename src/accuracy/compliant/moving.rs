@@ -139,7 +139,8 @@ impl<'a> Equation<'a> {
             let axes = contact.axes();
             let c = workspace.contact_velocity[index];
             let depth = dot(axes[1], difference(self.start[index], place(plan, contact, &base, workspace)));
-            let ([tangential, normal], stretch) = self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
+            let ([tangential, normal], stretch) =
+                self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
             let force = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
             add_impulse(plan, workspace, (contact.body, contact.arm(workspace)), force, column, &mut accelerations);
             stretches.push(stretch / self.speed);

@@ -28,14 +28,26 @@ const BETA: f64 = 3.050_430_199_247_410_5;
 const ERROR: Vector3<f64> = Vector3::new(-10.048_809_399_827_416, 1.382_142_733_160_749, -1.0 / 3.0);
 /// T^T and T^-T, which make A^-1 block diagonal.
 const TO_STAGES: Matrix3<f64> = Matrix3::new(
-    9.123_239_487_089_295E-2, 2.417_179_327_071_07E-1, 9.660_481_826_150_93E-1,
-    -1.412_552_950_209_542E-1, 2.041_293_522_937_999_4E-1, 1.0,
-    -3.002_919_410_514_742_4E-2, 3.829_421_127_572_619E-1, 0.0,
+    9.123_239_487_089_295E-2,
+    2.417_179_327_071_07E-1,
+    9.660_481_826_150_93E-1,
+    -1.412_552_950_209_542E-1,
+    2.041_293_522_937_999_4E-1,
+    1.0,
+    -3.002_919_410_514_742_4E-2,
+    3.829_421_127_572_619E-1,
+    0.0,
 );
 const FROM_STAGES: Matrix3<f64> = Matrix3::new(
-    4.325_579_890_063_155, -4.178_718_591_551_905, -5.028_726_349_457_868E-1,
-    3.391_992_518_158_098_4E-1, -3.276_828_207_610_623_7E-1, 2.571_926_949_855_605,
-    5.417_705_399_358_749E-1, 4.766_235_545_005_504_4E-1, -5.960_392_048_282_249E-1,
+    4.325_579_890_063_155,
+    -4.178_718_591_551_905,
+    -5.028_726_349_457_868E-1,
+    3.391_992_518_158_098_4E-1,
+    -3.276_828_207_610_623_7E-1,
+    2.571_926_949_855_605,
+    5.417_705_399_358_749E-1,
+    4.766_235_545_005_504_4E-1,
+    -5.960_392_048_282_249E-1,
 );
 /// W's part in the residual, times the step.
 const BLOCKS: Matrix3<f64> = Matrix3::new(REAL, 0.0, 0.0, 0.0, ALPHA, BETA, 0.0, -BETA, ALPHA);
@@ -55,6 +67,21 @@ const SAFETY: f64 = 0.9;
 pub(super) trait Equations {
     /// f(y).
     fn rates(&self, state: &[f64]) -> Vec<f64>;
+
+    /// Their derivatives at a state and its rates; forward differences unless the model knows better.
+    fn jacobian(&self, state: &[f64], rates: &[f64]) -> DMatrix<f64> {
+        let mut jacobian = DMatrix::zeros(state.len(), state.len());
+        let mut moved = state.to_vec();
+        for (column, &entry) in state.iter().enumerate() {
+            let by = f64::EPSILON.sqrt() * entry.abs().max(1.0);
+            moved[column] += by;
+            for (row, rate) in self.rates(&moved).into_iter().enumerate() {
+                jacobian[(row, column)] = (rate - rates[row]) / by;
+            }
+            moved[column] = entry;
+        }
+        jacobian
+    }
 
     /// Whether nothing more happens from `state` on.
     fn has_ended(&self, state: &[f64]) -> bool;
@@ -117,7 +144,8 @@ pub(super) fn integrate(model: &impl Equations, start: Vec<f64>, limits: Limits)
             }
         };
         let Attempt { stages, error, iterations, contraction } = attempt;
-        let safety = SAFETY.min(SAFETY * f64::from(1 + 2 * MOST_ITERATIONS) / f64::from(iterations + 2 * MOST_ITERATIONS));
+        let safety =
+            SAFETY.min(SAFETY * f64::from(1 + 2 * MOST_ITERATIONS) / f64::from(iterations + 2 * MOST_ITERATIONS));
         let mut ratio = (error.powf(0.25) / safety).clamp(GROWTH, SHRINKAGE);
         if error >= 1.0 {
             step = if accepted.is_none() { 0.1 * step } else { step / ratio };
@@ -199,21 +227,11 @@ impl<M: Equations> Radau<'_, M> {
         (of.component_div(&self.scale).norm_squared() / of.len() as f64).sqrt()
     }
 
-    /// By forward differences.
-    fn differences(&self) -> DMatrix<f64> {
-        let columns = (0..self.state.len()).map(|column| {
-            let mut moved = self.state.clone();
-            let by = f64::EPSILON.sqrt() * moved[column].abs().max(1.0);
-            moved[column] += by;
-            (self.rates_at(&moved) - &self.rates) / by
-        });
-        DMatrix::from_columns(&columns.collect::<Vec<_>>())
-    }
-
     /// Tries a step of this size; fails with the part of it to try next.
     fn attempt(&mut self, step: f64, careful: bool) -> std::result::Result<Attempt, f64> {
         let fresh = self.jacobian.is_none();
-        let jacobian = self.jacobian.take().unwrap_or_else(|| self.differences());
+        let jacobian = self.jacobian.take();
+        let jacobian = jacobian.unwrap_or_else(|| self.model.jacobian(self.state.as_slice(), self.rates.as_slice()));
         let factors = self.factors.take().filter(|factors| factors.step == step && !fresh);
         let factors = factors.unwrap_or_else(|| Factors::new(&jacobian, step));
         let attempt = self.newton(step, &factors).and_then(|(stages, iterations, contraction)| {
