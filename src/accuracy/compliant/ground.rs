@@ -40,7 +40,7 @@ pub(super) struct Suspension {
 impl Suspension {
     /// Normal springs of `stiffness` and dampers of `damping`, and tangential ones by the ratios of `ground`.
     pub fn new(ground: SoftGround, stiffness: f64, damping: f64, friction: impl Iterator<Item = Friction>) -> Self {
-        let bounded = |friction| match friction {
+        let bounded = |friction: Friction| match friction {
             Friction::Finite(mu) => mu.min(GREATEST_FRICTION),
             Friction::Infinite => GREATEST_FRICTION,
         };

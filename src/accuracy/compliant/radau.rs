@@ -126,7 +126,6 @@ pub(super) fn integrate(model: &impl Equations, start: Vec<f64>, limits: Limits)
         model,
         jacobian: None,
         factors: None,
-        contraction: 1.0,
         last: None,
     };
     let (mut time, mut step, mut steps, mut rejected) = (0.0, FIRST_STEP, 1, false);
@@ -193,8 +192,6 @@ struct Radau<'m, M> {
     scale: DVector<f64>,
     jacobian: Option<DMatrix<f64>>,
     factors: Option<Factors>,
-    /// How much an error of the Newton iteration exceeds its last change.
-    contraction: f64,
     /// The last step and its stages.
     last: Option<(f64, MatrixXx3<f64>)>,
 }
@@ -250,10 +247,11 @@ impl<M: Equations> Radau<'_, M> {
     }
 
     /// The stages, and the iterations and their contraction.
-    fn newton(&mut self, step: f64, factors: &Factors) -> std::result::Result<(MatrixXx3<f64>, i32, f64), f64> {
+    fn newton(&self, step: f64, factors: &Factors) -> std::result::Result<(MatrixXx3<f64>, i32, f64), f64> {
         let mut stages = self.guess(step);
         let mut transformed = &stages * FROM_STAGES;
-        self.contraction = self.contraction.max(1e-16).powf(0.8);
+        // How much the error exceeds the last change. Nothing is taken from the last step: a kink may lie between.
+        let mut excess = 1.0;
         let (mut quotient, mut last_change, mut last_quotient) = (FAST, 0.0, 0.0);
         for iteration in 1..=MOST_ITERATIONS {
             let rates = stages.column_iter().map(|stage| self.rates_at(&(&self.state + stage)));
@@ -269,9 +267,9 @@ impl<M: Equations> Radau<'_, M> {
                 if quotient.is_nan() || quotient >= 0.99 {
                     return Err(0.5);
                 }
-                self.contraction = quotient / (1.0 - quotient);
+                excess = quotient / (1.0 - quotient);
                 let left = MOST_ITERATIONS - 1 - iteration;
-                let expected = self.contraction * size * quotient.powi(left) / CONVERGED;
+                let expected = excess * size * quotient.powi(left) / CONVERGED;
                 if expected >= 1.0 {
                     return Err(0.8 * expected.clamp(1e-4, 20.0).powf(-1.0 / f64::from(4 + left)));
                 }
@@ -279,7 +277,7 @@ impl<M: Equations> Radau<'_, M> {
             last_change = size.max(1e-16);
             transformed += change;
             stages = &transformed * TO_STAGES;
-            if self.contraction * size <= CONVERGED {
+            if excess * size <= CONVERGED {
                 return Ok((stages, iteration, quotient));
             }
         }

@@ -13,7 +13,7 @@ mod place;
 mod style;
 
 use crate::draw::plot::{Color, Picture, PlotAxis};
-use crate::sweep::{RegionCurves, Findings, Map, RobotStudy, Regime, Region, Survey, Workers};
+use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers};
 use crate::write::sweep::{Happening, letter};
 
 /// How wide panels along a parameter are inside of their axes \[px\].
