@@ -7,7 +7,7 @@ use heelstrike::impact::Analysis;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::robot::Reduction;
 use heelstrike::state::{Defaults, State};
-use heelstrike::sweep::{Findings, Map, Model, Study, Survey, Workers};
+use heelstrike::sweep::{Findings, Map, RobotStudy, Study, Survey, Workers};
 use std::error::Error;
 use std::fs::read_to_string;
 use std::path::PathBuf;
@@ -75,9 +75,9 @@ impl Exhibit {
     ///
     /// # Errors
     /// A study that is refused.
-    pub fn study<T>(&self, ask: impl FnOnce(&Model, Workers) -> T) -> heelstrike::Result<T> {
+    pub fn study<T>(&self, ask: impl FnOnce(&RobotStudy, Workers) -> T) -> heelstrike::Result<T> {
         let study = Study::from_json(&self.text)?;
-        let model = Model {
+        let model = RobotStudy {
             study: &study,
             description: &self.description,
             reduction: &Reduction::default(),

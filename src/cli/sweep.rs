@@ -13,7 +13,7 @@ use heelstrike::draw::sweep as picture;
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::read::documents::utf8;
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Findings, Model, Regime, Solver, Study, Workers};
+use heelstrike::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers};
 use heelstrike::write::sweep::{Regions, Sample, columns, letter};
 use heelstrike::write::{Detail, append_line};
 use heelstrike::{Error, Reason};
@@ -109,7 +109,7 @@ pub(super) fn run(args: &Args) -> Outcome {
         Failure::RefusedAt(error.in_file(&name), excerpt)
     };
     let study = utf8(&bytes).and_then(Study::from_json).map_err(refuse)?;
-    let model = Model {
+    let model = RobotStudy {
         study: &study,
         description: &description,
         reduction: &reduction,
@@ -179,7 +179,13 @@ pub(super) fn run(args: &Args) -> Outcome {
 }
 
 /// Writes the object of `head`, a line, with the list of all samples as its last field; tells how many were refused.
-fn json(head: &[u8], output: &mut Output, model: &Model, workers: Workers, detail: Detail) -> Result<usize, Failure> {
+fn json(
+    head: &[u8],
+    output: &mut Output,
+    model: &RobotStudy,
+    workers: Workers,
+    detail: Detail,
+) -> Result<usize, Failure> {
     let open = head.strip_suffix(b"}\n").unwrap_or(head);
     output.write_all(open)?;
     output.write_all(b",\"samples\":[")?;
@@ -195,7 +201,7 @@ fn json(head: &[u8], output: &mut Output, model: &Model, workers: Workers, detai
 /// Writes all samples in order; tells how many were refused.
 fn samples(
     output: &mut Output,
-    model: &Model,
+    model: &RobotStudy,
     workers: Workers,
     append: impl Fn(&mut Solver, &Sample, &mut Vec<u8>) -> bool + Sync,
 ) -> Result<usize, Failure> {

@@ -115,7 +115,7 @@ fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
     }
     match outcomes {
         [] => Verdict::None,
-        // A family too short for f64 to tell its ends apart is one all the same.
+        // A family whose ends are the same in f64 is still one.
         [only] if only.family => Verdict::Ambiguous,
         [only] if only.impulse.iter().flatten().all(|&entry| entry == 0.0) => Verdict::NoImpact,
         [_] => Verdict::Unique,

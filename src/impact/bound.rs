@@ -230,7 +230,7 @@ mod tests {
     use crate::scalar::{Interval, Ordered, Real};
     use proptest::prelude::*;
 
-    /// Follows the bounds and keeps those of every leaf beside its numbers.
+    /// Follows the bounds and compares those of every leaf with its numbers.
     struct Watch<'a> {
         bounds: Bounds,
         scale: &'a Scale,

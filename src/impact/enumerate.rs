@@ -44,7 +44,7 @@ pub struct Leaf<'a, T> {
     depth: usize,
 }
 
-/// Whoever looks at all combinations.
+/// A visitor of all combinations.
 pub trait Visitor<T> {
     /// A combination is complete.
     fn leaf(&mut self, leaf: &Leaf<'_, T>);

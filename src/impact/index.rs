@@ -11,7 +11,7 @@ use crate::planar::Vector;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
-/// The sign of det B, or where it vanishes that of the lowest coefficient of det(B + s I) that does not; none where all do.
+/// The sign of det B, or if it is zero that of the lowest coefficient of det(B + s I) that is not; `None` if all are zero.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
     let mut stuck: Vec<usize> = Vec::new();
     let mut sliding: Vec<(usize, Vector<T>)> = Vec::new();
@@ -50,7 +50,7 @@ pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<
     lowest_coefficient(&schur)
 }
 
-/// The place of the entry that is farthest from zero among those shown not to be zero; none where all are zero.
+/// The place of the entry that is farthest from zero among those shown not to be zero; `None` if all are zero.
 fn regular<T: Ordered, I>(candidates: &[I], number: impl Fn(&I) -> T) -> Result<Option<usize>, Unsettled> {
     let mut best: Option<(usize, f64)> = None;
     for (place, candidate) in candidates.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Every inequality of every combination as a number without poles, for whoever follows them along a parameter.
+//! Every inequality of every combination as a number without poles, to be followed along a parameter.
 //!
 //! ```text
 //!     slack s = N / det A      N and det A are as smooth as the problem is; s changes its sign at N = 0, and at poles det A = 0
 //! ```
 //!
-//! A set of outcomes changes only where some N passes zero. Numbers are f64 without error bounds: they tell where to look,
+//! A set of outcomes changes only if some N passes zero. Numbers are f64 without error bounds: they say where to look,
 //! and never what is true there.
 //!
 //! Cost: as the enumeration's, 4^n combinations of n contacts.
@@ -67,7 +67,7 @@ impl Inequalities {
 /// A slack of this size, free of units, may be a zero that rounding and a bad condition have left.
 const NEGLIGIBLE: f64 = 1e-10;
 
-/// A pivot that has lost so many digits of what it is the difference of is zero but for rounding.
+/// A pivot that has lost so many digits in its difference is zero up to rounding.
 const SINGULAR: f64 = 1e-10;
 
 /// Whether a pivot is zero up to rounding: contacts depend on each other, or an inequality is at a pole.

@@ -1,13 +1,13 @@
-//! Linear equations and linear programs whose every branch hangs on a sign that was shown.
+//! Linear equations and linear programs in which every branch depends on a sign that was shown.
 //!
 //! Sizes are those of a few contacts, so plain dense elimination and the simplex method with Bland's rule serve
-//! (Chvatal, *Linear Programming*, 1983, chapters 2, 3 and 8). No tolerance decides anything: a number that its precision
-//! cannot tell from zero ends the work as [`Unsettled`], to be begun again in a more precise one.
+//! (Chvatal, *Linear Programming*, 1983, chapters 2, 3 and 8). No tolerance decides anything: a number that may be
+//! zero in its precision ends the work as [`Unsettled`], and the caller starts again with more digits.
 
 use crate::scalar::{Ordered, Real, Sign};
 use std::cmp::Ordering;
 
-/// A sign that hangs on more digits than the numbers have.
+/// A sign that needs more digits than the numbers have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unsettled;
 
@@ -81,7 +81,7 @@ impl<T: Real> Solutions<T> {
 }
 
 impl<T: Ordered> Solutions<T> {
-    /// The solutions on which `function`, one of y, is also zero; none where it is nowhere.
+    /// The solutions on which `function`, one of y, is also zero; `None` if there are none.
     pub fn where_zero(&self, function: &Affine<T>) -> Result<Option<Self>, Unsettled> {
         let mut equation = function.coefficients.clone();
         equation.push(-function.constant);
@@ -103,7 +103,7 @@ impl<T: Ordered> Solutions<T> {
     }
 }
 
-/// The solutions x of `equations`, each its coefficients of the `unknowns` followed by the right-hand side; none where they
+/// The solutions x of `equations`, each its coefficients of the `unknowns` followed by the right-hand side; `None` if they
 /// contradict each other.
 pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<Option<Solutions<T>>, Unsettled> {
     let mut pivots = Vec::new();
@@ -148,7 +148,7 @@ pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<
     Ok(Some(Solutions { origin, directions: free.map(direction).collect() }))
 }
 
-/// The row with the entry of a column that is farthest from zero; none where all are zero.
+/// The row with the entry of a column that is farthest from zero; `None` if all are zero.
 fn largest<T: Ordered>(rows: &[Vec<T>], column: usize) -> Result<Option<usize>, Unsettled> {
     let size = |row: &usize| rows[*row][column].to_f64().abs();
     let Some(row) = (0..rows.len()).max_by(|i, j| size(i).total_cmp(&size(j))) else { return Ok(None) };
@@ -163,7 +163,7 @@ fn largest<T: Ordered>(rows: &[Vec<T>], column: usize) -> Result<Option<usize>, 
     Ok(None)
 }
 
-/// The y at which `objective . y` is greatest among those where no function is negative; none where it grows without
+/// The y at which `objective . y` is greatest among those where no function is negative; `None` if it grows without
 /// bound. At y = 0 no function may be negative.
 pub fn maximize<T: Ordered>(functions: &[Affine<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
     let free = objective.len();

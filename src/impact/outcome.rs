@@ -1,4 +1,4 @@
-//! What an analysis says: outcomes, rejections, the verdict. Data only; [`super::analysis`] computes them.
+//! The answer of an analysis: outcomes, rejections, the verdict. Data only; [`super::analysis`] computes them.
 
 use crate::law::{Inequality, Mode};
 use crate::planar::Vector;
@@ -16,7 +16,7 @@ pub enum Verdict {
     Ambiguous,
     /// No outcome is consistent; impossible for a regular Delassus matrix (paper, the index theorem).
     None,
-    /// Some combination's signs could not be told from zero.
+    /// Some combination's signs may be zero in every precision.
     Undecided,
     /// The only outcome has zero impulse.
     NoImpact,
@@ -47,29 +47,29 @@ pub struct Outcome {
     pub impulse: Vec<Vector<f64>>,
     /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
     pub velocity_after: Vec<Vector<f64>>,
-    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative where Newton's law with friction gains.
+    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction gains energy.
     pub energy_loss: f64,
-    /// False where other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
+    /// False if other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
     pub impulse_unique: bool,
-    /// |L_t| / L_n of each sticking contact with L_n > 0; none for others.
+    /// |L_t| / L_n of each sticking contact with L_n > 0; `None` for others.
     pub friction_needed: Vec<Option<f64>>,
-    /// Sign of det A (paper, section 2); none where it is not defined.
+    /// Sign of det A (paper, section 2); `None` if it is not defined.
     pub index: Option<i8>,
-    /// The smallest slack of the outcome's inequalities, free of units; none where there is no inequality.
+    /// The smallest slack of the outcome's inequalities, free of units; `None` if there is no inequality.
     pub margin: Option<f64>,
-    /// Least and greatest of every impulse's entry; none where the impulse is the only one.
+    /// Least and greatest of every impulse's entry; `None` if the impulse is the only one.
     pub impulse_range: Option<Vec<Vector<Range>>>,
-    /// What is exactly zero, where an impulse inequality is.
+    /// What is exactly zero, if an impulse inequality is.
     pub border: Option<Border>,
     /// An end of a family: every velocity between both ends is an outcome.
     pub family: bool,
-    /// True where every sign was shown by an error bound.
+    /// True if every sign was shown by an error bound.
     pub proven: bool,
-    /// False where a sign was settled by no precision: the combination is not excluded, but neither shown.
+    /// False if no precision decided a sign: the combination is neither excluded nor shown.
     pub decided: bool,
 }
 
-/// Least and greatest value; none where there is no bound.
+/// Least and greatest value; `None` if there is no bound.
 pub type Range = [Option<f64>; 2];
 
 /// Where an outcome turns into others: impulse inequalities that are zero for every admissible impulse.
@@ -119,9 +119,9 @@ pub struct Rejection {
     pub modes: Vec<Mode>,
     /// Why it is none.
     pub because: RejectionReason,
-    /// The smallest slack, negative and free of units; none where the combination has no solution at all.
+    /// The smallest slack, negative and free of units; `None` if the combination has no solution at all.
     pub margin: Option<f64>,
-    /// What it would have needed and led to; none where its equations have no solution.
+    /// What it would have needed and led to; `None` if its equations have no solution.
     pub motion: Option<Motion>,
 }
 
@@ -187,7 +187,7 @@ pub enum ImpulseRegion {
     E,
 }
 
-/// How many combinations each layer of the proof settled (see more digits).
+/// How many combinations each precision decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Effort {
     /// f64 with an error bound.
@@ -205,28 +205,28 @@ pub struct Effort {
 pub struct Analysis {
     /// The answer in one word.
     pub verdict: Verdict,
-    /// True where every combination's signs are shown by an error bound.
+    /// True if every combination's signs are shown by an error bound.
     pub proven: bool,
     /// Every outcome; with [`Verdict::Undecided`] also the combinations that are not excluded.
     pub outcomes: Vec<Outcome>,
     /// Every other combination, if asked for.
     pub rejected: Vec<Rejection>,
-    /// Sum of the outcomes' indices; none where one of them has none.
+    /// Sum of the outcomes' indices; `None` if one of them has none.
     pub index_sum: Option<i32>,
     /// Rank of the Delassus matrix.
     pub rank: usize,
-    /// Condition number of the Delassus matrix scaled to a unit diagonal; none where it is singular.
+    /// Condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular.
     pub condition: Option<f64>,
-    /// Whether some outcome has no sliding contact; none where that hangs on an undecided combination.
+    /// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination.
     pub no_slip_consistent: Option<bool>,
-    /// What settled the combinations.
+    /// Which precision decided the combinations.
     pub effort: Effort,
-    /// The paper's section 4 for each contact, if asked for; none for a singular Delassus matrix.
+    /// The paper's section 4 for each contact, if asked for; `None` for a singular Delassus matrix.
     pub explanation: Option<Explanation>,
 }
 
 impl Analysis {
-    /// What to tell where an outcome gains energy: Newton's restitution with Coulomb friction can.
+    /// A note if an outcome gains energy: Newton's restitution with Coulomb friction can.
     pub fn energy_note(&self) -> Option<String> {
         let gains = self.outcomes.iter().filter(|outcome| outcome.energy_loss < 0.0).count();
         let total = self.outcomes.len();

@@ -15,7 +15,7 @@ pub fn shows_regular(tableau: &mut Tableau<f64>, bounds: &mut Bounds, contacts: 
     bounds.at(contacts).impulse_error().is_finite()
 }
 
-/// Rank of G and, where it is regular, the condition number of G scaled to a unit diagonal.
+/// Rank of G and, if it is regular, the condition number of G scaled to a unit diagonal.
 pub fn rank_and_condition<S: Source>(
     problem: &ContactProblem,
     source: &S,

@@ -6,9 +6,9 @@
 //!
 //! The equations leave lambda = origin + free y. Where they determine the velocity but not the impulses, the impulses form a
 //! convex set; the combination is an outcome exactly when that set is not empty, which a linear program answers, and the
-//! impulse told is its member of least norm. A velocity that the modes exclude only by depending on others (a flat foot
-//! whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin. Where even
-//! the velocity depends on y it is a family, told by its two ends. Nothing here has a tolerance: see [`super::linear`].
+//! impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a flat foot
+//! whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin. If even
+//! the velocity depends on y it is a family, given by its two ends. Nothing here has a tolerance: see [`super::linear`].
 
 use super::generators::Generators;
 use super::index::index;
@@ -31,7 +31,7 @@ pub enum SingularCase {
     Rejected(Rejected),
     /// Its velocity is the only one of these modes.
     Valid(SingularOutcome),
-    /// Its velocities form a set: the two ends. An end's own modes may be others, where it lies on the set's rim.
+    /// Its velocities form a set: the two ends. An end's own modes may be others, if it lies on the set's rim.
     Family([SingularOutcome; 2]),
 }
 
@@ -59,13 +59,13 @@ pub struct SingularOutcome {
     pub modes: Vec<Mode>,
     /// The velocity and the least impulse.
     pub motion: Motion,
-    /// The smallest slack, where there is one.
+    /// The smallest slack; `None` if there is none.
     pub margin: Option<f64>,
-    /// Least and greatest of every impulse's entry; none where the impulse is the only one.
+    /// Least and greatest of every impulse's entry; `None` if the impulse is the only one.
     pub range: Option<Vec<[Range; 2]>>,
     /// The impulse inequalities that are zero for every admissible impulse, by contact.
     pub at_zero: Vec<(usize, Inequality)>,
-    /// Sign of det B; none on a border.
+    /// Sign of det B; `None` on a border.
     pub index: Option<i8>,
     /// How far velocity and impulse may be off, in the scale of margins.
     pub error: f64,
@@ -195,7 +195,7 @@ impl<T: Ordered> Combination<'_, T> {
         })
     }
 
-    /// Whether some point where no inequality is negative has every strict one above zero.
+    /// Whether some point without a negative inequality has every strict one above zero.
     fn has_own_velocity(&self, inequalities: &[Constraint<T>], inside: &[T]) -> Result<bool, Unsettled> {
         // Unknowns y and s, s at most every strict inequality and at most 1: can it be positive?
         let shifted = |inequality: &Constraint<T>| {

@@ -95,7 +95,7 @@ impl Scale {
     }
 
     /// How far velocities and impulses, by row, may be off: the largest error in the scale, relative to the largest of them
-    /// where that exceeds one.
+    /// if that exceeds one.
     pub fn error<T: Ordered>(&self, velocity: impl Iterator<Item = T>, impulse: impl Iterator<Item = T>) -> f64 {
         let velocity = velocity.zip(&self.mobility).map(|(number, mobility)| (number, 1.0 / mobility));
         let impulse = impulse.zip(&self.mobility).map(|(number, mobility)| (number, *mobility));
@@ -109,7 +109,7 @@ impl Scale {
         error / size
     }
 
-    /// Whether two lists of contact velocities are the same but for rounding.
+    /// Whether two lists of contact velocities are the same up to rounding.
     pub fn same_velocity(&self, a: &[Vector<f64>], b: &[Vector<f64>]) -> bool {
         let differences = a.iter().flatten().zip(b.iter().flatten()).zip(&self.mobility);
         differences.map(|((a, b), mobility)| (a - b).abs() / (mobility * self.speed)).all(|far| far < 1e-8)

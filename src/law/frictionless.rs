@@ -13,7 +13,7 @@ impl<T: Real> ContactLaw<T> for Frictionless {
         Friction::Finite(T::zero())
     }
 
-    /// The velocity alone tells the modes of a closed contact from each other.
+    /// The modes of a closed contact differ in velocity alone.
     fn modes(&self) -> &'static [&'static [Mode]] {
         &[&[Mode::Separate], &[Mode::Stick, Mode::SlidePlus, Mode::SlideMinus]]
     }

@@ -1,30 +1,27 @@
-//! Numbers that hang on others which are known to an interval.
+//! Enclosures that remember which uncertain data they depend on.
 
+use super::ball::LIBM_ERROR;
 use super::double::two_sum;
 use super::{Ordered, Real, Sign, Trigonometry};
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number as `centre + sum_i slopes[i] e_i +- error`, where each e_i is somewhere in -1..1.
 ///
-/// Numbers share their e_i, so that what they owe to a common cause cancels, as it does not between [`Ball`](super::Ball)s:
-/// an enclosure over intervals of half-width r is wrong by O(r^2) alone (affine arithmetic: de Figueiredo and Stolfi,
-/// Numerical Algorithms 2004). Every operation encloses its exact result; whatever is not linear, and all rounding, goes
-/// into `error`. As with the ball, exact zeros stay exact, and a quotient by what may be zero tells nothing.
+/// Numbers share their e_i, so that effects of a common cause cancel, which they do not between [`Ball`](super::Ball)s: an
+/// enclosure over intervals of half-width r is too wide by O(r^2) only (affine arithmetic: de Figueiredo and Stolfi,
+/// Numerical Algorithms 2004). Every operation encloses its exact result; all that is not linear, and all rounding, goes
+/// into `error`. As with the ball, exact zeros stay exact, and after a division by what may be zero nothing is known.
 ///
 /// Cost: O(N) per operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine<const N: usize> {
     centre: f64,
     slopes: [f64; N],
-    /// Never negative, infinite where nothing is known.
+    /// Never negative; infinite if nothing is known.
     error: f64,
 }
 
 /// Half the distance from 1 to the next f64.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
-
-/// The error of `libm::sincos` relative to its result, as [`Ball`](super::Ball) assumes it.
-const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
 
 impl<const N: usize> Affine<N> {
     /// Covers the rounding in sums of N terms and in the formulas of the errors.
@@ -42,8 +39,8 @@ impl<const N: usize> Affine<N> {
         if centre.is_finite() && error.is_finite() { Self { centre, slopes, error } } else { Self::unknown() }
     }
 
-    /// Any number at most `radius` from `centre`. Its place there is the cause number `symbol`; of more causes than N it is
-    /// its own, and cancels with nothing.
+    /// Any number at most `radius` from `centre`. Its place there is the cause number `symbol`; from number N on a cause is not
+    /// followed, and its effects do not cancel.
     pub fn varying(centre: f64, radius: f64, symbol: usize) -> Self {
         let mut slopes = [0.0; N];
         let own = match slopes.get_mut(symbol) {
@@ -77,7 +74,7 @@ impl<const N: usize> Affine<N> {
         &self.slopes
     }
 
-    /// The middle of where it may be; NaN where nothing is known.
+    /// The middle of where it may be; NaN if nothing is known.
     pub fn centre(&self) -> f64 {
         if self.error.is_finite() { self.centre } else { f64::NAN }
     }
@@ -87,7 +84,7 @@ impl<const N: usize> Affine<N> {
         (self.reach() + self.error) * Self::BLOW_UP
     }
 
-    /// What its slopes do not tell.
+    /// The part of its radius that belongs to no cause.
     pub fn rest(&self) -> f64 {
         self.error
     }
@@ -145,10 +142,9 @@ impl<const N: usize> Trigonometry for Affine<N> {
     }
 }
 
-impl<const N: usize> Add for Affine<N> {
-    type Output = Self;
+impl<const N: usize> Affine<N> {
     #[inline]
-    fn add(self, other: Self) -> Self {
+    fn plus(self, other: Self) -> Self {
         if self.is_exact_zero() {
             return other;
         }
@@ -160,28 +156,14 @@ impl<const N: usize> Add for Affine<N> {
         let rounding = ROUNDING * slopes.iter().map(|slope| slope.abs()).sum::<f64>();
         Self::around(centre, slopes, self.error + other.error + lost.abs() + rounding)
     }
-}
 
-impl<const N: usize> Neg for Affine<N> {
-    type Output = Self;
     #[inline]
-    fn neg(self) -> Self {
-        Self { centre: -self.centre, slopes: self.slopes.map(|slope| -slope), error: self.error }
-    }
-}
-
-impl<const N: usize> Sub for Affine<N> {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: Self) -> Self {
+    fn minus(self, other: Self) -> Self {
         self + -other
     }
-}
 
-impl<const N: usize> Mul for Affine<N> {
-    type Output = Self;
     #[inline]
-    fn mul(self, other: Self) -> Self {
+    fn times(self, other: Self) -> Self {
         if self.is_exact_zero() || other.is_exact_zero() {
             return Self::zero();
         }
@@ -202,12 +184,9 @@ impl<const N: usize> Mul for Affine<N> {
         let spread = (a.abs() + reach + self.error) * other.error + (b.abs() + other_reach) * self.error;
         Self::around(centre, slopes, (reach * other_reach - squares) + spread + rounding)
     }
-}
 
-impl<const N: usize> Div for Affine<N> {
-    type Output = Self;
     #[inline]
-    fn div(self, other: Self) -> Self {
+    fn over(self, other: Self) -> Self {
         let divisor = other.centre;
         let spread = (other.reach() + other.error) * Self::BLOW_UP;
         // The least magnitude in the divisor.
@@ -230,19 +209,23 @@ impl<const N: usize> Div for Affine<N> {
         let rounding = ROUNDING * (reach / divisor.abs()) + Self::TINY;
         Self::around(quotient, slopes, error + whole * (spread / least) + rounding)
     }
+
+    #[inline]
+    fn negated(self) -> Self {
+        Self { centre: -self.centre, slopes: self.slopes.map(|slope| -slope), error: self.error }
+    }
 }
+
+operators!([const N: usize] Affine<N>);
 
 #[cfg(test)]
 mod tests {
+    use super::super::exact::{exact, magnitude};
     use super::*;
     use dashu::rational::RBig;
     use proptest::prelude::*;
 
     type Number = Affine<3>;
-
-    fn exact(value: f64) -> RBig {
-        RBig::try_from(value).expect("finite")
-    }
 
     /// Whether the number, its causes at `at`, may be `value`.
     fn encloses(number: Number, at: [f64; 3], value: &RBig) -> bool {
@@ -251,9 +234,7 @@ mod tests {
         }
         let linear =
             at.iter().zip(number.slopes).fold(exact(number.centre), |sum, (&e, slope)| sum + exact(e) * exact(slope));
-        let distance = linear - value;
-        let distance = if distance < RBig::ZERO { -distance } else { distance };
-        distance <= exact(number.error)
+        magnitude(linear - value) <= exact(number.error)
     }
 
     fn cause() -> impl Strategy<Value = f64> {
@@ -262,7 +243,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_operation_encloses_what_any_causes_give(
+        fn operations_enclose_results_of_all_causes(
             centres in prop::array::uniform3(-10.0..10.0f64),
             radii in prop::array::uniform3(prop_oneof![Just(0.0), 1e-6..1e-2f64, 0.1..3.0f64]),
             at in prop::array::uniform3(cause()),
@@ -286,7 +267,7 @@ mod tests {
         }
 
         #[test]
-        fn cosine_and_sine_enclose_those_of_every_angle(angle in -7.0..7.0f64, radius in 0.0..2.0f64, at in cause()) {
+        fn cosine_and_sine_enclose_every_angle(angle in -7.0..7.0f64, radius in 0.0..2.0f64, at in cause()) {
             let [cos, sin] = Affine::<1>::cos_sin_varying(angle, radius, 0);
             let turned = angle + radius * at;
             for (number, value) in [(cos, turned.cos()), (sin, turned.sin())] {
@@ -309,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_zeros_stay_exact_and_what_is_not_known_tells_nothing() {
+    fn exact_zeros_stay_and_unknowns_are_undecided() {
         let (zero, x) = (Number::zero(), Number::varying(0.5, 1.0, 1));
         assert_eq!((zero * x).sign(), Sign::Zero);
         assert_eq!((Number::one() / x).sign(), Sign::Undecided);

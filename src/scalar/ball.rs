@@ -2,19 +2,20 @@
 
 use super::double::{DoubleDouble, two_sum};
 use super::{Enclosure, Ordered, Real, Sign, Trigonometry, series};
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A real number known to lie within `radius` of `mid`.
 ///
 /// Every operation encloses its exact result: the radius takes the operands' radii and the rounding of the midpoint.
-/// Radii are rounded to nearest and then blown up by a relative 2^-50, which covers the few roundings of each formula
+/// Radii are rounded to nearest and then enlarged by a relative 2^-50, which covers the few roundings of each formula
 /// (Rump, Acta Numerica 2010, section 9); an operation that is exact because an operand is an exact zero adds nothing, so
 /// that structural zeros stay zeros. A quotient by a ball that contains zero has an infinite radius.
+///
+/// Cost: about 5 operations of the midpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball<M = f64> {
     /// The centre.
     pub mid: M,
-    /// The greatest distance of the number from the centre; never negative, infinite where nothing is known.
+    /// The greatest distance of the number from the centre; never negative, infinite if nothing is known.
     pub radius: f64,
 }
 
@@ -103,19 +104,19 @@ const BLOW_UP: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 /// The error that the proofs assume of `libm::sincos`, relative to its result: two units in the last place. Its
 /// authors (FreeBSD's msun) claim less than one, and the tests look for more at 100,000 angles.
-const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
+pub(super) const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
 
-/// Digits of the series on double-doubles, about one rounding.
+/// Bits of the series on double-doubles, about one rounding.
 const DOUBLE_DOUBLE_BITS: u32 = 106;
 
 impl<M: Midpoint> Ball<M> {
-    /// A number of which nothing is known.
+    /// The number of which nothing is known.
     #[inline]
     fn unknown() -> Self {
         Self { mid: M::zero(), radius: f64::INFINITY }
     }
 
-    /// A ball around `mid`; a centre or a radius that is not finite tells nothing.
+    /// A ball around `mid`; with a centre or a radius that is not finite nothing is known.
     #[inline]
     fn around(mid: M, radius: f64) -> Self {
         if mid.is_finite() && radius.is_finite() { Self { mid, radius: radius * BLOW_UP } } else { Self::unknown() }
@@ -171,15 +172,14 @@ impl Trigonometry for Ball<DoubleDouble> {
     fn cos_sin(angle: f64) -> [Self; 2] {
         let halvings = series::halvings(angle, DOUBLE_DOUBLE_BITS);
         series::cos_sin::<Self>(angle, halvings, DOUBLE_DOUBLE_BITS)
-            // Of a huge angle the doublings leave nothing but what holds for every angle.
+            // After the doublings of a huge angle only what holds for every angle is known.
             .map(|value| if value.radius <= 1.0 { value } else { Self { mid: Real::zero(), radius: 1.0 } })
     }
 }
 
-impl<M: Midpoint> Add for Ball<M> {
-    type Output = Self;
+impl<M: Midpoint> Ball<M> {
     #[inline]
-    fn add(self, other: Self) -> Self {
+    fn plus(self, other: Self) -> Self {
         if self.is_exact_zero() {
             return other;
         }
@@ -190,28 +190,14 @@ impl<M: Midpoint> Add for Ball<M> {
         let (mid, error) = self.mid.sum(other.mid);
         Self::around(mid, self.radius + other.radius + error)
     }
-}
 
-impl<M: Midpoint> Neg for Ball<M> {
-    type Output = Self;
     #[inline]
-    fn neg(self) -> Self {
-        Self { mid: -self.mid, radius: self.radius }
-    }
-}
-
-impl<M: Midpoint> Sub for Ball<M> {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: Self) -> Self {
+    fn minus(self, other: Self) -> Self {
         self + -other
     }
-}
 
-impl<M: Midpoint> Mul for Ball<M> {
-    type Output = Self;
     #[inline]
-    fn mul(self, other: Self) -> Self {
+    fn times(self, other: Self) -> Self {
         if self.is_exact_zero() || other.is_exact_zero() {
             return Self::zero();
         }
@@ -220,12 +206,9 @@ impl<M: Midpoint> Mul for Ball<M> {
             self.mid.magnitude() * other.radius + other.mid.magnitude() * self.radius + self.radius * other.radius;
         Self::around(mid, spread + mid.rounding())
     }
-}
 
-impl<M: Midpoint> Div for Ball<M> {
-    type Output = Self;
     #[inline]
-    fn div(self, other: Self) -> Self {
+    fn over(self, other: Self) -> Self {
         // The least magnitude in the divisor; not positive when it may be zero.
         let least = other.mid.least_magnitude() - other.radius * BLOW_UP;
         if least <= 0.0 || least.is_nan() {
@@ -236,35 +219,37 @@ impl<M: Midpoint> Div for Ball<M> {
         }
         let mid = self.mid / other.mid;
         let rounding = mid.quotient_rounding(least);
-        // What underflow may take from the product here is divided by the divisor below.
+        // The loss of the product by underflow is divided by the divisor below.
         let tiny = if other.radius == 0.0 { 0.0 } else { f64::MIN_POSITIVE };
         let spread = (self.radius + (mid.magnitude() + rounding) * other.radius + tiny) / least;
         Self::around(mid, spread + rounding)
     }
+
+    #[inline]
+    fn negated(self) -> Self {
+        Self { mid: -self.mid, radius: self.radius }
+    }
 }
+
+operators!([M: Midpoint] Ball<M>);
 
 #[cfg(test)]
 mod tests {
+    use super::super::exact::{exact, magnitude};
     use super::*;
     use dashu::rational::RBig;
     use proptest::prelude::*;
-
-    fn exact(value: f64) -> RBig {
-        RBig::try_from(value).expect("finite")
-    }
 
     fn encloses(ball: Ball, value: &RBig) -> bool {
         if ball.radius.is_infinite() {
             return true;
         }
-        let distance = exact(ball.mid) - value;
-        let distance = if distance < RBig::ZERO { -distance } else { distance };
-        distance <= exact(ball.radius)
+        magnitude(exact(ball.mid) - value) <= exact(ball.radius)
     }
 
     proptest! {
         #[test]
-        fn every_operation_encloses_its_exact_result(
+        fn operations_enclose_exact_results(
             a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e-3..1e-3f64, k in -60..60i32,
         ) {
             let b = b * f64::from(k).exp2();
@@ -287,15 +272,12 @@ mod tests {
             return true;
         }
         let [hi, lo] = ball.mid.parts().map(exact);
-        let mid = hi + lo;
-        let distance = mid - value;
-        let distance = if distance < RBig::ZERO { -distance } else { distance };
-        distance <= exact(ball.radius)
+        magnitude(hi + lo - value) <= exact(ball.radius)
     }
 
     proptest! {
         #[test]
-        fn every_operation_on_double_doubles_encloses_its_exact_result(
+        fn operations_on_double_doubles_enclose_exact_results(
             a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e-3..1e-3f64, d in -1e-15..1e-15f64, k in -300..300i32,
         ) {
             let (b, e) = (b * f64::from(k).exp2(), d * f64::from(k).exp2());
@@ -313,7 +295,7 @@ mod tests {
         }
 
         #[test]
-        fn no_underflow_escapes(a in 1.0..2.0f64, b in 1.0..2.0f64, i in -1074..100i32, j in -1074..100i32) {
+        fn underflow_is_enclosed(a in 1.0..2.0f64, b in 1.0..2.0f64, i in -1074..100i32, j in -1074..100i32) {
             let (a, b) = (libm::scalbn(a, i), libm::scalbn(b, j));
             let (p, q) = (exact(a), exact(b));
             let (x, y) = (Ball::<f64>::from_f64(a), Ball::<f64>::from_f64(b));
@@ -336,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_tells_nothing() {
+    fn nonfinite_numbers_are_undecided() {
         for value in [f64::NAN, f64::INFINITY] {
             assert!(Ball::<f64>::from_f64(value).radius.is_infinite());
             assert!(Ball::<DoubleDouble>::from_f64(value).radius.is_infinite());
@@ -354,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn division_by_a_ball_around_zero_tells_nothing() {
+    fn quotient_by_a_ball_around_zero_is_unknown() {
         let around_zero = Ball { mid: 1e-20, radius: 1e-18 };
         assert!((Ball::from_f64(1.0) / around_zero).radius.is_infinite());
     }

@@ -1,13 +1,14 @@
-//! Enclosures that know exactly when they are zero.
+//! Enclosures that know when they are exactly zero.
 
 use super::{Ordered, Real, Residue, Sign, Trigonometry};
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An enclosure together with the [`Residue`] of the same number.
 ///
-/// The enclosure proves every sign but zero, the residue proves that a number is not zero, and tells that it is (see there
-/// how surely). A number that the residue finds zero is zero in the enclosure too, so that it stays one in what follows. So a
-/// sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds is one that more digits decide.
+/// The enclosure proves the signs except zero. The residue proves that a number is not zero, and finds that it is (how
+/// surely is said there). If the residue finds a number zero, the enclosure becomes exactly zero as well. So more digits
+/// decide every sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds.
+///
+/// Cost: that of both numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Certified<B> {
     enclosure: B,
@@ -30,7 +31,7 @@ impl<B: Ordered> Certified<B> {
         self.residue.is_zero() == Some(false) || matches!(self.enclosure.sign(), Sign::Negative | Sign::Positive)
     }
 
-    /// The number of a residue: zero, nothing (after a division by zero), or what the enclosure says.
+    /// The number of a residue: zero, unknown (after a division by zero), or in the enclosure.
     #[inline]
     fn paired(residue: Residue, enclosure: impl FnOnce() -> B) -> Self {
         let enclosure = match residue.is_zero() {
@@ -73,40 +74,29 @@ impl<B: Ordered + Trigonometry> Trigonometry for Certified<B> {
     }
 }
 
-impl<B: Ordered> Add for Certified<B> {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
+impl<B: Ordered> Certified<B> {
+    fn plus(self, other: Self) -> Self {
         Self::paired(self.residue + other.residue, || self.enclosure + other.enclosure)
     }
-}
 
-impl<B: Ordered> Sub for Certified<B> {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
+    fn minus(self, other: Self) -> Self {
         Self::paired(self.residue - other.residue, || self.enclosure - other.enclosure)
     }
-}
 
-impl<B: Ordered> Mul for Certified<B> {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
+    fn times(self, other: Self) -> Self {
         Self::paired(self.residue * other.residue, || self.enclosure * other.enclosure)
     }
-}
 
-impl<B: Ordered> Div for Certified<B> {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
+    fn over(self, other: Self) -> Self {
         Self::paired(self.residue / other.residue, || self.enclosure / other.enclosure)
     }
-}
 
-impl<B: Ordered> Neg for Certified<B> {
-    type Output = Self;
-    fn neg(self) -> Self {
+    fn negated(self) -> Self {
         Self { enclosure: -self.enclosure, residue: -self.residue }
     }
 }
+
+operators!([B: Ordered] Certified<B>);
 
 #[cfg(test)]
 mod tests {
@@ -131,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn borders_are_seen_as_zeros() {
+    fn identities_are_found_zero() {
         use Sign::{Positive, Undecided, Zero};
         let expected = [Zero, Zero, Zero, Undecided, Undecided, Positive];
         assert_eq!(decisions::<Ball>(), expected);
@@ -140,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_zero_is_decided_by_more_digits() {
+    fn more_digits_decide_what_is_not_zero() {
         fn off<B: Ordered + Trigonometry>() -> (Sign, bool) {
             let off = Certified::<B>::cos_sin(std::f64::consts::FRAC_PI_3)[0] - Certified::from_f64(0.5);
             (off.sign(), off.is_nonzero())
@@ -153,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_certified_zero_annuls_what_is_not_known() {
+    fn products_with_a_certified_zero_are_zero() {
         let tiny = Certified::<Ball>::from_f64(1.0) / Certified::from_f64(3.0);
         let hidden = tiny * tiny * Certified::from_f64(9.0) - Certified::from_f64(1.0 - f64::EPSILON);
         let zero = tiny * Certified::from_f64(3.0) - Certified::one();

@@ -1,19 +1,52 @@
 //! The numbers that the core runs on.
 //!
-//! From kinematics to the slacks of the modes every algorithm is written once over [`Real`]: it neither branches on a
-//! number nor takes a root, so that eight lanes, a ball, a double-double or an exact rational run the same code as `f64`.
-//! [`Ball`] is the instance that knows its own rounding, over f64 or over [`DoubleDouble`], [`Interval`] the one with as many
-//! digits as asked for, and [`Residue`] the one that tells only whether a number is zero; [`Certified`] carries an enclosure
-//! and a residue in step, so that enough digits decide every sign. [`Affine`] is the instance for data that are themselves
-//! known to an interval alone. Only the stage that turns numbers into signs looks inside.
+//! From kinematics to the slacks of the modes every algorithm is written once over [`Real`]. It neither branches on a number
+//! nor takes a root, so that eight lanes, a ball, a double-double or an exact rational run the same code as `f64`. Only the
+//! stage that turns numbers into signs looks inside.
+//!
+//! | Number | Encloses | Cost of an operation |
+//! | --- | --- | --- |
+//! | `f64` | nothing | 1 |
+//! | [`DoubleDouble`] | nothing; 106 bits | about 20 |
+//! | [`Ball`] | the exact result of its operations, over f64 or [`DoubleDouble`] | about 5, or 30 |
+//! | [`Interval`] | the same, with any number of bits | an allocation, some 100 |
+//! | [`Residue`] | nothing; knows whether the exact result is zero | about 20, a quotient some 500 |
+//! | [`Certified`] | an enclosure and a residue of the same number | both |
+//! | [`Affine`] | results for data that are known to an interval only, linear in N common causes | N |
 
-mod affine;
-mod ball;
-mod certified;
+/// Implements the operators of a number by its methods `plus`, `minus`, `times`, `over` and `negated`.
+macro_rules! operators {
+    ([$($parameters:tt)*] $number:ty) => {
+        operators!(@ [$($parameters)*] $number, Add add plus);
+        operators!(@ [$($parameters)*] $number, Sub sub minus);
+        operators!(@ [$($parameters)*] $number, Mul mul times);
+        operators!(@ [$($parameters)*] $number, Div div over);
+        impl<$($parameters)*> std::ops::Neg for $number {
+            type Output = Self;
+            #[inline]
+            fn neg(self) -> Self {
+                self.negated()
+            }
+        }
+    };
+    (@ [$($parameters:tt)*] $number:ty, $operator:ident $function:ident $method:ident) => {
+        impl<$($parameters)*> std::ops::$operator for $number {
+            type Output = Self;
+            #[inline]
+            fn $function(self, other: Self) -> Self {
+                self.$method(other)
+            }
+        }
+    };
+}
+
 mod double;
+mod series;
+mod ball;
 mod interval;
 mod residue;
-mod series;
+mod certified;
+mod affine;
 
 pub use affine::Affine;
 pub use ball::{Ball, Midpoint};
@@ -24,9 +57,9 @@ pub use residue::Residue;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number of the core: `Copy`, the four operations, negation, and every `f64` exactly.
+/// A number of the core: `Copy`, with the four operations, negation, and every `f64` exactly.
 ///
-/// A heap number joins by a `Copy` handle (see the tests' exact rational).
+/// A number on the heap takes part by a `Copy` handle, as [`Interval`] does: the algorithms stay free of borrows.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
@@ -59,7 +92,7 @@ pub enum Sign {
     Zero,
     /// Greater than zero.
     Positive,
-    /// Zero lies within the error.
+    /// The error does not exclude zero.
     Undecided,
 }
 
@@ -78,24 +111,24 @@ impl Sign {
     }
 }
 
-/// A number that knows its own sign, or that its precision does not tell it.
+/// A number that knows its own sign, or that its precision does not suffice for it.
 pub trait Ordered: Real {
     /// The sign; never guessed.
     fn sign(self) -> Sign;
 
-    /// The nearest f64, or one as near as the number is known; NaN where nothing is known.
+    /// The nearest f64, or one as near as the number is known; NaN if nothing is known.
     fn to_f64(self) -> f64;
 
-    /// Runs `work` and frees the storage of the numbers that it made, where they have any; none may leave it.
+    /// Runs `work` and frees the storage of the numbers that it made; none of them may leave it.
     fn freeing<R>(work: impl FnOnce() -> R) -> R {
         work()
     }
 
-    /// How far the number may be from [`Ordered::to_f64`], beside that rounding; infinite where nothing is known.
+    /// How far the number may be from [`Ordered::to_f64`], that rounding excepted; infinite if nothing is known.
     fn error(self) -> f64;
 }
 
-/// A number in which the cosine and sine of an f64 angle can be told.
+/// A number that has the cosine and sine of an f64 angle.
 pub trait Trigonometry: Real {
     /// Cosine and sine of exactly the angle that `angle` \[rad\] is.
     fn cos_sin(angle: f64) -> [Self; 2];
@@ -115,11 +148,25 @@ pub trait Enclosure: Ordered {
 }
 
 #[cfg(test)]
+mod exact {
+    use dashu::rational::RBig;
+
+    /// The rational that a finite f64 is.
+    pub fn exact(value: f64) -> RBig {
+        RBig::try_from(value).expect("finite")
+    }
+
+    pub fn magnitude(value: RBig) -> RBig {
+        if value < RBig::ZERO { -value } else { value }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_sign_is_told_only_outside_the_error() {
+    fn sign_within_the_error_is_undecided() {
         assert_eq!(Sign::within(1e-3, 1e-4), Sign::Positive);
         assert_eq!(Sign::within(-1e-3, 1e-4), Sign::Negative);
         assert_eq!(Sign::within(1e-5, 1e-4), Sign::Undecided);

@@ -1,20 +1,21 @@
 //! Numbers modulo two primes: whether a number is exactly zero.
 
 use super::{Real, Trigonometry};
-use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number modulo two primes just below 2^61, with the angles' cosines and sines replaced by a point of the circle.
 ///
-/// It tells whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these angles
+/// It finds whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these angles
 /// are multiples of one 2^-k, so such a number is a rational function R, with rational coefficients, of w = e^(i 2^-k). By
 /// the theorem of Lindemann and Weierstrass w is transcendental, so R(w) vanishes only if R does identically. Here R is
 /// evaluated at a point of the circle x^2 + y^2 = 1 over a finite field instead of w. A residue other than zero therefore
-/// proves that the number is not zero. Zero modulo both primes proves that it is, but for chance: an R other than zero would
-/// have to vanish at both points, which are fixed but unrelated to any robot; of a random point that has the probability
+/// proves that the number is not zero. Zero modulo both primes proves that it is, except for chance: an R other than zero
+/// would have to vanish at both points, which are fixed but unrelated to any robot; of a random point that has the probability
 /// (degree of R / 2^59)^2, about 2^-100 at a degree of a few hundred. (Or its coefficients would have to be divisible by
 /// both primes, as likely.)
 ///
-/// A division by a residue of zero leaves nothing known modulo that prime.
+/// After a division by a residue of zero nothing is known modulo that prime.
+///
+/// Cost: about 20 integer operations; a quotient some 500.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Residue([u64; 2]);
 
@@ -29,7 +30,7 @@ type SecondField = Modulus<61, SECOND>;
 type FirstOrder = Modulus<59, { (FIRST - 1) / 4 }>;
 type SecondOrder = Modulus<59, { (SECOND - 1) / 4 }>;
 
-/// What is no number modulo a prime.
+/// Stands for an unknown residue.
 const NONE: u64 = u64::MAX;
 
 static FIRST_TABLES: Tables =
@@ -112,7 +113,7 @@ const LEAST: i32 = -1088;
 /// Multiples of angles are taken by digits of four bits.
 const DIGITS: usize = 15;
 
-/// What is known of a prime beforehand.
+/// Constants of a prime.
 struct Tables {
     /// 2^(LEAST + STEP i) modulo the prime and modulo the order of the circle's points.
     powers: [[u64; 2]; STEPS],
@@ -188,9 +189,8 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         point
     }
 
-    #[inline]
-    fn both(a: u64, b: u64, operation: impl FnOnce(u64, u64) -> u64) -> u64 {
-        if a == NONE || b == NONE { NONE } else { operation(a, b) }
+    fn over(a: u64, b: u64) -> u64 {
+        if b == 0 { NONE } else { Self::times(a, Self::inverse(b)) }
     }
 }
 
@@ -198,7 +198,7 @@ impl Residue {
     /// Nothing known modulo either prime.
     pub const UNDEFINED: Self = Self([NONE; 2]);
 
-    /// Whether the number is zero: proved if it is not, and nearly so if it is; nothing after a division by zero.
+    /// Whether the number is zero: proved if it is not, and nearly so if it is; `None` after a division by zero.
     #[inline]
     pub fn is_zero(self) -> Option<bool> {
         let [first, second] = self.0;
@@ -238,51 +238,41 @@ impl Trigonometry for Residue {
     }
 }
 
-impl Add for Residue {
-    type Output = Self;
+impl Residue {
+    /// An operation modulo each prime, if both numbers are known modulo it.
     #[inline]
-    fn add(self, other: Self) -> Self {
+    fn by_prime(self, other: Self, first: impl FnOnce(u64, u64) -> u64, second: impl FnOnce(u64, u64) -> u64) -> Self {
         let ([a, b], [c, d]) = (self.0, other.0);
-        Self([FirstField::both(a, c, FirstField::plus), SecondField::both(b, d, SecondField::plus)])
+        let first = if a == NONE || c == NONE { NONE } else { first(a, c) };
+        Self([first, if b == NONE || d == NONE { NONE } else { second(b, d) }])
     }
-}
 
-impl Sub for Residue {
-    type Output = Self;
     #[inline]
-    fn sub(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        Self([FirstField::both(a, c, FirstField::minus), SecondField::both(b, d, SecondField::minus)])
+    fn plus(self, other: Self) -> Self {
+        self.by_prime(other, FirstField::plus, SecondField::plus)
     }
-}
 
-impl Neg for Residue {
-    type Output = Self;
     #[inline]
-    fn neg(self) -> Self {
+    fn minus(self, other: Self) -> Self {
+        self.by_prime(other, FirstField::minus, SecondField::minus)
+    }
+
+    #[inline]
+    fn times(self, other: Self) -> Self {
+        self.by_prime(other, FirstField::times, SecondField::times)
+    }
+
+    fn over(self, other: Self) -> Self {
+        self.by_prime(other, FirstField::over, SecondField::over)
+    }
+
+    #[inline]
+    fn negated(self) -> Self {
         Self([0; 2]) - self
     }
 }
 
-impl Mul for Residue {
-    type Output = Self;
-    #[inline]
-    fn mul(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        Self([FirstField::both(a, c, FirstField::times), SecondField::both(b, d, SecondField::times)])
-    }
-}
-
-impl Div for Residue {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        Self([
-            FirstField::both(a, c, |a, c| if c == 0 { NONE } else { FirstField::times(a, FirstField::inverse(c)) }),
-            SecondField::both(b, d, |b, d| if d == 0 { NONE } else { SecondField::times(b, SecondField::inverse(d)) }),
-        ])
-    }
-}
+operators!([] Residue);
 
 #[cfg(test)]
 mod tests {
@@ -315,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn the_primes_are_what_they_are_said_to_be() {
+    fn primes_and_orders_are_as_stated() {
         for (prime, order) in [(FirstField::PRIME, FirstOrder::PRIME), (SecondField::PRIME, SecondOrder::PRIME)] {
             assert!(is_prime(prime) && is_prime(order) && !is_prime(prime - 2));
             assert_eq!((prime % 8, prime + 1), (3, 4 * order));
@@ -361,7 +351,7 @@ mod tests {
         }
 
         #[test]
-        fn every_operation_is_that_of_the_rationals(a in -1e9..1e9f64, b in -1e-9..1e-9f64) {
+        fn operations_are_those_of_the_rationals(a in -1e9..1e9f64, b in -1e-9..1e-9f64) {
             let (x, y) = (Residue::from_f64(a), Residue::from_f64(b));
             let (p, q) = (RBig::try_from(a).expect("finite"), RBig::try_from(b).expect("finite"));
             prop_assert_eq!(x + y, residue(&(&p + &q)));
@@ -387,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_and_its_quotients() {
+    fn quotients_by_zero_are_unknown() {
         let [one, zero] = Residue::cos_sin(0.0);
         assert_eq!((one, zero), (Residue::one(), Residue::zero()));
         let third = Residue::one() / Residue::from_f64(3.0);

@@ -1,4 +1,6 @@
 //! Cosine and sine of an exact angle by the Taylor series, in any number that encloses.
+//!
+//! One series serves [`Interval`](super::Interval) and the ball of double-doubles: both need bounds of these digits.
 
 use super::Enclosure;
 
@@ -103,14 +105,14 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
         #[test]
-        fn every_enclosure_holds_the_same_cosine(angle in angle()) {
+        fn enclosures_hold_the_same_cosine(angle in angle()) {
             prop_assert_eq!(check(angle), Ok(()));
         }
     }
 
     /// The assumption about `libm`, near its worst places as well: next to the multiples of half a right angle.
     #[test]
-    fn libm_keeps_its_promise() {
+    fn libm_errs_by_less_than_assumed() {
         for turn in -3000..3000 {
             let border = f64::from(turn) * std::f64::consts::FRAC_PI_4;
             for step in [border, border.next_up(), border.next_down(), border + 1e-9] {
@@ -122,7 +124,7 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             let angle = (state >> 11) as f64 / (1u64 << 53) as f64 * 20.0 - 10.0;
             let (sin, cos) = libm::sincos(angle);
-            // Double-doubles, checked above, are sharp enough to tell.
+            // Double-doubles, checked above, are sharp enough.
             let wide = Ball::<DoubleDouble>::cos_sin(angle);
             for (value, wide) in [cos, sin].into_iter().zip(wide) {
                 let error = (wide - Ball::from_f64(value)).to_f64().abs() + wide.radius;
@@ -147,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn no_angle_is_exact_and_none_is_nothing() {
+    fn only_angle_zero_is_exact() {
         let exact = [Sign::Positive, Sign::Zero];
         assert_eq!(Ball::<f64>::cos_sin(0.0).map(Ordered::sign), exact);
         assert_eq!(Ball::<DoubleDouble>::cos_sin(-0.0).map(Ordered::sign), exact);
@@ -160,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn many_digits_are_all_there() {
+    fn series_gives_the_bits_asked_for() {
         for (bits, angle) in [(64, 1.0), (256, 1e6), (4096, -3.7), (300, 1e300), (300, 1e-300)] {
             let radii = Interval::scope(bits, || Interval::cos_sin(angle).map(Interval::radius));
             assert!(radii.into_iter().all(|radius| radius <= 2.0 * 0.5f64.powi(bits.min(1000) as i32)), "{radii:?}");

@@ -4,8 +4,8 @@
 //!     samples --regimes differ: bisect; the same: hunt--> brackets of width 1e-12 --> regions, borders
 //! ```
 
-use super::hunt::suspects;
-use super::model::Watched;
+use super::border_search::suspects;
+use super::model::{Solver, Watched};
 use super::regime::Regime;
 use std::sync::Arc;
 
@@ -23,9 +23,26 @@ pub trait Landscape {
     fn watched(&mut self, at: f64) -> Option<Watched>;
 }
 
+/// Places of a line in the space of all parameters, answered by a solver.
+pub(super) struct Along<'s, 'm, P> {
+    pub solver: &'s mut Solver<'m>,
+    /// The values of all parameters at a place.
+    pub place: P,
+}
+
+impl<P: Fn(f64) -> Vec<f64>> Landscape for Along<'_, '_, P> {
+    fn regime(&mut self, at: f64) -> Arc<Regime> {
+        self.solver.regime(&(self.place)(at))
+    }
+
+    fn watched(&mut self, at: f64) -> Option<Watched> {
+        self.solver.watched(&(self.place)(at))
+    }
+}
+
 /// A place and what happens there.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct Probe {
     /// The place.
     pub at: f64,
     /// What happens.
@@ -36,9 +53,9 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bracket {
     /// The lower one.
-    pub below: Point,
+    pub below: Probe,
     /// The upper one.
-    pub above: Point,
+    pub above: Probe,
 }
 
 impl Bracket {
@@ -64,7 +81,7 @@ pub struct Stretch {
 /// Where the regimes of two places differ, the border between them is bisected, and every other regime that is met on the
 /// way likewise; where they are the same, the stretch between them is searched for hidden ones (see `hunt`). So in the end
 /// every neighbouring pair of all places that were asked agrees, or brackets a border.
-pub fn brackets(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64) -> Vec<Bracket> {
+pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     bisect(line, a, b, resolution, &mut found);
     search_between(line, a, b, found, resolution, SEARCHES)
@@ -74,8 +91,8 @@ pub fn brackets(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64
 /// is searched anew between these, since other contacts may be closed there.
 fn search_between(
     line: &mut impl Landscape,
-    a: &Point,
-    b: &Point,
+    a: &Probe,
+    b: &Probe,
     found: Vec<Bracket>,
     resolution: f64,
     searches: usize,
@@ -83,8 +100,8 @@ fn search_between(
     if searches == 0 {
         return found;
     }
-    let begins: Vec<Point> = std::iter::once(a).chain(found.iter().map(|bracket| &bracket.above)).cloned().collect();
-    let ends: Vec<Point> = found.iter().map(|bracket| &bracket.below).chain([b]).cloned().collect();
+    let begins: Vec<Probe> = std::iter::once(a).chain(found.iter().map(|bracket| &bracket.above)).cloned().collect();
+    let ends: Vec<Probe> = found.iter().map(|bracket| &bracket.below).chain([b]).cloned().collect();
     let mut all = Vec::new();
     let mut borders = found.into_iter();
     for (from, to) in begins.iter().zip(&ends) {
@@ -99,7 +116,7 @@ fn search_between(
 }
 
 /// Bisects where the regimes of two places differ.
-fn bisect(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64, found: &mut Vec<Bracket>) {
+fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64, found: &mut Vec<Bracket>) {
     let (mut below, mut above) = (a.clone(), b.clone());
     if below.regime == above.regime {
         return;
@@ -109,7 +126,7 @@ fn bisect(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64, foun
         if at <= below.at || at >= above.at {
             break;
         }
-        let middle = Point { at, regime: line.regime(at) };
+        let middle = Probe { at, regime: line.regime(at) };
         if middle.regime == below.regime {
             below = middle;
         } else if middle.regime == above.regime {
@@ -124,14 +141,14 @@ fn bisect(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64, foun
 }
 
 /// Borders between two places of the same regime.
-fn hidden(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64) -> Vec<Bracket> {
+fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     if b.at - a.at <= resolution {
         return found;
     }
     let mut before = a.clone();
     for at in suspects(&mut |x| line.watched(x), a.at, b.at, resolution) {
-        let point = Point { at, regime: line.regime(at) };
+        let point = Probe { at, regime: line.regime(at) };
         bisect(line, &before, &point, resolution, &mut found);
         before = point;
     }
@@ -141,7 +158,7 @@ fn hidden(line: &mut impl Landscape, a: &Point, b: &Point, resolution: f64) -> V
 
 /// The stretches from `first` to `last` that the brackets part, and the border between each two of them. What is not wider
 /// than the `resolution` is no stretch but part of a border; stretches of one regime that only such a point parts are one.
-pub fn stretches(first: Point, last: Point, brackets: &[Bracket], resolution: f64) -> (Vec<Stretch>, Vec<Bracket>) {
+pub fn stretches(first: Probe, last: Probe, brackets: &[Bracket], resolution: f64) -> (Vec<Stretch>, Vec<Bracket>) {
     let (from, to) = (first.at, last.at);
     let begins = std::iter::once(first).chain(brackets.iter().map(|bracket| bracket.above.clone()));
     let ends = brackets.iter().map(|bracket| bracket.below.clone()).chain([last]);
@@ -196,8 +213,8 @@ mod tests {
     /// The borders of a landscape from 0 to 1, sampled at 11 places.
     fn borders(numbers: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
         let mut line = Made(numbers);
-        let points: Vec<Point> =
-            (0..=10).map(|k| f64::from(k) / 10.0).map(|at| Point { at, regime: line.regime(at) }).collect();
+        let points: Vec<Probe> =
+            (0..=10).map(|k| f64::from(k) / 10.0).map(|at| Probe { at, regime: line.regime(at) }).collect();
         let mut all = Vec::new();
         for pair in points.windows(2) {
             all.extend(brackets(&mut line, &pair[0], &pair[1], RESOLUTION));
@@ -271,7 +288,7 @@ mod tests {
 
     #[test]
     fn a_thin_region_among_contacts_that_no_sample_has_is_found() {
-        let ends = [0.4, 0.5].map(|at| Point { at, regime: Stepping.regime(at) });
+        let ends = [0.4, 0.5].map(|at| Probe { at, regime: Stepping.regime(at) });
         let found = brackets(&mut Stepping, &ends[0], &ends[1], RESOLUTION);
         near(&found.iter().map(Bracket::at).collect::<Vec<_>>(), &[0.41, THIN[0], THIN[1], 0.49]);
     }

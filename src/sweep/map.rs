@@ -9,11 +9,13 @@
 //! meet, at the last, its crossings meet in its middle. Every crossing is bisected, and points between two of them until a
 //! curve is straight to 5e-5 of the ranges.
 
-use super::cell::{Cell, Edge, Side, Trace};
-use super::chain::{chains, loops};
-use super::line::{Landscape, Point, RESOLUTION};
-use super::model::{Model, Solver, Watched};
+use super::cell::{GridCell, Trace};
+use super::edge::{Direction, Edge, GridLine, Segment};
+use super::interior::{deepest_nodes, distance};
+use super::line::{Probe, RESOLUTION};
+use super::model::{RobotStudy, Solver};
 use super::parallel::Workers;
+use super::polyline::{loops, polylines};
 use super::regime::Regime;
 use super::transition::Transition;
 use crate::Error;
@@ -38,7 +40,7 @@ pub struct Map {
     /// The different regimes, in the order in which the grid meets them.
     pub areas: Vec<Area>,
     /// The borders between them.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<BorderCurve>,
     /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
     pub dependent: bool,
 }
@@ -60,45 +62,13 @@ pub struct Area {
 
 /// A border between two areas.
 #[derive(Debug, Clone)]
-pub struct Curve {
+pub struct BorderCurve {
     /// The areas on its left and on its right, as indices.
     pub sides: [usize; 2],
     /// Its points; of a closed one the first is the last.
     pub points: Vec<Vector<f64>>,
     /// What turns there; `below` is its left side.
     pub turns: Transition,
-}
-
-/// The points of a line in the plane of two parameters.
-pub(super) struct Along<'s, 'm> {
-    pub solver: &'s mut Solver<'m>,
-    /// Which parameter varies.
-    pub axis: usize,
-    /// The other one's value.
-    pub fixed: f64,
-}
-
-impl Along<'_, '_> {
-    pub fn place(&self, at: f64) -> Vector<f64> {
-        place(self.axis, self.fixed, at)
-    }
-}
-
-/// The point whose coordinate `axis` is `at` and whose other one is `fixed`.
-pub(super) fn place(axis: usize, fixed: f64, at: f64) -> Vector<f64> {
-    if axis == 0 { [at, fixed] } else { [fixed, at] }
-}
-
-impl Landscape for Along<'_, '_> {
-    fn regime(&mut self, at: f64) -> Arc<Regime> {
-        let place = self.place(at);
-        self.solver.regime(&place)
-    }
-
-    fn watched(&mut self, at: f64) -> Option<Watched> {
-        let place = self.place(at);
-        self.solver.watched(&place)
-    }
 }
 
 /// The lines of the grid along a parameter.
@@ -113,74 +83,128 @@ fn lines(parameter: &Parameter) -> Vec<f64> {
     (0..=cells).map(|k| parameter.from + parameter.range() * part(k)).collect()
 }
 
-impl Map {
-    /// The areas of `model`, whose study has two parameters; tells `workers` of [`Map::work`] pieces of work.
-    pub fn of(model: &Model, workers: Workers) -> Self {
-        let [first, second] = model.study.parameters() else {
-            return Self { areas: Vec::new(), curves: Vec::new(), dependent: false };
-        };
-        let (xs, ys) = (lines(first), lines(second));
+/// The grid through which borders are traced: the regimes at its nodes and the borders across its edges.
+struct Grid<'p> {
+    parameters: [&'p Parameter; 2],
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+    resolution: Vector<f64>,
+    /// Row by row, like everything else.
+    nodes: Vec<Arc<Regime>>,
+    rows: Vec<Edge>,
+    columns: Vec<Edge>,
+}
+
+impl<'p> Grid<'p> {
+    fn new(model: &RobotStudy, parameters: [&'p Parameter; 2], workers: Workers) -> Self {
+        let [xs, ys] = parameters.map(lines);
         let (nx, ny) = (xs.len(), ys.len());
-        let resolution = [RESOLUTION * first.range(), RESOLUTION * second.range()];
+        let resolution = parameters.map(|parameter| RESOLUTION * parameter.range());
         let begin = || Solver::new(model);
         let nodes = workers.map(nx * ny, begin, |solver, k| solver.regime(&[xs[k % nx], ys[k / nx]]));
         let edge = |solver: &mut Solver, axis: usize, column: usize, row: usize| {
             let (along, fixed, at) = if axis == 0 { (&xs, ys[row], column) } else { (&ys, xs[column], row) };
             let other = if axis == 0 { row * nx + column + 1 } else { (row + 1) * nx + column };
             let ends = [(along[at], &nodes[row * nx + column]), (along[at + 1], &nodes[other])];
-            let [a, b] = ends.map(|(at, regime)| Point { at, regime: Arc::clone(regime) });
-            Edge::search(&mut Along { solver, axis, fixed }, a, b, resolution[axis])
+            let ends = ends.map(|(at, regime)| Probe { at, regime: Arc::clone(regime) });
+            Edge::search(solver, GridLine { axis, fixed }, ends, resolution[axis])
         };
         let rows = workers.map((nx - 1) * ny, begin, |solver, k| edge(solver, 0, k % (nx - 1), k / (nx - 1)));
         let columns = workers.map(nx * (ny - 1), begin, |solver, k| edge(solver, 1, k % nx, k / nx));
-        let cell = |k: usize| {
-            let (column, row) = (k % (nx - 1), k / (nx - 1));
-            Cell {
-                corners: [[xs[column], ys[row]], [xs[column + 1], ys[row + 1]]],
-                edges: [
-                    rows[row * (nx - 1) + column].clone(),
-                    columns[row * nx + column + 1].clone(),
-                    rows[(row + 1) * (nx - 1) + column].clone(),
-                    columns[row * nx + column].clone(),
-                ],
-            }
-        };
-        let segments = workers.map((nx - 1) * (ny - 1), begin, |solver, k| {
-            let mut trace = Trace::new(solver, resolution);
-            trace.cell(cell(k));
-            trace.segments
-        });
-        let segments: Vec<_> = segments.into_iter().flatten().collect();
+        Self { parameters, xs, ys, resolution, nodes, rows, columns }
+    }
 
-        // The frame, counter-clockwise, in pieces of one regime each.
+    fn cell(&self, k: usize) -> GridCell {
+        let nx = self.xs.len();
+        let (column, row) = (k % (nx - 1), k / (nx - 1));
+        let edges = [
+            &self.rows[row * (nx - 1) + column],
+            &self.columns[row * nx + column + 1],
+            &self.rows[(row + 1) * (nx - 1) + column],
+            &self.columns[row * nx + column],
+        ];
+        GridCell {
+            corners: [[self.xs[column], self.ys[row]], [self.xs[column + 1], self.ys[row + 1]]],
+            edges: edges.map(Edge::clone),
+        }
+    }
+
+    /// The frame, counter-clockwise, in pieces of one regime each.
+    fn frame(&self) -> Vec<Segment> {
+        let (nx, ny) = (self.xs.len(), self.ys.len());
         let mut frame = Vec::new();
         for column in 0..nx - 1 {
-            frame.extend(rows[column].pieces(0, ys[0], Side::Forward));
-            frame.extend(rows[(ny - 1) * (nx - 1) + column].pieces(0, ys[ny - 1], Side::Backward));
+            frame.extend(self.rows[column].pieces(Direction::Forward));
+            frame.extend(self.rows[(ny - 1) * (nx - 1) + column].pieces(Direction::Backward));
         }
         for row in 0..ny - 1 {
-            frame.extend(columns[row * nx + nx - 1].pieces(1, xs[nx - 1], Side::Forward));
-            frame.extend(columns[row * nx].pieces(1, xs[0], Side::Backward));
+            frame.extend(self.columns[row * nx + nx - 1].pieces(Direction::Forward));
+            frame.extend(self.columns[row * nx].pieces(Direction::Backward));
         }
+        frame
+    }
+
+    /// A point on the outermost lines is moved to the end of the range.
+    fn outward(&self, [x, y]: Vector<f64>) -> Vector<f64> {
+        let snapped = |at: f64, lines: &[f64], parameter: &Parameter| match lines {
+            [least, ..] if at <= *least => parameter.from,
+            [.., most] if at >= *most => parameter.to,
+            _ => at,
+        };
+        [snapped(x, &self.xs, self.parameters[0]), snapped(y, &self.ys, self.parameters[1])]
+    }
+
+    /// For each connected part of each area, as the nodes show it, the node that is farthest from its borders, and how far
+    /// that is.
+    fn find_middles(&self, areas: &mut [Area]) {
+        let (xs, ys) = (&self.xs, &self.ys);
+        let nx = xs.len();
+        let ranges = [xs[nx - 1] - xs[0], ys[ys.len() - 1] - ys[0]];
+        let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
+        let kinds: Vec<Option<usize>> = self.nodes.iter().map(index).collect();
+        for (area, nodes) in deepest_nodes(&kinds, nx) {
+            let room = nodes.into_iter().map(|k| [xs[k % nx], ys[k / nx]]);
+            let room = room.map(|at| (at, distance(at, &areas[area].loops, ranges)));
+            areas[area].middles.extend(room.max_by(|a, b| a.1.total_cmp(&b.1)));
+        }
+    }
+}
+
+impl Map {
+    /// The areas of `model`, whose study has two parameters; reports [`Map::work`] pieces of work to `workers`.
+    pub fn of(model: &RobotStudy, workers: Workers) -> Self {
+        let [first, second] = model.study.parameters() else {
+            return Self { areas: Vec::new(), curves: Vec::new(), dependent: false };
+        };
+        let grid = Grid::new(model, [first, second], workers);
+        let cells = (grid.xs.len() - 1) * (grid.ys.len() - 1);
+        let segments = workers.map(
+            cells,
+            || Solver::new(model),
+            |solver, k| {
+                let mut trace = Trace::new(solver, grid.resolution);
+                trace.cell(grid.cell(k), 0);
+                trace.segments
+            },
+        );
+        let segments: Vec<Segment> = segments.into_iter().flatten().collect();
+        let frame = grid.frame();
         let mut regimes: Vec<Arc<Regime>> = Vec::new();
-        let met = nodes.iter().chain(frame.iter().map(|piece| &piece.left));
+        let met = grid.nodes.iter().chain(frame.iter().map(|piece| &piece.left));
         for regime in met.chain(segments.iter().flat_map(|segment| [&segment.left, &segment.right])) {
             if !regimes.contains(regime) {
                 regimes.push(Arc::clone(regime));
             }
         }
-        // What has neither a segment nor a piece of the frame is a point.
-        let outward = |[x, y]: Vector<f64>| [snapped(x, &xs, first), snapped(y, &ys, second)];
-        let mut areas: Vec<Area> = regimes
-            .into_iter()
-            .filter_map(|regime| {
-                let mut loops = loops(&segments, &frame, &regime);
-                loops.iter_mut().flatten().for_each(|point| *point = outward(*point));
-                (!loops.is_empty()).then_some(Area { regime, loops, middles: Vec::new(), verdict: None, refused: None })
-            })
-            .collect();
-        super::middle::find(&nodes, (&xs, &ys), &mut areas);
-        let mut solver = begin();
+        // A regime that has neither a segment nor a piece of the frame holds at a single point.
+        let area = |regime: Arc<Regime>| {
+            let mut loops = loops(&segments, &frame, &regime);
+            loops.iter_mut().flatten().for_each(|point| *point = grid.outward(*point));
+            (!loops.is_empty()).then_some(Area { regime, loops, middles: Vec::new(), verdict: None, refused: None })
+        };
+        let mut areas: Vec<Area> = regimes.into_iter().filter_map(area).collect();
+        grid.find_middles(&mut areas);
+        let mut solver = Solver::new(model);
         let mut dependent = false;
         for area in &mut areas {
             let Some((middle, _)) = area.middles.first() else { continue };
@@ -189,12 +213,13 @@ impl Map {
             dependent |= inner.dependent;
         }
         let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
-        let curves = chains(&segments).into_iter().filter_map(|chain| {
-            let sides = [index(&chain.left)?, index(&chain.right)?];
-            Some(Curve { sides, points: chain.points.into_iter().map(outward).collect(), turns: chain.turns })
-        });
-        let curves: Vec<Curve> = curves.collect();
-        for Curve { sides, turns, .. } in &curves {
+        let curve = |line: super::polyline::Polyline| {
+            let sides = [index(&line.left)?, index(&line.right)?];
+            let points = line.points.into_iter().map(|point| grid.outward(point)).collect();
+            Some(BorderCurve { sides, points, turns: line.turns })
+        };
+        let curves: Vec<BorderCurve> = polylines(&segments).into_iter().filter_map(curve).collect();
+        for BorderCurve { sides, turns, .. } in &curves {
             for (side, refused) in sides.iter().zip([&turns.refused_below, &turns.refused_above]) {
                 let area = &mut areas[*side];
                 if area.regime.outcomes().is_none() && area.refused.is_none() {
@@ -206,18 +231,9 @@ impl Map {
     }
 
     /// How many pieces of work a map of `model` has.
-    pub fn work(model: &Model) -> usize {
+    pub fn work(model: &RobotStudy) -> usize {
         let [first, second] = model.study.parameters() else { return 0 };
         let (nx, ny) = (lines(first).len(), lines(second).len());
         nx * ny + (nx - 1) * ny + nx * (ny - 1) + (nx - 1) * (ny - 1)
-    }
-}
-
-/// A place on the outermost lines is taken to the end of the range.
-fn snapped(at: f64, lines: &[f64], parameter: &Parameter) -> f64 {
-    match lines {
-        [least, ..] if at <= *least => parameter.from,
-        [.., most] if at >= *most => parameter.to,
-        _ => at,
     }
 }

@@ -4,31 +4,32 @@
 //!     JSON --[study]--> Study: parameters, expressions     point --[model, variation]--> Robot, State --[pipeline]--> Impact
 //!     Impact --[regime]--> which outcomes are valid        inequalities of all combinations --[hunt]--> where they may change
 //!     samples --[line]--> borders, bisected to 1e-12 of the range --[transition]--> which inequality of which contact is zero there
-//!     one parameter --[survey]--> Survey --[course]--> Course    two parameters --[map, cell, chain]--> Map
+//!     one parameter --[survey]--> Survey --[course]--> RegionCurves    two parameters --[map, cell, chain]--> Map
 //! ```
 
-mod cell;
-mod chain;
-mod course;
-mod hunt;
-mod line;
-mod map;
-mod middle;
-mod model;
 mod parallel;
 mod regime;
-mod survey;
-mod transition;
+mod model;
 mod unit;
+mod border_search;
+mod line;
+mod transition;
+mod survey;
+mod curves;
+mod edge;
+mod cell;
+mod polyline;
+mod interior;
+mod map;
 
 pub use crate::read::{Parameter, Study};
-pub use course::{Course, Place};
-pub use line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stretches};
-pub use map::{Area, CELLS, Curve, Map};
-pub use model::{Model, Solver, WATCHED_CONTACTS, Watched};
+pub use curves::{CurvePoint, RegionCurves};
+pub use line::{Bracket, Landscape, Probe, RESOLUTION, Stretch, brackets, stretches};
+pub use map::{Area, BorderCurve, CELLS, Map};
+pub use model::{RobotStudy, Solver, WATCHED_CONTACTS, Watched};
 pub use parallel::Workers;
 pub use regime::Regime;
-pub use survey::{Border, Region, Survey};
+pub use survey::{Region, RegionBorder, Survey};
 pub use transition::{EndedOutcome, Side, Transition};
 
 use crate::Error;
@@ -45,7 +46,7 @@ pub enum Findings {
 
 impl Findings {
     /// Those of `model`; tells `workers` of [`Findings::work`] pieces of work.
-    pub fn of(model: &Model, workers: Workers) -> Self {
+    pub fn of(model: &RobotStudy, workers: Workers) -> Self {
         match model.study.parameters().len() {
             2 => Self::Map(Map::of(model, workers)),
             _ => Self::Along(Survey::of(model, workers)),
@@ -53,7 +54,7 @@ impl Findings {
     }
 
     /// How many pieces of work the findings of `model` take.
-    pub fn work(model: &Model) -> usize {
+    pub fn work(model: &RobotStudy) -> usize {
         match model.study.parameters().len() {
             2 => Map::work(model),
             _ => Survey::work(model),

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// A study of one robot.
 #[derive(Debug, Clone)]
-pub struct Model<'a> {
+pub struct RobotStudy<'a> {
     /// What is varied.
     pub study: &'a Study<'a>,
     /// The robot's file.
@@ -32,7 +32,7 @@ pub struct Model<'a> {
 /// Answers points of one model, in memory that it keeps.
 #[derive(Debug)]
 pub struct Solver<'a> {
-    model: &'a Model<'a>,
+    model: &'a RobotStudy<'a>,
     /// For the robot as it is; none where the study varies it.
     pipeline: Option<Pipeline<'a>>,
     /// Regimes that were met, each kept once.
@@ -64,7 +64,7 @@ pub(super) struct Inner {
 /// The inequalities of up to this many contacts are followed: 4^n combinations.
 pub const WATCHED_CONTACTS: usize = 4;
 
-impl Model<'_> {
+impl RobotStudy<'_> {
     /// Whether states can be read at all.
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl Model<'_> {
 
 impl<'a> Solver<'a> {
     /// A solver for `model`.
-    pub fn new(model: &'a Model<'a>) -> Self {
+    pub fn new(model: &'a RobotStudy<'a>) -> Self {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.options.clone()));
         Self { model, pipeline, known: Vec::new() }
     }
@@ -100,7 +100,7 @@ impl<'a> Solver<'a> {
         point: &[f64],
         ask: impl for<'p> FnOnce(&'p Robot, State, &mut Pipeline<'p>) -> T,
     ) -> Result<T> {
-        let Model { study, description, reduction, robot, options, defaults } = self.model;
+        let RobotStudy { study, description, reduction, robot, options, defaults } = self.model;
         let names = study.names(point);
         if let Some(pipeline) = &mut self.pipeline {
             return Ok(ask(robot, study.state(&names, robot, defaults)?, pipeline));

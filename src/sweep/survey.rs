@@ -1,7 +1,7 @@
 //! The regions of a study of one parameter, with what turns between them.
 
-use super::line::{Bracket, Landscape, Point, RESOLUTION, Stretch, brackets, stretches};
-use super::model::{Model, Solver, Watched};
+use super::line::{Along, Bracket, Probe, RESOLUTION, Stretch, brackets, stretches};
+use super::model::{RobotStudy, Solver};
 use super::parallel::Workers;
 use super::regime::Regime;
 use super::transition::Transition;
@@ -15,7 +15,7 @@ pub struct Survey {
     /// The regions from the least to the greatest value, each with positive width; neighbours differ.
     pub regions: Vec<Region>,
     /// The border between each two of them.
-    pub borders: Vec<Border>,
+    pub borders: Vec<RegionBorder>,
     /// Whether contacts depend on each other somewhere: combinations without a unique solution are not followed.
     pub dependent: bool,
 }
@@ -39,29 +39,16 @@ pub struct Region {
 
 /// A border between two regions.
 #[derive(Debug, Clone)]
-pub struct Border {
+pub struct RegionBorder {
     /// Where it is, to [`RESOLUTION`] of the parameter's range.
     pub at: f64,
     /// What turns.
     pub turns: Transition,
 }
 
-/// The points of a study of one parameter.
-struct Line<'s, 'm>(&'s mut Solver<'m>);
-
-impl Landscape for Line<'_, '_> {
-    fn regime(&mut self, at: f64) -> Arc<Regime> {
-        self.0.regime(&[at])
-    }
-
-    fn watched(&mut self, at: f64) -> Option<Watched> {
-        self.0.watched(&[at])
-    }
-}
-
 impl Survey {
     /// The regions of `model`, whose study has one parameter; tells `workers` of [`Survey::work`] pieces of work.
-    pub fn of(model: &Model, workers: Workers) -> Self {
+    pub fn of(model: &RobotStudy, workers: Workers) -> Self {
         let Some(parameter) = model.study.parameters().first() else {
             return Self { regions: Vec::new(), borders: Vec::new(), dependent: false };
         };
@@ -69,11 +56,11 @@ impl Survey {
         let begin = || Solver::new(model);
         let sample = |solver: &mut Solver, index: usize| {
             let at = parameter.sample(index);
-            Point { at, regime: solver.regime(&[at]) }
+            Probe { at, regime: solver.regime(&[at]) }
         };
         let samples = workers.map(parameter.steps, begin, sample);
         let between = |solver: &mut Solver, index: usize| {
-            brackets(&mut Line(solver), &samples[index], &samples[index + 1], resolution)
+            brackets(&mut Along { solver, place: |at| vec![at] }, &samples[index], &samples[index + 1], resolution)
         };
         let found: Vec<Bracket> = workers.map(parameter.steps - 1, begin, between).into_iter().flatten().collect();
         let (first, last) = (samples[0].clone(), samples[parameter.steps - 1].clone());
@@ -98,14 +85,14 @@ impl Survey {
         let regions = stretches.into_iter().enumerate().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {
             let bracket: &Bracket = &brackets[index];
-            Border { at: bracket.at(), turns: Transition::at(solver, bracket, |at| vec![at]) }
+            RegionBorder { at: bracket.at(), turns: Transition::at(solver, bracket, |at| vec![at]) }
         };
         let quiet = Workers { done: &|| (), ..workers };
         Self { regions, borders: quiet.map(brackets.len(), begin, border), dependent }
     }
 
     /// How many pieces of work a survey of `model` has.
-    pub fn work(model: &Model) -> usize {
+    pub fn work(model: &RobotStudy) -> usize {
         model.study.parameters().first().map_or(0, |parameter| 2 * parameter.steps - 1)
     }
 }

@@ -4,7 +4,7 @@
 //!     a number of the state or the robot = +- parameter + what does not hang on it   ->   the parameter has its unit
 //! ```
 
-use super::model::{Model, Solver};
+use super::model::{RobotStudy, Solver};
 use crate::Robot;
 use crate::description::{Description, Inertial};
 use crate::robot::{Axis, Base};
@@ -20,7 +20,7 @@ const PARTS: usize = 8;
 /// Differences of numbers that grow with a parameter agree to this part of its range.
 const SAME: f64 = 1e-9;
 
-impl Model<'_> {
+impl RobotStudy<'_> {
     /// The unit of a parameter; none where no number is the parameter but for its sign and what is added, or where such
     /// numbers have several units.
     pub fn unit(&self, parameter: usize) -> Option<&'static str> {

@@ -70,19 +70,29 @@ pub struct AtZero<'a> {
     /// The contact's name.
     pub contact: &'a str,
     /// What is zero there.
-    #[cfg_attr(feature = "schema", schemars(schema_with = "of_impulses"))]
+    #[cfg_attr(feature = "schema", schemars(with = "ZeroImpulse"))]
     pub inequality: Inequality,
 }
 
-/// The inequalities that an outcome's border can have: a velocity of zero belongs to another outcome.
+/// The schema of an inequality that is zero on an outcome's border: a velocity of zero belongs to another outcome.
 #[cfg(feature = "schema")]
-fn of_impulses(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let mut schema = <Inequality as schemars::JsonSchema>::json_schema(generator);
-    if let Some(serde_json::Value::Array(names)) = schema.get_mut("oneOf") {
-        let known = Inequality::OF_IMPULSES.map(|inequality| serde_json::json!(inequality));
-        names.retain(|name| known.contains(&name["const"]));
+struct ZeroImpulse;
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for ZeroImpulse {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Zero".into()
     }
-    schema
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let all = Inequality::json_schema(generator);
+        let named = |inequality| {
+            let wanted = serde_json::json!(inequality);
+            all.get("oneOf")?.as_array()?.iter().find(|known| known["const"] == wanted).cloned()
+        };
+        let known: Vec<serde_json::Value> = Inequality::OF_IMPULSES.into_iter().filter_map(named).collect();
+        schemars::json_schema!({"description": "An impulse inequality that is zero.", "oneOf": known})
+    }
 }
 
 /// Velocities by name, written as an object in the order of q.

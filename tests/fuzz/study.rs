@@ -10,7 +10,7 @@ use heelstrike::pipeline::Options;
 use heelstrike::read::documents::utf8;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Model, Study, Survey, Workers};
+use heelstrike::sweep::{RobotStudy, Study, Survey, Workers};
 use serde_json::{Value, json};
 use std::sync::LazyLock;
 use std::time::Duration;
@@ -127,7 +127,7 @@ fn check(bytes: &[u8]) -> bool {
 fn survey(study: &Study, case: &str) -> bool {
     let (description, robot) = &*BIPED;
     let (options, defaults) = (Options::default(), Defaults::default());
-    let model = Model { study, description, reduction: &Reduction::default(), robot, options, defaults };
+    let model = RobotStudy { study, description, reduction: &Reduction::default(), robot, options, defaults };
     if let Err(error) = model.readable() {
         check_refusal(&error, case);
         return false;

@@ -1,4 +1,4 @@
-//! Courses of outcomes along a parameter against single states, and the units of parameters.
+//! Curves of outcomes along a parameter against single states, and the units of parameters.
 
 use heelstrike::Robot;
 use heelstrike::description::Description;
@@ -6,7 +6,7 @@ use heelstrike::impact::{Explanation, Mode, Motion};
 use heelstrike::pipeline::Options;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Course, Model, Place, RESOLUTION, Solver, Study, Survey, Workers};
+use heelstrike::sweep::{CurvePoint, RESOLUTION, RegionCurves, RobotStudy, Solver, Study, Survey, Workers};
 use std::f64::consts::TAU;
 
 const MINIMALISTIC: &str = include_str!("../../urdf/minimalistic.urdf");
@@ -21,7 +21,7 @@ fn walk(friction: &str) -> String {
 }
 
 /// Asks about the model of a study.
-fn with<T>(study: &str, ask: impl FnOnce(&Model) -> T) -> T {
+fn with<T>(study: &str, ask: impl FnOnce(&RobotStudy) -> T) -> T {
     let study = Study::from_json(study).expect("a study");
     let description = Description::from_urdf(MINIMALISTIC).expect("a description");
     let reduction = Reduction::default();
@@ -29,13 +29,13 @@ fn with<T>(study: &str, ask: impl FnOnce(&Model) -> T) -> T {
     let options = Options { explain_up_to: 2, ..Options::default() };
     let (study, robot) = (&study, &robot);
     let description = &description;
-    ask(&Model { study, description, reduction: &reduction, robot, options, defaults: Defaults::default() })
+    ask(&RobotStudy { study, description, reduction: &reduction, robot, options, defaults: Defaults::default() })
 }
 
-fn courses(model: &Model) -> (Survey, Vec<Course>) {
+fn courses(model: &RobotStudy) -> (Survey, Vec<RegionCurves>) {
     let workers = Workers { threads: 2, done: &|| () };
     let survey = Survey::of(model, workers);
-    let courses = Course::of(model, &survey, workers);
+    let courses = RegionCurves::of(model, &survey, workers);
     (survey, courses)
 }
 
@@ -53,7 +53,7 @@ fn a_course_goes_from_border_to_border() {
     with(&walk("\"infinite\""), |model| {
         let (survey, courses) = courses(model);
         assert_eq!(courses.len(), 4);
-        for (region, Course { places }) in survey.regions.iter().zip(&courses) {
+        for (region, RegionCurves { places }) in survey.regions.iter().zip(&courses) {
             let (first, last) = (places.first().expect("a place"), places.last().expect("a place"));
             for (inside, border) in [(first.at - region.from, "from"), (region.to - last.at, "to")] {
                 assert!((0.0..=2.0 * RESOLUTION * 1.499).contains(&inside), "{border}: {inside}");
@@ -72,7 +72,7 @@ fn straight_lines_between_places_stay_by_the_outcomes() {
     for friction in ["\"infinite\"", "1", "10"] {
         with(&walk(friction), |model| {
             let mut solver = Solver::new(model);
-            for Course { places } in courses(model).1 {
+            for RegionCurves { places } in courses(model).1 {
                 let all = || places.iter().flat_map(|place| &place.outcomes).map(|(_, motion)| numbers(motion));
                 let half = all().next().map_or(0, |first| first.len() / 2);
                 let largest = |range: std::ops::Range<usize>| {
@@ -98,7 +98,7 @@ fn straight_lines_between_places_stay_by_the_outcomes() {
                             assert!(off <= SEEN * scales[index / half], "{friction}, {at}: {off}");
                         }
                     }
-                    let explained = |place: &Place| angles(place.explanation.as_ref().expect("regular"));
+                    let explained = |place: &CurvePoint| angles(place.explanation.as_ref().expect("regular"));
                     let own = angles(&analysis.explanation.expect("regular"));
                     for ((a, b), own) in explained(&pair[0]).into_iter().zip(explained(&pair[1])).zip(own) {
                         let b = a + libm::remainder(b - a, TAU);
@@ -116,7 +116,7 @@ fn courses_are_the_same_for_any_number_of_threads() {
     with(&walk("1"), |model| {
         let survey = Survey::of(model, Workers { threads: 1, done: &|| () });
         let places = |threads: usize| -> Vec<f64> {
-            let courses = Course::of(model, &survey, Workers { threads, done: &|| () });
+            let courses = RegionCurves::of(model, &survey, Workers { threads, done: &|| () });
             courses.iter().flat_map(|course| &course.places).map(|place| place.at).collect()
         };
         assert_eq!(places(1), places(5));

@@ -6,7 +6,7 @@ use heelstrike::impact::Mode;
 use heelstrike::pipeline::Options;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Area, Findings, Map, Model, Regime, Solver, Study, Survey, Workers};
+use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Study, Survey, Workers};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
@@ -32,12 +32,12 @@ fn walk(friction: &str) -> String {
 }
 
 /// Asks about the model of a study.
-fn with<T>(urdf: &str, study: &str, ask: impl FnOnce(&Model) -> T) -> T {
+fn with<T>(urdf: &str, study: &str, ask: impl FnOnce(&RobotStudy) -> T) -> T {
     let study = Study::from_json(study).expect("a study");
     let description = Description::from_urdf(urdf).expect("a description");
     let reduction = Reduction::default();
     let robot = Robot::reduce(&description, &reduction).expect("a robot");
-    ask(&Model {
+    ask(&RobotStudy {
         study: &study,
         description: &description,
         reduction: &reduction,
@@ -51,7 +51,7 @@ fn workers() -> Workers<'static> {
     Workers { threads: 2, done: &|| () }
 }
 
-fn map(model: &Model) -> Map {
+fn map(model: &RobotStudy) -> Map {
     match Findings::of(model, workers()) {
         Findings::Map(map) => map,
         Findings::Along(_) => panic!("two parameters make a map"),

@@ -1,6 +1,7 @@
 //! Compliant contact against the rigid outcomes: how near, to which, and what it hangs on.
 
-use super::frozen::{Ground, Run, TOLERANCE, run};
+use super::frozen::{CompliantRun, TOLERANCE, run};
+use super::ground::SoftGround;
 use super::moving::Moving;
 use crate::Result;
 use crate::accuracy::pose::Pose;
@@ -115,7 +116,7 @@ pub fn distance(problem: &ContactProblem, energy: f64, a: &[Vector<f64>], b: &[V
 }
 
 /// The outcome that a run ends nearest to; none where there is none.
-pub fn landing(problem: &ContactProblem, outcomes: &[Outcome], energy: f64, run: &Run) -> Option<Landing> {
+pub fn landing(problem: &ContactProblem, outcomes: &[Outcome], energy: f64, run: &CompliantRun) -> Option<Landing> {
     let distances = outcomes.iter().map(|outcome| distance(problem, energy, &run.impulse, &outcome.impulse));
     let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
     nearest.map(|(outcome, distance)| Landing { outcome, distance })
@@ -131,7 +132,7 @@ pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energ
     for &damping_ratio in &DAMPING_RATIOS {
         for &stiffness_ratio in &STIFFNESS_RATIOS {
             for &tangential_damping in &TANGENTIAL_DAMPING {
-                let ground = Ground { damping_ratio, stiffness_ratio, tangential_damping };
+                let ground = SoftGround { damping_ratio, stiffness_ratio, tangential_damping };
                 match run(problem, ground, TOLERANCE) {
                     Ok(run) if run.ended => {
                         landings.extend(landing(problem, outcomes, energy, &run).map(|landing| (ground, landing)));
@@ -141,7 +142,7 @@ pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energ
             }
         }
     }
-    let group = |parameter, value: Option<f64>, chosen: &dyn Fn(&Ground) -> bool| {
+    let group = |parameter, value: Option<f64>, chosen: &dyn Fn(&SoftGround) -> bool| {
         let chosen: Vec<Landing> =
             landings.iter().filter(|(ground, _)| chosen(ground)).map(|&(_, landing)| landing).collect();
         gather(parameter, value.filter(|value| value.is_finite()), &chosen, outcomes.len())
@@ -188,7 +189,7 @@ fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[Landi
 }
 
 /// The ground of the studies of tolerance and stiffness.
-const PLAIN: Ground = Ground { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
+const PLAIN: SoftGround = SoftGround { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
 
 fn by_tolerance(problem: &ContactProblem, outcomes: &[Outcome], energy: f64) -> Result<Vec<ByTolerance>> {
     let finest = run(problem, PLAIN, 1e-12)?;

@@ -5,7 +5,8 @@
 //! It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near none.
 
 use super::comparison::{Landing, NEAR, landing};
-use super::frozen::{Ground, run};
+use super::frozen::run;
+use super::ground::SoftGround;
 use crate::Result;
 use crate::accuracy::robots;
 use crate::impact::{Analysis, ContactProblem, analyse};
@@ -90,7 +91,7 @@ impl Biped {
     fn land(&self, speed: f64, ratio: f64) -> Result<(Analysis, Option<Landing>)> {
         let problem = self.struck(speed)?;
         let analysis = analyse(&problem, false)?;
-        let ground = Ground { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: ratio };
+        let ground = SoftGround { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: ratio };
         let run = run(&problem, ground, TOLERANCE)?;
         let landing = landing(&problem, &analysis.outcomes, self.energy(&problem), &run);
         Ok((analysis, landing))

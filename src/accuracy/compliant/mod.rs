@@ -4,14 +4,16 @@
 //! ends is not one of the rigid outcomes in general: it hangs on the damping and the ratios of tangential to normal
 //! parameters, and, while the configuration stands still, not at all on the stiffness.
 
-mod comparison;
+mod radau;
+mod ground;
 mod frozen;
-mod integrate;
-mod map;
 mod moving;
+mod comparison;
+mod map;
 
 pub use comparison::{ByStiffness, ByTolerance, Comparison, Group, Landing, NEAR, Target, compare, distance, landing};
-pub use frozen::{GREATEST_FRICTION, Ground, Run, TOLERANCE, run};
+pub use frozen::{CompliantRun, TOLERANCE, run};
+pub use ground::{GREATEST_FRICTION, SoftGround};
 pub use map::{Biped, Cell, Map};
 pub use moving::Moving;
 
@@ -31,7 +33,7 @@ mod tests {
         let problem =
             ContactProblem::new(vec![0.5, 0.0, 0.0, 0.5], vec![[0.0, -3.0]], vec![Friction::ZERO], vec![0.0]).unwrap();
         for zeta in [0.05f64, 0.3, 0.8] {
-            let ground = Ground { damping_ratio: zeta, stiffness_ratio: 1.0, tangential_damping: 1.0 };
+            let ground = SoftGround { damping_ratio: zeta, stiffness_ratio: 1.0, tangential_damping: 1.0 };
             let run = run(&problem, ground, TOLERANCE).unwrap();
             let root = (1.0 - zeta * zeta).sqrt();
             let phase = (2.0 * zeta * root).atan2(2.0 * zeta * zeta - 1.0);
@@ -47,7 +49,7 @@ mod tests {
         let problem =
             ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![[0.5, -1.0]], vec![Friction::Infinite], vec![0.0])
                 .unwrap();
-        let ground = Ground { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: 1.0 };
+        let ground = SoftGround { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: 1.0 };
         let run = run(&problem, ground, TOLERANCE).unwrap();
         let outcome = &analyse(&problem, false).unwrap().outcomes[0];
         for (found, expected) in run.impulse.iter().flatten().zip(outcome.impulse.iter().flatten()) {
@@ -57,7 +59,7 @@ mod tests {
 
     #[test]
     fn a_problem_at_rest_stays_so_and_too_many_contacts_are_refused() {
-        let ground = Ground { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
+        let ground = SoftGround { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
         let still = |contacts: usize| {
             let unit =
                 (0..4 * contacts * contacts).map(|at| f64::from(u8::from(at % (2 * contacts + 1) == 0))).collect();

@@ -7,23 +7,23 @@
 //! h holds gravity, Coriolis and centrifugal forces. The impact lasts some multiple of sqrt(m / k_n), so that the difference
 //! from the frozen model falls with 1 / sqrt(k_n).
 
-use super::frozen::{GREATEST_FRICTION, Ground};
-use super::integrate::{Equations, Limits, integrate};
-use crate::Result;
+use super::ground::{SoftGround, Suspension, mean_mobility};
+use super::radau::{Equations, Limits, integrate};
 use crate::dynamics::plan::{Motion, Plan, Posture};
 use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::law::Friction;
 use crate::planar::{Vector, difference, dot, scaled, sum, turned};
-use crate::{Error, Reason};
-use differential_equations::ode::ODE;
+use crate::{Error, Reason, Result};
 use std::cell::RefCell;
 
 /// Downward, as everywhere on Earth \[m/s^2\].
 const GRAVITY: f64 = 9.81;
 /// The longest run, in units of sqrt(m / k_n) (1 + damping ratio).
 const HORIZON: f64 = 1e2;
+/// The most entries of a state.
+const MOST_ENTRIES: usize = 128;
 
 /// A robot just before it strikes, ready to be integrated.
 #[derive(Debug)]
@@ -44,40 +44,31 @@ impl Moving<'_> {
     /// v when all contacts have come free, or after the longest run, on a ground of `stiffness` k_n \[N/m\].
     ///
     /// # Errors
-    /// [`Reason::Unsupported`] where the integrator gives up, and for robots of more than 60 coordinates and contacts.
-    pub fn run(&self, ground: Ground, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
-        match 2 * self.position.len() + self.contacts.len() {
-            0..=16 => self.integrate::<16>(ground, stiffness, tolerance),
-            17..=32 => self.integrate::<32>(ground, stiffness, tolerance),
-            33..=64 => self.integrate::<64>(ground, stiffness, tolerance),
-            65..=128 => self.integrate::<128>(ground, stiffness, tolerance),
-            _ => Err(Error::new(Reason::Unsupported("compliant contact of so large a robot".into()))
-                .hint("hold joints that matter little")),
-        }
-    }
-
-    fn integrate<const N: usize>(&self, ground: Ground, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
-        let model = Model::new(self, ground, stiffness);
+    /// [`Reason::Unsupported`] if the integrator gives up, and for robots of more than 60 coordinates and contacts.
+    pub fn run(&self, ground: SoftGround, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         let dofs = self.position.len();
-        let mut start = [0.0; N];
+        if 2 * dofs + self.contacts.len() > MOST_ENTRIES {
+            return Err(Error::new(Reason::Unsupported("compliant contact of so large a robot".into()))
+                .hint("hold joints that matter little"));
+        }
+        let model = Equation::new(self, ground, stiffness);
+        let mut start = vec![0.0; 2 * dofs + self.contacts.len()];
         for (entry, rate) in start[dofs..].iter_mut().zip(self.velocity) {
             *entry = rate / model.speed;
         }
         let horizon = HORIZON * (1.0 + ground.damping_ratio);
         let end = integrate(&model, start, Limits { relative: tolerance, absolute: tolerance, horizon })?;
-        Ok(end.state[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
+        Ok(end.state.as_slice()[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
     }
 }
 
-/// The equations; the first entries of a state are what q has changed by, then follow v and the stretches, in units of
-/// `period` and `speed`, in which all of them are of order one.
+/// The equation of motion. A state holds what q has changed by, then v and the stretches, in units of `period` and
+/// `speed`, in which all of them are of order one.
 #[derive(Debug)]
-struct Model<'a> {
+struct Equation<'a> {
     robot: &'a Moving<'a>,
-    stiffness: Vector<f64>,
-    damping: Vector<f64>,
-    friction: Vec<f64>,
-    /// Where the contact points were at first.
+    suspension: Suspension,
+    /// The contact points at first.
     start: Vec<Vector<f64>>,
     /// sqrt(m / k_n), m the inverse of the contacts' mean mobility \[s\].
     period: f64,
@@ -93,33 +84,30 @@ struct Memory {
     column: Vec<f64>,
 }
 
-impl<'a> Model<'a> {
-    fn new(robot: &'a Moving<'a>, ground: Ground, stiffness: f64) -> Self {
-        let mut memory = Memory::default();
-        let Memory { workspace, posture, .. } = &mut memory;
-        posture.set(robot.plan, robot.position);
+impl Memory {
+    /// Everything that the equation of motion needs at q and v.
+    fn move_to(&mut self, robot: &Moving, position: &[f64], velocity: &[f64]) {
+        let Self { workspace, posture, .. } = self;
+        posture.set(robot.plan, position);
         kinematics(robot.plan, posture, workspace);
         mass_matrix(robot.plan, workspace);
         factorize(robot.plan, workspace);
-        contact_jacobian(robot.plan, robot.contacts, robot.velocity, None, workspace);
+        contact_jacobian(robot.plan, robot.contacts, velocity, None, workspace);
+    }
+}
+
+impl<'a> Equation<'a> {
+    fn new(robot: &'a Moving<'a>, ground: SoftGround, stiffness: f64) -> Self {
+        let mut memory = Memory::default();
+        memory.move_to(robot, robot.position, robot.velocity);
+        let workspace = &mut memory.workspace;
         delassus(robot.plan, workspace);
-        let rows = 2 * robot.contacts.len();
-        let normal = (0..robot.contacts.len()).map(|i| workspace.delassus[(2 * i + 1) * (rows + 1)].ln());
-        let mean_mobility = (normal.sum::<f64>() / robot.contacts.len().max(1) as f64).exp();
-        let start = robot.contacts.iter().map(|contact| place(robot.plan, contact, &[0.0; 2], workspace)).collect();
+        let contacts = robot.contacts.len();
+        let mean_mobility = mean_mobility(|row, column| workspace.delassus[row * 2 * contacts + column], contacts);
         let damping = 2.0 * ground.damping_ratio * (stiffness / mean_mobility).sqrt();
         Self {
-            stiffness: [ground.stiffness_ratio * stiffness, stiffness],
-            damping: [ground.tangential_damping * damping, damping],
-            friction: robot
-                .friction
-                .iter()
-                .map(|friction| match *friction {
-                    Friction::Finite(mu) => mu.min(GREATEST_FRICTION),
-                    Friction::Infinite => GREATEST_FRICTION,
-                })
-                .collect(),
-            start,
+            suspension: Suspension::new(ground, stiffness, damping, robot.friction.iter().copied()),
+            start: robot.contacts.iter().map(|contact| place(robot.plan, contact, &[0.0; 2], workspace)).collect(),
             period: (1.0 / (stiffness * mean_mobility)).sqrt(),
             speed: robot.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
             memory: RefCell::new(memory),
@@ -127,20 +115,17 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Accelerations, rates of the stretches, and for each contact its normal force and speed.
-    fn evaluate(&self, state: &[f64], rates: &mut [f64]) -> Vec<Vector<f64>> {
-        let (plan, dofs) = (self.robot.plan, self.robot.position.len());
+    /// Rates of the state, and for each contact its normal force and speed.
+    fn evaluate(&self, state: &[f64]) -> (Vec<f64>, Vec<Vector<f64>>) {
+        let Moving { plan, position, contacts, .. } = *self.robot;
+        let dofs = position.len();
         let length = self.speed * self.period;
         let moved: Vec<f64> = state[..dofs].iter().map(|entry| entry * length).collect();
         let velocity: Vec<f64> = state[dofs..2 * dofs].iter().map(|entry| entry * self.speed).collect();
-        let stretches = &state[2 * dofs..];
-        let Memory { workspace, posture, column } = &mut *self.memory.borrow_mut();
-        let position: Vec<f64> = self.robot.position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
-        posture.set(plan, &position);
-        kinematics(plan, posture, workspace);
-        mass_matrix(plan, workspace);
-        factorize(plan, workspace);
-        contact_jacobian(plan, self.robot.contacts, &velocity, None, workspace);
+        let memory = &mut *self.memory.borrow_mut();
+        let position: Vec<f64> = position.iter().zip(&moved).map(|(q, moved)| q + moved).collect();
+        memory.move_to(self.robot, &position, &velocity);
+        let Memory { workspace, column, .. } = memory;
 
         let mut accelerations = vec![0.0; dofs];
         for (body, force) in inertial_forces(plan, &velocity, workspace).into_iter().enumerate() {
@@ -148,27 +133,33 @@ impl<'a> Model<'a> {
             add_impulse(plan, workspace, (body, com), force, column, &mut accelerations);
         }
         let base = if plan.floating { [moved[0], moved[1]] } else { [0.0; 2] };
-        let mut touching = Vec::with_capacity(self.robot.contacts.len());
-        for (index, contact) in self.robot.contacts.iter().enumerate() {
+        let mut touching = Vec::with_capacity(contacts.len());
+        let mut stretches = Vec::with_capacity(contacts.len());
+        for (index, contact) in contacts.iter().enumerate() {
             let axes = contact.axes();
             let c = workspace.contact_velocity[index];
             let depth = dot(axes[1], difference(self.start[index], place(plan, contact, &base, workspace)));
-            let push = self.stiffness[1] * depth - self.damping[1] * c[1];
-            let normal = if depth < 0.0 { 0.0 } else { push.max(0.0) };
-            let bound = self.friction[index] * normal;
-            let spring = self.stiffness[0] * stretches[index] * length;
-            let tangential = (-spring - self.damping[0] * c[0]).clamp(-bound, bound);
-            rates[2 * dofs + index] = -(tangential + spring) / self.damping[0] / self.speed;
+            let ([tangential, normal], stretch) =
+                self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
             let force = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
-            let arm = contact.arm(workspace);
-            add_impulse(plan, workspace, (contact.body, arm), force, column, &mut accelerations);
+            add_impulse(plan, workspace, (contact.body, contact.arm(workspace)), force, column, &mut accelerations);
+            stretches.push(stretch / self.speed);
             touching.push([normal, c[1]]);
         }
-        rates[..dofs].copy_from_slice(&state[dofs..2 * dofs]);
-        for (rate, acceleration) in rates[dofs..].iter_mut().zip(&accelerations) {
-            *rate = acceleration * self.period / self.speed;
-        }
-        touching
+        let accelerations = accelerations.iter().map(|acceleration| acceleration * self.period / self.speed);
+        let rates = state[dofs..2 * dofs].iter().copied().chain(accelerations).chain(stretches).collect();
+        (rates, touching)
+    }
+}
+
+impl Equations for Equation<'_> {
+    fn rates(&self, state: &[f64]) -> Vec<f64> {
+        self.evaluate(state).0
+    }
+
+    /// Whether all contacts are free.
+    fn has_ended(&self, state: &[f64]) -> bool {
+        self.evaluate(state).1.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0)
     }
 }
 
@@ -217,18 +208,4 @@ fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<
         origins.push(origin);
     }
     forces
-}
-
-impl<const N: usize> ODE<f64, [f64; N]> for Model<'_> {
-    fn diff(&self, _: f64, state: &[f64; N], rates: &mut [f64; N]) {
-        self.evaluate(state, rates);
-    }
-}
-
-impl<const N: usize> Equations<N> for Model<'_> {
-    /// Whether all contacts are free.
-    fn has_ended(&self, state: &[f64; N]) -> bool {
-        let touching = self.evaluate(state, &mut [0.0; N]);
-        touching.iter().all(|&[normal, speed]| normal == 0.0 && speed >= 0.0)
-    }
 }

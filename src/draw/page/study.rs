@@ -9,7 +9,7 @@ use crate::draw::Keyframe;
 use crate::draw::plot::Rendered;
 use crate::draw::sweep::{fills_along, fills_of_map};
 use crate::state::State;
-use crate::sweep::{Findings, Map, Model, Parameter, RESOLUTION, Regime, Solver, Survey, Workers};
+use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, RobotStudy, Solver, Survey, Workers};
 use crate::write::sweep::{MapSweep, Sweep};
 
 /// How far the sides of a region lie from its borders, as part of the parameter's range.
@@ -26,7 +26,7 @@ pub struct Stops {
 
 impl Stops {
     /// Those of a study and what was found in it.
-    pub fn new(model: &Model, findings: &Findings) -> Self {
+    pub fn new(model: &RobotStudy, findings: &Findings) -> Self {
         let parameters = model.study.parameters();
         let mut every = vec![1; parameters.len()];
         let stops = |every: &[usize]| -> Vec<usize> {
@@ -98,7 +98,13 @@ fn special(parameter: &Parameter, survey: &Survey) -> Vec<f64> {
 
 impl Page {
     /// The page of a study: what was found, the stops, its picture; tells `workers` of each stop.
-    pub fn of_study(model: &Model, findings: &Findings, stops: &Stops, rendered: Rendered, workers: Workers) -> Self {
+    pub fn of_study(
+        model: &RobotStudy,
+        findings: &Findings,
+        stops: &Stops,
+        rendered: Rendered,
+        workers: Workers,
+    ) -> Self {
         let parameters = model.study.parameters();
         let begin = || Solver::new(model);
         let seen = workers.map(stops.count(), begin, |solver, index| look(model, solver, &stops.point(index)));
@@ -133,7 +139,7 @@ impl Page {
 }
 
 /// The state at a point and what happens there, whatever the state's uncertainty is.
-fn look(model: &Model, solver: &mut Solver, point: &[f64]) -> (Keyframe, Regime) {
+fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Regime) {
     let seen = solver.at(point, |robot, state, pipeline| {
         let state = State { uncertainty: None, ..state };
         let impact = pipeline.impact(&state);

@@ -5,7 +5,7 @@ use super::{Kind, WIDTH, angles, fills_along, is_seen};
 use crate::draw::plot::{Arrangement, Band, Color, Legend, Panel, Picture, PlotAxis, PlotPoint, Shape, Stroke};
 use crate::impact::Motion;
 use crate::planar::Vector;
-use crate::sweep::{Course, Place, Region, Survey};
+use crate::sweep::{CurvePoint, Region, RegionCurves, Survey};
 use crate::write::sweep::Happening;
 
 /// What is drawn of a contact.
@@ -35,7 +35,7 @@ const BESIDE_POLE: f64 = 1.5;
 const ZERO: f64 = 1e-12;
 
 /// What the regions of a survey look like, whose outcomes follow these courses.
-pub fn picture(x: PlotAxis, survey: &Survey, courses: &[Course]) -> Picture {
+pub fn picture(x: PlotAxis, survey: &Survey, courses: &[RegionCurves]) -> Picture {
     let kinds = kinds(survey);
     let styles = Styles::of(survey, &kinds);
     let whole = Whole { survey, courses, styles: &styles };
@@ -90,7 +90,7 @@ fn kinds(survey: &Survey) -> Vec<Kind<'_>> {
 /// Everything along the parameter.
 struct Whole<'a> {
     survey: &'a Survey,
-    courses: &'a [Course],
+    courses: &'a [RegionCurves],
     styles: &'a Styles<'a>,
 }
 
@@ -150,7 +150,7 @@ impl<'a> Whole<'a> {
                     continue;
                 };
                 for (branch, (modes, _)) in first.outcomes.iter().enumerate() {
-                    let point = |place: &Place| -> Option<PlotPoint> {
+                    let point = |place: &CurvePoint| -> Option<PlotPoint> {
                         let (_, motion) = place.outcomes.get(branch)?;
                         Some((place.at, (quantity.of)(motion).get(index)?[axis]))
                     };
@@ -204,7 +204,7 @@ mod tests {
     }
 
     /// Ten regions with six outcomes of two contacts each, all of them wavy.
-    fn crowd() -> (Survey, Vec<Course>) {
+    fn crowd() -> (Survey, Vec<RegionCurves>) {
         let modes = |outcome: usize| vec![Mode::ALL[outcome % 4], Mode::ALL[outcome / 4]];
         let regime = |region: usize| Regime::Answered {
             contacts: vec!["left_foot".into(), "right_foot".into()],
@@ -224,9 +224,9 @@ mod tests {
         let place = |kind: usize, step: usize| {
             let at = 0.1 * (kind as f64 + step as f64 / 500.0);
             let outcomes = (0..6).map(|outcome| (modes(outcome + kind), motion(at, outcome))).collect();
-            Place { at, outcomes, explanation: None }
+            CurvePoint { at, outcomes, explanation: None }
         };
-        let course = |kind: usize| Course { places: (0..=500).map(|step| place(kind, step)).collect() };
+        let course = |kind: usize| RegionCurves { places: (0..=500).map(|step| place(kind, step)).collect() };
         let courses = (0..10).map(course).collect();
         (Survey { regions, borders: Vec::new(), dependent: false }, courses)
     }

@@ -11,7 +11,7 @@
 use super::place::{Box, clear_of};
 use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, PlotAxis, PlotPoint, Shape, Stroke};
 use crate::impact::{Explanation, ImpulseRegion};
-use crate::sweep::{Course, Survey};
+use crate::sweep::{RegionCurves, Survey};
 use std::f64::consts::PI;
 
 const BETA: Stroke = Stroke::solid(Color::Black, 1.0);
@@ -26,7 +26,7 @@ const LETTERS: u32 = 12;
 const JUMP: f64 = 0.5;
 
 /// A panel for each contact that has angles somewhere.
-pub fn panels(survey: &Survey, courses: &[Course]) -> Vec<Panel> {
+pub fn panels(survey: &Survey, courses: &[RegionCurves]) -> Vec<Panel> {
     let mut names: Vec<&str> = Vec::new();
     for (region, course) in survey.regions.iter().zip(courses) {
         if course.places.iter().any(|place| place.explanation.is_some()) {
@@ -55,7 +55,7 @@ struct Angles {
 }
 
 /// Stretches of places in which a contact has angles.
-fn runs(name: &str, survey: &Survey, courses: &[Course]) -> Vec<Vec<Angles>> {
+fn runs(name: &str, survey: &Survey, courses: &[RegionCurves]) -> Vec<Vec<Angles>> {
     let mut runs: Vec<Vec<Angles>> = vec![Vec::new()];
     for (region, course) in survey.regions.iter().zip(courses) {
         let contact = region.regime.contacts().iter().position(|known| known == name);

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
     use crate::law::Mode;
     use crate::sweep::Regime;
-    use crate::sweep::{Curve, Transition};
+    use crate::sweep::{BorderCurve, Transition};
 
     /// Strips between wavy borders, with as many points as a study of 400 by 400 samples has.
     fn strips(widths: &[f64]) -> Map {
@@ -144,7 +144,7 @@ mod tests {
             let middles = vec![(edge(x + 0.5 * width, 800), 0.5 * width)];
             areas.push(Area { regime: regime.into(), loops, middles, verdict: None, refused: None });
             if index > 0 {
-                curves.push(Curve { sides: [index - 1, index], points: line(x), turns: Transition::default() });
+                curves.push(BorderCurve { sides: [index - 1, index], points: line(x), turns: Transition::default() });
             }
             x += width;
         }

@@ -1,7 +1,7 @@
 //! Studies as pictures.
 //!
 //! ```text
-//!     Survey --> Courses --[along, style]--> velocities after and impulses of each contact, regions shaded
+//!     Survey --> Curves --[along, style]--> velocities after and impulses of each contact, regions shaded
 //!                        --[angles, place]-> beta and gamma, and what they cut
 //!     Map    --[map, place]----------------> areas with letters in the plane of two parameters
 //! ```
@@ -13,30 +13,30 @@ mod place;
 mod style;
 
 use crate::draw::plot::{Color, Picture, PlotAxis};
-use crate::sweep::{Course, Findings, Map, Model, Regime, Region, Survey, Workers};
+use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers};
 use crate::write::sweep::{Happening, letter};
 
 /// How wide panels along a parameter are inside of their axes \[px\].
 const WIDTH: f64 = 540.0;
 
 /// What the findings of `model` look like; tells `workers` of [`work`] pieces of work.
-pub fn of(model: &Model, findings: &Findings, workers: Workers) -> Picture {
+pub fn of(model: &RobotStudy, findings: &Findings, workers: Workers) -> Picture {
     match findings {
-        Findings::Along(survey) => along::picture(axis(model, 0), survey, &Course::of(model, survey, workers)),
+        Findings::Along(survey) => along::picture(axis(model, 0), survey, &RegionCurves::of(model, survey, workers)),
         Findings::Map(map) => map::picture([axis(model, 0), axis(model, 1)], map),
     }
 }
 
 /// How many pieces of work a picture of the findings takes.
-pub fn work(model: &Model, findings: &Findings) -> usize {
+pub fn work(model: &RobotStudy, findings: &Findings) -> usize {
     match findings {
-        Findings::Along(survey) => Course::work(model, survey),
+        Findings::Along(survey) => RegionCurves::work(model, survey),
         Findings::Map(_) => 0,
     }
 }
 
 /// The axis of a parameter.
-fn axis(model: &Model, parameter: usize) -> PlotAxis {
+fn axis(model: &RobotStudy, parameter: usize) -> PlotAxis {
     let Some(known) = model.study.parameters().get(parameter) else { return PlotAxis::default() };
     let name = with_greek_letters(&known.name);
     let label = match model.unit(parameter) {

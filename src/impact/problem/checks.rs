@@ -75,7 +75,7 @@ impl ContactProblem {
     }
 
     /// Symmetry entry by entry, then definiteness by elimination with diagonal pivoting, both to n eps of the largest
-    /// entry. True where G is positive definite beyond doubt.
+    /// entry. True if G is positive definite beyond doubt.
     pub(super) fn check_definite(&self) -> Result<bool> {
         let rows = 2 * self.contacts();
         let largest = self.delassus.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));

@@ -55,7 +55,7 @@ impl Dynamics {
 }
 
 impl ContactProblem {
-    /// A problem from the dynamics, so that exact redundancy survives where a rounded G would lose it: M (dofs x dofs), J
+    /// A problem from the dynamics, so that exact redundancy survives, which a rounded G would lose: M (dofs x dofs), J
     /// (two rows per contact: tangential, normal; dofs columns), v (dofs).
     ///
     /// # Errors

@@ -26,7 +26,7 @@ use crate::scalar::{Ordered, Real};
 
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
 ///
-/// It runs on any [`Real`]; whoever fills one in another number fills it by [`ContactProblem::map`].
+/// It runs on any [`Real`]; [`ContactProblem::map`] makes one in another number.
 #[derive(Debug, Clone)]
 pub struct ContactProblem<T = f64> {
     /// G, 2n x 2n by rows \[1/kg\].
@@ -224,7 +224,7 @@ mod tests {
         };
         let mut g = [[4.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 2.5], [0.0, 0.0, 1.0, 0.0], [0.0, 2.5, 0.0, 2.0]];
         assert_eq!(two(g).place(), Some("delassus[3][1]"));
-        // No pair is at fault where three together are: what the elimination leaves of the last one is negative.
+        // No pair is at fault, but three together are: what the elimination leaves of the last one is negative.
         g = [[1.0, -0.9, -0.9, 0.0], [-0.9, 1.0, -0.9, 0.0], [-0.9, -0.9, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
         assert_eq!(two(g).place(), Some("delassus[0][0]"));
         assert!(problem(vec![1.0, 2.0, 2.0, 4.0]).is_ok(), "singular is not indefinite");

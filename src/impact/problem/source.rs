@@ -21,10 +21,10 @@ pub trait Source {
 /// Error bounds of a problem in f64.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors<'a> {
-    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite where nothing is known, neither of it nor of
+    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite if nothing is known, neither of it nor of
     /// the velocities.
     pub delassus: f64,
-    /// Of c- and c_free, per contact \[m/s\]; none where they are exact.
+    /// Of c- and c_free, per contact \[m/s\]; `None` if they are exact.
     pub velocity: Option<&'a [Vector<f64>]>,
 }
 

@@ -175,14 +175,14 @@ fn weigh_open<const N: usize>(
         ways.extend([1.0, -1.0].map(|sign| way(&determinant, sign)));
     }
     if valid {
-        // It ends where any of its slacks does.
+        // It ends as soon as any of its slacks does.
         for (number, _) in slacks.filter(|(number, _)| undecided(number)) {
             weigh(number);
             ways.push(way(number, -sign));
         }
         return;
     }
-    // It begins where the last of its slacks is no longer violated.
+    // It begins once the last of its slacks is no longer violated.
     let mut all = vec![0.0; N];
     let mut worst: Option<(&Affine<N>, f64)> = None;
     for (number, place) in slacks {

@@ -2,7 +2,7 @@
 
 use super::{Happening, Turns, letter, not_guaranteed};
 use crate::planar::Vector;
-use crate::sweep::{Area, CELLS, Curve, Map, Parameter};
+use crate::sweep::{Area, BorderCurve, CELLS, Map, Parameter};
 use crate::write::Palette;
 use serde::Serialize;
 use std::fmt::Write;
@@ -63,7 +63,7 @@ impl<'a> MapSweep<'a> {
             share: area.loops.iter().map(|points| surface(points)).sum::<f64>() / whole,
             loops: &area.loops,
         };
-        let border = |curve: &'a Curve| MapBorder {
+        let border = |curve: &'a BorderCurve| MapBorder {
             between: curve.sides.map(letter),
             turns: Turns::new(&curve.turns),
             points: &curve.points,

@@ -155,7 +155,7 @@ impl<'a> Sweep<'a> {
             to: region.to,
             happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
         };
-        let border = |border: &'a sweep::Border| Border { at: border.at, turns: Turns::new(&border.turns) };
+        let border = |border: &'a sweep::RegionBorder| Border { at: border.at, turns: Turns::new(&border.turns) };
         let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
         Self {
             parameter: &parameter.name,

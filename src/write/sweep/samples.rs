@@ -6,7 +6,7 @@ use crate::pipeline::Pipeline;
 use crate::read::table::Carried;
 use crate::state::NamedContact;
 use crate::state::State;
-use crate::sweep::{Model, Regime, Solver};
+use crate::sweep::{Regime, RobotStudy, Solver};
 use crate::{Result, Robot};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
@@ -33,7 +33,7 @@ pub(crate) struct RefusedSample<'a> {
 
 impl<'a> Sample<'a> {
     /// Sample number `index` of a study; the last parameter changes fastest.
-    pub fn new(model: &Model<'a>, index: usize) -> Self {
+    pub fn new(model: &RobotStudy<'a>, index: usize) -> Self {
         let mut rest = index;
         let parameters = model.study.parameters();
         let mut point = vec![0.0; parameters.len()];
@@ -45,7 +45,7 @@ impl<'a> Sample<'a> {
     }
 
     /// How many samples a study has.
-    pub fn count(model: &Model) -> usize {
+    pub fn count(model: &RobotStudy) -> usize {
         model.study.parameters().iter().map(|parameter| parameter.steps).product()
     }
 
@@ -110,7 +110,7 @@ fn answer(
 
 /// The columns of a table of samples: those of a batch, and behind them the parameters and the region's letter; `contacts`
 /// are those that occur.
-pub fn columns<'c>(model: &'c Model, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
+pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
     Columns::with(model.robot, feet, contacts, parameters.chain(["region"]), false)
 }

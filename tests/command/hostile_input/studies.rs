@@ -6,7 +6,7 @@ use heelstrike::description::Description;
 use heelstrike::pipeline::Options;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Model, Study};
+use heelstrike::sweep::{RobotStudy, Study};
 
 /// A study of the parameter a from 0 to 1 with these other fields.
 fn study(rest: &str) -> String {
@@ -343,7 +343,14 @@ fn studies_are_refused_word_for_word() {
         let study = Study::from_json(text)?;
         let defaults = Defaults::default();
         let options = Options::default();
-        Model { study: &study, description: &description, reduction: &reduction, robot: &ramone, options, defaults }
-            .readable()
+        RobotStudy {
+            study: &study,
+            description: &description,
+            reduction: &reduction,
+            robot: &ramone,
+            options,
+            defaults,
+        }
+        .readable()
     });
 }

@@ -5,7 +5,7 @@ use heelstrike::description::Description;
 use heelstrike::pipeline::Options;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Model, Study};
+use heelstrike::sweep::{RobotStudy, Study};
 use heelstrike::write::schema;
 use heelstrike::{Error, Reason, Robot};
 use serde_json::{Value, json};
@@ -22,7 +22,7 @@ fn read(text: &str) -> Result<(), Error> {
     let (description, robot) = &*RAMONE;
     let study = Study::from_json(text)?;
     let (options, defaults) = (Options::default(), Defaults::default());
-    Model { study: &study, description, reduction: &Reduction::default(), robot, options, defaults }.readable()
+    RobotStudy { study: &study, description, reduction: &Reduction::default(), robot, options, defaults }.readable()
 }
 
 fn sample() -> Value {

@@ -7,7 +7,7 @@ use heelstrike::description::Description;
 use heelstrike::pipeline::Options;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
-use heelstrike::sweep::{Model, Study};
+use heelstrike::sweep::{RobotStudy, Study};
 use serde_json::{Map, Value, json};
 
 /// A robot and what a study may ask of it.
@@ -43,8 +43,8 @@ impl Subject {
     }
 
     /// The model of a study.
-    pub fn model<'a>(&'a self, study: &'a Study<'a>) -> Model<'a> {
-        Model {
+    pub fn model<'a>(&'a self, study: &'a Study<'a>) -> RobotStudy<'a> {
+        RobotStudy {
             study,
             description: &self.description,
             reduction: &self.reduction,

@@ -1,6 +1,6 @@
 //! Segments joined end to end: to curves, and to loops around areas.
 
-use super::cell::Segment;
+use super::edge::Segment;
 use super::regime::Regime;
 use super::transition::Transition;
 use crate::planar::Vector;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Segments of one border, joined.
 #[derive(Debug, Clone)]
-pub struct Chain {
+pub struct Polyline {
     pub left: Arc<Regime>,
     pub right: Arc<Regime>,
     pub points: Vec<Vector<f64>>,
@@ -24,14 +24,14 @@ fn key(point: Vector<f64>) -> Key {
 }
 
 /// The curves that segments of the same regimes and turns join to.
-pub fn chains(segments: &[Segment]) -> Vec<Chain> {
+pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
     let mut starts: HashMap<Key, Vec<(usize, bool)>> = HashMap::new();
     for (index, segment) in segments.iter().enumerate() {
         starts.entry(key(segment.from)).or_default().push((index, true));
         starts.entry(key(segment.to)).or_default().push((index, false));
     }
     let mut used = vec![false; segments.len()];
-    let mut chains = Vec::new();
+    let mut polylines = Vec::new();
     for first in 0..segments.len() {
         if used[first] {
             continue;
@@ -57,9 +57,9 @@ pub fn chains(segments: &[Segment]) -> Vec<Chain> {
         points.extend([own.from, own.to]);
         points.extend(onward);
         let turns = own.turns.as_deref().cloned().unwrap_or_default();
-        chains.push(Chain { left: Arc::clone(&own.left), right: Arc::clone(&own.right), points, turns });
+        polylines.push(Polyline { left: Arc::clone(&own.left), right: Arc::clone(&own.right), points, turns });
     }
-    chains
+    polylines
 }
 
 /// Whether two segments are of one border, the other one in the same direction or reversed.

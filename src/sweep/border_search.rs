@@ -1,27 +1,27 @@
-//! Where between two points of the same regime another one may hide.
+//! Searches for borders between two points of the same regime.
 //!
 //! ```text
 //!     a set of outcomes changes only where a numerator N of some combination passes zero (see `impact::inequalities`):
 //!     N at five points --quartic--> sign changes, least |N| --bisected on N itself--> places to ask
 //! ```
 //!
-//! Combinations that one clearly violated inequality excludes, on the whole interval or beside a zero, are not followed there. Nothing here decides
-//! anything: wherever a zero may be, the regime itself is asked for. What N does between the five points beyond what its
-//! fourth differences tell is not seen; that is the part that is not guaranteed.
+//! A combination that one clearly violated inequality excludes, on the whole interval or near a zero, is not followed there.
+//! Nothing here decides anything: at every place where a zero may be, the regime itself is asked for. What N does between the
+//! five points beyond its fourth differences is not seen; that is the part that is not guaranteed.
 
 use super::model::Watched;
 
-/// Points at which an interval is looked at: its ends and three between them.
+/// Points at which quantities are computed in an interval: its ends and three between them.
 const NODES: usize = 5;
 
-/// Places at which the quartic through them is looked at.
+/// Intervals at whose ends the quartic through them is evaluated.
 const FINE: usize = 32;
 
 /// An interval is halved while fourth differences are greater than this part of the numbers, so many times at most.
 const SMOOTH: f64 = 0.05;
 const HALVINGS: usize = 5;
 
-/// A least |N| is looked for where the quartic comes as near to zero as this part of the numbers.
+/// A least |N| is searched for where the quartic comes as near to zero as this part of the numbers.
 const NEAR: f64 = 0.05;
 
 /// What f64 leaves of a zero, as part of the numbers.
@@ -30,16 +30,16 @@ const ROUNDING: f64 = 1e-9;
 /// The most places that are asked in one interval.
 const MOST: usize = 200;
 
-/// A number that is followed, by its place in [`Watched`].
+/// A quantity that is followed, by its index in [`Watched`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Curve {
+enum Tracked {
     Determinant(usize),
     Numerator(usize),
     Clearance(usize),
 }
 
-impl Curve {
-    /// Whether it is the same curve in `watched` as in `node`: inequalities belong to a set of contacts, heights of feet to none.
+impl Tracked {
+    /// Whether `watched` holds the same quantity as `node`: inequalities depend on the set of contacts, heights of feet do not.
     fn is_in(self, watched: &Watched, node: &Watched) -> bool {
         match self {
             Self::Clearance(at) => at < watched.clearance.len(),
@@ -70,10 +70,10 @@ impl Curve {
     }
 }
 
-/// A curve and the combination that it belongs to.
+/// A quantity and the combination that it belongs to.
 #[derive(Debug, Clone, Copy)]
 struct Followed {
-    curve: Curve,
+    quantity: Tracked,
     combination: Option<usize>,
 }
 
@@ -81,9 +81,9 @@ impl Followed {
     /// Whether other inequalities clearly exclude its combination at both of two places, given between 0 and 4.
     fn is_excluded(self, nodes: &[Watched], places: [f64; 2]) -> bool {
         let Some(combination) = self.combination else { return false };
-        // The sign that a curve clearly has at both places, or 0.
-        let sign = |curve: Curve| {
-            let values = curve.values(nodes);
+        // The sign that a quantity clearly has at both places, or 0.
+        let sign = |quantity: Tracked| {
+            let values = quantity.values(nodes);
             let room = 2.0 * fourth_difference(&values).abs() + ROUNDING * largest(&values);
             let [a, b] = places.map(|place| quartic(&values, place));
             if a > room && b > room {
@@ -94,9 +94,9 @@ impl Followed {
                 0
             }
         };
-        let determinant = sign(Curve::Determinant(combination));
-        let numerators = nodes[0].inequalities.of_combination(combination).map(Curve::Numerator);
-        let signs: Vec<i32> = numerators.filter(|&curve| curve != self.curve).map(sign).collect();
+        let determinant = sign(Tracked::Determinant(combination));
+        let numerators = nodes[0].inequalities.of_combination(combination).map(Tracked::Numerator);
+        let signs: Vec<i32> = numerators.filter(|&quantity| quantity != self.quantity).map(sign).collect();
         match determinant {
             0 => signs.contains(&1) && signs.contains(&-1),
             determinant => signs.contains(&-determinant),
@@ -107,124 +107,140 @@ impl Followed {
 /// Places between `a` and `b`, in ascending order, at which the regime may differ from that at both ends; zeros nearer to
 /// each other than `resolution` count as one.
 pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Watched>, a: f64, b: f64, resolution: f64) -> Vec<f64> {
-    let mut found = Vec::new();
-    look(watch, (a, b), resolution, HALVINGS, &mut found);
+    let mut search = Search { watch, resolution, found: Vec::new() };
+    search.interval(a, b, HALVINGS);
+    let mut found = search.found;
     found.sort_by(f64::total_cmp);
     found.dedup();
     found.retain(|&x| a < x && x < b);
     found
 }
 
-fn look(
-    watch: &mut impl FnMut(f64) -> Option<Watched>,
-    (a, b): (f64, f64),
+struct Search<'w, W> {
+    watch: &'w mut W,
     resolution: f64,
-    halvings: usize,
-    found: &mut Vec<f64>,
-) {
-    let place = |k: f64| a + (b - a) * (k / (NODES - 1) as f64);
-    let nodes: Vec<Option<Watched>> = (0..NODES).map(|k| watch(place(k as f64))).collect();
-    let Some(nodes) = nodes.into_iter().collect::<Option<Vec<Watched>>>() else {
-        found.extend((1..NODES - 1).map(|k| place(k as f64)));
-        return;
-    };
-    let alike = |other: &Watched| {
-        let (first, one, two) = (&nodes[0], &nodes[0].inequalities, &other.inequalities);
-        one.ends == two.ends && first.contacts == other.contacts && first.clearance.len() == other.clearance.len()
-    };
-    if !nodes.iter().all(alike) {
-        found.extend((1..NODES - 1).map(|k| place(k as f64)));
-        return;
-    }
-    let curves: Vec<(Followed, [f64; NODES])> = followed(&nodes)
-        .into_iter()
-        .map(|followed| (followed, followed.curve.values(&nodes)))
-        .filter(|(followed, values)| {
+    found: Vec<f64>,
+}
+
+/// Places in an interval where a quantity is zero, and where it comes near zero.
+#[derive(Default)]
+struct Zeros {
+    crossed: Vec<f64>,
+    touched: Vec<f64>,
+}
+
+impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
+    fn interval(&mut self, a: f64, b: f64, halvings: usize) {
+        let place = |k: f64| a + (b - a) * (k / (NODES - 1) as f64);
+        let nodes: Vec<Option<Watched>> = (0..NODES).map(|k| (self.watch)(place(k as f64))).collect();
+        let nodes = nodes.into_iter().collect::<Option<Vec<Watched>>>();
+        let alike = |one: &Watched, other: &Watched| {
+            let ends = [&one.inequalities.ends, &other.inequalities.ends];
+            ends[0] == ends[1] && one.contacts == other.contacts && one.clearance.len() == other.clearance.len()
+        };
+        let Some(nodes) = nodes.filter(|nodes| nodes.iter().all(|node| alike(node, &nodes[0]))) else {
+            self.found.extend((1..NODES - 1).map(|k| place(k as f64)));
+            return;
+        };
+        let mut followed = followed(&nodes);
+        followed.retain(|(followed, values)| {
             let known = values.iter().all(|value| value.is_finite());
-            known && !is_clear(values) && !nodes.iter().all(|node| followed.curve.is_negligible(node))
-        })
-        .collect();
-    let rough = curves.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
-    if rough && halvings > 0 && b - a > resolution {
-        let middle = place(2.0);
-        look(watch, (a, middle), resolution, halvings - 1, found);
-        found.push(middle);
-        look(watch, (middle, b), resolution, halvings - 1, found);
-        return;
+            known && !is_clear(values) && !nodes.iter().all(|node| followed.quantity.is_negligible(node))
+        });
+        let rough = followed.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
+        if rough && halvings > 0 && b - a > self.resolution {
+            let middle = place(2.0);
+            self.interval(a, middle, halvings - 1);
+            self.found.push(middle);
+            self.interval(middle, b, halvings - 1);
+            return;
+        }
+        let mut zeros = Zeros::default();
+        for (followed, values) in &followed {
+            self.zeros(*followed, values, &nodes, place, &mut zeros);
+            if zeros.crossed.len() + zeros.touched.len() > MOST {
+                break;
+            }
+        }
+        let Zeros { mut crossed, touched } = zeros;
+        crossed.sort_by(f64::total_cmp);
+        if !crossed.is_empty() {
+            // An end of the interval may be a zero up to rounding, whose sign means nothing.
+            crossed.insert(0, a);
+            crossed.push(b);
+        }
+        let apart = crossed.windows(2).filter(|pair| pair[1] - pair[0] > self.resolution);
+        self.found.extend(apart.map(|pair| 0.5 * (pair[0] + pair[1])));
+        self.found.extend(touched.into_iter().chain(crossed));
     }
-    let mut zeros = Vec::new();
-    let mut touches = Vec::new();
-    for (followed, values) in &curves {
-        let curve = followed.curve;
+
+    /// Adds the places where a quantity with these `values` at the nodes is zero or comes near zero.
+    fn zeros(
+        &mut self,
+        followed: Followed,
+        values: &[f64; NODES],
+        nodes: &[Watched],
+        place: impl Fn(f64) -> f64,
+        Zeros { crossed, touched }: &mut Zeros,
+    ) {
+        let (quantity, resolution) = (followed.quantity, self.resolution);
         let mut real = |x: f64| {
-            watch(x).filter(|watched| curve.is_in(watched, &nodes[0])).map_or(f64::NAN, |watched| curve.value(&watched))
+            let watched = (self.watch)(x).filter(|watched| quantity.is_in(watched, &nodes[0]));
+            watched.map_or(f64::NAN, |watched| quantity.value(&watched))
         };
         let node = |k: usize| k as f64 * (NODES - 1) as f64 / FINE as f64;
         let at = |k: usize| place(node(k));
         let fine: Vec<f64> = (0..=FINE).map(|k| quartic(values, node(k))).collect();
-        let near_zero = NEAR * largest(values) + 2.0 * fourth_difference(values).abs();
         for k in 0..FINE {
-            let turns = (fine[k] < 0.0) != (fine[k + 1] < 0.0);
-            if turns && !followed.is_excluded(&nodes, [node(k), node(k + 1)]) {
-                zeros.push(zero(&mut real, at(k), at(k + 1), resolution));
+            let passes = (fine[k] < 0.0) != (fine[k + 1] < 0.0);
+            if passes && !followed.is_excluded(nodes, [node(k), node(k + 1)]) {
+                crossed.push(zero(&mut real, at(k), at(k + 1), resolution));
             }
         }
+        let near_zero = NEAR * largest(values) + 2.0 * fourth_difference(values).abs();
         for k in 0..=FINE {
-            // Also at an end, beside which rounding may hide that a zero has just been passed.
+            // Also at an end, near which rounding may hide that a zero has just been passed.
             let [last, next] = [k.saturating_sub(1), (k + 1).min(FINE)];
             let [before, here, after] = [fine[last], fine[k], fine[next]];
             let least = here.abs() <= before.abs() && here.abs() <= after.abs() && here.abs() <= near_zero;
             let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
-            if least && same && !followed.is_excluded(&nodes, [node(last), node(next)]) {
+            if least && same && !followed.is_excluded(nodes, [node(last), node(next)]) {
                 let sign = if here < 0.0 { -1.0 } else { 1.0 };
                 let bottom = least_place(&mut |x| sign * real(x), at(last), at(next), resolution);
-                touches.push(bottom);
+                touched.push(bottom);
                 if sign * real(bottom) < 0.0 {
-                    zeros.push(zero(&mut real, at(last), bottom, resolution));
-                    zeros.push(zero(&mut real, bottom, at(next), resolution));
+                    crossed.push(zero(&mut real, at(last), bottom, resolution));
+                    crossed.push(zero(&mut real, bottom, at(next), resolution));
                 }
             }
         }
-        if zeros.len() + touches.len() > MOST {
-            break;
-        }
     }
-    zeros.sort_by(f64::total_cmp);
-    if !zeros.is_empty() {
-        // An end of the interval may be a zero up to rounding, whose sign tells nothing.
-        zeros.insert(0, a);
-        zeros.push(b);
-    }
-    found.extend(zeros.windows(2).filter(|pair| pair[1] - pair[0] > resolution).map(|pair| 0.5 * (pair[0] + pair[1])));
-    found.extend(touches);
-    found.extend(zeros);
 }
 
-/// The curves of all combinations that no inequality clearly excludes.
-fn followed(nodes: &[Watched]) -> Vec<Followed> {
-    let all = |curve: Curve| curve.values(nodes);
+/// The quantities of all combinations that no inequality clearly excludes, and their values at the nodes.
+fn followed(nodes: &[Watched]) -> Vec<(Followed, [f64; NODES])> {
     let inequalities = &nodes[0].inequalities;
-    let clearance = (0..nodes[0].clearance.len()).map(Curve::Clearance);
-    let mut curves: Vec<Followed> = clearance.map(|curve| Followed { curve, combination: None }).collect();
+    let mut all: Vec<Followed> = Vec::new();
+    all.extend(
+        (0..nodes[0].clearance.len()).map(|at| Followed { quantity: Tracked::Clearance(at), combination: None }),
+    );
     for combination in 0..inequalities.ends.len() {
-        let determinant = all(Curve::Determinant(combination));
-        let numerators = inequalities.of_combination(combination);
-        if is_clear(&determinant) {
-            let violated = |at: usize| {
-                let values = all(Curve::Numerator(at));
-                is_clear(&values) && (values[0] < 0.0) != (determinant[0] < 0.0)
-            };
-            if numerators.clone().any(violated) {
-                continue;
-            }
+        let determinant = Tracked::Determinant(combination).values(nodes);
+        let numerators = inequalities.of_combination(combination).map(Tracked::Numerator);
+        let violated = |quantity: Tracked| {
+            let values = quantity.values(nodes);
+            is_clear(&values) && (values[0] < 0.0) != (determinant[0] < 0.0)
+        };
+        if is_clear(&determinant) && numerators.clone().any(violated) {
+            continue;
         }
-        let own = std::iter::once(Curve::Determinant(combination)).chain(numerators.map(Curve::Numerator));
-        curves.extend(own.map(|curve| Followed { curve, combination: Some(combination) }));
+        let own = std::iter::once(Tracked::Determinant(combination)).chain(numerators);
+        all.extend(own.map(|quantity| Followed { quantity, combination: Some(combination) }));
     }
-    curves
+    all.into_iter().map(|followed| (followed, followed.quantity.values(nodes))).collect()
 }
 
-/// Whether the curve through these values keeps its sign with room to spare; one that is zero throughout has none to change.
+/// Whether the curve through these values clearly keeps its sign; one that is zero throughout has none to change.
 fn is_clear(values: &[f64; NODES]) -> bool {
     let least = values.iter().fold(f64::INFINITY, |least, value| least.min(value.abs()));
     let same = values.iter().all(|&value| (value < 0.0) == (values[0] < 0.0));
@@ -258,7 +274,7 @@ fn quartic(values: &[f64; NODES], x: f64) -> f64 {
     sum
 }
 
-/// A zero of `f` between `a` and `b`, where its sign differs; the middle where it does not, and a place where it is no number.
+/// A zero of `f` between `a` and `b`, if its signs there differ, else the middle; or a place where it is not a number.
 fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
     let (mut at_a, mut at_b) = (f(a), f(b));
     if (at_a < 0.0) == (at_b < 0.0) {
@@ -292,8 +308,8 @@ fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64)
     0.5 * (a + b)
 }
 
-/// Where `f` is least between `a` and `b` (golden section), or any place where it is negative or no number: there the scene
-/// is another one.
+/// The place of the least `f` between `a` and `b` (golden section), or any place where it is negative or not a number: there
+/// the scene is another one.
 fn least_place(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let (mut left, mut right) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));

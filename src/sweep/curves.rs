@@ -1,11 +1,11 @@
 //! What the outcomes of each region do along the parameter, at places so close that straight lines between them look smooth.
 //!
 //! ```text
-//!     Region --even places, its borders' inner sides included--> halved until the middle lies on the line --> Course
+//!     Region --even places, its borders' inner sides included--> halved until the middle lies on the line --> RegionCurves
 //! ```
 
 use super::line::RESOLUTION;
-use super::model::{Model, Solver};
+use super::model::{RobotStudy, Solver};
 use super::parallel::Workers;
 use super::regime::Regime;
 use super::survey::{Region, Survey};
@@ -15,14 +15,14 @@ use std::f64::consts::PI;
 
 /// The places of one region, ascending.
 #[derive(Debug, Clone)]
-pub struct Course {
+pub struct RegionCurves {
     /// Those at which the region's outcomes were found.
-    pub places: Vec<Place>,
+    pub places: Vec<CurvePoint>,
 }
 
 /// The outcomes at one value of the parameter.
 #[derive(Debug, Clone)]
-pub struct Place {
+pub struct CurvePoint {
     /// The parameter.
     pub at: f64,
     /// Every outcome's modes and what it does, in the order of modes, which all places of a region share.
@@ -44,9 +44,9 @@ const HALVINGS: usize = 7;
 /// The largest contact velocity after and impulse of each contact in all places, by which deviations are measured.
 type Scales = Vec<[f64; 2]>;
 
-impl Course {
-    /// The courses of all regions that were found in `model`; tells `workers` of [`Course::work`] pieces of work.
-    pub fn of(model: &Model, survey: &Survey, workers: Workers) -> Vec<Self> {
+impl RegionCurves {
+    /// The courses of all regions that were found in `model`; tells `workers` of [`RegionCurves::work`] pieces of work.
+    pub fn of(model: &RobotStudy, survey: &Survey, workers: Workers) -> Vec<Self> {
         let Some(parameter) = model.study.parameters().first() else { return Vec::new() };
         let range = parameter.range();
         let all: Vec<(usize, f64)> = survey
@@ -58,7 +58,7 @@ impl Course {
         let begin = || Solver::new(model);
         let places = workers.map(all.len(), begin, |solver, k| {
             let (region, at) = all[k];
-            Place::of(solver, at, &survey.regions[region].regime)
+            CurvePoint::of(solver, at, &survey.regions[region].regime)
         });
         let mut scales: Vec<Scales> = survey.regions.iter().map(|region| nothing(&region.regime)).collect();
         for ((region, _), place) in all.iter().zip(&places) {
@@ -82,7 +82,7 @@ impl Course {
     }
 
     /// How many pieces of work the courses of a survey of `model` are.
-    pub fn work(model: &Model, survey: &Survey) -> usize {
+    pub fn work(model: &RobotStudy, survey: &Survey) -> usize {
         let range = model.study.parameters().first().map_or(0.0, |parameter| parameter.range());
         2 * survey.regions.iter().map(|region| even(region, range).len()).sum::<usize>()
     }
@@ -104,15 +104,15 @@ fn nothing(regime: &Regime) -> Scales {
 /// The places that straight lines between two neighbours need in between.
 fn between(
     solver: &mut Solver,
-    (a, b): (&Place, &Place),
+    (a, b): (&CurvePoint, &CurvePoint),
     regime: &Regime,
     scales: &Scales,
     halvings: usize,
-    found: &mut Vec<Place>,
+    found: &mut Vec<CurvePoint>,
 ) {
     let at = 0.5 * (a.at + b.at);
     let Some(halvings) = halvings.checked_sub(1).filter(|_| a.at < at && at < b.at) else { return };
-    let Some(middle) = Place::of(solver, at, regime) else { return };
+    let Some(middle) = CurvePoint::of(solver, at, regime) else { return };
     if middle.is_on_line(a, b, scales) {
         return;
     }
@@ -122,7 +122,7 @@ fn between(
     between(solver, (&right, b), regime, scales, halvings, found);
 }
 
-impl Place {
+impl CurvePoint {
     /// The outcomes at `at`; none where they are not those of the regime.
     fn of(solver: &mut Solver, at: f64, regime: &Regime) -> Option<Self> {
         let answer = solver.impact(&[at]);

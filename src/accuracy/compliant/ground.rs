@@ -1,0 +1,95 @@
+//! Springs, dampers and friction between a contact and the ground.
+//!
+//! ```text
+//!     lambda_n = max(0, k_n delta - d_n c_n) where delta >= 0, else 0           Kelvin-Voigt without tension
+//!     lambda_t = -k_t s - d_t c_t, kept within -+mu lambda_n                    spring and damper in a row with friction
+//!     delta' = -c_n     s' = -(lambda_t + k_t s) / d_t
+//! ```
+//!
+//! delta is the depth of a contact and s the stretch of its tangential spring; both start at zero.
+//! Source: Brogliato, *Nonsmooth Mechanics* (2016), section 2.1.
+
+use crate::law::Friction;
+use crate::planar::Vector;
+
+/// The ground's parameters that matter while the configuration is frozen, the same for all contacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SoftGround {
+    /// d_n / (2 sqrt(k_n m)), m the inverse of the contacts' mean mobility; infinite for dampers without springs.
+    pub damping_ratio: f64,
+    /// k_t / k_n.
+    pub stiffness_ratio: f64,
+    /// d_t / d_n.
+    pub tangential_damping: f64,
+}
+
+/// The friction coefficient that stands for infinite friction: a spring and damper need a normal force to be held by.
+pub const GREATEST_FRICTION: f64 = 1e6;
+
+/// Stiffness and damping in numbers.
+#[derive(Debug)]
+pub(super) struct Suspension {
+    /// k, tangential and normal.
+    stiffness: Vector<f64>,
+    /// d, tangential and normal.
+    pub damping: Vector<f64>,
+    /// mu of each contact.
+    friction: Vec<f64>,
+}
+
+impl Suspension {
+    /// Normal springs of `stiffness` and dampers of `damping`, and tangential ones by the ratios of `ground`.
+    pub fn new(ground: SoftGround, stiffness: f64, damping: f64, friction: impl Iterator<Item = Friction>) -> Self {
+        let bounded = |friction: Friction| match friction {
+            Friction::Finite(mu) => mu.min(GREATEST_FRICTION),
+            Friction::Infinite => GREATEST_FRICTION,
+        };
+        Self {
+            stiffness: [ground.stiffness_ratio * stiffness, stiffness],
+            damping: [ground.tangential_damping * damping, damping],
+            friction: friction.map(bounded).collect(),
+        }
+    }
+
+    /// The force on `contact`, and the rate of its stretch, by its depth, stretch and velocity.
+    pub fn force(&self, contact: usize, depth: f64, stretch: f64, velocity: Vector<f64>) -> (Vector<f64>, f64) {
+        let push = self.stiffness[1] * depth - self.damping[1] * velocity[1];
+        let normal = if depth < 0.0 { 0.0 } else { push.max(0.0) };
+        let bound = self.friction[contact] * normal;
+        let spring = self.stiffness[0] * stretch;
+        let tangential = (-spring - self.damping[0] * velocity[0]).clamp(-bound, bound);
+        // What the damper in the row with friction carries moves the spring; the rest is slip.
+        ([tangential, normal], -(tangential + spring) / self.damping[0])
+    }
+
+    /// The derivatives of [`Self::force`]'s tangential and normal force by depth, stretch, and tangential and normal velocity.
+    pub fn force_derivatives(&self, contact: usize, depth: f64, stretch: f64, velocity: Vector<f64>) -> [[f64; 4]; 2] {
+        let ([tangential, normal], _) = self.force(contact, depth, stretch, velocity);
+        if normal <= 0.0 {
+            return [[0.0; 4]; 2];
+        }
+        let push = [self.stiffness[1], 0.0, 0.0, -self.damping[1]];
+        let mu = self.friction[contact];
+        let slips = tangential.abs() >= mu * normal;
+        [
+            if slips {
+                push.map(|part| mu * part * tangential.signum())
+            } else {
+                [0.0, -self.stiffness[0], -self.damping[0], 0.0]
+            },
+            push,
+        ]
+    }
+
+    /// The derivatives of the stretch's rate, from those of the tangential force.
+    pub fn stretch_derivative(&self, tangential: f64, by_stretch: bool) -> f64 {
+        let spring = if by_stretch { self.stiffness[0] } else { 0.0 };
+        -(tangential + spring) / self.damping[0]
+    }
+}
+
+/// Geometric mean of the contacts' G_nn \[1/kg\], from their logarithms.
+pub(super) fn mean_mobility(delassus: impl Fn(usize, usize) -> f64, contacts: usize) -> f64 {
+    let logarithms = (0..contacts).map(|contact| delassus(2 * contact + 1, 2 * contact + 1).ln());
+    (logarithms.sum::<f64>() / contacts.max(1) as f64).exp()
+}
