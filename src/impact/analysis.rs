@@ -67,6 +67,8 @@ impl Scratch {
         let mut pass = F64Pass {
             bounds: &mut self.bounds,
             labels: &mut self.labels,
+            shares: options.reductions.frictionless
+                && problem.laws().iter().any(|law| law.modes().iter().any(|group| group.len() > 1)),
             regular: contacts == 0,
             undecided: Vec::new(),
             coarse: Vec::new(),

@@ -259,41 +259,6 @@ impl<T: Real> Leaf<'_, T> {
 mod tests {
     use super::*;
 
-    /// The paper's section 4: G = [[2, 1], [1, 2]], so M_c = 1/3 [[2, -1], [-1, 2]].
-    fn body(friction: Friction, before: Vector<f64>) -> ContactProblem {
-        ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![friction], vec![0.0]).unwrap()
-    }
-
-    #[test]
-    fn each_mode_of_one_contact_by_hand() {
-        let mut tableau = Tableau::<f64>::new();
-        tableau.load(&body(Friction::Finite(6.0), [1.0, -1.0]));
-        let mut seen = Vec::new();
-        tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
-            seen.push((leaf.modes[0], leaf.impulse(0), leaf.velocity(0), leaf.pivots[0]));
-        });
-        assert_eq!(
-            seen,
-            [
-                (Mode::Separate, [0.0, 0.0], [1.0, -1.0], 1.0),
-                (Mode::Stick, [-1.0, 1.0], [0.0, 0.0], 3.0),
-                // G_nn -+ mu G_nt = 2 -+ 6.
-                (Mode::SlidePlus, [1.5, -0.25], [3.75, 0.0], -4.0),
-                (Mode::SlideMinus, [0.75, 0.125], [2.625, 0.0], 8.0),
-            ]
-        );
-    }
-
-    #[test]
-    fn infinite_friction_slides_without_normal_impulse() {
-        let mut tableau = Tableau::<f64>::new();
-        tableau.load(&body(Friction::Infinite, [1.0, -1.0]));
-        let leaf = tableau.leaf(&[Mode::SlidePlus]);
-        // c_n = -1 + G_nt L_t = 0.
-        assert_eq!(leaf.impulse(0), [1.0, 0.0]);
-        assert_eq!(leaf.velocity(0), [3.0, 0.0]);
-    }
-
     #[test]
     fn a_single_leaf_equals_the_visited_one() {
         let delassus = vec![3.0, 0.5, 0.25, 0.0, 0.5, 2.0, 0.0, -0.5, 0.25, 0.0, 4.0, 1.0, 0.0, -0.5, 1.0, 3.0];

@@ -92,12 +92,4 @@ mod tests {
             assert!((found_beta - beta).abs() < 1e-14 && (found_gamma - gamma).abs() < 1e-14);
         }
     }
-
-    #[test]
-    fn the_mirrored_body_has_the_mirrored_regions() {
-        for gamma in [-3.0, -1.5, -0.2, 0.2, 1.5, 2.9] {
-            assert_eq!(region(-0.4, gamma), region(0.4, mirrored(gamma)));
-        }
-        assert_eq!(region(0.4, 0.2), ImpulseRegion::B);
-    }
 }

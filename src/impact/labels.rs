@@ -43,30 +43,3 @@ impl Labels {
         None
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::law::Friction;
-
-    #[test]
-    fn a_frictionless_contact_has_three_labels_where_it_is_closed() {
-        let mut labels = Labels::default();
-        let friction = [Friction::ZERO, Friction::Infinite, Friction::ZERO].map(Law::from);
-        let count = |labels: &mut Labels| {
-            let mut seen = std::collections::HashSet::new();
-            while let Some(modes) = labels.next() {
-                assert!(seen.insert(modes.to_vec()), "twice: {modes:?}");
-            }
-            seen.len()
-        };
-        labels.start(&[Mode::Stick, Mode::Stick, Mode::Stick], &friction, true);
-        assert_eq!(count(&mut labels), 9);
-        labels.start(&[Mode::Stick, Mode::Stick, Mode::Stick], &friction, false);
-        assert_eq!(count(&mut labels), 1);
-        labels.start(&[Mode::Separate, Mode::Stick, Mode::Stick], &friction, true);
-        assert_eq!(count(&mut labels), 3);
-        labels.start(&[Mode::Separate, Mode::SlidePlus, Mode::Separate], &friction, true);
-        assert_eq!(count(&mut labels), 1);
-    }
-}

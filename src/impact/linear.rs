@@ -33,7 +33,16 @@ pub struct Affine<T> {
 impl<T: Real> Affine<T> {
     /// Its value at `y`.
     pub fn at(&self, y: &[T]) -> T {
-        self.coefficients.iter().zip(y).fold(self.constant, |sum, (&coefficient, &entry)| sum + coefficient * entry)
+        self.from(self.constant, y)
+    }
+
+    /// Its change from y = 0 to `y`.
+    pub fn change(&self, y: &[T]) -> T {
+        self.from(T::zero(), y)
+    }
+
+    fn from(&self, constant: T, y: &[T]) -> T {
+        self.coefficients.iter().zip(y).fold(constant, |sum, (&coefficient, &entry)| sum + coefficient * entry)
     }
 }
 
@@ -311,46 +320,6 @@ mod tests {
 
     fn affine(constant: f64, coefficients: &[f64]) -> Affine<Number> {
         Affine { constant: Number::from_f64(constant), coefficients: numbers(coefficients) }
-    }
-
-    fn f64s(entries: &[Number]) -> Vec<f64> {
-        entries.iter().map(|entry| entry.to_f64()).collect()
-    }
-
-    #[test]
-    fn dependent_equations_leave_directions_free_and_contradictions_are_seen() {
-        // x + 3y = 1 twice, in thirds that no f64 holds; z = 2.
-        let rows =
-            || vec![numbers(&[1.0, 3.0, 0.0, 1.0]), numbers(&[0.1, 0.3, 0.0, 0.1]), numbers(&[0.0, 0.0, 1.0, 2.0])];
-        // 0.1 and 0.3 are not exactly one to three.
-        assert!(solve(3, rows()).unwrap().unwrap().directions.is_empty());
-        let mut equal = rows();
-        equal[1] = numbers(&[2.0, 6.0, 0.0, 2.0]);
-        let found = solve(3, equal.clone()).unwrap().unwrap();
-        assert_eq!((f64s(&found.origin), f64s(&found.directions[0])), (vec![1.0, 0.0, 2.0], vec![-3.0, 1.0, 0.0]));
-        equal[1][3] = Number::from_f64(2.5);
-        assert!(solve(3, equal).unwrap().is_none());
-    }
-
-    #[test]
-    fn the_widest_point_is_in_the_middle_and_an_empty_set_has_a_negative_one() {
-        let cap = Number::from_f64(10.0);
-        // 0 <= y <= 3.
-        let (y, least) = widest(&[affine(0.0, &[1.0]), affine(3.0, &[-1.0])], 1, cap).unwrap();
-        assert_eq!((f64s(&y), least.to_f64()), (vec![1.5], 1.5));
-        let (_, least) = widest(&[affine(0.0, &[1.0]), affine(-2.0, &[-1.0])], 1, cap).unwrap();
-        assert_eq!(least.to_f64(), -1.0);
-        let (_, least) = widest(&[affine(0.0, &[1.0])], 1, cap).unwrap();
-        assert_eq!(least.to_f64(), 10.0, "unbounded up to the cap");
-    }
-
-    #[test]
-    fn a_program_ends_at_a_corner_or_tells_that_it_does_not_end() {
-        // y1 <= 4, y2 <= 3, y1 + y2 <= 5, greatest 2 y1 + 3 y2 = 13 at (2, 3).
-        let rows = [affine(4.0, &[-1.0, 0.0]), affine(3.0, &[0.0, -1.0]), affine(5.0, &[-1.0, -1.0])];
-        let y = maximize(&rows, &numbers(&[2.0, 3.0])).unwrap().unwrap();
-        assert_eq!(f64s(&y), vec![2.0, 3.0]);
-        assert!(maximize(&rows, &numbers(&[-1.0, 0.0])).unwrap().is_none());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The answer of an analysis: outcomes, rejections, the verdict. Data only; [`super::analysis`] computes them.
+//! The answer of an analysis: outcomes, rejections, the verdict. Data only.
 
 use crate::law::{Inequality, Mode};
 use crate::planar::Vector;

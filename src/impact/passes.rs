@@ -25,6 +25,8 @@ type Pending = Candidate<Vec<Mode>>;
 pub struct F64Pass<'a, 'm> {
     pub bounds: &'m mut Bounds,
     pub labels: &'m mut Labels,
+    /// Whether some modes with the same impulses are visited as one.
+    pub shares: bool,
     /// Whether G was shown to be regular.
     pub regular: bool,
     /// What f64 does not decide.
@@ -45,7 +47,7 @@ impl Visitor<f64> for F64Pass<'_, '_> {
         // If every impulse is free, the pivots are those of the whole matrix.
         self.regular |= bound.impulse_error().is_finite()
             && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
-        self.labels.start(leaf.modes, problem.laws(), options.reductions.frictionless);
+        self.labels.start(leaf.modes, problem.laws(), self.shares);
         while let Some(modes) = self.labels.next() {
             let candidate = Candidate { number: self.collected.total, modes };
             let reading = read_f64(leaf, modes, problem, scale, bound, options.rejections.contain(modes));

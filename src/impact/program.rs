@@ -82,7 +82,7 @@ fn first_reached<T: Ordered>(
 ) -> Result<Option<(usize, T)>, Unsettled> {
     let mut first: Option<(usize, T)> = None;
     for (index, function) in functions.iter().enumerate().filter(|(index, _)| !binding.contains(index)) {
-        let slope = Affine { constant: T::zero(), coefficients: function.coefficients.clone() }.at(step);
+        let slope = function.change(step);
         if settled(slope)?.is_ge() {
             continue;
         }

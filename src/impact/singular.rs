@@ -24,7 +24,7 @@ use std::cmp::Ordering;
 /// Slacks are not followed beyond this: the impulses are then unbounded.
 const UNBOUNDED: f64 = 1e3;
 
-/// What became of a combination.
+/// The solutions of a combination whose equations are singular.
 #[derive(Debug, Clone)]
 pub enum SingularCase {
     /// It is no outcome.
@@ -78,7 +78,7 @@ struct Constraint<T> {
     function: Affine<T>,
 }
 
-/// Judges one combination; frictionless contacts have their own mode here. `rounded` is the same problem in f64.
+/// Solves one combination; `rounded` is the same problem in f64.
 pub fn solve_singular<T: Ordered>(
     problem: &ContactProblem<T>,
     rounded: &ContactProblem,
@@ -96,7 +96,7 @@ pub fn solve_singular<T: Ordered>(
     let Some(solutions) = solve(generators.count(), equations)? else {
         return Ok(Rejected::without_motion(RejectionReason::NoSolution));
     };
-    Combination { problem, rounded, scale, modes, generators }.weigh(&solutions)
+    Equations { problem, rounded, scale, modes, generators }.weigh(&solutions)
 }
 
 /// The velocity rows that a combination sets to zero.
@@ -105,8 +105,8 @@ fn zero_rows(modes: &[Mode]) -> impl Iterator<Item = usize> {
     rows.filter_map(|(row, sign)| (sign == Some(Ordering::Equal)).then_some(row))
 }
 
-/// A combination of modes and all that it is read with.
-struct Combination<'a, T> {
+/// The equations of a combination.
+struct Equations<'a, T> {
     problem: &'a ContactProblem<T>,
     rounded: &'a ContactProblem,
     scale: &'a Scale,
@@ -114,7 +114,7 @@ struct Combination<'a, T> {
     generators: Generators,
 }
 
-impl<T: Ordered> Combination<'_, T> {
+impl<T: Ordered> Equations<'_, T> {
     fn weigh(&self, solutions: &Solutions<T>) -> Result<SingularCase, Unsettled> {
         let inequalities = self.inequalities(solutions);
         let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
@@ -135,7 +135,7 @@ impl<T: Ordered> Combination<'_, T> {
             family |= !velocity.is_constant()?;
         }
         if !family {
-            return Ok(SingularCase::Valid(self.member(solutions, self.modes.to_vec(), &inside, least)?));
+            return Ok(SingularCase::Valid(self.outcome(solutions, self.modes.to_vec(), &inside, least)?));
         }
         // The rim of a family belongs to other modes; some velocity of its own must be left.
         if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
@@ -144,11 +144,11 @@ impl<T: Ordered> Combination<'_, T> {
         let ends = [T::one(), -T::one()].map(|sign| self.end(solutions, &inside, sign));
         let [greatest, least] = ends;
         let (greatest, least) = (greatest?, least?);
-        if self.same_velocity(&greatest, &least)? {
+        if self.has_velocity(&greatest, |row| self.velocity(&least, row).constant)? {
             // What the equations leave free, the inequalities do not.
-            return Ok(SingularCase::Valid(SingularOutcome { margin: Some(0.0), ..self.end_member(&greatest)? }));
+            return Ok(SingularCase::Valid(SingularOutcome { margin: Some(0.0), ..self.end_outcome(&greatest)? }));
         }
-        Ok(SingularCase::Family([self.end_member(&greatest)?, self.end_member(&least)?]))
+        Ok(SingularCase::Family([self.end_outcome(&greatest)?, self.end_outcome(&least)?]))
     }
 
     fn velocity(&self, solutions: &Solutions<T>, row: usize) -> Affine<T> {
@@ -213,10 +213,10 @@ impl<T: Ordered> Combination<'_, T> {
         best.last().map_or(Ok(false), |&rise| Ok(settled(rise)?.is_gt()))
     }
 
-    /// Whether the only velocities of two spaces are the same.
-    fn same_velocity(&self, one: &Solutions<T>, other: &Solutions<T>) -> Result<bool, Unsettled> {
+    /// Whether the only velocity of `space` has these entries.
+    fn has_velocity(&self, space: &Solutions<T>, entry: impl Fn(usize) -> T) -> Result<bool, Unsettled> {
         for row in 0..2 * self.modes.len() {
-            if settled(self.velocity(one, row).constant - self.velocity(other, row).constant)?.is_ne() {
+            if settled(self.velocity(space, row).constant - entry(row))?.is_ne() {
                 return Ok(false);
             }
         }
@@ -245,12 +245,12 @@ impl<T: Ordered> Combination<'_, T> {
         Ok(space)
     }
 
-    fn end_member(&self, space: &Solutions<T>) -> Result<SingularOutcome, Unsettled> {
+    fn end_outcome(&self, space: &Solutions<T>) -> Result<SingularOutcome, Unsettled> {
         let modes = self.modes_of(space)?;
         let y = vec![T::zero(); space.directions.len()];
-        let mut member = self.member(space, modes, &y, T::zero())?;
-        (member.index, member.margin) = (None, None);
-        Ok(member)
+        let mut outcome = self.outcome(space, modes, &y, T::zero())?;
+        (outcome.index, outcome.margin) = (None, None);
+        Ok(outcome)
     }
 
     /// The strict modes of the only velocity of `space`.
@@ -266,7 +266,7 @@ impl<T: Ordered> Combination<'_, T> {
     }
 
     /// The only velocity of `space`, with its impulses; at `inside` no inequality is negative, and the smallest is `least`.
-    fn member(
+    fn outcome(
         &self,
         space: &Solutions<T>,
         modes: Vec<Mode>,
@@ -309,7 +309,7 @@ impl<T: Ordered> Combination<'_, T> {
                         unique = false;
                         return Ok(None);
                     };
-                    let change = Affine { constant: T::zero(), coefficients: entry.coefficients.clone() }.at(&best);
+                    let change = entry.change(&best);
                     unique &= settled(change)?.is_eq();
                     Ok(Some((here + change).to_f64()))
                 };
@@ -319,7 +319,7 @@ impl<T: Ordered> Combination<'_, T> {
         }
         let lambda = if unique {
             at
-        } else if self.needs_no_impulse(space)? {
+        } else if self.has_velocity(space, |row| self.problem.free_row(row))? {
             vec![T::zero(); at.len()]
         } else {
             let directions: Vec<Vec<T>> =
@@ -340,16 +340,6 @@ impl<T: Ordered> Combination<'_, T> {
             at_zero,
             modes,
         })
-    }
-
-    /// Whether the only velocity of `space` is the one without impulses.
-    fn needs_no_impulse(&self, space: &Solutions<T>) -> Result<bool, Unsettled> {
-        for row in 0..2 * self.modes.len() {
-            if settled(self.velocity(space, row).constant - self.problem.free_row(row))?.is_ne() {
-                return Ok(false);
-            }
-        }
-        Ok(true)
     }
 
     fn motion(&self, solutions: &Solutions<T>, y: &[T], modes: &[Mode]) -> Motion {

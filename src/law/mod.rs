@@ -6,17 +6,17 @@
 //! ```
 //!
 //! The velocities are those of [`Mode`], with restitution in xi ([`restitution`]). The impulses are each law's own: one file
-//! per law, each a [`ContactLaw`] with the same methods in the same order, listed once in [`Law`]. Whoever enumerates, bounds
-//! or reads combinations asks the law, and matches on no mode and no friction itself.
+//! per law, each a [`ContactLaw`] with the same methods in the same order, listed once in [`Law`]. Code that enumerates,
+//! bounds or reads combinations asks the law, and matches on no mode and no friction itself.
 
+mod inequality;
 mod condition;
-mod coulomb;
+mod mode;
 mod friction;
 mod frictionless;
-mod inequality;
-mod mode;
-pub mod restitution;
+mod coulomb;
 mod unbounded;
+pub mod restitution;
 
 pub use condition::{Condition, Function};
 pub use coulomb::Coulomb;
