@@ -1,11 +1,12 @@
 //! Every outcome of a contact problem, and the verdict.
 //!
 //! ```text
-//!     problem --enumerate--> numbers of each combination --bound, slack--> valid | rejected | undecided --escalate--> Analysis
+//!     problem --enumerate--> numbers of each combination --bound, slack--> valid, rejected
+//!                                                                     or undecided --escalate--> Analysis
 //! ```
 //!
-//! Each combination is first read in f64 with a bound of its error; what lies within it is decided with more digits. So every
-//! sign in an answer was shown, and nothing is guessed.
+//! Each combination is first read in f64 with a bound of its error; what lies within it is decided with more digits. So
+//! every sign in an answer was shown, and nothing is guessed.
 
 use super::bound::Bounds;
 use super::collected::{AnalysisOptions, Collected, ListedRejections};

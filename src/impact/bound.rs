@@ -1,9 +1,10 @@
 //! How far the f64 numbers of an elimination may be off: the first layer of every proof.
 //!
-//! In the scale of [`Scale`] (velocities c_i / (S sqrt(G_ii)), impulses L_i sqrt(G_ii) / S) a tableau has two classes of rows,
-//! velocities and impulses, and each row coefficients of the impulses still open and a constant. For each of the four one
-//! [`Class`] holds how large its f64 entries are and how far they may be from the true ones. Every step of the elimination is
-//! a sum of products and a quotient, so the bounds of the next tableau follow from those of the last:
+//! In the scale of [`Scale`] (velocities c_i / (S sqrt(G_ii)), impulses L_i sqrt(G_ii) / S) a tableau has two classes
+//! of rows, velocities and impulses, and each row coefficients of the impulses still open and a constant. For each of
+//! the four one [`Class`] holds how large its f64 entries are and how far they may be from the true ones. Every step of
+//! the elimination is a sum of products and a quotient, so the bounds of the next tableau follow from those of the
+//! last:
 //!
 //! ```text
 //!     x y:    |x| e_y + |y| e_x + e_x e_y + rounding      x / p:   (e_x + |x / p| e_p) / (|p| - e_p) + rounding
@@ -153,8 +154,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Begins with a problem whose G is off by `delassus` (relative to sqrt(G_ii G_jj)) and whose scaled velocities are off
-    /// by `noise`.
+    /// Begins with a problem whose G is off by `delassus` (relative to sqrt(G_ii G_jj)) and whose scaled velocities are
+    /// off by `noise`.
     pub fn load(&mut self, tableau: &Tableau<f64>, scale: &Scale, delassus: f64, noise: f64) {
         self.inverse.clear();
         self.inverse.extend(scale.mobility.iter().map(|mobility| 1.0 / mobility));
@@ -274,7 +275,8 @@ mod tests {
             rows in prop::collection::vec(prop::collection::vec(-1.0..1.0f64, 7), 6),
             before in prop::collection::vec(prop::array::uniform2(-1.0..1.0f64), 3),
             friction in prop::collection::vec(
-                prop_oneof![Just(Friction::ZERO), Just(Friction::Infinite), (0.01..10.0f64).prop_map(Friction::Finite)], 3,
+                prop_oneof![Just(Friction::ZERO), Just(Friction::Infinite), (0.01..10.0f64).prop_map(Friction::Finite)],
+                3,
             ),
             light in -8..8i32,
         ) {

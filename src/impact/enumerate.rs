@@ -5,10 +5,10 @@
 //!     separate  L = 0            stick  c_t = xi_n = 0            slide+-  xi_n = 0,  L = lambda ray
 //! ```
 //!
-//! Contacts are decided one after the other. Deciding one eliminates its impulses from a tableau that expresses everything
-//! by the impulses of the contacts not yet decided, so that combinations share their beginnings: a tree of Schur
-//! complements. The contact law says which impulses a mode has. The product of the pivots is det A (paper, section 2); no
-//! number is compared with another here.
+//! Contacts are decided one after the other. Deciding one eliminates its impulses from a tableau that expresses
+//! everything by the impulses of the contacts not yet decided, so that combinations share their beginnings: a tree of
+//! Schur complements. The contact law says which impulses a mode has. The product of the pivots is det A (paper,
+//! section 2); no number is compared with another here.
 //!
 //! Cost: 4^n leaves (2^k 4^(n-k) if k contacts are frictionless: their modes share one elimination), each O(n).
 
@@ -24,9 +24,9 @@ pub struct Tableau<T> {
     laws: Vec<Law>,
     /// Whether modes with the same impulses are visited as one.
     shares: bool,
-    /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns of
-    /// decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and lambda where
-    /// it slides; L_t and L_n where it sticks.
+    /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns
+    /// of decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and
+    /// lambda where it slides; L_t and L_n where it sticks.
     depths: Vec<Vec<T>>,
     modes: Vec<Mode>,
     pivots: Vec<T>,
@@ -49,7 +49,8 @@ pub trait Visitor<T> {
     /// A combination is complete.
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
 
-    /// The impulses of `contact` were eliminated from the tableau of depth `source`; that of depth `contact` + 1 is new.
+    /// The impulses of `contact` were eliminated from the tableau of depth `source`; that of depth `contact` + 1 is
+    /// new.
     fn eliminated(&mut self, _tableau: &Tableau<T>, _contact: usize, _source: usize) {}
 }
 
@@ -98,8 +99,8 @@ impl<T: Real> Tableau<T> {
         self.descend(0, 0, visitor);
     }
 
-    /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and calls `visit` after
-    /// each. The laws that it was loaded with are lost.
+    /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and calls `visit`
+    /// after each. The laws that it was loaded with are lost.
     pub fn stick_all(&mut self, mut visit: impl FnMut(&Self, usize)) {
         self.laws.fill(Friction::Infinite.into());
         for contact in 0..self.contacts {
@@ -228,8 +229,8 @@ impl<T: Real> Leaf<'_, T> {
         self.laws[contact].impulse(self.modes[contact])
     }
 
-    /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if L is lambda times a ray, `[L_t, L_n]` if L
-    /// is free.
+    /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if L is lambda times a ray, `[L_t, L_n]`
+    /// if L is free.
     pub fn numbers(&self, contact: usize) -> Vector<T> {
         [self.constant(2 * contact), self.constant(2 * contact + 1)]
     }

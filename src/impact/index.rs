@@ -1,7 +1,7 @@
 //! The index of an outcome whose equations are singular: the sign of det B (paper, section 2).
 //!
 //! ```text
-//!     B = G_NR - G_NS G_SS^+ G_SR     S: rows of sticking contacts, N: normal rows of sliding ones, R: their slide directions
+//!     B = G_NR - G_NS G_SS^+ G_SR     S: rows of sticking contacts, N: normal rows of sliding ones, R: their rays
 //! ```
 
 use super::linear::{Unsettled, settled};
@@ -11,7 +11,8 @@ use crate::planar::Vector;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
-/// The sign of det B, or if it is zero that of the lowest coefficient of det(B + s I) that is not; `None` if all are zero.
+/// The sign of det B, or if it is zero that of the lowest coefficient of det(B + s I) that is not; `None` if all are
+/// zero.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
     let mut stuck: Vec<usize> = Vec::new();
     let mut sliding: Vec<(usize, Vector<T>)> = Vec::new();

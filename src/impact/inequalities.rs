@@ -1,7 +1,7 @@
 //! Every inequality of every combination as a number without poles, to be followed along a parameter.
 //!
 //! ```text
-//!     slack s = N / det A      N and det A are as smooth as the problem is; s changes its sign at N = 0, and at poles det A = 0
+//!     slack s = N / det A      N and det A are as smooth as the problem is; s changes its sign at N = 0 and det A = 0
 //! ```
 //!
 //! A set of outcomes changes only if some N passes zero. Numbers are f64 without error bounds: they say where to look,
@@ -29,8 +29,8 @@ pub struct Inequalities {
 }
 
 impl Inequalities {
-    /// Those of `problem`; combinations and their inequalities are always in the same order as long as the frictions are
-    /// zero, finite or infinite as before. Those of a combination that is singular up to rounding are all zero.
+    /// Those of `problem`; combinations and their inequalities are always in the same order as long as the frictions
+    /// are zero, finite or infinite as before. Those of a combination that is singular up to rounding are all zero.
     pub fn of(problem: &ContactProblem) -> Self {
         let mut tableau = Tableau::<f64>::new();
         let mut labels = Labels::default();

@@ -4,8 +4,8 @@
 //!     z with G z = 0:    z . xi = z . xi_free   for every outcome
 //! ```
 //!
-//! A flat foot's toe and heel move along the ground together; lists of modes that part them are excluded by the signs of z
-//! alone, before anything is solved.
+//! A flat foot's toe and heel move along the ground together; lists of modes that part them are excluded by the signs
+//! of z alone, before anything is solved.
 
 use super::linear::{Unsettled, settled, solve};
 use super::outcome::RejectionReason;

@@ -47,7 +47,8 @@ pub struct Outcome {
     pub impulse: Vec<Vector<f64>>,
     /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
     pub velocity_after: Vec<Vector<f64>>,
-    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction gains energy.
+    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction gains
+    /// energy.
     pub energy_loss: f64,
     /// False if other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
     pub impulse_unique: bool,
@@ -232,8 +233,8 @@ impl Analysis {
         let total = self.outcomes.len();
         (gains > 0).then(|| {
             format!(
-                "in {gains} of {total} outcomes the contacts add energy: Newton's restitution with Coulomb friction may, and a \
-                 contact that works with an applied impulse"
+                "in {gains} of {total} outcomes the contacts add energy: Newton's restitution with Coulomb friction may, \
+                 and a contact that works with an applied impulse"
             )
         })
     }

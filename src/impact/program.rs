@@ -8,8 +8,9 @@ use super::linear::{Affine, Unsettled, settled, solve};
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
-/// The y that makes |L0 + D y| least among those where no function is negative, by a primal active-set method (Nocedal and
-/// Wright 2006, section 16.5) from y = 0, where no function may be negative. The `directions`, columns of D, are independent.
+/// The y that makes |L0 + D y| least among those where no function is negative, by a primal active-set method (Nocedal
+/// and Wright 2006, section 16.5) from y = 0, where no function may be negative. The `directions`, columns of D, are
+/// independent.
 pub fn least_impulse<T: Ordered>(
     origin: &[T],
     directions: &[Vec<T>],
@@ -125,7 +126,8 @@ mod tests {
 
     #[test]
     fn a_function_that_binds_on_the_way_is_let_go_again() {
-        // L = (y1, y2) + (-2, -1) is shortest at (2, 1). y2 >= y1 - 1/2 binds on the way, and y1 <= 5/4 at the end alone.
+        // L = (y1, y2) + (-2, -1) is shortest at (2, 1). y2 >= y1 - 1/2 binds on the way, and y1 <= 5/4 at the end
+        // alone.
         let functions = [affine(0.5, &[-1.0, 1.0]), affine(1.25, &[-1.0, 0.0])];
         assert_eq!(least(&[-2.0, -1.0], &[&[1.0, 0.0], &[0.0, 1.0]], &functions), [1.25, 1.0]);
     }

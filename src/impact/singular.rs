@@ -4,11 +4,12 @@
 //!     L = B lambda      c = c_free + G B lambda      rows that the modes hold at zero: linear equations for lambda
 //! ```
 //!
-//! The equations leave lambda = origin + free y. Where they determine the velocity but not the impulses, the impulses form a
-//! convex set; the combination is an outcome exactly when that set is not empty, which a linear program answers, and the
-//! impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a flat foot
-//! whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin. If even
-//! the velocity depends on y it is a family, given by its two ends. Nothing here has a tolerance: see [`super::linear`].
+//! The equations leave lambda = origin + free y. Where they determine the velocity but not the impulses, the impulses
+//! form a convex set; the combination is an outcome exactly when that set is not empty, which a linear program answers,
+//! and the impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a
+//! flat foot whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin.
+//! If even the velocity depends on y it is a family, given by its two ends. Nothing here has a tolerance: see
+//! [`super::linear`].
 
 use super::generators::Generators;
 use super::index::index;
@@ -223,8 +224,8 @@ impl<T: Ordered> Equations<'_, T> {
         Ok(true)
     }
 
-    /// The end of a family at which its velocities, in the order of the rows, are greatest (`sign` 1) or least (-1): its
-    /// impulses, one of which no inequality forbids as the origin.
+    /// The end of a family at which its velocities, in the order of the rows, are greatest (`sign` 1) or least (-1):
+    /// its impulses, one of which no inequality forbids as the origin.
     fn end(&self, solutions: &Solutions<T>, inside: &[T], sign: T) -> Result<Solutions<T>, Unsettled> {
         let mut space = solutions.clone();
         space.origin = solutions.at(inside);
@@ -265,7 +266,8 @@ impl<T: Ordered> Equations<'_, T> {
         Ok(modes)
     }
 
-    /// The only velocity of `space`, with its impulses; at `inside` no inequality is negative, and the smallest is `least`.
+    /// The only velocity of `space`, with its impulses; at `inside` no inequality is negative, and the smallest is
+    /// `least`.
     fn outcome(
         &self,
         space: &Solutions<T>,

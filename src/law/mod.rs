@@ -1,13 +1,13 @@
 //! The contact law: what each mode demands of one contact's impulse and velocity.
 //!
 //! ```text
-//!     velocity   separate  xi_n > 0    stick  c_t = xi_n = 0      slide+-  xi_n = 0,  +-c_t > 0       the same for every law
+//!     velocity   separate  xi_n > 0    stick  c_t = xi_n = 0      slide+-  xi_n = 0,  +-c_t > 0   the same for every law
 //!     impulse    separate  L = 0       stick  L free in its cone  slide+-  L = lambda (-+mu, 1), lambda >= 0
 //! ```
 //!
-//! The velocities are those of [`Mode`], with restitution in xi ([`restitution`]). The impulses are each law's own: one file
-//! per law, each a [`ContactLaw`] with the same methods in the same order, listed once in [`Law`]. Code that enumerates,
-//! bounds or reads combinations asks the law, and matches on no mode and no friction itself.
+//! The velocities are those of [`Mode`], with restitution in xi ([`restitution`]). The impulses are each law's own: one
+//! file per law, each a [`ContactLaw`] with the same methods in the same order, listed once in [`Law`]. Code that
+//! enumerates, bounds or reads combinations asks the law, and matches on no mode and no friction itself.
 
 mod inequality;
 mod condition;
@@ -55,8 +55,8 @@ pub trait ContactLaw<T: Real> {
     /// Calls `visit` with each inequality of a mode's impulse.
     fn impulse_conditions(&self, mode: Mode, visit: impl FnMut(Condition<T>));
 
-    /// The modes that share velocity and impulse with a closed `mode` whose `inequality` is zero; `tangential` is the sign
-    /// of L_t.
+    /// The modes that share velocity and impulse with a closed `mode` whose `inequality` is zero; `tangential` is the
+    /// sign of L_t.
     fn beyond(&self, mode: Mode, inequality: Inequality, tangential: Ordering) -> Vec<Mode>;
 
     /// Calls `visit` with every inequality of a mode, that of its velocity last.

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 
-/// How a contact ends; strict, so that every velocity after the impact has exactly one list of modes (paper, section 2).
+/// How a contact ends; strict, so that every velocity after the impact has exactly one list of modes (paper, section
+/// 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Mode {

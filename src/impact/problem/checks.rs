@@ -128,8 +128,8 @@ impl ContactProblem {
         Ok(beyond_doubt == rows)
     }
 
-    /// The entry of an indefinite G that alone makes it so: a negative one on the diagonal, else the one that exceeds the
-    /// geometric mean of its two diagonal entries by most.
+    /// The entry of an indefinite G that alone makes it so: a negative one on the diagonal, else the one that exceeds
+    /// the geometric mean of its two diagonal entries by most.
     fn offending(&self, rounding: f64) -> Option<(usize, usize)> {
         let rows = 2 * self.contacts();
         let excess = |(i, j): (usize, usize)| {

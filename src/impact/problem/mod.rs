@@ -130,13 +130,13 @@ impl<T: Ordered> ContactProblem<T> {
 }
 
 impl ContactProblem {
-    /// A problem from its matrices: `delassus` 2n x 2n by rows, rows and columns [tangential, normal] per contact \[1/kg\];
-    /// `velocity_before` \[m/s\], `friction` and `restitution` (0 to 1) one entry per contact.
+    /// A problem from its matrices: `delassus` 2n x 2n by rows, rows and columns [tangential, normal] per contact
+    /// \[1/kg\]; `velocity_before` \[m/s\], `friction` and `restitution` (0 to 1) one entry per contact.
     ///
     /// # Errors
     /// Lengths that do not fit, more contacts than [`MATRIX_LIMIT`], numbers that are not finite, negative friction,
-    /// restitution outside 0..1, and a Delassus matrix that is asymmetric or indefinite beyond the rounding of its largest
-    /// entry.
+    /// restitution outside 0..1, and a Delassus matrix that is asymmetric or indefinite beyond the rounding of its
+    /// largest entry.
     pub fn new(
         delassus: Vec<f64>,
         velocity_before: Vec<Vector<f64>>,

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! From the balls on, each number also has a residue that shows whether it is exactly zero (see
-//! [`Residue`](crate::scalar::Residue)). So borders and dependent contacts are recognized, and a number that is not zero
-//! shows its sign once it has enough digits.
+//! [`Residue`](crate::scalar::Residue)). So borders and dependent contacts are recognized, and a number that is not
+//! zero shows its sign once it has enough digits.
 
 use super::{ContactProblem, Source};
 use crate::impact::outcome::Effort;

@@ -1,4 +1,5 @@
-//! A Delassus matrix that rounding made indefinite is replaced by the nearest that is semidefinite: no impact has another.
+//! A Delassus matrix that rounding made indefinite is replaced by the nearest that is semidefinite: no impact has
+//! another.
 
 use super::ContactProblem;
 use super::precision::{Precision, PrecisionTask, escalate};

@@ -25,8 +25,8 @@ pub(super) struct UncertainProblem<T> {
 pub(super) struct BoxCombination<T> {
     /// det A, up to a sign that it shares with the numerators.
     pub determinant: Option<T>,
-    /// What must keep its inequality after a division by det A; without one it is c_t of a frictionless contact that sticks,
-    /// and must be zero.
+    /// What must keep its inequality after a division by det A; without one it is c_t of a frictionless contact that
+    /// sticks, and must be zero.
     pub numerators: Vec<(Option<Inequality>, T)>,
     /// Unknowns: row in which the equation stands, contact, and the ray's entries [tangential, normal].
     columns: Vec<(usize, usize, [T; 2])>,

@@ -1,18 +1,18 @@
 //! Whether a verdict holds if each of the state's numbers is known to an interval.
 //!
 //! ```text
-//!     box of states --affine numbers--> G, c, mu --minors--> det A, numerators --signs--> every combination decided: it holds
+//!     box of states --affine numbers--> G, c, mu --minors--> det A, numerators --signs--> all combinations decided: yes
 //!                          |                                                     some open: try states, halve the box
-//!                          └── a state whose proven outcomes differ: it does not hold
+//!                          └── a state whose proven outcomes differ: no
 //! ```
 //!
 //! The set of outcomes, as lists of modes, is the same on a box if every combination of modes is valid on all of it or
-//! rejected on all of it. The numbers of a box are [`Affine`](crate::scalar::Affine): parts that depend on the same uncertain
-//! quantity cancel, and the rest is of second order in the half-widths. A combination's unknowns are numerators
-//! over det A by Cramer's rule. Numerators are polynomials, so that a pole inside the box (det A = 0) widens nothing. A box that
-//! leaves combinations open is halved, within a fixed effort. The contact set is that of the given state.
-//! Dependent contacts stay unknown (det A is zero everywhere), and so do long chains, in which the second order grows from
-//! link to link.
+//! rejected on all of it. The numbers of a box are [`Affine`](crate::scalar::Affine): parts that depend on the same
+//! uncertain quantity cancel, and the rest is of second order in the half-widths. A combination's unknowns are
+//! numerators over det A by Cramer's rule. Numerators are polynomials, so that a pole inside the box (det A = 0) widens
+//! nothing. A box that leaves combinations open is halved, within a fixed effort. The contact set is that of the given
+//! state. Dependent contacts stay unknown (det A is zero everywhere), and so do long chains, in which the second order
+//! grows from link to link.
 //!
 //! Cost: O(P) for each operation of the dynamics with P uncertain quantities, and 2n 9^n of them for the minors.
 

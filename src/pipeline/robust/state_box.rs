@@ -25,7 +25,8 @@ pub(crate) struct StateBox {
     pub quantities: Vec<Quantity>,
     /// Least and greatest value of each.
     pub ends: Vec<[f64; 2]>,
-    /// The f64 nearest to both ends of the whole box that lie in it: half-widths are meant exactly, and `ends` cover them.
+    /// The f64 nearest to both ends of the whole box that lie in it: half-widths are meant exactly, and `ends` cover
+    /// them.
     inner: Vec<[f64; 2]>,
 }
 
@@ -85,7 +86,8 @@ impl StateBox {
         (0..self.ends.len()).map(|index| self.middle(index)).collect()
     }
 
-    /// The corner in `direction`: the greatest value if it is positive, the least if it is negative, the middle if it is zero or not given.
+    /// The corner in `direction`: the greatest value if it is positive, the least if it is negative, the middle if it
+    /// is zero or not given.
     pub fn corner(&self, direction: &[f64]) -> Vec<f64> {
         let towards = |(index, &[low, high]): (usize, &[f64; 2])| match direction.get(index) {
             Some(&along) if along > 0.0 => high.min(self.inner[index][1]),
