@@ -12,7 +12,7 @@ use heelstrike::dynamics::{
 use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Scratch};
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::planar::Rotation;
+use heelstrike::planar::{Rotation, Vector};
 use heelstrike::state::NamedContact;
 use heelstrike::state::{Defaults, State};
 
@@ -88,7 +88,14 @@ fn velocity_after(bencher: Bencher) {
         articulated_inertias(&plan, &mut workspace);
         for point in &points {
             let at = (point.body, point.arm(&workspace));
-            add_articulated_impulse(&plan, &workspace, at, [0.1, 0.2], (&mut rates, &mut motions), &mut after);
+            add_articulated_impulse(
+                &plan,
+                &workspace,
+                at,
+                Vector::new(0.1, 0.2),
+                (&mut rates, &mut motions),
+                &mut after,
+            );
         }
         after
     });

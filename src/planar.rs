@@ -1,14 +1,158 @@
 //! Vectors, rotations and inertias of the plane; frame, order and handedness are stated here, once.
 //!
-//! The plane has axes *forward* (x) and *up* (z) and the normal n = up x forward. A vector is `[forward, up]`. An angle
-//! is right-handed about n, so a positive one turns up toward forward: **clockwise** seen with forward to the right and up
-//! upward, the nose of a robot dips. A rotation is held as the pair (cos, sin) of such an angle; nothing here takes the
-//! cosine of anything, so any [`Real`] will do.
+//! The plane has axes *forward* (x) and *up* (z) and the normal n = up x forward. An angle is right-handed about n, so a
+//! positive one turns up toward forward: **clockwise** seen with forward to the right and up upward, the nose of a robot
+//! dips. A rotation is the pair (cos, sin) of such an angle; nothing here computes a cosine, so any [`Real`] works.
 
 use crate::scalar::Real;
+use serde::{Serialize, Serializer};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
-/// A vector of the plane, `[forward, up]`.
-pub type Vector<T> = [T; 2];
+/// A position, direction, velocity, force or impulse in the plane; `[x, z]` in JSON.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Vector<T = f64> {
+    /// Component forward.
+    pub x: T,
+    /// Component up.
+    pub z: T,
+}
+
+/// `[tangential, normal]` components of a contact's velocity or impulse, in the contact's own axes.
+pub type Pair<T> = [T; 2];
+
+impl<T> Vector<T> {
+    /// The vector with these components, forward and up.
+    pub const fn new(x: T, z: T) -> Self {
+        Self { x, z }
+    }
+
+    /// The components, forward and up.
+    pub fn components(self) -> [T; 2] {
+        [self.x, self.z]
+    }
+
+    /// The vector of both components' images.
+    pub fn map<U>(self, mut change: impl FnMut(T) -> U) -> Vector<U> {
+        Vector { x: change(self.x), z: change(self.z) }
+    }
+}
+
+impl<T: Real> Vector<T> {
+    /// The unit vectors forward and up.
+    pub fn axes() -> [Self; 2] {
+        [Self { x: T::one(), z: T::zero() }, Self { x: T::zero(), z: T::one() }]
+    }
+
+    /// The zero vector.
+    pub fn zero() -> Self {
+        Self { x: T::zero(), z: T::zero() }
+    }
+
+    /// Inner product.
+    pub fn dot(self, other: Self) -> T {
+        self.x * other.x + self.z * other.z
+    }
+
+    /// The vector turned by a right angle about the normal: the velocity of a point at this arm from an axis that turns at
+    /// 1 rad/s.
+    pub fn perpendicular(self) -> Self {
+        Self { x: self.z, z: -self.x }
+    }
+}
+
+impl Vector<f64> {
+    /// Length of the vector.
+    pub fn length(self) -> f64 {
+        libm::hypot(self.x, self.z)
+    }
+
+    /// The lesser one of each component.
+    pub fn least(self, other: Self) -> Self {
+        Self { x: self.x.min(other.x), z: self.z.min(other.z) }
+    }
+
+    /// The greater one of each component.
+    pub fn greatest(self, other: Self) -> Self {
+        Self { x: self.x.max(other.x), z: self.z.max(other.z) }
+    }
+}
+
+impl<T: Real> Add for Vector<T> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, z: self.z + other.z }
+    }
+}
+
+impl<T: Real> AddAssign for Vector<T> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Real> Sub for Vector<T> {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, z: self.z - other.z }
+    }
+}
+
+impl<T: Real> Neg for Vector<T> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { x: -self.x, z: -self.z }
+    }
+}
+
+impl<T: Real> Mul<T> for Vector<T> {
+    type Output = Self;
+
+    fn mul(self, factor: T) -> Self {
+        Self { x: factor * self.x, z: factor * self.z }
+    }
+}
+
+impl<T> From<[T; 2]> for Vector<T> {
+    fn from([x, z]: [T; 2]) -> Self {
+        Self { x, z }
+    }
+}
+
+impl<T> From<Vector<T>> for [T; 2] {
+    fn from(vector: Vector<T>) -> Self {
+        [vector.x, vector.z]
+    }
+}
+
+impl<T: PartialEq> PartialEq<[T; 2]> for Vector<T> {
+    fn eq(&self, [x, z]: &[T; 2]) -> bool {
+        self.x == *x && self.z == *z
+    }
+}
+
+impl<T: Serialize> Serialize for Vector<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        [&self.x, &self.z].serialize(serializer)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl<T: schemars::JsonSchema> schemars::JsonSchema for Vector<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        <[T; 2]>::schema_name()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        <[T; 2]>::json_schema(generator)
+    }
+}
 
 /// A turn about the plane's normal by the angle whose cosine and sine it holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +170,8 @@ impl<T: Real> Rotation<T> {
     }
 
     /// `vector`, given in the turned frame, in the axes it was turned from.
-    pub fn apply(self, [x, z]: Vector<T>) -> Vector<T> {
-        [self.cos * x + self.sin * z, self.cos * z - self.sin * x]
+    pub fn apply(self, Vector { x, z }: Vector<T>) -> Vector<T> {
+        Vector { x: self.cos * x + self.sin * z, z: self.cos * z - self.sin * x }
     }
 
     /// The turn by the sum of both angles.
@@ -42,31 +186,6 @@ impl Rotation<f64> {
         let (sin, cos) = libm::sincos(angle);
         Self { cos, sin }
     }
-}
-
-/// Velocity of a point at `arm` from an axis that turns at 1 rad/s about the plane's normal.
-pub fn turned<T: Real>([x, z]: Vector<T>) -> Vector<T> {
-    [z, -x]
-}
-
-/// `a + b`.
-pub fn sum<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
-    [a[0] + b[0], a[1] + b[1]]
-}
-
-/// `a - b`.
-pub fn difference<T: Real>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-/// `factor * a`.
-pub fn scaled<T: Real>(factor: T, a: Vector<T>) -> Vector<T> {
-    [factor * a[0], factor * a[1]]
-}
-
-/// Inner product.
-pub fn dot<T: Real>(a: Vector<T>, b: Vector<T>) -> T {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 /// Inertia of a rigid body about a point, in axes that do not turn with it
@@ -84,14 +203,14 @@ pub struct Inertia<T> {
 impl<T: Real> Inertia<T> {
     /// The same body about a point from which the old one is seen at `arm`.
     pub fn seen_from(self, arm: Vector<T>) -> Self {
-        let shifted = sum(self.first, scaled(self.mass, arm));
+        let shifted = self.first + arm * self.mass;
         // I + 2 h.d + m d.d, with the new first moment h + m d in place of one h.
-        Self { mass: self.mass, first: shifted, second: self.second + dot(sum(self.first, shifted), arm) }
+        Self { mass: self.mass, first: shifted, second: self.second + (self.first + shifted).dot(arm) }
     }
 
     /// Both bodies as one; they must be given about the same point.
     pub fn with(self, other: Self) -> Self {
-        Self { mass: self.mass + other.mass, first: sum(self.first, other.first), second: self.second + other.second }
+        Self { mass: self.mass + other.mass, first: self.first + other.first, second: self.second + other.second }
     }
 }
 
@@ -102,16 +221,16 @@ mod tests {
     #[test]
     fn a_positive_angle_tips_up_toward_forward() {
         let quarter = Rotation { cos: 0.0, sin: 1.0 };
-        assert_eq!(quarter.apply([0.0, 1.0]), [1.0, 0.0]);
-        assert_eq!(quarter.apply([1.0, 0.0]), [0.0, -1.0]);
-        assert_eq!(turned([0.0, 1.0]), [1.0, 0.0]);
+        assert_eq!(quarter.apply(Vector::new(0.0, 1.0)), Vector::new(1.0, 0.0));
+        assert_eq!(quarter.apply(Vector::new(1.0, 0.0)), Vector::new(0.0, -1.0));
+        assert_eq!(Vector::new(0.0, 1.0).perpendicular(), Vector::new(1.0, 0.0));
     }
 
     #[test]
     fn inertia_moves_by_steiner() {
-        let at_cog = Inertia { mass: 2.0, first: [0.0, 0.0], second: 0.5 };
-        let moved = at_cog.seen_from([3.0, 4.0]);
-        assert_eq!(moved, Inertia { mass: 2.0, first: [6.0, 8.0], second: 50.5 });
-        assert_eq!(moved.seen_from([-3.0, -4.0]), at_cog);
+        let at_cog = Inertia { mass: 2.0, first: Vector::new(0.0, 0.0), second: 0.5 };
+        let moved = at_cog.seen_from(Vector::new(3.0, 4.0));
+        assert_eq!(moved, Inertia { mass: 2.0, first: Vector::new(6.0, 8.0), second: 50.5 });
+        assert_eq!(moved.seen_from(Vector::new(-3.0, -4.0)), at_cog);
     }
 }

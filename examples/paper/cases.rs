@@ -4,7 +4,7 @@ use super::along::Modes;
 use super::exhibit::Found;
 use super::figures::Finding;
 use heelstrike::impact::Mode;
-use heelstrike::planar::Vector;
+use heelstrike::planar::Pair;
 
 fn name(modes: &[Mode]) -> String {
     modes.iter().map(ToString::to_string).collect::<Vec<_>>().join("/")
@@ -17,7 +17,7 @@ pub fn outcomes(found: &Found, expected: &[Modes]) -> Result<Finding, String> {
 }
 
 /// One of the paper's cases with the trailing foot's velocity after \[m/s\] and impulse \[N s\], each tangential and normal.
-pub type Case = (Modes, Vector<f64>, Vector<f64>);
+pub type Case = (Modes, Pair<f64>, Pair<f64>);
 
 /// The cases have these numbers in parts of `unit`, to one of the last of three digits; `valid` alone is an outcome.
 pub fn cases(found: &Found, unit: f64, expected: &[Case], valid: Modes) -> Result<Finding, String> {
@@ -37,7 +37,7 @@ pub fn cases(found: &Found, unit: f64, expected: &[Case], valid: Modes) -> Resul
         let of_case = all.iter().find(|(listed, ..)| listed == modes);
         let Some((_, Some(c), Some(l))) = of_case else { return Err(format!("{modes} has no numbers")) };
         let [c, l] = [c, l].map(|vector| vector.map(|value| value / unit));
-        let near = |is: Vector<f64>, printed: &Vector<f64>| {
+        let near = |is: Pair<f64>, printed: &Pair<f64>| {
             is.iter().zip(printed).all(|(is, printed)| (is - printed).abs() <= LAST_DIGIT)
         };
         agrees &= near(c, velocity) && near(l, impulse);

@@ -3,7 +3,6 @@
 use super::along::modes;
 use super::exhibit::Found;
 use super::figures::Finding;
-use heelstrike::planar::Vector;
 use heelstrike::sweep::{Area, Map};
 
 fn slides(area: &Area) -> bool {
@@ -14,14 +13,14 @@ fn ambiguous(area: &Area) -> bool {
     modes(&area.regime).len() > 1
 }
 
-fn points(map: &Map, of: fn(&Area) -> bool) -> impl Iterator<Item = Vector<f64>> {
+fn points(map: &Map, of: fn(&Area) -> bool) -> impl Iterator<Item = [f64; 2]> {
     map.areas.iter().filter(move |area| of(area)).flat_map(|area| area.loops.iter().flatten().copied())
 }
 
 /// Where the sliding band ends, and the point of the ambiguous band that is nearest to it.
-pub fn junction(map: &Map) -> Option<[Vector<f64>; 2]> {
+pub fn junction(map: &Map) -> Option<[[f64; 2]; 2]> {
     let top = points(map, slides).max_by(|a, b| a[1].total_cmp(&b[1]))?;
-    let away = |point: &Vector<f64>| (point[0] - top[0]).hypot(point[1] - top[1]);
+    let away = |point: &[f64; 2]| (point[0] - top[0]).hypot(point[1] - top[1]);
     let nearest = points(map, ambiguous).min_by(|a, b| away(a).total_cmp(&away(b)))?;
     Some([top, nearest])
 }
@@ -34,7 +33,7 @@ pub fn closes_at(found: &Found, inertia: f64) -> Result<Finding, String> {
         "sliding ends at alpha = {:.5}, j = {:.5}; ambiguity begins at alpha = {:.5}, j = {:.5}; m along (l - along) = {inertia:.5}",
         slides[0], slides[1], ambiguous[0], ambiguous[1]
     );
-    let near = |point: Vector<f64>| (point[1] - inertia).abs() <= WITHIN && (point[0] - slides[0]).abs() <= WITHIN;
+    let near = |point: [f64; 2]| (point[1] - inertia).abs() <= WITHIN && (point[0] - slides[0]).abs() <= WITHIN;
     Ok(Finding { words, agrees: Some(near(slides) && near(ambiguous)) })
 }
 

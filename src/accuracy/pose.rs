@@ -145,7 +145,7 @@ impl<T: Number> Computation<T> {
             velocity[..2].fill(T::zero());
             let arm = points[stance].arm(workspace);
             let moving = point_velocity(plan, points[stance].body, arm, velocity, workspace);
-            velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
+            velocity[..2].copy_from_slice(&(-moving).components());
         }
     }
 

@@ -6,7 +6,7 @@
 use super::number::Number;
 use super::pose::{Computation, Pose};
 use crate::dynamics::plan::Motion;
-use crate::planar::{Inertia, Vector, difference, dot, scaled, sum, turned};
+use crate::planar::{Inertia, Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Interval, Ordered, Real};
 
@@ -63,7 +63,7 @@ impl Reference {
     }
 
     /// c, one entry per contact.
-    pub fn velocity(&self) -> &[Vector<Interval>] {
+    pub fn velocity(&self) -> &[Pair<Interval>] {
         &self.computation.workspace().contact_velocity
     }
 
@@ -110,12 +110,12 @@ impl Reference {
         let (beyond, below) = (&self.columns[upper], &self.columns[lower]);
         let Inertia { mass, first, second } = beyond.moved;
         let (linear, angular) = match beyond.axis {
-            Axis::Turn(sign) => (scaled(sign, turned(first)), sign * second),
-            Axis::Slide(along) => (scaled(mass, along), dot(turned(first), along)),
+            Axis::Turn(sign) => (first.perpendicular() * sign, sign * second),
+            Axis::Slide(along) => (along * mass, first.perpendicular().dot(along)),
         };
         let entry = match below.axis {
-            Axis::Turn(sign) => sign * (angular + dot(turned(difference(beyond.origin, below.origin)), linear)),
-            Axis::Slide(along) => dot(along, linear),
+            Axis::Turn(sign) => sign * (angular + (beyond.origin - below.origin).perpendicular().dot(linear)),
+            Axis::Slide(along) => along.dot(linear),
         };
         if upper == lower { entry + beyond.rotor } else { entry }
     }
@@ -127,7 +127,7 @@ fn columns(computation: &Computation<Interval>) -> Vec<Column> {
     let mut origins: Vec<Vector<Interval>> = Vec::new();
     for (index, body) in plan.bodies.iter().enumerate() {
         composite.push(Inertia { first: workspace.rotation[index].apply(body.inertia.first), ..body.inertia });
-        origins.push(body.parent.map_or([Interval::zero(); 2], |parent| sum(origins[parent], workspace.arm[index])));
+        origins.push(body.parent.map_or(Vector::zero(), |parent| origins[parent] + workspace.arm[index]));
     }
     for (index, body) in plan.bodies.iter().enumerate().rev() {
         if let Some(parent) = body.parent {
@@ -144,8 +144,7 @@ fn columns(computation: &Computation<Interval>) -> Vec<Column> {
     for (index, body) in plan.bodies.iter().enumerate().filter(|(_, body)| body.column.is_some()) {
         match body.motion {
             Motion::Root => {
-                let axes = [[Interval::one(), Interval::zero()], [Interval::zero(), Interval::one()]];
-                columns.extend(axes.map(|axis| column(Axis::Slide(axis), index)));
+                columns.extend(Vector::axes().map(|axis| column(Axis::Slide(axis), index)));
                 columns.push(column(Axis::Turn(Interval::one()), index));
             }
             Motion::Turn { sign, .. } => columns.push(column(Axis::Turn(sign), index)),

@@ -1,7 +1,8 @@
 //! The robots of the suite, from this repository's URDFs or link by link.
 
 use crate::Result;
-use crate::planar::scaled;
+
+use crate::planar::Vector;
 use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, Mover, Robot};
 
 /// The paper's minimalistic biped: two point masses on hinged legs.
@@ -35,15 +36,15 @@ pub fn with_massless_feet() -> Result<Robot> {
         robot.links[leg].shapes.clear();
         let name = format!("{} foot", robot.links[leg].name);
         let (joint, body) = (robot.joints.len(), robot.bodies.len());
-        robot.joints.push(hinge(format!("{name} ankle"), robot.links[leg].body, body, [0.0, -1.0]));
+        robot.joints.push(hinge(format!("{name} ankle"), robot.links[leg].body, body, Vector::new(0.0, -1.0)));
         robot.bodies.push(Body {
             name: name.clone(),
             joint: Some(Mover::Joint(joint)),
             mass: 0.0,
-            com: [0.0; 2],
+            com: Vector::zero(),
             moment: 0.0,
         });
-        robot.links.push(point_foot(name, body, [0.05, -0.05]));
+        robot.links.push(point_foot(name, body, Vector::new(0.05, -0.05)));
     }
     Ok(robot)
 }
@@ -54,7 +55,7 @@ pub fn chain(links: usize) -> Robot {
         name: format!("rod {index}"),
         joint: index.checked_sub(1).map(Mover::Joint),
         mass: 1.0,
-        com: [0.0, -0.5],
+        com: Vector::new(0.0, -0.5),
         moment: 1.0 / 12.0,
     };
     let tip = links - 1;
@@ -62,8 +63,13 @@ pub fn chain(links: usize) -> Robot {
         name: format!("chain of {links}"),
         base: Base::Floating,
         bodies: (0..links).map(rod).collect(),
-        joints: (0..tip).map(|index| hinge(format!("joint {index}"), index, index + 1, [0.0, -1.0])).collect(),
-        links: vec![point_foot("near end".into(), 0, [0.0; 2]), point_foot("far end".into(), tip, [0.0, -1.0])],
+        joints: (0..tip)
+            .map(|index| hinge(format!("joint {index}"), index, index + 1, Vector::new(0.0, -1.0)))
+            .collect(),
+        links: vec![
+            point_foot("near end".into(), 0, Vector::zero()),
+            point_foot("far end".into(), tip, Vector::new(0.0, -1.0)),
+        ],
         followers: Vec::new(),
         left_out: Vec::new(),
         reading: Default::default(),
@@ -75,14 +81,14 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
     let mut robot = robot.clone();
     for body in &mut robot.bodies {
         body.mass *= mass;
-        body.com = scaled(length, body.com);
+        body.com = body.com * length;
         body.moment *= mass * length * length;
     }
     for joint in &mut robot.joints {
-        joint.origin = scaled(length, joint.origin);
+        joint.origin = joint.origin * length;
     }
     for follower in &mut robot.followers {
-        follower.origin = scaled(length, follower.origin);
+        follower.origin = follower.origin * length;
     }
     for link in &mut robot.links {
         for row in &mut link.pose {
@@ -114,12 +120,12 @@ pub fn with_moments(mut robot: Robot, factor: f64) -> Robot {
     robot
 }
 
-fn hinge(name: String, parent: usize, child: usize, origin: [f64; 2]) -> Joint {
+fn hinge(name: String, parent: usize, child: usize, origin: Vector<f64>) -> Joint {
     Joint { name, parent, child, origin, axis: Axis::Turn { sign: -1.0 } }
 }
 
 /// A link that is its body and touches the ground with a point.
-fn point_foot(name: String, body: usize, centre: [f64; 2]) -> Link {
+fn point_foot(name: String, body: usize, centre: Vector<f64>) -> Link {
     Link {
         name,
         body,

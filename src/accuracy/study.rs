@@ -9,7 +9,7 @@ use super::timing::{Budget, Spread, time};
 use crate::impact::enumerate::Tableau;
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Scratch, Verdict};
 use crate::pipeline::{Options, Pipeline};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::robot::Robot;
 use crate::scalar::{DoubleDouble, Interval, Ordered, Real};
 use crate::state::State;
@@ -363,7 +363,7 @@ impl Bench<'_> {
 }
 
 /// A problem of the friction of `shape` with these matrices.
-fn filled<T: Number>(shape: &ContactProblem, delassus: &[T], velocity: &[Vector<T>]) -> ContactProblem<T> {
+fn filled<T: Number>(shape: &ContactProblem, delassus: &[T], velocity: &[Pair<T>]) -> ContactProblem<T> {
     let speeds = velocity.iter().flatten();
     // `map` takes G by rows, the velocities with and without applied impulses, and their normal parts.
     let normal = velocity.iter().map(|c| &c[1]);
@@ -387,7 +387,7 @@ fn outcome_error<T: Number>(
     let mut errors = Vec::new();
     for outcome in analysis.outcomes.iter().filter(|outcome| outcome.decided && outcome.impulse_unique) {
         let (found, truth) = (tableau.leaf(&outcome.modes), reference.leaf(&outcome.modes));
-        let known = |vector: Vector<Interval>| vector.iter().all(|entry| entry.radius().is_finite());
+        let known = |vector: Pair<Interval>| vector.iter().all(|entry| entry.radius().is_finite());
         if !(0..contacts).all(|contact| known(truth.impulse(contact)) && known(truth.velocity(contact))) {
             continue;
         }

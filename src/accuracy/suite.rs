@@ -6,6 +6,7 @@ use super::robots;
 use crate::Result;
 use crate::impact::ContactProblem;
 use crate::law::Friction;
+use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::State;
 use crate::state::{ByLink, NamedContact, Scene};
@@ -92,7 +93,7 @@ impl Suite {
         // A needle whose CoG lies 1 nm beside its hinge turns at a touch.
         for (name, com, end) in [("1 nm off", -1e-9, End::Answered), ("at", 0.0, End::Singular)] {
             let mut robot = robots::minimalistic()?;
-            robot.bodies[1].com = [0.0, com];
+            robot.bodies[1].com = Vector::new(0.0, com);
             let state = walker(&robot, 1.4);
             self.ending(format!("a leg's point mass {name} its hinge"), robot, state, end);
         }

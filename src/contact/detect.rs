@@ -6,7 +6,7 @@ use super::placement::Placement;
 use super::point::{Point, Touch, points};
 use super::surface::{Sunk, Surface};
 use crate::error::{Error, Reason, Result};
-use crate::planar::{Vector, difference, scaled};
+use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
 
@@ -23,7 +23,7 @@ impl Contact {
             ground,
             gap,
         };
-        contact.point = difference(contact.point, scaled(circle.radius, contact.normal()));
+        contact.point = contact.point - contact.normal() * circle.radius;
         contact
     }
 }
@@ -67,7 +67,7 @@ pub fn stance(
         .min_by(|&a, &b| along(a).total_cmp(&along(b)))
         .map(|point| {
             let foot = Contact::of_touch(link, placement, plane.touch(placement, point));
-            Stance { base: difference(place, foot.point), foot }
+            Stance { base: place - foot.point, foot }
         })
         .ok_or_else(|| {
             let name = &robot.links[link].name;

@@ -7,7 +7,7 @@
 //!     ///// solid /////
 //! ```
 
-use crate::planar::{Rotation, Vector, difference, dot};
+use crate::planar::{Rotation, Vector};
 
 /// Greatest sine of the angle at which two boundaries that meet still count as lying flat on each other.
 const FLAT: f64 = 0.1;
@@ -30,14 +30,14 @@ impl Face {
     /// The side between two different points, its solid to the right of the way from one to the other, seen with forward to
     /// the right and up upward.
     pub fn of_ground(from: Vector<f64>, to: Vector<f64>) -> Self {
-        let [x, z] = unit(difference(to, from));
-        Self { from, to, tangent: [x, z], normal: [-z, x] }
+        let Vector { x, z } = unit(to - from);
+        Self { from, to, tangent: Vector::new(x, z), normal: Vector::new(-z, x) }
     }
 
     /// The same with its solid to the left.
     pub fn of_foot(from: Vector<f64>, to: Vector<f64>) -> Self {
-        let Self { tangent: [x, z], .. } = Self::of_ground(from, to);
-        Self { from, to, tangent: [x, z], normal: [z, -x] }
+        let Self { tangent: Vector { x, z }, .. } = Self::of_ground(from, to);
+        Self { from, to, tangent: Vector::new(x, z), normal: Vector::new(z, -x) }
     }
 
     /// Turn from the world's axes to (tangent, normal) of a contact with this normal.
@@ -47,17 +47,17 @@ impl Face {
 
     /// Height of a point above the line \[m\].
     pub fn height(&self, point: Vector<f64>) -> f64 {
-        dot(self.normal, difference(point, self.from))
+        self.normal.dot(point - self.from)
     }
 
     /// How far a point is past the beginning, along the tangent \[m\].
     pub fn past_begin(&self, point: Vector<f64>) -> f64 {
-        dot(self.tangent, difference(point, self.from))
+        self.tangent.dot(point - self.from)
     }
 
     /// How far a point is past the end \[m\].
     pub fn past_end(&self, point: Vector<f64>) -> f64 {
-        dot(self.tangent, difference(point, self.to))
+        self.tangent.dot(point - self.to)
     }
 
     /// Whether a point is above the side or below it, and past none of its ends.
@@ -68,32 +68,32 @@ impl Face {
     /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbour` stays in front of the
     /// side: it may go behind it by `slack` \[m\] where both lie flat on each other.
     pub fn clears(&self, point: Vector<f64>, neighbour: Vector<f64>, slack: f64) -> bool {
-        let way = unit(difference(neighbour, point));
-        let descent = -dot(self.normal, way);
+        let way = unit(neighbour - point);
+        let descent = -self.normal.dot(way);
         if descent <= 0.0 || descent > FLAT {
             return descent <= 0.0;
         }
-        let along = dot(self.tangent, way);
+        let along = self.tangent.dot(way);
         let room = if along > 0.0 { -self.past_end(point) } else { self.past_begin(point) };
         descent * (room / along.abs()).min(distance(point, neighbour)) <= slack
     }
 }
 
 /// The turn from the world's axes to those whose second one is this unit vector.
-pub(super) fn upright([x, z]: Vector<f64>) -> Rotation<f64> {
+pub(super) fn upright(Vector { x, z }: Vector<f64>) -> Rotation<f64> {
     Rotation { cos: z, sin: x }
 }
 
 /// Distance of two points \[m\].
 pub(super) fn distance(a: Vector<f64>, b: Vector<f64>) -> f64 {
-    let [x, z] = difference(a, b);
+    let Vector { x, z } = a - b;
     libm::hypot(x, z)
 }
 
 /// The vector of length one in this direction; it may be as short as it likes, but not zero.
 pub(super) fn unit(vector: Vector<f64>) -> Vector<f64> {
-    let size = vector[0].abs().max(vector[1].abs());
-    let [x, z] = vector.map(|entry| entry / size);
+    let size = vector.x.abs().max(vector.z.abs());
+    let Vector { x, z } = vector.map(|entry| entry / size);
     let length = libm::hypot(x, z);
-    [x / length, z / length]
+    Vector::new(x / length, z / length)
 }

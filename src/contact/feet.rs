@@ -1,6 +1,6 @@
 //! The robot's shapes that may touch, compiled once.
 
-use crate::planar::{Vector, sum};
+use crate::planar::Vector;
 use crate::robot::{FootShape, Robot};
 use crate::state::NamedContact;
 
@@ -65,16 +65,13 @@ impl Feet {
 }
 
 fn size(robot: &Robot, feet: &[Foot]) -> f64 {
-    let mut origins = vec![[0.0; 2]; robot.bodies.len()];
+    let mut origins = vec![Vector::zero(); robot.bodies.len()];
     for (index, body) in robot.bodies.iter().enumerate() {
         if let Some((parent, origin, _)) = body.joint.map(|mover| robot.hinge(mover)) {
-            origins[index] = sum(origins[parent], origin);
+            origins[index] = origins[parent] + origin;
         }
     }
-    let distance = |body: usize, point: Vector<f64>| {
-        let [x, z] = sum(origins[body], point);
-        libm::hypot(x, z)
-    };
+    let distance = |body: usize, point: Vector<f64>| (origins[body] + point).length();
     let centres = robot.centres().into_iter().enumerate();
     let centres = centres.filter_map(|(index, centre)| Some(distance(index, centre?)));
     let soles = feet.iter().map(|foot| {

@@ -9,7 +9,7 @@ use super::face::{Face, distance, unit};
 use super::feet::Foot;
 use super::placement::Placement;
 use super::point::{Circle, Point, points};
-use crate::planar::{Vector, difference, dot, scaled, sum};
+use crate::planar::Vector;
 use crate::robot::Rim;
 
 /// The outline of a foot where it is.
@@ -41,7 +41,7 @@ impl<'p> Outline<'p> {
         let mut outline = Self { placement, body: foot.body, rim, points, corners, bones, sides: Vec::new() };
         let moved = |bone: &Face| {
             let out = outline.support(bone.normal);
-            Face { from: sum(bone.from, out), to: sum(bone.to, out), ..*bone }
+            Face { from: bone.from + out, to: bone.to + out, ..*bone }
         };
         outline.sides = outline.bones.iter().map(moved).collect();
         outline
@@ -50,7 +50,7 @@ impl<'p> Outline<'p> {
     /// The rim's point that is farthest along a unit vector of the world, seen from the corner \[m\].
     pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {
         match self.rim {
-            Rim::Circle { radius } => scaled(radius, direction),
+            Rim::Circle { radius } => direction * radius,
             Rim::Ellipse { .. } => {
                 let local = self.rim.support(self.placement.turned_back(self.body, direction));
                 self.placement.turned(self.body, local)
@@ -74,7 +74,7 @@ impl<'p> Outline<'p> {
 
     /// The lowest point of a corner's rim, seen along a unit normal of the ground \[m\].
     pub fn lowest(&self, corner: usize, normal: Vector<f64>) -> Vector<f64> {
-        sum(self.corners[corner], self.support(scaled(-1.0, normal)))
+        self.corners[corner] + self.support(-normal)
     }
 
     /// What of a corner touches ground with this normal.
@@ -114,21 +114,20 @@ impl<'p> Outline<'p> {
         let face = &self.sides[side];
         let (from, to) = (self.points[side], self.points[(side + 1) % self.points.len()]);
         let (behind, ahead) = (face.past_begin(at), -face.past_end(at));
-        let along = scaled(behind / (behind + ahead), difference(to.centre, from.centre));
-        let point = Point { centre: sum(from.centre, along), offset: None, ..from };
-        self.placement.circle(point, scaled(-1.0, face.normal))
+        let along = (to.centre - from.centre) * (behind / (behind + ahead));
+        let point = Point { centre: from.centre + along, offset: None, ..from };
+        self.placement.circle(point, -face.normal)
     }
 
     /// The box about the outline, grown by `margin` \[m\]: its low and its high end.
     pub fn region(&self, margin: f64) -> [Vector<f64>; 2] {
         let margin = self.rim.bound() + margin;
-        let end = |axis: usize, extreme: fn(f64, f64) -> f64, start: f64| {
-            self.corners.iter().map(|corner| corner[axis]).fold(start, extreme)
-        };
-        [
-            [0, 1].map(|axis| end(axis, f64::min, f64::INFINITY) - margin),
-            [0, 1].map(|axis| end(axis, f64::max, f64::NEG_INFINITY) + margin),
-        ]
+        let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
+        let (low, high) = self
+            .corners
+            .iter()
+            .fold((infinite, -infinite), |(low, high), &corner| (low.least(corner), high.greatest(corner)));
+        [low.map(|entry| entry - margin), high.map(|entry| entry + margin)]
     }
 
     /// The direction out of a corner's rim toward a point, and how far the point lies beyond the rim \[m\]; none from the
@@ -137,7 +136,7 @@ impl<'p> Outline<'p> {
     /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the centre, which is
     /// the nearest one where the distance is nothing; and the distance that to the tangent there.
     pub fn beyond_rim(&self, corner: usize, point: Vector<f64>) -> Option<(Vector<f64>, f64)> {
-        let way = difference(point, self.corners[corner]);
+        let way = point - self.corners[corner];
         let far = distance(point, self.corners[corner]);
         if far == 0.0 {
             return None;
@@ -145,14 +144,14 @@ impl<'p> Outline<'p> {
         match self.rim {
             Rim::Circle { radius } => Some((unit(way), far - radius)),
             Rim::Ellipse { half_diameters: [a, b] } => {
-                let [x, z] = self.placement.turned_back(self.body, way);
+                let Vector { x, z } = self.placement.turned_back(self.body, way);
                 // (cos s, sin s) solves cos(s) a + sin(s) b = way / k; the gradient of k is the normal.
-                let area = a[0] * b[1] - a[1] * b[0];
-                let [along_a, along_b] = [(x * b[1] - z * b[0]) / area, (a[0] * z - a[1] * x) / area];
-                let gradient = [along_a * b[1] - along_b * a[1], along_b * a[0] - along_a * b[0]];
-                let normal = unit(scaled(area.signum(), gradient));
+                let area = a.x * b.z - a.z * b.x;
+                let [along_a, along_b] = [(x * b.z - z * b.x) / area, (a.x * z - a.z * x) / area];
+                let gradient = Vector::new(along_a * b.z - along_b * a.z, along_b * a.x - along_a * b.x);
+                let normal = unit(gradient * area.signum());
                 let size = libm::hypot(along_a, along_b);
-                let beyond = dot(normal, [x, z]) * (1.0 - 1.0 / size);
+                let beyond = normal.dot(Vector::new(x, z)) * (1.0 - 1.0 / size);
                 beyond.is_finite().then(|| (self.placement.turned(self.body, normal), beyond))
             }
         }

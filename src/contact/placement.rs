@@ -3,7 +3,7 @@
 use super::point::{Circle, Point};
 use crate::dynamics::plan::{Plan, Posture};
 use crate::dynamics::{Workspace, kinematics};
-use crate::planar::{Rotation, Vector, scaled, sum};
+use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Rim, Robot};
 use parry2d::math::{Pose, Vector as ParryVector};
 
@@ -21,7 +21,7 @@ impl Placement {
     pub fn new(plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>) -> Self {
         let mut origins: Vec<Vector<f64>> = Vec::with_capacity(plan.bodies.len());
         for (body, &arm) in plan.bodies.iter().zip(&workspace.arm) {
-            origins.push(body.parent.map_or(base, |parent| sum(origins[parent], arm)));
+            origins.push(body.parent.map_or(base, |parent| origins[parent] + arm));
         }
         Self { origins, turns: workspace.rotation.clone() }
     }
@@ -33,8 +33,8 @@ impl Placement {
         posture.set(&plan, position);
         kinematics(&plan, &posture, &mut workspace);
         let base = match (robot.base, position) {
-            (Base::Floating, &[x, z, ..]) => [x, z],
-            _ => [0.0; 2],
+            (Base::Floating, &[x, z, ..]) => Vector::new(x, z),
+            _ => Vector::zero(),
         };
         Self::new(&plan, &workspace, base)
     }
@@ -46,7 +46,7 @@ impl Placement {
 
     /// The world's point that is `local` in the frame of `body` \[m\].
     pub fn world(&self, body: usize, local: Vector<f64>) -> Vector<f64> {
-        sum(self.origins[body], self.turned(body, local))
+        self.origins[body] + self.turned(body, local)
     }
 
     /// A vector of a body's frame in the world's axes.
@@ -67,8 +67,8 @@ impl Placement {
         match rim {
             Rim::Circle { radius } => Circle { body, centre, offset, radius },
             Rim::Ellipse { .. } => {
-                let down = self.turned_back(body, scaled(-1.0, normal));
-                Circle { body, centre: sum(centre, rim.support(down)), offset, radius: 0.0 }
+                let down = self.turned_back(body, -normal);
+                Circle { body, centre: centre + rim.support(down), offset, radius: 0.0 }
             }
         }
     }
@@ -76,7 +76,7 @@ impl Placement {
     /// The body's frame for parry.
     pub(super) fn pose(&self, body: usize) -> Pose {
         let Rotation { cos, sin } = self.turns[body];
-        let [x, z] = self.origins[body];
+        let Vector { x, z } = self.origins[body];
         // parry turns counter-clockwise, a positive pitch clockwise.
         Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
     }

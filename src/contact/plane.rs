@@ -12,7 +12,7 @@ use super::feet::Foot;
 use super::placement::Placement;
 use super::point::{Circle, Point, Touch, points};
 use crate::error::{Error, Reason, Result};
-use crate::planar::{Rotation, Vector, difference, dot, scaled};
+use crate::planar::{Rotation, Vector};
 use parry2d::math::Vector as ParryVector;
 use parry2d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry2d::shape::HalfSpace;
@@ -39,7 +39,7 @@ impl Plane {
     }
 
     fn normal(&self) -> Vector<f64> {
-        self.ground.apply([0.0, 1.0])
+        self.ground.apply(Vector::new(0.0, 1.0))
     }
 
     /// The circle with which a point of a foot touches.
@@ -50,23 +50,23 @@ impl Plane {
     /// The world's point of a rim about a corner that is lowest along the normal.
     pub fn lowest(&self, placement: &Placement, point: Point) -> Vector<f64> {
         let Circle { body, centre, radius, .. } = self.circle(placement, point);
-        difference(placement.world(body, centre), scaled(radius, self.normal()))
+        placement.world(body, centre) - self.normal() * radius
     }
 
     pub(super) fn height(&self, placement: &Placement, point: Point) -> f64 {
-        dot(self.normal(), self.lowest(placement, point))
+        self.normal().dot(self.lowest(placement, point))
     }
 
     /// How far a world's point lies along the tangent \[m\].
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
-        dot(self.ground.apply([1.0, 0.0]), point)
+        self.ground.apply(Vector::new(1.0, 0.0)).dot(point)
     }
 
     /// How far heights are off by rounding alone: they are sums of a few terms of this size. On level ground it does not
     /// matter how far away the base is.
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
-        let [x, z] = placement.base();
-        let [along, up] = self.normal();
+        let Vector { x, z } = placement.base();
+        let Vector { x: along, z: up } = self.normal();
         16.0 * f64::EPSILON * (size + (along * x).abs() + (up * z).abs())
     }
 
@@ -77,7 +77,7 @@ impl Plane {
     /// Whether a foot is so high that none of its points can be within `tolerance` \[m\] of the ground.
     pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
         let (centre, radius) = foot.bounding_circle;
-        dot(self.normal(), placement.world(foot.body, centre)) - radius > tolerance
+        self.normal().dot(placement.world(foot.body, centre)) - radius > tolerance
     }
 
     /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that faces
@@ -93,10 +93,10 @@ impl Plane {
         let Some(polygon) = foot.outline.polygon() else {
             return Ok(points(foot).map(touch).filter(|touch| touch.gap <= tolerance).collect());
         };
-        let [x, z] = self.normal();
+        let Vector { x, z } = self.normal();
         let ground = HalfSpace::new(ParryVector::new(x, z));
         let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
-        let down = placement.turned_back(foot.body, [-x, -z]);
+        let down = placement.turned_back(foot.body, Vector::new(-x, -z));
         let prediction = tolerance + foot.outline.rim().reach(down);
         let pose = placement.pose(foot.body);
         DefaultQueryDispatcher
@@ -107,7 +107,7 @@ impl Plane {
         let mut touching: Vec<Point> = Vec::new();
         let near = manifolds.iter().flat_map(|manifold| &manifold.points).filter(|near| near.dist <= prediction);
         for at in near.map(|near| near.local_p2) {
-            let far = |point: &Point| libm::hypot(point.centre[0] - at.x, point.centre[1] - at.y);
+            let far = |point: &Point| libm::hypot(point.centre.x - at.x, point.centre.z - at.y);
             let nearest = points(foot).min_by(|a, b| far(a).total_cmp(&far(b)));
             touching.extend(nearest.filter(|point| !touching.contains(point)));
         }

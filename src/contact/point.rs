@@ -55,7 +55,7 @@ pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
 impl Contact {
     /// Unit normal of the ground in the world, toward the robot.
     pub fn normal(&self) -> Vector<f64> {
-        self.ground.apply([0.0, 1.0])
+        self.ground.apply(Vector::new(0.0, 1.0))
     }
 
     /// The contact for the dynamics.
@@ -81,7 +81,7 @@ impl Contact {
                     .map(|(a, b)| (a * b).abs())
                     .sum()
             }
-            None => self.centre[0].abs() + self.centre[1].abs(),
+            None => self.centre.x.abs() + self.centre.z.abs(),
         }
     }
 }

@@ -17,7 +17,7 @@ use super::outline::Outline;
 use super::placement::Placement;
 use super::point::Touch;
 use super::terrain::Terrain;
-use crate::planar::{Vector, difference, dot, scaled, sum};
+use crate::planar::Vector;
 
 /// A foot deeper in the ground than the tolerance, by how much \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +71,7 @@ pub(super) fn touching(
         let found = corner_on_corner(terrain, corner, &outline, close).or_else(beneath);
         touches.extend(found);
     }
-    touches.sort_by(|a, b| place(placement, a)[0].total_cmp(&place(placement, b)[0]));
+    touches.sort_by(|a, b| place(placement, a).x.total_cmp(&place(placement, b).x));
     Ok(touches)
 }
 
@@ -90,13 +90,13 @@ fn all(terrain: &Terrain) -> Vec<usize> {
 
 /// The material point of a contact in the world \[m\].
 fn place(placement: &Placement, touch: &Touch) -> Vector<f64> {
-    let normal = touch.ground.apply([0.0, 1.0]);
-    difference(placement.world(touch.circle.body, touch.circle.centre), scaled(touch.circle.radius, normal))
+    let normal = touch.ground.apply(Vector::new(0.0, 1.0));
+    placement.world(touch.circle.body, touch.circle.centre) - normal * touch.circle.radius
 }
 
 /// How far heights are off by rounding alone \[m\]: they are sums of a few terms of this size.
 pub(super) fn rounding(placement: &Placement, size: f64) -> f64 {
-    let [x, z] = placement.base();
+    let Vector { x, z } = placement.base();
     16.0 * f64::EPSILON * (size + x.abs() + z.abs())
 }
 
@@ -113,7 +113,7 @@ fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
     let ground = corners_of(near).map(|corner| outline.depth_of(terrain.at_corner(corner)[0].to));
     let across = near.iter().flat_map(|&segment| {
         let face = terrain.face(segment);
-        let reach = outline.reach(scaled(-1.0, face.normal));
+        let reach = outline.reach(-face.normal);
         outline.bones().iter().filter_map(move |bone| crossing(face, bone)).map(move |depth| reach + depth)
     });
     corners.chain(ground).chain(across).fold(f64::NEG_INFINITY, f64::max)
@@ -123,7 +123,7 @@ fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
 fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> f64 {
     let centre = outline.corners()[corner];
     if let Some((depth, normal)) = terrain.depth_of(centre) {
-        return depth + outline.reach(scaled(-1.0, normal));
+        return depth + outline.reach(-normal);
     }
     let above = near.iter().filter_map(|&segment| {
         let face = terrain.face(segment);
@@ -141,13 +141,14 @@ pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
 /// The x of the end that a foot reaches beyond, not higher than `tolerance` above it.
 pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) -> Option<f64> {
     let [rear, front] = terrain.ends();
-    let hangs = |[x, z]: Vector<f64>, way: f64| {
+    let hangs = |Vector { x, z }: Vector<f64>, way: f64| {
         let reach = |corner: usize, normal| outline.lowest(corner, normal);
         (0..outline.corners().len()).any(|corner| {
-            way * (reach(corner, [-way, 0.0])[0] - x) > tolerance && reach(corner, [0.0, 1.0])[1] <= z + tolerance
+            way * (reach(corner, Vector::new(-way, 0.0)).x - x) > tolerance
+                && reach(corner, Vector::new(0.0, 1.0)).z <= z + tolerance
         })
     };
-    if hangs(rear, -1.0) { Some(rear[0]) } else { hangs(front, 1.0).then_some(front[0]) }
+    if hangs(rear, -1.0) { Some(rear.x) } else { hangs(front, 1.0).then_some(front.x) }
 }
 
 /// The shortest way that takes one of two crossing sides off the other \[m\]; none where they do not cross.
@@ -216,10 +217,10 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
             return None;
         }
         let (normal, gap) = match beyond {
-            Some((out, far)) if !outline.is_sharp() => (scaled(-1.0, out), far),
+            Some((out, far)) if !outline.is_sharp() => (-out, far),
             _ => {
                 let normal = common_normal([before, after], outline.at_corner(foot));
-                (normal, dot(normal, difference(outline.corners()[foot], at)))
+                (normal, normal.dot(outline.corners()[foot] - at))
             }
         };
         Some(Touch { circle: outline.circle(foot, normal), ground: upright(normal), gap })
@@ -232,23 +233,21 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
 fn common_normal(ground: [&Face; 2], foot: Option<[&Face; 2]>) -> Vector<f64> {
     // From the rear face's normal clockwise to the front one's. A foot pushes the ground the other way.
     let ground = ground.map(|face| face.normal);
-    let Some(foot) = foot.map(|[before, after]| [before, after].map(|side| scaled(-1.0, side.normal))) else {
-        return unit(sum(ground[0], ground[1]));
+    let Some(foot) = foot.map(|[before, after]| [before, after].map(|side| -side.normal)) else {
+        return unit(ground[0] + ground[1]);
     };
     // A foot's sides run counter-clockwise: its normals, turned round, go clockwise from the second to the first.
     let foot = [foot[1], foot[0]];
-    let sine = |a: Vector<f64>, b: Vector<f64>| a[1] * b[0] - a[0] * b[1];
+    let sine = |a: Vector<f64>, b: Vector<f64>| a.z * b.x - a.x * b.z;
     let within = |[first, last]: [Vector<f64>; 2], normal: Vector<f64>| {
-        sine(first, normal) >= -PARALLEL
-            && sine(normal, last) >= -PARALLEL
-            && dot(normal, sum(first, last)) >= -PARALLEL
+        sine(first, normal) >= -PARALLEL && sine(normal, last) >= -PARALLEL && normal.dot(first + last) >= -PARALLEL
     };
     // The later of both beginnings and the earlier of both ends.
     let first = if within(ground, foot[0]) { foot[0] } else { ground[0] };
     let last = if within(ground, foot[1]) { foot[1] } else { ground[1] };
     let flat =
         ground.into_iter().find(|&normal| sine(first, last).abs() <= PARALLEL && sine(normal, last).abs() <= PARALLEL);
-    flat.unwrap_or_else(|| unit(sum(first, last)))
+    flat.unwrap_or_else(|| unit(first + last))
 }
 
 /// A foot's side across a convex corner of the ground.
@@ -266,7 +265,7 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
             return None;
         }
-        let ground = upright(scaled(-1.0, face.normal));
+        let ground = upright(-face.normal);
         Some(Touch { circle: outline.on_side(side, at), ground, gap })
     };
     (0..outline.sides().len()).find_map(across)

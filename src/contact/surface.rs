@@ -44,10 +44,10 @@ impl Surface {
     /// [`Reason::Inconsistent`] where a profile does not reach to x = 0.
     pub(super) fn stance(&self) -> Result<(Plane, Vector<f64>)> {
         match &self.0 {
-            Kind::Plane(plane) => Ok((*plane, [0.0; 2])),
+            Kind::Plane(plane) => Ok((*plane, Vector::zero())),
             Kind::Profile(terrain) => {
                 let (axes, point) = terrain.at_origin().ok_or_else(|| {
-                    let [[rear, _], [front, _]] = terrain.ends();
+                    let [Vector { x: rear, .. }, Vector { x: front, .. }] = terrain.ends();
                     let reason =
                         format!("a stance is at x = 0, and the ground's profile goes from {rear:?} to {front:?}");
                     Error::new(Reason::Inconsistent(reason))
@@ -65,7 +65,7 @@ impl Surface {
             Kind::Plane(plane) => plane.touch(placement, named),
             Kind::Profile(terrain) => {
                 // A circle's place is the same whatever the normal.
-                let circle = placement.circle(named, [0.0, 1.0]);
+                let circle = placement.circle(named, Vector::new(0.0, 1.0));
                 terrain.nearest_touch(circle, placement.world(circle.body, circle.centre), tolerance)
             }
         }
@@ -128,7 +128,7 @@ impl Surface {
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
         match &self.0 {
             Kind::Plane(plane) => plane.along(point),
-            Kind::Profile(_) => point[0],
+            Kind::Profile(_) => point.x,
         }
     }
 

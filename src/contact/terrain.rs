@@ -10,7 +10,7 @@
 
 use super::face::{Face, distance, unit, upright};
 use super::point::{Circle, Touch};
-use crate::planar::{Rotation, Vector, difference, dot, sum};
+use crate::planar::{Rotation, Vector};
 use crate::state::Profile;
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector as ParryVector;
@@ -30,14 +30,24 @@ impl Terrain {
         let points = without_straight_ones(profile.points());
         let mut faces: Vec<Face> = points.windows(2).map(|pair| Face::of_ground(pair[0], pair[1])).collect();
         if let (Some(&first), Some(&last)) = (faces.first(), faces.last()) {
-            let below = |[x, z]: Vector<f64>, beside: Face| [x, z - distance(beside.from, beside.to)];
-            let rear =
-                Face { from: below(first.from, first), to: first.from, tangent: [0.0, 1.0], normal: [-1.0, 0.0] };
-            let front = Face { from: last.to, to: below(last.to, last), tangent: [0.0, -1.0], normal: [1.0, 0.0] };
+            let below =
+                |Vector { x, z }: Vector<f64>, beside: Face| Vector::new(x, z - distance(beside.from, beside.to));
+            let rear = Face {
+                from: below(first.from, first),
+                to: first.from,
+                tangent: Vector::new(0.0, 1.0),
+                normal: Vector::new(-1.0, 0.0),
+            };
+            let front = Face {
+                from: last.to,
+                to: below(last.to, last),
+                tangent: Vector::new(0.0, -1.0),
+                normal: Vector::new(1.0, 0.0),
+            };
             faces.insert(0, rear);
             faces.push(front);
         }
-        let vertices = points.iter().map(|&[x, z]| ParryVector::new(x, z)).collect();
+        let vertices = points.iter().map(|&Vector { x, z }| ParryVector::new(x, z)).collect();
         Self { faces, polyline: Polyline::new(vertices, None) }
     }
 
@@ -59,7 +69,7 @@ impl Terrain {
     /// Whether the ground falls away on both sides of a corner.
     pub(super) fn is_convex(&self, corner: usize) -> bool {
         let [before, after] = self.at_corner(corner);
-        before.tangent[0] * after.tangent[1] < before.tangent[1] * after.tangent[0]
+        before.tangent.x * after.tangent.z < before.tangent.z * after.tangent.x
     }
 
     /// Whether a face is one of the two walls.
@@ -69,7 +79,7 @@ impl Terrain {
 
     /// Indices of the segments within the box from `low` to `high`, ascending.
     pub(super) fn near(&self, low: Vector<f64>, high: Vector<f64>) -> Vec<usize> {
-        let region = Aabb::new(ParryVector::new(low[0], low[1]), ParryVector::new(high[0], high[1]));
+        let region = Aabb::new(ParryVector::new(low.x, low.z), ParryVector::new(high.x, high.z));
         let mut near: Vec<usize> =
             self.polyline.bvh().intersect_aabb(&region).map(|segment| segment as usize + 1).collect();
         near.sort_unstable();
@@ -88,7 +98,7 @@ impl Terrain {
 
     /// The segment nearest to a point, and its corner where that is nearest.
     fn nearest(&self, point: Vector<f64>) -> (usize, Option<usize>) {
-        let at = ParryVector::new(point[0], point[1]);
+        let at = ParryVector::new(point.x, point.z);
         let (_, (segment, location)) = self.polyline.project_local_point_and_get_location(at, false);
         let face = segment as usize + 1;
         match location {
@@ -101,14 +111,14 @@ impl Terrain {
     /// steep ones the rear one.
     pub(super) fn segment_at(&self, x: f64) -> Option<&Face> {
         let segments = self.segments();
-        let next = segments.partition_point(|face| face.to[0] < x);
-        let face = segments.get(next).filter(|face| face.from[0] <= x)?;
-        let after = segments.get(next + 1).filter(|after| after.from[0] <= x && after.normal[1] > face.normal[1]);
+        let next = segments.partition_point(|face| face.to.x < x);
+        let face = segments.get(next).filter(|face| face.from.x <= x)?;
+        let after = segments.get(next + 1).filter(|after| after.from.x <= x && after.normal.z > face.normal.z);
         Some(after.unwrap_or(face))
     }
 
     fn is_inside(&self, point: Vector<f64>) -> bool {
-        self.segment_at(point[0]).is_some_and(|face| face.height(point) < 0.0)
+        self.segment_at(point.x).is_some_and(|face| face.height(point) < 0.0)
     }
 
     /// The ends, rear and front.
@@ -126,10 +136,10 @@ impl Terrain {
         let (ground, height) = match inner {
             Some(corner) if !self.is_inside(centre) => {
                 let at = self.faces[corner].to;
-                let (way, far) = (difference(centre, at), distance(centre, at));
+                let (way, far) = (centre - at, distance(centre, at));
                 let meets = far == 0.0 || circle.radius == 0.0 && far <= tolerance;
                 let normal = if meets { self.middle_normal(corner) } else { unit(way) };
-                (upright(normal), dot(normal, way))
+                (upright(normal), normal.dot(way))
             }
             _ => (self.faces[face].axes(), self.faces[face].height(centre)),
         };
@@ -139,16 +149,16 @@ impl Terrain {
     /// The middle of the normals that a corner's faces have.
     fn middle_normal(&self, corner: usize) -> Vector<f64> {
         let [before, after] = self.at_corner(corner);
-        unit(sum(before.normal, after.normal))
+        unit(before.normal + after.normal)
     }
 
     /// What stands in for a plane where the foot of a stance is placed: axes and point of the ground at x = 0.
     pub(super) fn at_origin(&self) -> Option<(Rotation<f64>, Vector<f64>)> {
         let face = self.segment_at(0.0)?;
         // The height at x = 0, from the nearer end.
-        let [near, far] = if -face.from[0] <= face.to[0] { [face.from, face.to] } else { [face.to, face.from] };
-        let z = near[1] - near[0] * ((far[1] - near[1]) / (far[0] - near[0]));
-        Some((face.axes(), [0.0, z]))
+        let [near, far] = if -face.from.x <= face.to.x { [face.from, face.to] } else { [face.to, face.from] };
+        let z = near.z - near.x * ((far.z - near.z) / (far.x - near.x));
+        Some((face.axes(), Vector::new(0.0, z)))
     }
 }
 
@@ -158,7 +168,10 @@ fn without_straight_ones(points: &[Vector<f64>]) -> Vec<Vector<f64>> {
     for (at, &point) in points.iter().enumerate() {
         let straight = match (kept.last(), points.get(at + 1)) {
             (Some(&before), Some(&after)) => {
-                let scale = [before, point, after].iter().flatten().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+                let scale = [before, point, after]
+                    .into_iter()
+                    .flat_map(Vector::components)
+                    .fold(0.0, |size: f64, entry| size.max(entry.abs()));
                 Face::of_ground(before, after).height(point).abs() <= 8.0 * f64::EPSILON * scale
             }
             _ => false,

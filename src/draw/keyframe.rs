@@ -57,7 +57,7 @@ pub struct ListedKeyframe {
 impl Keyframe {
     /// A state and its impact; `feet` are those beside the robot's own shapes.
     pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
-        let turn = |body| impact.placement.turned(body, [1.0, 0.0]);
+        let turn = |body| impact.placement.turned(body, Vector::new(1.0, 0.0));
         let answer = impact.analysis.as_ref().map(|analysis| Answer {
             verdict: analysis.verdict,
             proven: analysis.proven,

@@ -13,7 +13,7 @@
 use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan, PlanBody};
-use crate::planar::{Inertia, Vector, difference, dot, scaled, sum, turned};
+use crate::planar::{Inertia, Vector};
 use crate::scalar::Real;
 
 /// The symmetric inertia [[moment, coupling^T], [coupling, linear]] that a body shows at its origin, in world axes, while
@@ -66,7 +66,7 @@ pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T
             }
             (Motion::Slide { .. }, Some(column)) => {
                 let along = direction[index];
-                pivots[column] = dot(along, own.stretch(along)) + body.rotor;
+                pivots[column] = along.dot(own.stretch(along)) + body.rotor;
                 own.without_slide(along, body.rotor, pivots[column])
             }
         };
@@ -139,11 +139,11 @@ pub fn add_articulated_impulse<T: Real>(
     for (index, body) in plan.bodies.iter().enumerate() {
         let own = &workspace.articulated[index];
         let Some(parent) = body.parent else {
-            motions.push(if plan.floating { root_motion(workspace, rates) } else { (T::zero(), [T::zero(); 2]) });
+            motions.push(if plan.floating { root_motion(workspace, rates) } else { (T::zero(), Vector::zero()) });
             continue;
         };
         let (spin, origin) = motions[parent];
-        let carried = sum(origin, scaled(spin, turned(workspace.arm[index])));
+        let carried = origin + workspace.arm[index].perpendicular() * spin;
         let Some(column) = body.column else {
             motions.push((spin, carried));
             continue;
@@ -152,15 +152,15 @@ pub fn add_articulated_impulse<T: Real>(
         motions.push(match body.motion {
             Motion::Root | Motion::Weld => (spin, carried),
             Motion::Turn { sign, .. } => {
-                let moment = own.moment * spin + dot(own.coupling, carried);
+                let moment = own.moment * spin + own.coupling.dot(carried);
                 rates[column] = rates[column] - sign * (moment / pivot);
                 (spin + sign * rates[column], carried)
             }
             Motion::Slide { .. } => {
                 let along = workspace.direction[index];
-                let force = dot(along, own.coupling) * spin + dot(own.stretch(along), carried);
+                let force = along.dot(own.coupling) * spin + own.stretch(along).dot(carried);
                 rates[column] = rates[column] - force / pivot;
-                (spin, sum(carried, scaled(rates[column], along)))
+                (spin, carried + along * rates[column])
             }
         });
     }
@@ -174,8 +174,8 @@ fn root_motion<T: Real>(workspace: &Workspace<T>, rates: &mut [T]) -> (T, Vector
     let root = &workspace.articulated[0];
     let [_, xz, zz] = root.without_turn(T::zero(), root.moment).linear;
     rates[1] = rates[1] - (xz / zz) * rates[0];
-    let origin = [rates[0], rates[1]];
-    rates[2] = rates[2] - dot(root.coupling, origin) / root.moment;
+    let origin = Vector::new(rates[0], rates[1]);
+    rates[2] = rates[2] - root.coupling.dot(origin) / root.moment;
     (rates[2], origin)
 }
 
@@ -195,7 +195,7 @@ fn to_root<T: Real>(
             (Motion::Root, Some(column)) => {
                 let pitch = force.moment / workspace.pivots[column];
                 tell(column, force.moment, pitch);
-                let [x, z] = difference(force.linear, scaled(pitch, own.coupling));
+                let Vector { x, z } = force.linear - own.coupling * pitch;
                 let [_, xz, _] = own.without_turn(T::zero(), own.moment).linear;
                 let up = z / workspace.pivots[1];
                 tell(1, z, up);
@@ -208,19 +208,19 @@ fn to_root<T: Real>(
                 tell(column, sign * force.moment, sign * rate);
                 // n - A_nn n / D without the cancellation: nothing at all is passed on where there is no rotor.
                 force.moment = rotor * rate;
-                force.linear = difference(force.linear, scaled(rate, own.coupling));
+                force.linear = force.linear - own.coupling * rate;
             }
             (Motion::Slide { .. }, Some(column)) => {
                 let along = workspace.direction[at];
-                let push = dot(along, force.linear);
+                let push = along.dot(force.linear);
                 let rate = push / workspace.pivots[column];
                 tell(column, push, rate);
-                force.moment = force.moment - dot(along, own.coupling) * rate;
-                force.linear = difference(force.linear, scaled(rate, own.stretch(along)));
+                force.moment = force.moment - along.dot(own.coupling) * rate;
+                force.linear = force.linear - own.stretch(along) * rate;
             }
         }
         let Some(parent) = parent else { return };
-        force.moment = force.moment + dot(turned(workspace.arm[at]), force.linear);
+        force.moment = force.moment + workspace.arm[at].perpendicular().dot(force.linear);
         at = parent;
     }
 }
@@ -240,19 +240,19 @@ fn shared_columns<T: Real>(plan: &Plan<T>, a: usize, b: usize) -> impl Iterator<
 
 impl<T: Real> Force<T> {
     fn at(arm: Vector<T>, linear: Vector<T>) -> Self {
-        Self { moment: dot(turned(arm), linear), linear }
+        Self { moment: arm.perpendicular().dot(linear), linear }
     }
 }
 
 impl<T: Real> Articulated<T> {
     fn rigid(body: Inertia<T>) -> Self {
-        Self { moment: body.second, coupling: turned(body.first), linear: [body.mass, T::zero(), body.mass] }
+        Self { moment: body.second, coupling: body.first.perpendicular(), linear: [body.mass, T::zero(), body.mass] }
     }
 
     /// Force for the linear acceleration `along`.
     fn stretch(&self, along: Vector<T>) -> Vector<T> {
         let [xx, xz, zz] = self.linear;
-        [dot([xx, xz], along), dot([xz, zz], along)]
+        Vector { x: Vector::new(xx, xz).dot(along), z: Vector::new(xz, zz).dot(along) }
     }
 
     /// What is left to the parent by a hinge of pivot D = moment + rotor. Always u (u / D), never u u (1 / D): the latter
@@ -260,11 +260,11 @@ impl<T: Real> Articulated<T> {
     fn without_turn(&self, rotor: T, pivot: T) -> Self {
         let kept = rotor / pivot;
         let [xx, xz, zz] = self.linear;
-        let [x, z] = self.coupling;
+        let Vector { x, z } = self.coupling;
         let [by_x, by_z] = [x / pivot, z / pivot];
         Self {
             moment: self.moment * kept,
-            coupling: scaled(kept, self.coupling),
+            coupling: self.coupling * kept,
             linear: [xx - x * by_x, xz - x * by_z, zz - z * by_z],
         }
     }
@@ -273,21 +273,21 @@ impl<T: Real> Articulated<T> {
     ///
     /// It is taken apart along and across the slide, so that what the slide does not pass on cancels before it is rounded.
     fn without_slide(&self, along: Vector<T>, rotor: T, pivot: T) -> Self {
-        let across = turned(along);
+        let across = along.perpendicular();
         let (pulled, pushed) = (self.stretch(along), self.stretch(across));
-        let (same, mixed, other) = (dot(along, pulled), dot(across, pulled), dot(across, pushed));
-        let (lever, side) = (dot(along, self.coupling), dot(across, self.coupling));
+        let (same, mixed, other) = (along.dot(pulled), across.dot(pulled), across.dot(pushed));
+        let (lever, side) = (along.dot(self.coupling), across.dot(self.coupling));
         let (kept, by_lever) = (rotor / pivot, lever / pivot);
         let (same, other, mixed) = (same * kept, other - mixed * (mixed / pivot), mixed * kept);
-        let (lever, side, spent) = (lever * kept, side - dot(across, pulled) * by_lever, lever * by_lever);
+        let (lever, side, spent) = (lever * kept, side - across.dot(pulled) * by_lever, lever * by_lever);
         // `along` has length one but for rounding; dividing by its square makes the formula right for any length.
-        let square = dot(along, along);
+        let square = along.dot(along);
         let [same, other, mixed] = [same, other, mixed].map(|entry| entry / square / square);
-        let [[x, z], [p, q]] = [along, across];
+        let [Vector { x, z }, Vector { x: p, z: q }] = [along, across];
         let two = T::one() + T::one();
         Self {
             moment: self.moment - spent,
-            coupling: sum(scaled(lever / square, along), scaled(side / square, across)),
+            coupling: along * (lever / square) + across * (side / square),
             linear: [
                 same * x * x + two * (mixed * x * p) + other * p * p,
                 same * x * z + mixed * (x * q + z * p) + other * p * q,
@@ -298,10 +298,10 @@ impl<T: Real> Articulated<T> {
 
     /// The same inertia about a point from which the old one is seen at `arm`.
     fn seen_from(self, arm: Vector<T>) -> Self {
-        let lever = turned(arm);
-        let shifted = sum(self.coupling, self.stretch(lever));
+        let lever = arm.perpendicular();
+        let shifted = self.coupling + self.stretch(lever);
         // A + 2 h.l + l.M l, with the new coupling h + M l in place of one h.
-        Self { moment: self.moment + dot(sum(self.coupling, shifted), lever), coupling: shifted, linear: self.linear }
+        Self { moment: self.moment + (self.coupling + shifted).dot(lever), coupling: shifted, linear: self.linear }
     }
 
     /// Both inertias as one; they must be given about the same point.
@@ -309,7 +309,7 @@ impl<T: Real> Articulated<T> {
         let [[a, b, c], [d, e, f]] = [self.linear, other.linear];
         Self {
             moment: self.moment + other.moment,
-            coupling: sum(self.coupling, other.coupling),
+            coupling: self.coupling + other.coupling,
             linear: [a + d, b + e, c + f],
         }
     }
@@ -329,14 +329,14 @@ mod tests {
             name: String::new(),
             joint: index.checked_sub(1).map(Mover::Joint),
             mass: if index % massless == massless - 1 && index + 1 < links { 0.0 } else { 1.0 },
-            com: [0.0, -0.5],
+            com: Vector::new(0.0, -0.5),
             moment: if index % massless == massless - 1 && index + 1 < links { 0.0 } else { 1.0 / 12.0 },
         };
         let joint = |index: usize| Joint {
             name: String::new(),
             parent: index,
             child: index + 1,
-            origin: [0.0, -1.0],
+            origin: Vector::new(0.0, -1.0),
             axis: Axis::Turn { sign: 1.0 },
         };
         Robot {
@@ -358,7 +358,7 @@ mod tests {
         let tip = robot.bodies.len() - 1;
         let contacts = [0, tip / 2, tip].map(|body| ContactPoint {
             body,
-            centre: [0.0, -1.0],
+            centre: Vector::new(0.0, -1.0),
             radius: 0.0,
             ground: Rotation::identity(),
         });

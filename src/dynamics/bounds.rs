@@ -23,7 +23,7 @@
 
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan, Posture};
-use crate::planar::{Vector, dot};
+use crate::planar::{Pair, Vector};
 
 /// Half the distance from 1 to the next f64.
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -49,7 +49,7 @@ pub struct Bounds {
     /// Of an entry G_ij, relative to sqrt(G_ii G_jj); infinite where nothing is known.
     pub delassus: f64,
     /// Of c, per contact \[m/s\].
-    pub velocity: Vec<Vector<f64>>,
+    pub velocity: Vec<Pair<f64>>,
     bodies: Vec<Stretched>,
     contacts: Vec<Arm>,
     /// sqrt((M^-1)_ii) per column.
@@ -75,7 +75,7 @@ impl Bounds {
     pub fn stretch(&mut self, plan: &Plan, posture: &Posture, contacts: impl Iterator<Item = Arm>) {
         self.contacts.clear();
         self.contacts.extend(contacts);
-        let length = |[x, z]: Vector<f64>| x.abs() + z.abs();
+        let length = |Vector { x, z }: Vector<f64>| x.abs() + z.abs();
         self.bodies.clear();
         for body in &plan.bodies {
             let shift = match (body.motion, body.tie) {
@@ -158,7 +158,7 @@ impl Bounds {
                     stretched.second
                 }
                 Motion::Turn { rate, .. } => stretched.second * (rate * rate) + body.rotor,
-                Motion::Slide { rate, .. } => stretched.mass * dot(rate, rate) + body.rotor,
+                Motion::Slide { rate, .. } => stretched.mass * rate.dot(rate) + body.rotor,
                 Motion::Weld => continue,
             };
             self.roots[column] += moment.sqrt();

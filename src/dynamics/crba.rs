@@ -10,7 +10,7 @@
 
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan};
-use crate::planar::{Inertia, Vector, dot, scaled, turned};
+use crate::planar::{Inertia, Vector};
 use crate::scalar::Real;
 
 /// Computes M (nv x nv, columns of the plan; kg, kg m, kg m^2) from the kinematics.
@@ -34,21 +34,21 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
         let Some(column) = body.column else { continue };
         let momentum = match body.motion {
             Motion::Root => {
-                let [x, z] = [[T::one(), T::zero()], [T::zero(), T::one()]];
-                let pitch = Momentum { linear: turned(own.first), angular: own.second };
+                let [x, z] = Vector::axes();
+                let pitch = Momentum { linear: own.first.perpendicular(), angular: own.second };
                 mass_matrix[0] = own.mass;
                 mass_matrix[nv + 1] = own.mass;
-                mass_matrix[column * nv] = dot(x, pitch.linear);
-                mass_matrix[column * nv + 1] = dot(z, pitch.linear);
+                mass_matrix[column * nv] = x.dot(pitch.linear);
+                mass_matrix[column * nv + 1] = z.dot(pitch.linear);
                 mass_matrix[column * nv + column] = pitch.angular;
                 continue;
             }
             Motion::Turn { rate, .. } => {
-                Momentum { linear: scaled(rate, turned(own.first)), angular: rate * own.second }
+                Momentum { linear: own.first.perpendicular() * rate, angular: rate * own.second }
             }
             Motion::Slide { .. } => Momentum {
-                linear: scaled(own.mass, direction[index]),
-                angular: dot(turned(own.first), direction[index]),
+                linear: direction[index] * own.mass,
+                angular: own.first.perpendicular().dot(direction[index]),
             },
             Motion::Weld => continue,
         };
@@ -56,12 +56,12 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
         let along = |at: usize, momentum: Momentum<T>| match plan.bodies[at].motion {
             Motion::Root | Motion::Weld => momentum.angular,
             Motion::Turn { rate, .. } => rate * momentum.angular,
-            Motion::Slide { .. } => dot(direction[at], momentum.linear),
+            Motion::Slide { .. } => direction[at].dot(momentum.linear),
         };
         plan.bring(&mut mass_matrix[column * nv + column], along(index, momentum) + body.rotor);
         let (mut at, mut momentum) = (index, momentum);
         while let Some(parent) = plan.bodies[at].parent {
-            momentum.angular = momentum.angular + dot(turned(arm[at]), momentum.linear);
+            momentum.angular = momentum.angular + arm[at].perpendicular().dot(momentum.linear);
             at = parent;
             if let Some(other) = plan.bodies[at].column {
                 let part = along(at, momentum);
@@ -73,8 +73,8 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
             }
         }
         if plan.floating {
-            plan.bring(&mut mass_matrix[column * nv], momentum.linear[0]);
-            plan.bring(&mut mass_matrix[column * nv + 1], momentum.linear[1]);
+            plan.bring(&mut mass_matrix[column * nv], momentum.linear.x);
+            plan.bring(&mut mass_matrix[column * nv + 1], momentum.linear.z);
         }
     }
 }

@@ -10,7 +10,7 @@
 use super::jacobian::walk;
 use super::workspace::Workspace;
 use crate::dynamics::plan::Plan;
-use crate::planar::{Vector, dot};
+use crate::planar::Vector;
 use crate::scalar::Real;
 
 /// Computes G (2n x 2n) from the factorized mass matrix and the contact Jacobian.
@@ -91,7 +91,7 @@ pub fn add_impulse<T: Real>(
 ) {
     column.clear();
     column.resize(plan.columns(), T::zero());
-    walk(plan, body, arm, velocity, workspace, |index, unit| plan.bring(&mut column[index], dot(unit, impulse)));
+    walk(plan, body, arm, velocity, workspace, |index, unit| plan.bring(&mut column[index], unit.dot(impulse)));
     half_solve(plan, &workspace.factor, column);
     let nv = plan.columns();
     for (i, entry) in column.iter_mut().enumerate() {

@@ -9,7 +9,8 @@
 use super::jacobian::{point_velocity, spin};
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan};
-use crate::planar::{dot, turned};
+use crate::planar::Vector;
+
 use crate::scalar::Real;
 
 /// Kinetic energy \[J\] for `velocity` (dq/dt by coordinate, held joints included), after `kinematics`.
@@ -17,10 +18,10 @@ pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Works
     let mut twice = T::zero();
     for (index, body) in plan.bodies.iter().enumerate() {
         let rate = spin(plan, index, velocity);
-        let origin = point_velocity(plan, index, [T::zero(); 2], velocity, workspace);
+        let origin = point_velocity(plan, index, Vector::zero(), velocity, workspace);
         let first = workspace.rotation[index].apply(body.inertia.first);
-        let cross = rate * dot(origin, turned(first));
-        twice = twice + body.inertia.mass * dot(origin, origin) + cross + cross + body.inertia.second * rate * rate;
+        let cross = rate * origin.dot(first.perpendicular());
+        twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * rate * rate;
         if !matches!(body.motion, Motion::Root | Motion::Weld) {
             let own = velocity[body.coordinate];
             twice = twice + body.rotor * own * own;

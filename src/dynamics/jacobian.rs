@@ -6,7 +6,7 @@
 
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan};
-use crate::planar::{Rotation, Vector, difference, dot, scaled, sum, turned};
+use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
 /// A material point in touch with the ground.
@@ -25,13 +25,13 @@ pub struct ContactPoint<T = f64> {
 impl<T: Real> ContactPoint<T> {
     /// The ground's unit tangent and normal in the world's axes.
     pub fn axes(&self) -> [Vector<T>; 2] {
-        [[T::one(), T::zero()], [T::zero(), T::one()]].map(|axis| self.ground.apply(axis))
+        Vector::axes().map(|axis| self.ground.apply(axis))
     }
 
     /// The point from its body's origin, in the world's axes \[m\].
     pub fn arm(&self, workspace: &Workspace<T>) -> Vector<T> {
         let [_, normal] = self.axes();
-        difference(workspace.rotation[self.body].apply(self.centre), scaled(self.radius, normal))
+        workspace.rotation[self.body].apply(self.centre) - normal * self.radius
     }
 }
 
@@ -57,18 +57,18 @@ pub fn contact_jacobian<T: Real>(
         let arm = contact.arm(workspace);
         let (rows_t, rows_n) = jacobian[2 * index * nv..2 * (index + 1) * nv].split_at_mut(nv);
         let speed = walk(plan, contact.body, arm, velocity, workspace, |column, unit| {
-            plan.bring(&mut rows_t[column], dot(axes[0], unit));
-            plan.bring(&mut rows_n[column], dot(axes[1], unit));
+            plan.bring(&mut rows_t[column], axes[0].dot(unit));
+            plan.bring(&mut rows_n[column], axes[1].dot(unit));
         });
-        speeds.push(axes.map(|axis| dot(axis, speed)));
+        speeds.push(axes.map(|axis| axis.dot(speed)));
     }
     if let Some(stance) = stance {
         let rest = contacts[stance];
         let origin = rest.arm(workspace);
         let spin = spin(plan, rest.body, velocity);
         for (contact, speed) in contacts.iter().zip(&mut speeds).filter(|(contact, _)| contact.body == rest.body) {
-            let across = scaled(spin, turned(difference(contact.arm(workspace), origin)));
-            *speed = contact.axes().map(|axis| dot(axis, across));
+            let across = (contact.arm(workspace) - origin).perpendicular() * spin;
+            *speed = contact.axes().map(|axis| axis.dot(across));
         }
         speeds[stance] = [T::zero(); 2];
     }
@@ -98,12 +98,12 @@ pub(super) fn walk<T: Real>(
     mut tell: impl FnMut(usize, Vector<T>),
 ) -> Vector<T> {
     let (mut at, mut arm) = (body, arm);
-    let mut speed = [T::zero(); 2];
+    let mut speed = Vector::zero();
     loop {
         let body = &plan.bodies[at];
         let unit = match body.motion {
             Motion::Root => break,
-            Motion::Turn { rate, .. } => Some(scaled(rate, turned(arm))),
+            Motion::Turn { rate, .. } => Some(arm.perpendicular() * rate),
             Motion::Slide { .. } => Some(workspace.direction[at]),
             Motion::Weld => None,
         };
@@ -111,19 +111,20 @@ pub(super) fn walk<T: Real>(
             if let Some(column) = body.column {
                 tell(column, unit);
             }
-            speed = sum(speed, scaled(velocity[body.coordinate], unit));
+            speed = speed + unit * velocity[body.coordinate];
         }
-        arm = sum(arm, workspace.arm[at]);
+        arm = arm + workspace.arm[at];
         match body.parent {
             Some(parent) => at = parent,
             None => break,
         }
     }
     if plan.floating {
-        let units = [[T::one(), T::zero()], [T::zero(), T::one()], turned(arm)];
+        let [x, z] = Vector::axes();
+        let units = [x, z, arm.perpendicular()];
         for (column, unit) in units.into_iter().enumerate() {
             tell(column, unit);
-            speed = sum(speed, scaled(velocity[column], unit));
+            speed = speed + unit * velocity[column];
         }
     }
     speed

@@ -4,7 +4,7 @@
 
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan, Posture};
-use crate::planar::{Rotation, scaled, sum};
+use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
 /// Computes every body's rotation and arm for a posture (cos, sin and displacement per coordinate and follower).
@@ -18,8 +18,8 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut
     for body in &plan.bodies {
         let Some(parent) = body.parent else {
             rotation.push(if plan.floating { posture.turn(2) } else { Rotation::identity() });
-            arm.push([T::zero(); 2]);
-            direction.push([T::zero(); 2]);
+            arm.push(Vector::zero());
+            direction.push(Vector::zero());
             continue;
         };
         let base = rotation[parent];
@@ -29,10 +29,10 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut
                 let Rotation { cos, sin } = posture.turn(body.place);
                 rotation.push(base.then(Rotation { cos, sin: sign * sin }));
                 arm.push(base.apply(body.origin));
-                direction.push([T::zero(); 2]);
+                direction.push(Vector::zero());
             }
             Motion::Slide { direction: along, rate } => {
-                let displaced = sum(body.origin, scaled(posture.displacement[body.place], along));
+                let displaced = body.origin + along * posture.displacement[body.place];
                 rotation.push(base);
                 arm.push(base.apply(displaced));
                 direction.push(base.apply(rate));
@@ -40,7 +40,7 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut
             Motion::Weld => {
                 rotation.push(base);
                 arm.push(base.apply(body.origin));
-                direction.push([T::zero(); 2]);
+                direction.push(Vector::zero());
             }
         }
     }

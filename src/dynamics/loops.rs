@@ -17,7 +17,7 @@ use super::delassus::{half_solve, other_half_solve, products};
 use super::jacobian::{ContactPoint, point_velocity, walk};
 use super::workspace::Workspace;
 use crate::dynamics::plan::Plan;
-use crate::planar::{Vector, difference, dot, sum};
+use crate::planar::Vector;
 use crate::scalar::Real;
 
 /// Two material points that stay together; impulses act on `a` and, reversed, on `b`.
@@ -90,12 +90,12 @@ impl<T: Real> Loop<T> {
         let [a, b] = [0, 1].map(|end| {
             let (mut place, mut at) = (arms[end], self.bodies[end]);
             while let Some(parent) = plan.bodies[at].parent {
-                place = sum(place, workspace.arm[at]);
+                place = place + workspace.arm[at];
                 at = parent;
             }
             place
         });
-        difference(a, b)
+        a - b
     }
 
     /// The velocities of a and b, held joints' rates included \[m/s\].
@@ -107,7 +107,7 @@ impl<T: Real> Loop<T> {
     /// The velocity of a against b, that is K v \[m/s\].
     pub fn opening(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> Vector<T> {
         let [a, b] = self.velocities(plan, velocity, workspace);
-        difference(a, b)
+        a - b
     }
 
     /// A row of K (nv); of one end alone its row of J.
@@ -116,7 +116,8 @@ impl<T: Real> Loop<T> {
         let mut row = vec![T::zero(); plan.columns()];
         for &end in ends {
             walk(plan, self.bodies[end], arms[end], &still, workspace, |column, unit| {
-                row[column] = if end == 0 { row[column] + unit[axis] } else { row[column] - unit[axis] };
+                let part = unit.components()[axis];
+                row[column] = if end == 0 { row[column] + part } else { row[column] - part };
             });
         }
         row
@@ -196,7 +197,7 @@ pub fn orthogonalize<T: Real>(
         let (arm, still, workspace) = (foot.arm(workspace), still(plan), &*workspace);
         foot.axes().map(|axis| {
             let mut row = vec![T::zero(); nv];
-            walk(plan, foot.body, arm, &still, workspace, |column, unit| plan.bring(&mut row[column], dot(axis, unit)));
+            walk(plan, foot.body, arm, &still, workspace, |column, unit| plan.bring(&mut row[column], axis.dot(unit)));
             row
         })
     }));
@@ -254,7 +255,7 @@ pub fn close<T: Real>(
     }
     let own = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {
         (Some(&coordinate), _) if closed == Closed::Change => velocity[coordinate],
-        (None, Some(row)) => openings[row / 2][row % 2],
+        (None, Some(row)) => openings[row / 2].components()[row % 2],
         _ => T::zero(),
     };
     let mut along: Vec<T> = Vec::with_capacity(used);
@@ -292,7 +293,7 @@ pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspa
         solved[own] = -amplitudes[at] - later;
         impulse[row / 2][row % 2] = solved[own];
     }
-    impulse
+    impulse.into_iter().map(Vector::from).collect()
 }
 
 /// The kinetic energy \[J\] of the part of the velocity that [`close`] took away.

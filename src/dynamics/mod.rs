@@ -41,7 +41,7 @@ mod tests {
 
     use super::*;
     use crate::dynamics::plan::{Plan, Posture};
-    use crate::planar::{Rotation, Vector, dot};
+    use crate::planar::{Rotation, Vector};
     use crate::robot::{Axis, Base, Body, Follower, Joint, Mover, Robot};
     use crate::scalar::{Ball, DoubleDouble, Ordered, Real};
     use nalgebra::{DMatrix, DVector};
@@ -62,11 +62,11 @@ mod tests {
             moment in 0.0..0.1f64,
         ) -> (prop::sample::Index, Vector<f64>, Axis, f64, Vector<f64>, f64) {
             let axis = if slides {
-                Axis::Slide { direction: [angle.cos(), angle.sin()] }
+                Axis::Slide { direction: Vector::new(angle.cos(), angle.sin()) }
             } else {
                 Axis::Turn { sign: angle.signum() }
             };
-            (parent, origin, axis, mass, com, moment)
+            (parent, origin.into(), axis, mass, com.into(), moment)
         }
     }
 
@@ -75,7 +75,7 @@ mod tests {
             let mut robot = Robot {
                 name: "tree".into(),
                 base: if bolted { Base::Fixed } else { Base::Floating },
-                bodies: vec![body(None, 1.0, [0.1, -0.2], 0.05)],
+                bodies: vec![body(None, 1.0, Vector::new(0.1, -0.2), 0.05)],
                 joints: Vec::new(),
                 links: Vec::new(),
                 followers: Vec::new(),
@@ -183,7 +183,7 @@ mod tests {
             let contacts: Vec<ContactPoint> = centres
                 .iter()
                 .map(|(body, centre)| ContactPoint {
-                    body: body.index(robot.bodies.len()), centre: *centre, radius: 0.1, ground,
+                    body: body.index(robot.bodies.len()), centre: (*centre).into(), radius: 0.1, ground,
                 })
                 .collect();
             contact_jacobian(&plan, &contacts, &v, None, &mut workspace);
@@ -207,7 +207,7 @@ mod tests {
                     add_impulse(&plan, &workspace, point, axis, &mut Vec::new(), &mut change);
                     let at = point_velocity(&plan, contact.body, point.1, &change, &workspace);
                     let own = workspace.delassus[(2 * index + row) * rows + 2 * index + row];
-                    prop_assert!((dot(axis, at) - own).abs() <= tolerance);
+                    prop_assert!((axis.dot(at) - own).abs() <= tolerance);
                 }
             }
             let speeds = &jacobian * by_column(&plan, &v);
@@ -231,7 +231,7 @@ mod tests {
             let contacts: Vec<ContactPoint> = centres
                 .iter()
                 .map(|(body, centre)| ContactPoint {
-                    body: body.index(robot.bodies.len()), centre: *centre, radius: 0.1, ground: Rotation::by(0.3),
+                    body: body.index(robot.bodies.len()), centre: (*centre).into(), radius: 0.1, ground: Rotation::by(0.3),
                 })
                 .collect();
             contact_jacobian(&plan, &contacts, &v, None, &mut workspace);
@@ -256,9 +256,9 @@ mod tests {
 
             let point = (contacts[0].body, contacts[0].arm(&workspace));
             let (mut expected, mut found) = (v.clone(), v.clone());
-            add_impulse(&plan, &by_mass, point, impulse, &mut Vec::new(), &mut expected);
+            add_impulse(&plan, &by_mass, point, impulse.into(), &mut Vec::new(), &mut expected);
             let scratch = (&mut Vec::new(), &mut Vec::new());
-            add_articulated_impulse(&plan, &workspace, point, impulse, scratch, &mut found);
+            add_articulated_impulse(&plan, &workspace, point, impulse.into(), scratch, &mut found);
             prop_assert!(near(&expected, &found), "{expected:?} {found:?}");
         }
 
@@ -273,13 +273,13 @@ mod tests {
             let ground = Rotation { cos: 1.0, sin: 0.0 };
             let contacts: Vec<ContactPoint> = centres
                 .iter()
-                .map(|(body, centre)| ContactPoint { body: place(body), centre: *centre, radius: 0.0, ground })
+                .map(|(body, centre)| ContactPoint { body: place(body), centre: (*centre).into(), radius: 0.0, ground })
                 .collect();
             contact_jacobian(&plan, &contacts, &v, None, &mut workspace);
             delassus(&plan, &mut workspace);
             let (mut bounds, mut posture) = (Bounds::default(), Posture::default());
             posture.set(&plan, &q);
-            let arm = |(body, [x, z]): &(prop::sample::Index, Vector<f64>)| Arm { body: place(body), length: x.abs() + z.abs() };
+            let arm = |(body, [x, z]): &(prop::sample::Index, [f64; 2])| Arm { body: place(body), length: x.abs() + z.abs() };
             bounds.stretch(&plan, &posture, centres.iter().map(arm));
             bounds.velocities(&plan, &v, None, |_| false);
             bounds.delassus(&plan, &workspace);
@@ -329,7 +329,7 @@ mod tests {
                     prop_assert_eq!(mass[(i, j)], full[(row, column)]);
                 }
             }
-            let origin = [0.0; 2];
+            let origin = Vector::zero();
             let tip = robot.bodies.len() - 1;
             prop_assert_eq!(
                 point_velocity(&plan, tip, origin, &v, &workspace),

@@ -17,7 +17,7 @@
 //! T is never formed: what several bodies bring to one entry is added up. A column then hangs on more than one branch, and
 //! its parent is that of the elimination tree, so that the factorization fills in nothing beyond its ancestors.
 
-use crate::planar::{Inertia, Rotation, Vector, dot, scaled};
+use crate::planar::{Inertia, Rotation, Vector};
 use crate::robot::{Axis, Base, Follower, Mover, Robot};
 use crate::scalar::{Real, Trigonometry};
 
@@ -178,13 +178,12 @@ impl<T: Real> Plan<T> {
             let number = |entry: f64| T::from_f64(entry);
             let com = body.com.map(number);
             let mass = number(body.mass);
-            let inertia =
-                Inertia { mass, first: scaled(mass, com), second: number(body.moment) + mass * dot(com, com) };
+            let inertia = Inertia { mass, first: com * mass, second: number(body.moment) + mass * com.dot(com) };
             let Some(mover) = body.joint else {
                 greatest.push(floating.then_some(2));
                 plan.bodies.push(PlanBody {
                     parent: None,
-                    origin: [T::zero(); 2],
+                    origin: Vector::zero(),
                     motion: Motion::Root,
                     coordinate: 2,
                     place: 2,
@@ -224,7 +223,7 @@ impl<T: Real> Plan<T> {
                     Some(Axis::Turn { sign }) => Motion::Turn { sign: number(sign), rate: number(sign * multiplier) },
                     Some(Axis::Slide { direction }) => {
                         let direction = direction.map(number);
-                        let rate = if tie.is_some() { scaled(number(multiplier), direction) } else { direction };
+                        let rate = if tie.is_some() { direction * number(multiplier) } else { direction };
                         Motion::Slide { direction, rate }
                     }
                 },

@@ -2,7 +2,7 @@
 
 use super::articulated::Articulated;
 use super::loops::LoopRows;
-use crate::planar::{Inertia, Rotation, Vector};
+use crate::planar::{Inertia, Pair, Rotation, Vector};
 
 /// Everything that the dynamics of one state computes; nb bodies, nv columns of the plan, n contacts.
 #[derive(Debug, Clone)]
@@ -35,7 +35,7 @@ pub struct Workspace<T = f64> {
     /// J by rows, tangential and normal of each contact. 2n x nv
     pub contact_jacobian: Vec<T>,
     /// Contact velocities c = J v, held joints' rates included \[m/s\]. n
-    pub contact_velocity: Vec<Vector<T>>,
+    pub contact_velocity: Vec<Pair<T>>,
 
     // Computed by `orthogonalize`.
     /// Constraints of the loops.

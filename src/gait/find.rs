@@ -140,7 +140,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         match self.clock.step(sample.time) {
             Step::NewClip => {
                 self.end_clip();
-                self.descents = places.iter().map(|place| Descent { from: place[1], falling: false }).collect();
+                self.descents = places.iter().map(|place| Descent { from: place.z, falling: false }).collect();
             }
             Step::Impact => {
                 if let Some(last) = self.window.back_mut() {
@@ -164,10 +164,10 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         let smooth = self.window.len().saturating_sub(2);
         let mut struck = Vec::new();
         for (point, place) in places.iter().enumerate() {
-            let Some(last) = self.window.back().map(|last| last.places[point][1]) else {
+            let Some(last) = self.window.back().map(|last| last.places[point].z) else {
                 return;
             };
-            let (height, mut descent) = (place[1], self.descents[point]);
+            let (height, mut descent) = (place.z, self.descents[point]);
             if (height - last) / passed < -slow {
                 descent.falling = true;
             } else {
@@ -189,7 +189,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         let Thresholds { drop, above, .. } = self.thresholds;
         let mut struck = Vec::new();
         for (point, &Descent { from, falling }) in self.descents.iter().enumerate() {
-            let Some(last) = self.window.back().map(|last| last.places[point][1]).filter(|_| falling) else {
+            let Some(last) = self.window.back().map(|last| last.places[point].z).filter(|_| falling) else {
                 continue;
             };
             if from - last < drop || last > above {
@@ -216,10 +216,10 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
 
     /// When the point was last as high as `height`; an impact that the recording itself marks after that is the moment.
     fn moment(&self, point: usize, height: f64, smooth: usize) -> Option<Moment> {
-        let last = self.window.iter().rposition(|frame| frame.places[point][1] >= height)?;
+        let last = self.window.iter().rposition(|frame| frame.places[point].z >= height)?;
         let marked = |&frame: &usize| {
             let Frame { places, before_impact, .. } = &self.window[frame];
-            *before_impact && places[point][1] < height
+            *before_impact && places[point].z < height
         };
         let after = Moment::After { at: last, height, smooth: smooth.max(last) };
         Some((last..self.window.len()).find(marked).map_or(after, Moment::Row))
@@ -253,7 +253,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     /// Whether two points strike at the same moment.
     fn together(&self, (one, when): (usize, Moment), (other, its): (usize, Moment)) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= self.thresholds.together;
-        let alike = |at: usize| close(self.window[at].places[one][1], self.window[at].places[other][1]);
+        let alike = |at: usize| close(self.window[at].places[one].z, self.window[at].places[other].z);
         match (when, its) {
             (Moment::Row(at), Moment::Row(same)) => at == same && alike(at),
             (Moment::After { at, height, .. }, Moment::After { at: same, height: its, .. }) => {
@@ -295,7 +295,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     }
 
     fn height(&self, point: usize, row: usize) -> f64 {
-        self.window[row].places[point][1]
+        self.window[row].places[point].z
     }
 
     /// How the motion of rows `first` to `at` goes on, and how much later the point is at `height`, if that is before

@@ -50,18 +50,19 @@ impl<'r> Points<'r> {
     fn placement(&mut self, position: &[f64]) -> Placement {
         self.posture.set(&self.plan, position);
         kinematics(&self.plan, &self.posture, &mut self.workspace);
-        let base = if self.robot.base == Base::Floating { [position[0], position[1]] } else { [0.0; 2] };
+        let base =
+            if self.robot.base == Base::Floating { Vector::new(position[0], position[1]) } else { Vector::zero() };
         Placement::new(&self.plan, &self.workspace, base)
     }
 
     /// Whether on some ground between the slopes ±[`SLOPE`] a point touches before all others of its body, or with them
     /// to within `together` \[m\]; all are at `places`.
     pub fn is_free(&self, point: usize, places: &[Vector<f64>], together: f64) -> bool {
-        let [x, z] = places[point];
+        let Vector { x, z } = places[point];
         // Over the slope m a point is z - m x high.
         let (mut least, mut most) = (-SLOPE, SLOPE);
         for other in self.of_body(self.body(point)) {
-            let [across, above] = [x - places[other][0], z - places[other][1] - together];
+            let [across, above] = [x - places[other].x, z - places[other].z - together];
             if across > 0.0 {
                 least = least.max(above / across);
             } else if across < 0.0 {
@@ -86,7 +87,7 @@ impl<'r> Points<'r> {
     ) -> (f64, String) {
         let placement = self.placement(&state.position);
         let places: Vec<_> = self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect();
-        let above = |point: usize| (places[point][1] - places[striking][1]).abs();
+        let above = |point: usize| (places[point].z - places[striking].z).abs();
         let mut closed = vec![striking];
         closed.extend(also);
         match touching {
@@ -104,7 +105,7 @@ impl<'r> Points<'r> {
         }
         // As detected contacts: in the order of the links, within a link along x.
         let link = |point: usize| self.points[point].0;
-        closed.sort_by(|&a, &b| link(a).cmp(&link(b)).then(places[a][0].total_cmp(&places[b][0])));
+        closed.sort_by(|&a, &b| link(a).cmp(&link(b)).then(places[a].x.total_cmp(&places[b].x)));
         state.scene.contacts = Some(closed.iter().map(|&point| self.named(point, &placement)).collect());
 
         let name = self.robot.links[link(striking)].name.clone();
@@ -112,7 +113,7 @@ impl<'r> Points<'r> {
         let at = of_link.clone().position(|&point| point == striking).unwrap_or(0);
         let name = if of_link.nth(1).is_some() { format!("{name}/{at}") } else { name };
         let shift = match self.robot.base {
-            Base::Floating => -places[striking][1],
+            Base::Floating => -places[striking].z,
             Base::Fixed => 0.0,
         };
         if self.robot.base == Base::Floating {
@@ -125,7 +126,7 @@ impl<'r> Points<'r> {
     fn lowest_of_other_bodies(&self, strikers: &[usize], places: &[Vector<f64>]) -> Vec<usize> {
         let striking: Vec<usize> = strikers.iter().map(|&point| self.body(point)).collect();
         let others = (0..self.robot.bodies.len()).filter(|body| !striking.contains(body));
-        let height = |point: &usize| places[*point][1];
+        let height = |point: &usize| places[*point].z;
         let lowest = |body| self.of_body(body).min_by(|a, b| height(a).total_cmp(&height(b)));
         others.filter_map(lowest).collect()
     }
@@ -142,7 +143,7 @@ impl<'r> Points<'r> {
     fn speed(&self, point: usize, placement: &Placement, velocity: &[f64]) -> f64 {
         let Circle { body, centre, radius, .. } = Plane::LEVEL.circle(placement, self.points[point].1);
         let arm = ContactPoint { body, centre, radius, ground: Rotation::identity() }.arm(&self.workspace);
-        let [x, z] = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
+        let Vector { x, z } = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
         libm::hypot(x, z)
     }
 

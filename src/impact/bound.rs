@@ -16,7 +16,7 @@
 use super::enumerate::Tableau;
 use super::slack::Scale;
 use crate::law::Impulse;
-use crate::planar::Vector;
+use crate::planar::Pair;
 
 /// Half the distance from 1 to the next f64.
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -217,7 +217,7 @@ impl Bounds {
     }
 
     /// The size of a ray in the scale: the sum of the sizes of its entries times sqrt(G_tt) and sqrt(G_nn).
-    fn size(&self, contact: usize, ray: Vector<f64>) -> f64 {
+    fn size(&self, contact: usize, ray: Pair<f64>) -> f64 {
         ray[0].abs() / self.inverse[2 * contact] + ray[1].abs() / self.inverse[2 * contact + 1]
     }
 }

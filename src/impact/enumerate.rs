@@ -14,7 +14,7 @@
 
 use super::problem::ContactProblem;
 use crate::law::{ContactLaw, Friction, Impulse, Law, Mode};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::scalar::Real;
 
 /// Scratch of the enumeration; it is reused from problem to problem and then allocates nothing.
@@ -231,12 +231,12 @@ impl<T: Real> Leaf<'_, T> {
 
     /// The two numbers of a contact: `[c_t, xi_n]` if L = 0, `[c_t, lambda]` if L is lambda times a ray, `[L_t, L_n]`
     /// if L is free.
-    pub fn numbers(&self, contact: usize) -> Vector<T> {
+    pub fn numbers(&self, contact: usize) -> Pair<T> {
         [self.constant(2 * contact), self.constant(2 * contact + 1)]
     }
 
     /// Impulse of a contact, [tangential, normal] \[N s\].
-    pub fn impulse(&self, contact: usize) -> Vector<T> {
+    pub fn impulse(&self, contact: usize) -> Pair<T> {
         let [first, second] = self.numbers(contact);
         match self.impulses(contact) {
             Impulse::Zero => [T::zero(); 2],
@@ -246,7 +246,7 @@ impl<T: Real> Leaf<'_, T> {
     }
 
     /// Velocity of a contact as `[c_t, xi_n]` \[m/s\]; c_n = xi_n - bounce.
-    pub fn velocity(&self, contact: usize) -> Vector<T> {
+    pub fn velocity(&self, contact: usize) -> Pair<T> {
         let [first, second] = self.numbers(contact);
         match self.impulses(contact) {
             Impulse::Zero => [first, second],

@@ -6,14 +6,14 @@
 
 use super::problem::ContactProblem;
 use crate::law::{ContactLaw, Impulse, Law, Mode};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::scalar::Real;
 
 /// The rays and planes that the modes allow: L = sum of lambda_j times generator j, each of one contact.
 pub struct Generators {
     rows: usize,
     /// The contact and the two entries of each generator.
-    rays: Vec<(usize, Vector<f64>)>,
+    rays: Vec<(usize, Pair<f64>)>,
 }
 
 impl Generators {
@@ -43,7 +43,7 @@ impl Generators {
             factor => Some(T::from_f64(factor) * problem.delassus(row, column)),
         };
         let entry =
-            |&(contact, ray): &(usize, Vector<f64>)| match (part(2 * contact, ray[0]), part(2 * contact + 1, ray[1])) {
+            |&(contact, ray): &(usize, Pair<f64>)| match (part(2 * contact, ray[0]), part(2 * contact + 1, ray[1])) {
                 (Some(t), Some(n)) => t + n,
                 (one, other) => one.or(other).unwrap_or(T::zero()),
             };
@@ -53,7 +53,7 @@ impl Generators {
     /// The coefficients by lambda of a row's impulse.
     pub fn impulse_row<T: Real>(&self, row: usize) -> Vec<T> {
         let entry =
-            |&(contact, ray): &(usize, Vector<f64>)| T::from_f64(if contact == row / 2 { ray[row % 2] } else { 0.0 });
+            |&(contact, ray): &(usize, Pair<f64>)| T::from_f64(if contact == row / 2 { ray[row % 2] } else { 0.0 });
         self.rays.iter().map(entry).collect()
     }
 

@@ -7,7 +7,7 @@
 use super::linear::{Unsettled, settled};
 use super::problem::ContactProblem;
 use crate::law::{ContactLaw, Impulse, Mode};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 /// zero.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
     let mut stuck: Vec<usize> = Vec::new();
-    let mut sliding: Vec<(usize, Vector<T>)> = Vec::new();
+    let mut sliding: Vec<(usize, Pair<T>)> = Vec::new();
     for (contact, (&mode, law)) in modes.iter().zip(problem.laws()).enumerate() {
         match law.impulse(mode) {
             Impulse::Zero => {}

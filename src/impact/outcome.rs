@@ -1,7 +1,7 @@
 //! The answer of an analysis: outcomes, rejections, the verdict. Data only.
 
 use crate::law::{Inequality, Mode};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use serde::Serialize;
 use std::fmt;
 
@@ -44,9 +44,9 @@ pub struct Outcome {
     /// One mode per contact.
     pub modes: Vec<Mode>,
     /// Contact impulses, [tangential, normal] per contact \[N s\].
-    pub impulse: Vec<Vector<f64>>,
+    pub impulse: Vec<Pair<f64>>,
     /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
-    pub velocity_after: Vec<Vector<f64>>,
+    pub velocity_after: Vec<Pair<f64>>,
     /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction gains
     /// energy.
     pub energy_loss: f64,
@@ -59,7 +59,7 @@ pub struct Outcome {
     /// The smallest slack of the outcome's inequalities, free of units; `None` if there is no inequality.
     pub margin: Option<f64>,
     /// Least and greatest of every impulse's entry; `None` if the impulse is the only one.
-    pub impulse_range: Option<Vec<Vector<Range>>>,
+    pub impulse_range: Option<Vec<Pair<Range>>>,
     /// What is exactly zero, if an impulse inequality is.
     pub border: Option<Border>,
     /// An end of a family: every velocity between both ends is an outcome.
@@ -84,15 +84,15 @@ pub struct Border {
 
 impl Outcome {
     /// Takes over impulses and velocities after, and what follows from them with the contact velocities `before`.
-    pub(super) fn set_motion(&mut self, motion: Motion, before: &[Vector<f64>]) {
+    pub(super) fn set_motion(&mut self, motion: Motion, before: &[Pair<f64>]) {
         // Adding zero turns a negative zero into the one that people expect to read.
-        let unsigned = |list: Vec<Vector<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
+        let unsigned = |list: Vec<Pair<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
         self.impulse = unsigned(motion.impulse);
         self.velocity_after = unsigned(motion.velocity_after);
         let moves = self.impulse.iter().zip(before.iter().zip(&self.velocity_after));
         let work: f64 = moves.map(|(l, (c, after))| l[0] * (c[0] + after[0]) + l[1] * (c[1] + after[1])).sum();
         self.energy_loss = 0.0 - 0.5 * work;
-        let needed = |(&mode, l): (&Mode, &Vector<f64>)| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
+        let needed = |(&mode, l): (&Mode, &Pair<f64>)| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
         self.friction_needed = self.modes.iter().zip(&self.impulse).map(needed).collect();
     }
 }
@@ -101,9 +101,9 @@ impl Outcome {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     /// Contact impulses \[N s\].
-    pub impulse: Vec<Vector<f64>>,
+    pub impulse: Vec<Pair<f64>>,
     /// Contact velocities after the impact \[m/s\].
-    pub velocity_after: Vec<Vector<f64>>,
+    pub velocity_after: Vec<Pair<f64>>,
 }
 
 impl Motion {

@@ -3,7 +3,7 @@
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
 use crate::law::{Condition, ContactLaw, Law, Mode};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::scalar::{Ordered, Real};
 
 /// One inequality of a combination and its value.
@@ -110,7 +110,7 @@ impl Scale {
     }
 
     /// Whether two lists of contact velocities are the same up to rounding.
-    pub fn same_velocity(&self, a: &[Vector<f64>], b: &[Vector<f64>]) -> bool {
+    pub fn same_velocity(&self, a: &[Pair<f64>], b: &[Pair<f64>]) -> bool {
         let differences = a.iter().flatten().zip(b.iter().flatten()).zip(&self.mobility);
         differences.map(|((a, b), mobility)| (a - b).abs() / (mobility * self.speed)).all(|far| far < 1e-8)
     }

@@ -16,7 +16,7 @@ use crate::dynamics::{
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::ContactProblem;
 use crate::impact::problem::check_matrix_size;
-use crate::planar::{Vector, dot, sum};
+use crate::planar::Vector;
 use crate::state::State;
 use crate::state::{Ground, Scene};
 
@@ -207,12 +207,12 @@ impl Pipeline<'_> {
     fn stand(&self, state: &State, surface: &Surface) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
         let mut velocity = state.velocity.clone();
         if !self.plan.floating {
-            return Ok(([0.0; 2], velocity, None));
+            return Ok((Vector::zero(), velocity, None));
         }
         let Some(link) = state.scene.stance else {
-            return Ok(([state.position[0], state.position[1]], velocity, None));
+            return Ok((Vector::new(state.position[0], state.position[1]), velocity, None));
         };
-        let at_zero = Placement::new(&self.plan, &self.workspace, [0.0; 2]);
+        let at_zero = Placement::new(&self.plan, &self.workspace, Vector::zero());
         let named = state.scene.contacts.as_deref();
         // A side is flat by the rounding of its corners, whatever the contact tolerance is.
         let flat = CONTACT_TOLERANCE * self.feet.size();
@@ -220,7 +220,7 @@ impl Pipeline<'_> {
         velocity[..2].fill(0.0);
         let arm = stance.foot.point_of().arm(&self.workspace);
         let moving = point_velocity(&self.plan, stance.foot.body, arm, &velocity, &self.workspace);
-        velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
+        velocity[..2].copy_from_slice(&(-moving).components());
         Ok((stance.base, velocity, Some(stance.foot)))
     }
 
@@ -341,7 +341,9 @@ impl Pipeline<'_> {
             // Only the change goes through J, so that a contact at rest before stays exactly so without an impulse.
             for (point, speed) in self.points.iter().zip(&mut unbraked) {
                 let more = point_velocity(&self.plan, point.body, point.arm(&self.workspace), change, &self.workspace);
-                *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));
+                for (entry, axis) in speed.iter_mut().zip(point.axes()) {
+                    *entry += axis.dot(more);
+                }
             }
         }
         ContactProblem::checked(self.workspace.delassus.clone(), (before, unbraked), (friction, restitution))

@@ -7,7 +7,7 @@ use crate::dynamics::{
     orthogonalize, point_velocity, spent_energy,
 };
 use crate::error::{Error, Reason, Result};
-use crate::planar::{Vector, difference, dot};
+use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::scalar::Real;
 use crate::state::NamedLoop;
@@ -105,14 +105,14 @@ impl Pipeline<'_> {
         let Self { robot, plan, workspace, kept, .. } = self;
         let Loops { points, rows } = loops;
         let energy = kinetic_energy(plan, velocity, workspace);
-        let openings = points.iter().map(|own| speed(own.opening(plan, velocity, workspace)));
+        let openings = points.iter().map(|own| own.opening(plan, velocity, workspace).length());
         let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
         let Some((worst, (opening, own))) = widest else { return Ok(None) };
         orthogonalize(plan, points, (Constraints { kept, rows }, foot), workspace);
         let amplitudes = close(plan, points, Closed::Velocity, velocity, workspace);
         if let Some(foot) = foot {
             let moving = point_velocity(plan, foot.body, foot.arm(workspace), velocity, workspace);
-            for (own, moving) in velocity.iter_mut().zip(moving) {
+            for (own, moving) in velocity.iter_mut().zip(moving.components()) {
                 *own -= moving;
             }
         }
@@ -123,8 +123,8 @@ impl Pipeline<'_> {
         // What was left out must hold all the same.
         for (index, own) in points.iter().enumerate().filter(|(index, _)| !loops.is_whole(*index)) {
             let [a, b] = own.velocities(plan, velocity, workspace);
-            let left = speed(difference(a, b));
-            if left * left > OPENING * (dot(a, a) + dot(b, b)) {
+            let left = (a - b).length();
+            if left * left > OPENING * (a.dot(a) + b.dot(b)) {
                 return Err(moves_apart(&named[index], index, left, robot));
             }
         }
@@ -142,7 +142,7 @@ impl Pipeline<'_> {
         let size = self.feet.size();
         let mut widest = 0.0_f64;
         for (index, (own, named)) in points.iter().zip(named).enumerate() {
-            let gap = speed(own.gap(&self.plan, &self.workspace));
+            let gap = own.gap(&self.plan, &self.workspace).length();
             if gap.is_nan() || gap > OPEN * size {
                 let name = named.name(index, self.robot);
                 let reason = format!("the pose leaves {name} open: its points are {gap:.4e} m apart");
@@ -185,10 +185,6 @@ impl Pipeline<'_> {
         let amplitudes = close(&self.plan, &loops.points, Closed::Change, change, &self.workspace);
         loop_impulse(loops.points.len(), &amplitudes, &self.workspace)
     }
-}
-
-fn speed([x, z]: Vector<f64>) -> f64 {
-    libm::hypot(x, z)
 }
 
 fn moves_apart(own: &NamedLoop, index: usize, opening: f64, robot: &Robot) -> Error {

@@ -25,7 +25,7 @@ use crate::dynamics::{
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch};
 use crate::law::{Friction, Mode};
-use crate::planar::{Rotation, Vector, scaled, sum};
+use crate::planar::{Pair, Rotation, Vector};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::state::State;
@@ -61,7 +61,7 @@ pub struct Impact {
     /// The closed contacts, in the order of all lists per contact.
     pub contacts: Vec<Contact>,
     /// Contact velocities before the impact, [tangential, normal] \[m/s\].
-    pub velocity_before: Vec<Vector<f64>>,
+    pub velocity_before: Vec<Pair<f64>>,
     /// Kinetic energy before the impact \[J\].
     pub kinetic_energy: f64,
     /// Every outcome and the verdict, or why the outcomes cannot be told.
@@ -292,12 +292,12 @@ impl<'r> Pipeline<'r> {
 
     /// The velocity by coordinate after contact impulses, from the one without them: by articulated bodies, which keep
     /// thirteen digits and more in chains where M = L^T D L leaves eight, unless joints follow others.
-    fn struck(&mut self, free: &[f64], impulse: &[Vector<f64>]) -> Vec<f64> {
+    fn struck(&mut self, free: &[f64], impulse: &[Pair<f64>]) -> Vec<f64> {
         let mut after = free.to_vec();
         let Self { plan, workspace, points, column, motions, .. } = self;
         for (point, &[tangential, normal]) in points.iter().zip(impulse) {
             let axes = point.axes();
-            let vector = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
+            let vector = axes[0] * tangential + axes[1] * normal;
             let at = (point.body, point.arm(workspace));
             if plan.tied {
                 add_impulse(plan, workspace, at, vector, column, &mut after);

@@ -9,7 +9,7 @@ use crate::dynamics::{
 };
 use crate::impact::{ContactProblem, Errors, Source};
 use crate::law::Law;
-use crate::planar::{Vector, dot, sum};
+use crate::planar::Pair;
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Trigonometry};
 use crate::state::Scene;
@@ -49,8 +49,8 @@ pub struct Inputs<T> {
 /// G, c- and c_free.
 pub struct Contacts<T> {
     pub delassus: Vec<T>,
-    pub before: Vec<Vector<T>>,
-    pub free: Vec<Vector<T>>,
+    pub before: Vec<Pair<T>>,
+    pub free: Vec<Pair<T>>,
 }
 
 impl Strike<'_> {
@@ -85,7 +85,7 @@ impl Strike<'_> {
         if let Some(foot) = self.foot.map(point) {
             velocity[..2].fill(T::zero());
             let moving = point_velocity(&plan, foot.body, foot.arm(&workspace), &velocity, &workspace);
-            velocity[..2].copy_from_slice(&moving.map(|entry| -entry));
+            velocity[..2].copy_from_slice(&(-moving).components());
         }
         let loops: Vec<Loop<T>> = scene.loops.iter().map(|own| own.points(robot)).collect();
         if constrained {
@@ -128,7 +128,9 @@ impl Strike<'_> {
             }
             for (point, speed) in contacts.iter().zip(&mut free) {
                 let more = point_velocity(&plan, point.body, point.arm(&workspace), &change, &workspace);
-                *speed = sum(*speed, point.axes().map(|axis| dot(axis, more)));
+                for (entry, axis) in speed.iter_mut().zip(point.axes()) {
+                    *entry = *entry + axis.dot(more);
+                }
             }
         }
         Contacts { delassus: workspace.delassus, before, free }

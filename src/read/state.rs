@@ -3,6 +3,7 @@
 use super::json::{Node, Value, id_in};
 use super::uncertainty::{self, uncertainty};
 use crate::law::Friction;
+use crate::planar::Vector;
 use crate::robot::Base;
 use crate::state::{AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, State};
 use crate::{Error, Reason, Result, Robot};
@@ -225,7 +226,7 @@ fn slope(entry: Node) -> Result<f64> {
 
 /// A list of `[x, z]`.
 fn profile(entry: Node) -> Result<Profile> {
-    let points = entry.entries()?.map(|point| point.numbers("a list of 2 numbers, [x, z]"));
+    let points = entry.entries()?.map(|point| point.numbers("a list of 2 numbers, [x, z]").map(Vector::from));
     Profile::new(points.collect::<Result<_>>()?).map_err(|error| entry.refuse_inside(error))
 }
 
@@ -322,7 +323,7 @@ fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
             match part.key() {
                 "link" => named = Some(link(part, part.text()?, robot)?),
                 "offset" => offset = part.numbers("a list of 3 numbers")?,
-                "vector" => applied = Some(part.numbers("a list of 2 numbers, [x, z]")?),
+                "vector" => applied = Some(Vector::from(part.numbers("a list of 2 numbers, [x, z]")?)),
                 _ => return Err(part.unknown_field(&["link", "offset", "vector"])),
             }
         }

@@ -13,6 +13,7 @@ use super::plane::PARALLEL;
 use super::role::Role;
 use super::{Axis, Base, Still};
 use crate::description::Description;
+use crate::planar::Vector;
 
 /// The share of the robot's mass up to which a link looks as if it only had to be given one.
 const LIGHT: f64 = 1e-2;
@@ -170,7 +171,11 @@ impl Welded {
             link = description.joints[*joint].child;
         }
         match slides[..] {
-            [[ax, az], [bx, bz]] if turns == 1 && (ax * bz - az * bx).abs() > PARALLEL => Some(chain),
+            [Vector { x: ax, z: az }, Vector { x: bx, z: bz }]
+                if turns == 1 && (ax * bz - az * bx).abs() > PARALLEL =>
+            {
+                Some(chain)
+            }
             _ => None,
         }
     }

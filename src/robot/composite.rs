@@ -8,7 +8,7 @@
 
 use crate::description::Matrix;
 use crate::error::Reason;
-use crate::planar::{Vector, difference, dot};
+use crate::planar::Vector;
 
 /// Below this share of its terms a negative moment is rounding of a turned inertia.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -87,13 +87,18 @@ pub(super) fn composite(parts: &[Part]) -> (f64, Vector<f64>, f64) {
     let mass = parts.iter().map(|part| part.mass).sum();
     let mut massive = parts.iter().filter(|part| part.mass > 0.0);
     let com = match (massive.next(), massive.next()) {
-        (None, _) => [0.0; 2],
+        (None, _) => Vector::zero(),
         (Some(single), None) => single.com,
-        _ => [0, 1].map(|k| parts.iter().map(|part| part.mass * part.com[k]).sum::<f64>() / mass),
+        _ => {
+            let mean = |entry: fn(Vector<f64>) -> f64| {
+                parts.iter().map(|part| part.mass * entry(part.com)).sum::<f64>() / mass
+            };
+            Vector::new(mean(|com| com.x), mean(|com| com.z))
+        }
     };
     let moment = parts.iter().map(|part| {
-        let arm = difference(part.com, com);
-        if part.mass > 0.0 { part.moment + part.mass * dot(arm, arm) } else { part.moment }
+        let arm = part.com - com;
+        if part.mass > 0.0 { part.moment + part.mass * arm.dot(arm) } else { part.moment }
     });
     (mass, com, moment.sum())
 }
@@ -109,7 +114,7 @@ mod tests {
 
     fn projected(inertia: Matrix, rpy: [f64; 3]) -> Result<f64, Reason> {
         let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
-        Part::projected(1.0, [0.0; 2], Some(&inertia), &rotation).map(|part| part.moment)
+        Part::projected(1.0, Vector::zero(), Some(&inertia), &rotation).map(|part| part.moment)
     }
 
     const INERTIA: Matrix = [[0.3, 0.01, -0.02], [0.01, 0.1, 0.03], [-0.02, 0.03, 0.25]];
@@ -149,7 +154,7 @@ mod tests {
         let rod = [[2.0 * third, -third, -third], [-third, 2.0 * third, -third], [-third, -third, 2.0 * third]];
         let length = 3.0_f64.sqrt().recip();
         let rotation = [[0.0; 3], [length; 3], [0.0; 3]];
-        let part = Part::projected(1.0, [0.0; 2], Some(&rod), &rotation).expect("no error");
+        let part = Part::projected(1.0, Vector::zero(), Some(&rod), &rotation).expect("no error");
         assert!((0.0..1e-15).contains(&part.moment));
     }
 
@@ -176,18 +181,18 @@ mod tests {
     #[test]
     fn welded_masses_add_by_steiner() {
         // 1 kg at x = 0 and 3 kg at x = 4: CoG at 3, distances 3 and 1.
-        let whole = composite(&[part(1.0, [0.0, 2.0], 0.5), part(3.0, [4.0, 2.0], 0.25)]);
-        assert_eq!(whole, (4.0, [3.0, 2.0], 0.5 + 9.0 + 0.25 + 3.0));
+        let whole = composite(&[part(1.0, Vector::new(0.0, 2.0), 0.5), part(3.0, Vector::new(4.0, 2.0), 0.25)]);
+        assert_eq!(whole, (4.0, Vector::new(3.0, 2.0), 0.5 + 9.0 + 0.25 + 3.0));
     }
 
     #[test]
     fn a_single_massive_part_keeps_its_digits_beside_massless_ones() {
         let whole = composite(&[
-            part(0.0, [7.0, 7.0], 0.0),
-            part(0.7887, [0.1, -0.019399], 0.00221),
-            part(0.0, [1.0, 0.0], 0.5),
+            part(0.0, Vector::new(7.0, 7.0), 0.0),
+            part(0.7887, Vector::new(0.1, -0.019399), 0.00221),
+            part(0.0, Vector::new(1.0, 0.0), 0.5),
         ]);
-        assert_eq!(whole, (0.7887, [0.1, -0.019399], 0.00221 + 0.5));
-        assert_eq!(composite(&[]), (0.0, [0.0; 2], 0.0));
+        assert_eq!(whole, (0.7887, Vector::new(0.1, -0.019399), 0.00221 + 0.5));
+        assert_eq!(composite(&[]), (0.0, Vector::zero(), 0.0));
     }
 }

@@ -180,11 +180,12 @@ impl Link {
     /// A point of the link's own 3-D frame in its body's planar frame \[m\]; the component along the normal is dropped.
     pub fn point<T: Real>(&self, offset: [f64; 3]) -> Vector<T> {
         let [x, y, z] = offset.map(T::from_f64);
-        self.pose.map(|row| {
+        let [forward, up] = self.pose.map(|row| {
             let [a, b, c, d] = row.map(T::from_f64);
             // Unturned links keep the given digits: adding a product with zero changes nothing.
             a * x + b * y + c * z + d
-        })
+        });
+        Vector::new(forward, up)
     }
 }
 
@@ -194,7 +195,7 @@ impl Link {
     pub fn offset(&self, point: Vector<f64>) -> [f64; 3] {
         // The rows are orthonormal, so that their transpose turns back.
         let [[.., x], [.., z]] = self.pose;
-        let [along, up] = [point[0] - x, point[1] - z];
+        let [along, up] = [point.x - x, point.z - z];
         std::array::from_fn(|axis| self.pose[0][axis] * along + self.pose[1][axis] * up)
     }
 }

@@ -209,20 +209,20 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
         None => Ok(()),
     };
     for body in &robot.bodies {
-        let inertia = [body.mass, body.com[0], body.com[1], body.moment];
+        let inertia = [body.mass, body.com.x, body.com.z, body.moment];
         refuse("the inertia of the welded body", &inertia, description::link_place(&body.name))?;
     }
     for joint in &robot.joints {
-        refuse("the place at zero", &joint.origin, description::joint_place(&joint.name))?;
+        refuse("the place at zero", &joint.origin.components(), description::joint_place(&joint.name))?;
     }
     for follower in &robot.followers {
-        refuse("the place at zero", &follower.origin, description::joint_place(&follower.name))?;
+        refuse("the place at zero", &follower.origin.components(), description::joint_place(&follower.name))?;
     }
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;
         for shape in &link.shapes {
-            let corners = shape.corners().as_flattened();
-            refuse("the place of a collision shape", corners, description::link_place(&link.name))?;
+            let corners: Vec<f64> = shape.corners().iter().flat_map(|corner| corner.components()).collect();
+            refuse("the place of a collision shape", &corners, description::link_place(&link.name))?;
         }
     }
     refuse("the mass", &[robot.mass()], "robot".into())

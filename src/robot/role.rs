@@ -9,6 +9,7 @@ use super::plane::{PARALLEL, Plane};
 use super::posture::Posture;
 use super::{Axis, Still};
 use crate::description::{Description, JointKind, Mimic, apply, unit};
+use crate::planar::Vector;
 
 /// An axis this near to the normal is off by rounding alone \[rad\].
 const ROUNDING: f64 = 1e-9;
@@ -68,7 +69,7 @@ fn role(kind: JointKind, index: usize, posture: &Posture, plane: Plane) -> Role 
         JointKind::Prismatic => moves(plane.off_plane(axis), kind, || {
             let [x, _, z] = apply(&plane.axes(), axis);
             let [x, _, z] = unit([x, 0.0, z]);
-            Axis::Slide { direction: [x, z] }
+            Axis::Slide { direction: Vector::new(x, z) }
         }),
     }
 }

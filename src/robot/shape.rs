@@ -13,7 +13,7 @@
 //! Along a direction d the outline reaches as far as its farthest corner does, plus the rim's own reach: so it touches a
 //! line with one corner's rim, or with those of both ends of a flat side.
 
-use crate::planar::{Vector, difference, dot, scaled, sum};
+use crate::planar::Vector;
 use parry2d::math::Vector as ParryVector;
 use parry2d::shape::SharedShape;
 
@@ -47,11 +47,11 @@ impl Rim {
     /// Of an ellipse: `(a (a.d) + b (b.d)) / |(a.d, b.d)|`, the gradient of its support function |(a.d, b.d)|.
     pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {
         match *self {
-            Self::Circle { radius } => scaled(radius, direction),
+            Self::Circle { radius } => direction * radius,
             Self::Ellipse { half_diameters: [a, b] } => {
-                let along = [dot(a, direction), dot(b, direction)];
+                let along = [a.dot(direction), b.dot(direction)];
                 let reach = libm::hypot(along[0], along[1]);
-                if reach == 0.0 { [0.0; 2] } else { sum(scaled(along[0] / reach, a), scaled(along[1] / reach, b)) }
+                if reach == 0.0 { Vector::zero() } else { a * (along[0] / reach) + b * (along[1] / reach) }
             }
         }
     }
@@ -60,7 +60,7 @@ impl Rim {
     pub fn reach(&self, direction: Vector<f64>) -> f64 {
         match *self {
             Self::Circle { radius } => radius,
-            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(dot(a, direction), dot(b, direction)),
+            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(a.dot(direction), b.dot(direction)),
         }
     }
 
@@ -68,7 +68,7 @@ impl Rim {
     pub fn bound(&self) -> f64 {
         match *self {
             Self::Circle { radius } => radius,
-            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1])),
+            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(libm::hypot(a.x, a.z), libm::hypot(b.x, b.z)),
         }
     }
 }
@@ -83,7 +83,7 @@ impl FootShape {
     /// up upward, with `rim` about each; two corners are a line, one is a point. None for no corner, or for neighbours
     /// that coincide.
     pub fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Option<Self> {
-        let points: Vec<ParryVector> = corners.iter().map(|&[x, z]| ParryVector::new(x, z)).collect();
+        let points: Vec<ParryVector> = corners.iter().map(|&Vector { x, z }| ParryVector::new(x, z)).collect();
         let polygon = match points[..] {
             [] => return None,
             [_] => None,
@@ -121,18 +121,13 @@ impl FootShape {
 
     /// Centre and radius of a circle about the whole shape, in the body's frame \[m\].
     pub fn bounding_circle(&self) -> (Vector<f64>, f64) {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for corner in &self.corners {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(corner[axis]);
-                high[axis] = high[axis].max(corner[axis]);
-            }
-        }
-        let centre = [0, 1].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
-        let farthest = self.corners.iter().map(|&corner| {
-            let [x, z] = difference(corner, centre);
-            libm::hypot(x, z)
-        });
+        let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
+        let (low, high) = self
+            .corners
+            .iter()
+            .fold((infinite, -infinite), |(low, high), &corner| (low.least(corner), high.greatest(corner)));
+        let centre = low * 0.5 + high * 0.5;
+        let farthest = self.corners.iter().map(|&corner| (corner - centre).length());
         (centre, farthest.fold(0.0, f64::max) + self.rim.bound())
     }
 
@@ -141,10 +136,10 @@ impl FootShape {
         let rim = match self.rim {
             Rim::Circle { radius } => Rim::Circle { radius: radius * factor },
             Rim::Ellipse { half_diameters } => {
-                Rim::Ellipse { half_diameters: half_diameters.map(|half| scaled(factor, half)) }
+                Rim::Ellipse { half_diameters: half_diameters.map(|half| half * factor) }
             }
         };
-        let resized = Self::swept(self.corners.iter().map(|&corner| scaled(factor, corner)).collect(), rim)?;
+        let resized = Self::swept(self.corners.iter().map(|&corner| corner * factor).collect(), rim)?;
         Some(Self { mesh: self.mesh.clone(), ..resized })
     }
 }

@@ -41,7 +41,7 @@ impl Place {
     /// Forward and up of the origin.
     pub(super) fn in_plane(&self) -> Vector<f64> {
         let [x, _, z] = self.offset;
-        [x, z]
+        Vector::new(x, z)
     }
 }
 
@@ -156,6 +156,6 @@ fn order(mover: Mover) -> Option<usize> {
 impl Body {
     /// A body that still weighs nothing.
     fn of(link: &str, joint: Option<Mover>) -> Self {
-        Self { name: link.into(), joint, mass: 0.0, com: [0.0; 2], moment: 0.0 }
+        Self { name: link.into(), joint, mass: 0.0, com: Vector::zero(), moment: 0.0 }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::composite::{Part, composite};
 use super::{Base, Mover, Robot};
-use crate::planar::{Vector, sum};
+use crate::planar::Vector;
 
 impl Robot {
     /// Whether a body can move: not the root of a bolted robot, nor what is welded to it.
@@ -24,11 +24,11 @@ impl Robot {
         let mut grounds: Vec<(usize, Vector<f64>)> = Vec::with_capacity(self.bodies.len());
         for (index, body) in self.bodies.iter().enumerate() {
             let (ground, place) = match body.joint {
-                Some(Mover::Weld { parent, origin }) => (grounds[parent].0, sum(grounds[parent].1, origin)),
-                _ => (index, [0.0; 2]),
+                Some(Mover::Weld { parent, origin }) => (grounds[parent].0, grounds[parent].1 + origin),
+                _ => (index, Vector::zero()),
             };
             grounds.push((ground, place));
-            parts[ground].push(Part::point(body.mass, sum(place, body.com)));
+            parts[ground].push(Part::point(body.mass, place + body.com));
         }
         let centre = |(index, parts): (usize, &Vec<Part>)| (grounds[index].0 == index).then(|| composite(parts).1);
         parts.iter().enumerate().map(centre).collect()

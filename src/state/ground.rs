@@ -6,7 +6,7 @@
 //! ```
 
 use crate::error::{Error, Reason, Result};
-use crate::planar::{Rotation, Vector, difference};
+use crate::planar::{Rotation, Vector};
 use crate::scalar::{Real, Trigonometry};
 
 /// What the robot strikes.
@@ -55,7 +55,7 @@ impl Profile {
             let reason = format!("a profile has at least two points, not {}", points.len());
             return Err(Error::new(Reason::Inconsistent(reason)).hint("level ground is \"ground\": {\"slope\": 0}"));
         }
-        for (at, &value) in points.iter().enumerate().flat_map(|(at, point)| point.iter().map(move |entry| (at, entry)))
+        for (at, value) in points.iter().enumerate().flat_map(|(at, point)| point.components().map(|entry| (at, entry)))
         {
             if !value.is_finite() {
                 return Err(
@@ -64,14 +64,13 @@ impl Profile {
             }
         }
         for (at, pair) in points.windows(2).enumerate() {
-            let ([from, _], [to, _]) = (pair[0], pair[1]);
+            let [from, to] = [pair[0].x, pair[1].x];
             let refused = |reason: String| Error::new(Reason::Inconsistent(reason)).at(format!("[{}]", at + 1));
             if to <= from {
                 let reason = format!("a profile's x rises from point to point, but {to:?} follows {from:?}");
                 return Err(refused(reason).hint("give a vertical riser a tiny width, such as 1e-6 m"));
             }
-            let [across, up] = difference(pair[1], pair[0]);
-            if !libm::hypot(across, up).is_finite() {
+            if !(pair[1] - pair[0]).length().is_finite() {
                 let reason = "the distance from the point before is beyond the range of f64".to_owned();
                 return Err(refused(reason).hint("give the points in metres"));
             }
@@ -92,12 +91,12 @@ mod tests {
     #[test]
     fn what_is_no_profile_is_refused_with_the_point() {
         let refused = |points: &[Vector<f64>]| Profile::new(points.to_vec()).expect_err("no profile");
-        assert_eq!(refused(&[[0.0, 1.0]]).to_string(), "a profile has at least two points, not 1");
-        let riser = refused(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.1]]);
+        assert_eq!(refused(&[Vector::new(0.0, 1.0)]).to_string(), "a profile has at least two points, not 1");
+        let riser = refused(&[Vector::new(0.0, 0.0), Vector::new(0.3, 0.0), Vector::new(0.3, 0.1)]);
         assert_eq!(riser.to_string(), "[2]: a profile's x rises from point to point, but 0.3 follows 0.3");
         assert_eq!(riser.remedy(), Some("give a vertical riser a tiny width, such as 1e-6 m"));
-        assert_eq!(refused(&[[0.0, 0.0], [1.0, f64::NAN]]).place(), Some("[1]"));
-        assert_eq!(refused(&[[-1e308, 0.0], [1e308, 0.0]]).place(), Some("[1]"));
-        assert!(Profile::new(vec![[0.0, 0.0], [f64::MIN_POSITIVE, 1e9]]).is_ok());
+        assert_eq!(refused(&[Vector::new(0.0, 0.0), Vector::new(1.0, f64::NAN)]).place(), Some("[1]"));
+        assert_eq!(refused(&[Vector::new(-1e308, 0.0), Vector::new(1e308, 0.0)]).place(), Some("[1]"));
+        assert!(Profile::new(vec![Vector::new(0.0, 0.0), Vector::new(f64::MIN_POSITIVE, 1e9)]).is_ok());
     }
 }

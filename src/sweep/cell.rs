@@ -5,7 +5,6 @@ use super::line::{Probe, RESOLUTION};
 use super::model::Solver;
 use super::regime::Regime;
 use super::transition::Transition;
-use crate::planar::Vector;
 use std::sync::Arc;
 
 /// How often a cell is quartered, and into how many cells at most.
@@ -25,14 +24,14 @@ const HALF: f64 = 0.506_17;
 /// A cell: its least and its greatest corner, and its edges below, to the right, above and to the left.
 #[derive(Debug, Clone)]
 pub struct GridCell {
-    pub corners: [Vector<f64>; 2],
+    pub corners: [[f64; 2]; 2],
     pub edges: [Edge; 4],
 }
 
 /// Traces borders through cells.
 pub struct Trace<'s, 'm> {
     solver: &'s mut Solver<'m>,
-    resolution: Vector<f64>,
+    resolution: [f64; 2],
     cells: usize,
     /// What was found.
     pub segments: Vec<Segment>,
@@ -41,7 +40,7 @@ pub struct Trace<'s, 'm> {
 /// A border that enters a cell, met on a walk around it, counter-clockwise.
 #[derive(Debug, Clone)]
 struct BorderEntry {
-    point: Vector<f64>,
+    point: [f64; 2],
     before: Arc<Regime>,
     after: Arc<Regime>,
     /// What changes, with `before` below; `None` at a corner.
@@ -59,7 +58,7 @@ impl BorderEntry {
     }
 
     /// The piece of the border from here to `to`.
-    fn segment(&self, to: Vector<f64>) -> Segment {
+    fn segment(&self, to: [f64; 2]) -> Segment {
         let (left, right) = (Arc::clone(&self.before), Arc::clone(&self.after));
         Segment { from: self.point, to, left, right, turns: self.turns.clone() }
     }
@@ -96,7 +95,7 @@ impl GridCell {
         entries
     }
 
-    fn middle(&self) -> Vector<f64> {
+    fn middle(&self) -> [f64; 2] {
         let [low, high] = self.corners;
         [0, 1].map(|axis| low[axis] + HALF * (high[axis] - low[axis]))
     }
@@ -104,7 +103,7 @@ impl GridCell {
 
 impl<'s, 'm> Trace<'s, 'm> {
     /// A trace that bisects borders to `resolution` along each parameter.
-    pub fn new(solver: &'s mut Solver<'m>, resolution: Vector<f64>) -> Self {
+    pub fn new(solver: &'s mut Solver<'m>, resolution: [f64; 2]) -> Self {
         Self { solver, resolution, cells: 0, segments: Vec::new() }
     }
 
@@ -147,7 +146,7 @@ impl<'s, 'm> Trace<'s, 'm> {
     }
 
     /// The point of the border beside a chord's middle, where it is farther from it than is seen and can be found.
-    fn off_chord(&mut self, chord: &Segment) -> Option<Vector<f64>> {
+    fn off_chord(&mut self, chord: &Segment) -> Option<[f64; 2]> {
         let ranges = self.resolution.map(|resolution| resolution / RESOLUTION);
         let along = [0, 1].map(|axis| (chord.to[axis] - chord.from[axis]) / ranges[axis]);
         let length = libm::hypot(along[0], along[1]);

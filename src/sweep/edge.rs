@@ -4,7 +4,6 @@ use super::line::{Along, Bracket, Probe, brackets, stretches};
 use super::model::Solver;
 use super::regime::Regime;
 use super::transition::Transition;
-use crate::planar::Vector;
 use std::sync::Arc;
 
 /// A line of the plane, parallel to an axis.
@@ -17,7 +16,7 @@ pub struct GridLine {
 }
 
 impl GridLine {
-    pub fn point(self, at: f64) -> Vector<f64> {
+    pub fn point(self, at: f64) -> [f64; 2] {
         if self.axis == 0 { [at, self.fixed] } else { [self.fixed, at] }
     }
 }
@@ -54,8 +53,8 @@ pub enum Direction {
 /// A straight piece of a border, or of the frame around everything.
 #[derive(Debug, Clone)]
 pub struct Segment {
-    pub from: Vector<f64>,
-    pub to: Vector<f64>,
+    pub from: [f64; 2],
+    pub to: [f64; 2],
     /// The regime on its left.
     pub left: Arc<Regime>,
     /// The regime on its right; of the frame the left one.

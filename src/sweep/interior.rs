@@ -1,6 +1,6 @@
 //! Points well inside of areas, where their letters are written.
 
-use crate::planar::{Vector, difference, dot, scaled, sum};
+use crate::planar::Vector;
 use std::collections::VecDeque;
 
 /// For each connected part of a grid's nodes of one kind: the kind, and the nodes that are most steps away from others. The
@@ -46,15 +46,15 @@ pub fn deepest_nodes(kinds: &[Option<usize>], columns: usize) -> Vec<(usize, Vec
 }
 
 /// How far a point is from loops, as part of the ranges.
-pub fn distance(point: Vector<f64>, loops: &[Vec<Vector<f64>>], ranges: Vector<f64>) -> f64 {
-    let relative = |at: Vector<f64>| [(at[0] - point[0]) / ranges[0], (at[1] - point[1]) / ranges[1]];
+pub fn distance(point: [f64; 2], loops: &[Vec<[f64; 2]>], ranges: [f64; 2]) -> f64 {
+    let relative = |at: [f64; 2]| Vector::new((at[0] - point[0]) / ranges[0], (at[1] - point[1]) / ranges[1]);
     let edges = loops.iter().flat_map(|points| points.iter().zip(points.iter().cycle().skip(1)));
     let away = edges.map(|(a, b)| {
         let (a, b) = (relative(*a), relative(*b));
-        let along = difference(b, a);
-        let share = (-dot(a, along) / dot(along, along)).clamp(0.0, 1.0);
-        let nearest = if share.is_nan() { a } else { sum(a, scaled(share, along)) };
-        libm::hypot(nearest[0], nearest[1])
+        let along = b - a;
+        let share = (-a.dot(along) / along.dot(along)).clamp(0.0, 1.0);
+        let nearest = if share.is_nan() { a } else { a + along * share };
+        nearest.length()
     });
     away.fold(f64::INFINITY, f64::min)
 }

@@ -20,7 +20,6 @@ use super::regime::Regime;
 use super::transition::Transition;
 use crate::Error;
 use crate::impact::Verdict;
-use crate::planar::Vector;
 use crate::read::Parameter;
 use std::sync::Arc;
 
@@ -51,9 +50,9 @@ pub struct Area {
     /// What happens there.
     pub regime: Arc<Regime>,
     /// Closed loops of points (first parameter, second parameter) with the area on their left; the first point is not repeated.
-    pub loops: Vec<Vec<Vector<f64>>>,
+    pub loops: Vec<Vec<[f64; 2]>>,
     /// For each connected part a point well inside of it, and how far that is from its edge as part of the ranges.
-    pub middles: Vec<(Vector<f64>, f64)>,
+    pub middles: Vec<([f64; 2], f64)>,
     /// The verdict at such a point; none where states are refused.
     pub verdict: Option<Verdict>,
     /// Where states are refused: why, as at such a point or beside a border.
@@ -66,7 +65,7 @@ pub struct BorderCurve {
     /// The areas on its left and on its right, as indices.
     pub sides: [usize; 2],
     /// Its points; of a closed one the first is the last.
-    pub points: Vec<Vector<f64>>,
+    pub points: Vec<[f64; 2]>,
     /// What turns there; `below` is its left side.
     pub turns: Transition,
 }
@@ -88,7 +87,7 @@ struct Grid<'p> {
     parameters: [&'p Parameter; 2],
     xs: Vec<f64>,
     ys: Vec<f64>,
-    resolution: Vector<f64>,
+    resolution: [f64; 2],
     /// Row by row, like everything else.
     nodes: Vec<Arc<Regime>>,
     rows: Vec<Edge>,
@@ -145,7 +144,7 @@ impl<'p> Grid<'p> {
     }
 
     /// A point on the outermost lines is moved to the end of the range.
-    fn outward(&self, [x, y]: Vector<f64>) -> Vector<f64> {
+    fn outward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let snapped = |at: f64, lines: &[f64], parameter: &Parameter| match lines {
             [least, ..] if at <= *least => parameter.from,
             [.., most] if at >= *most => parameter.to,

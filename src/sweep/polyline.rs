@@ -3,7 +3,6 @@
 use super::edge::Segment;
 use super::regime::Regime;
 use super::transition::Transition;
-use crate::planar::Vector;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -12,14 +11,14 @@ use std::sync::Arc;
 pub struct Polyline {
     pub left: Arc<Regime>,
     pub right: Arc<Regime>,
-    pub points: Vec<Vector<f64>>,
+    pub points: Vec<[f64; 2]>,
     pub turns: Transition,
 }
 
 /// A point by its digits: ends that meet are the same numbers.
 type Key = [u64; 2];
 
-fn key(point: Vector<f64>) -> Key {
+fn key(point: [f64; 2]) -> Key {
     point.map(f64::to_bits)
 }
 
@@ -39,7 +38,7 @@ pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
         used[first] = true;
         let own = &segments[first];
         // On from its end, then back from its beginning; each segment may stand in either direction.
-        let mut grow = |mut point: Vector<f64>, forward: bool| {
+        let mut grow = |mut point: [f64; 2], forward: bool| {
             let mut points = Vec::new();
             loop {
                 let next = starts[&key(point)].iter().find(|&&(index, at_start)| {
@@ -74,10 +73,10 @@ fn same_border(own: &Segment, other: &Segment, along: bool) -> bool {
 }
 
 /// The closed loops that have `regime` on their left, of borders and of the frame.
-pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> Vec<Vec<Vector<f64>>> {
-    let mut next: HashMap<Key, Vec<Vector<f64>>> = HashMap::new();
+pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> Vec<Vec<[f64; 2]>> {
+    let mut next: HashMap<Key, Vec<[f64; 2]>> = HashMap::new();
     let mut order = Vec::new();
-    let mut add = |from: Vector<f64>, to: Vector<f64>| {
+    let mut add = |from: [f64; 2], to: [f64; 2]| {
         next.entry(key(from)).or_default().push(to);
         order.push(from);
     };

@@ -89,6 +89,6 @@ fn of_state(robot: &Robot, State { position, velocity, scene, .. }: &State) -> V
         Ground::Slope(slope) => Some(("rad", slope)),
         Ground::Profile(_) => None,
     };
-    let impulses = scene.impulses.iter().flat_map(|impulse| impulse.vector.map(|part| ("N s", part)));
+    let impulses = scene.impulses.iter().flat_map(|impulse| impulse.vector.components().map(|part| ("N s", part)));
     positions.chain(velocities).chain(slope).chain(impulses).collect()
 }

@@ -3,7 +3,7 @@
 use crate::Robot;
 use crate::impact::outcome::{self, Range};
 use crate::law::{Inequality, Mode};
-use crate::planar::Vector;
+use crate::planar::{Pair, Vector};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
@@ -14,9 +14,9 @@ pub struct Outcome<'a> {
     /// One mode per contact.
     pub modes: &'a [Mode],
     /// Contact impulses, [tangential, normal] per contact \[N s\].
-    pub impulse: &'a [Vector<f64>],
+    pub impulse: &'a [Pair<f64>],
     /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
-    pub velocity_after: &'a [Vector<f64>],
+    pub velocity_after: &'a [Pair<f64>],
     /// Velocity of the base after the impact; of a robot that is not bolted to the world.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_velocity_after: Option<NamedVelocities<'a>>,
@@ -33,7 +33,7 @@ pub struct Outcome<'a> {
     /// Least and greatest of every entry of `impulse`, null where it has no bound; where other impulses give the same
     /// velocities.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub impulse_range: Option<&'a [Vector<Range>]>,
+    pub impulse_range: Option<&'a [Pair<Range>]>,
     /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others.
     pub friction_needed: &'a [Option<f64>],
     /// Sign of det A; null on a border.

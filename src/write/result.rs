@@ -12,7 +12,7 @@ use super::touchdown::{CarriedFields, Touchdown};
 use crate::impact::{Analysis, Explanation, ImpulseRegion, Verdict, outcome};
 use crate::law::Mode;
 use crate::pipeline::{Impact, Matrices};
-use crate::planar::Vector;
+use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::state::State;
 use crate::{Error, Result, Robot, contact, description, pipeline};
@@ -119,7 +119,7 @@ pub struct Contact<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<f64>,
     /// Its velocity before the impact, [tangential, normal] \[m/s\].
-    pub velocity_before: Vector<f64>,
+    pub velocity_before: Pair<f64>,
 }
 
 /// Something of the robot's file or of the scene that does not enter the analysis.
@@ -176,9 +176,9 @@ pub struct Rejected<'a> {
     /// The smallest slack, negative; null where the combination has no solution at all.
     pub margin: Option<f64>,
     /// The impulses that it would have needed \[N s\].
-    pub impulse: Option<&'a [Vector<f64>]>,
+    pub impulse: Option<&'a [Pair<f64>]>,
     /// The contact velocities that it would have led to \[m/s\].
-    pub velocity_after: Option<&'a [Vector<f64>]>,
+    pub velocity_after: Option<&'a [Pair<f64>]>,
 }
 
 /// The paper's section 4, one entry per contact.
@@ -374,7 +374,7 @@ impl<'a> Report<'a> {
 }
 
 impl<'a> Contact<'a> {
-    fn of_robot(robot: &'a Robot, contact: &'a contact::Contact, velocity_before: Vector<f64>) -> Self {
+    fn of_robot(robot: &'a Robot, contact: &'a contact::Contact, velocity_before: Pair<f64>) -> Self {
         Self {
             link: robot.links.get(contact.link).map(|link| link.name.as_str()),
             name: &contact.name,
@@ -385,7 +385,7 @@ impl<'a> Contact<'a> {
         }
     }
 
-    fn of_problem(name: &'a str, velocity_before: Vector<f64>) -> Self {
+    fn of_problem(name: &'a str, velocity_before: Pair<f64>) -> Self {
         Self { link: None, name, point: None, normal: None, gap: None, velocity_before }
     }
 }

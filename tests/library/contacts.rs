@@ -35,8 +35,8 @@ fn names(impact: &Impact) -> Vec<&str> {
 }
 
 /// Rounding of a few operations on numbers of order one.
-fn close(found: [f64; 2], expected: [f64; 2]) -> bool {
-    found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 16.0 * f64::EPSILON)
+fn close(found: impl Into<[f64; 2]>, expected: [f64; 2]) -> bool {
+    found.into().iter().zip(expected).all(|(a, b)| (a - b).abs() < 16.0 * f64::EPSILON)
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn every_shape_of_a_link_can_touch() {
         <collision><origin xyz="0.3 0 -0.05"/><geometry><box size="0.2 0.1 0.1"/></geometry>"#;
     let found = impact(&body(two), r#"{"position": {"base": {"z": 0.1}}}"#);
     assert_eq!(names(&found), ["body/0", "body/1", "body/2"]);
-    let places: Vec<f64> = found.contacts.iter().map(|contact| contact.point[0]).collect();
+    let places: Vec<f64> = found.contacts.iter().map(|contact| contact.point.x).collect();
     assert_eq!(places, [-0.3, 0.3 - 0.1, 0.3 + 0.1]);
 }
 

@@ -8,7 +8,7 @@ use crate::accuracy::pose::Pose;
 use crate::dynamics::{add_impulse, kinetic_energy};
 use crate::impact::{Analysis, ContactProblem, Outcome};
 use crate::law::Mode;
-use crate::planar::{Vector, scaled, sum};
+use crate::planar::Pair;
 use serde::Serialize;
 
 /// A run that ends within this distance of an outcome is near it, in parts of the speed before.
@@ -106,7 +106,7 @@ pub struct Landing {
 }
 
 /// Distance of two impulses' effects, in parts of the speed of kinetic energy `energy`.
-pub fn distance(problem: &ContactProblem, energy: f64, a: &[Vector<f64>], b: &[Vector<f64>]) -> f64 {
+pub fn distance(problem: &ContactProblem, energy: f64, a: &[Pair<f64>], b: &[Pair<f64>]) -> f64 {
     let gap: Vec<f64> = a.iter().zip(b).flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
     let rows = gap.len();
     let entry = |at: usize| gap[at / rows] * problem.delassus(at / rows, at % rows) * gap[at % rows];
@@ -212,11 +212,11 @@ fn by_stiffness_of_moving(
     let (computation, friction) = (pose.computed(), problem.friction().collect::<Vec<_>>());
     let (plan, workspace) = (computation.plan(), computation.workspace());
     let before = computation.velocity();
-    let after = |impulse: &[Vector<f64>]| {
+    let after = |impulse: &[Pair<f64>]| {
         let mut velocity = before.to_vec();
         for (point, &[tangential, normal]) in pose.points.iter().zip(impulse) {
             let [t, n] = point.axes();
-            let vector = sum(scaled(tangential, t), scaled(normal, n));
+            let vector = t * tangential + n * normal;
             add_impulse(plan, workspace, (point.body, point.arm(workspace)), vector, &mut Vec::new(), &mut velocity);
         }
         velocity

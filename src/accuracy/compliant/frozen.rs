@@ -10,7 +10,7 @@
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::radau::{Equations, Limits, integrate};
 use crate::impact::ContactProblem;
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::{Reason, Result};
 use nalgebra::DMatrix;
 
@@ -21,9 +21,9 @@ pub const TOLERANCE: f64 = 1e-10;
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompliantRun {
     /// Impulse of each contact, [tangential, normal] \[N s\].
-    pub impulse: Vec<Vector<f64>>,
+    pub impulse: Vec<Pair<f64>>,
     /// Contact velocities after it, [tangential, normal] \[m/s\].
-    pub velocity_after: Vec<Vector<f64>>,
+    pub velocity_after: Vec<Pair<f64>>,
     /// Steps of the integrator.
     pub steps: usize,
     /// Whether all contacts came free or to rest; false for a run that was cut off before.
@@ -83,21 +83,21 @@ struct Frozen {
     /// G, 2n x 2n.
     mobility: Vec<f64>,
     /// c-.
-    free: Vec<Vector<f64>>,
+    free: Vec<Pair<f64>>,
     suspension: Suspension,
 }
 
 impl Frozen {
-    fn velocity(&self, state: &[f64]) -> Vec<Vector<f64>> {
+    fn velocity(&self, state: &[f64]) -> Vec<Pair<f64>> {
         let rows = 2 * self.free.len();
         let change = |row: usize| -> f64 { (0..rows).map(|at| self.mobility[row * rows + at] * state[at]).sum() };
         self.free.iter().enumerate().map(|(i, c)| [c[0] + change(2 * i), c[1] + change(2 * i + 1)]).collect()
     }
 
     /// Force and rate of the stretch of each contact.
-    fn forces(&self, state: &[f64], velocity: &[Vector<f64>]) -> Vec<(Vector<f64>, f64)> {
+    fn forces(&self, state: &[f64], velocity: &[Pair<f64>]) -> Vec<(Pair<f64>, f64)> {
         let (depths, stretches) = state[2 * velocity.len()..].split_at(velocity.len());
-        let force = |(i, c): (usize, &Vector<f64>)| self.suspension.force(i, depths[i], stretches[i], *c);
+        let force = |(i, c): (usize, &Pair<f64>)| self.suspension.force(i, depths[i], stretches[i], *c);
         velocity.iter().enumerate().map(force).collect()
     }
 }

@@ -10,7 +10,7 @@
 //! Source: Brogliato, *Nonsmooth Mechanics* (2016), section 2.1.
 
 use crate::law::Friction;
-use crate::planar::Vector;
+use crate::planar::Pair;
 
 /// The ground's parameters that matter while the configuration is frozen, the same for all contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,9 +30,9 @@ pub const GREATEST_FRICTION: f64 = 1e6;
 #[derive(Debug)]
 pub(super) struct Suspension {
     /// k, tangential and normal.
-    stiffness: Vector<f64>,
+    stiffness: Pair<f64>,
     /// d, tangential and normal.
-    pub damping: Vector<f64>,
+    pub damping: Pair<f64>,
     /// mu of each contact.
     friction: Vec<f64>,
 }
@@ -52,7 +52,7 @@ impl Suspension {
     }
 
     /// The force on `contact`, and the rate of its stretch, by its depth, stretch and velocity.
-    pub fn force(&self, contact: usize, depth: f64, stretch: f64, velocity: Vector<f64>) -> (Vector<f64>, f64) {
+    pub fn force(&self, contact: usize, depth: f64, stretch: f64, velocity: Pair<f64>) -> (Pair<f64>, f64) {
         let push = self.stiffness[1] * depth - self.damping[1] * velocity[1];
         let normal = if depth < 0.0 { 0.0 } else { push.max(0.0) };
         let bound = self.friction[contact] * normal;
@@ -63,7 +63,7 @@ impl Suspension {
     }
 
     /// The derivatives of [`Self::force`]'s tangential and normal force by depth, stretch, and tangential and normal velocity.
-    pub fn force_derivatives(&self, contact: usize, depth: f64, stretch: f64, velocity: Vector<f64>) -> [[f64; 4]; 2] {
+    pub fn force_derivatives(&self, contact: usize, depth: f64, stretch: f64, velocity: Pair<f64>) -> [[f64; 4]; 2] {
         let ([tangential, normal], _) = self.force(contact, depth, stretch, velocity);
         if normal <= 0.0 {
             return [[0.0; 4]; 2];

@@ -12,7 +12,7 @@ use crate::accuracy::robots;
 use crate::impact::{Analysis, ContactProblem, analyse};
 use crate::law::{Friction, Mode};
 use crate::pipeline::{Options, Pipeline};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::state::{Defaults, State};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -45,7 +45,7 @@ pub struct Cell {
 #[derive(Debug, Clone)]
 pub struct Biped {
     delassus: Vec<f64>,
-    before: Vec<Vector<f64>>,
+    before: Vec<Pair<f64>>,
     friction: Friction,
 }
 

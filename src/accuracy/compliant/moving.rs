@@ -14,7 +14,7 @@ use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::law::Friction;
-use crate::planar::{Vector, difference, dot, scaled, sum, turned};
+use crate::planar::{Pair, Vector};
 use crate::{Error, Reason, Result};
 use std::cell::RefCell;
 
@@ -107,7 +107,11 @@ impl<'a> Equation<'a> {
         let damping = 2.0 * ground.damping_ratio * (stiffness / mean_mobility).sqrt();
         Self {
             suspension: Suspension::new(ground, stiffness, damping, robot.friction.iter().copied()),
-            start: robot.contacts.iter().map(|contact| place(robot.plan, contact, &[0.0; 2], workspace)).collect(),
+            start: robot
+                .contacts
+                .iter()
+                .map(|contact| place(robot.plan, contact, &Vector::zero(), workspace))
+                .collect(),
             period: (1.0 / (stiffness * mean_mobility)).sqrt(),
             speed: robot.velocity.iter().fold(f64::MIN_POSITIVE, |speed: f64, rate| speed.max(rate.abs())),
             memory: RefCell::new(memory),
@@ -116,7 +120,7 @@ impl<'a> Equation<'a> {
     }
 
     /// Rates of the state, and for each contact its normal force and speed.
-    fn evaluate(&self, state: &[f64]) -> (Vec<f64>, Vec<Vector<f64>>) {
+    fn evaluate(&self, state: &[f64]) -> (Vec<f64>, Vec<Pair<f64>>) {
         let Moving { plan, position, contacts, .. } = *self.robot;
         let dofs = position.len();
         let length = self.speed * self.period;
@@ -132,16 +136,16 @@ impl<'a> Equation<'a> {
             let com = workspace.rotation[body].apply(com(plan, body));
             add_impulse(plan, workspace, (body, com), force, column, &mut accelerations);
         }
-        let base = if plan.floating { [moved[0], moved[1]] } else { [0.0; 2] };
+        let base = if plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
         let mut touching = Vec::with_capacity(contacts.len());
         let mut stretches = Vec::with_capacity(contacts.len());
         for (index, contact) in contacts.iter().enumerate() {
             let axes = contact.axes();
             let c = workspace.contact_velocity[index];
-            let depth = dot(axes[1], difference(self.start[index], place(plan, contact, &base, workspace)));
+            let depth = axes[1].dot(self.start[index] - place(plan, contact, &base, workspace));
             let ([tangential, normal], stretch) =
                 self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
-            let force = sum(scaled(tangential, axes[0]), scaled(normal, axes[1]));
+            let force = axes[0] * tangential + axes[1] * normal;
             add_impulse(plan, workspace, (contact.body, contact.arm(workspace)), force, column, &mut accelerations);
             stretches.push(stretch / self.speed);
             touching.push([normal, c[1]]);
@@ -165,10 +169,10 @@ impl Equations for Equation<'_> {
 
 /// A contact point from where the root's origin was at first, which moved by `base`.
 fn place(plan: &Plan, contact: &ContactPoint, base: &Vector<f64>, workspace: &Workspace) -> Vector<f64> {
-    let mut point = sum(*base, contact.arm(workspace));
+    let mut point = *base + contact.arm(workspace);
     let mut at = Some(contact.body);
     while let Some(body) = at {
-        point = sum(point, workspace.arm[body]);
+        point = point + workspace.arm[body];
         at = plan.bodies[body].parent;
     }
     point
@@ -177,7 +181,7 @@ fn place(plan: &Plan, contact: &ContactPoint, base: &Vector<f64>, workspace: &Wo
 /// CoG in the body's frame; of a massless body its origin.
 fn com(plan: &Plan, body: usize) -> Vector<f64> {
     let inertia = plan.bodies[body].inertia;
-    if inertia.mass > 0.0 { scaled(1.0 / inertia.mass, inertia.first) } else { [0.0; 2] }
+    if inertia.mass > 0.0 { inertia.first * (1.0 / inertia.mass) } else { Vector::zero() }
 }
 
 /// Weight, and minus mass times what the CoG accelerates while no joint does, of each body \[N\].
@@ -187,23 +191,23 @@ fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<
     let mut forces = Vec::with_capacity(plan.bodies.len());
     for (index, body) in plan.bodies.iter().enumerate() {
         let (spin, origin) = match (body.parent, body.motion) {
-            (None, _) => (if plan.floating { velocity[2] } else { 0.0 }, [0.0; 2]),
+            (None, _) => (if plan.floating { velocity[2] } else { 0.0 }, Vector::zero()),
             (Some(parent), motion) => {
                 let (spin, rate) = (spins[parent], velocity[body.coordinate]);
-                let carried = difference(origins[parent], scaled(spin * spin, workspace.arm[index]));
+                let carried = origins[parent] - workspace.arm[index] * (spin * spin);
                 match motion {
                     Motion::Turn { sign, .. } => (spin + sign * rate, carried),
                     // Coriolis: twice the turn of the direction of sliding.
                     Motion::Slide { .. } => {
-                        (spin, sum(carried, scaled(2.0 * spin * rate, turned(workspace.direction[index]))))
+                        (spin, carried + workspace.direction[index].perpendicular() * (2.0 * spin * rate))
                     }
                     Motion::Root | Motion::Weld => (spin, carried),
                 }
             }
         };
         let com = workspace.rotation[index].apply(com(plan, index));
-        let acceleration = difference(origin, scaled(spin * spin, com));
-        forces.push(scaled(-body.inertia.mass, sum(acceleration, [0.0, GRAVITY])));
+        let acceleration = origin - com * (spin * spin);
+        forces.push((acceleration + Vector::new(0.0, GRAVITY)) * -body.inertia.mass);
         spins.push(spin);
         origins.push(origin);
     }

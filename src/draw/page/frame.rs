@@ -8,7 +8,7 @@ use crate::Error;
 use crate::draw::keyframe::{Answer, Pose};
 use crate::draw::robot::{Arrow, Drawing, Extent, Touch};
 use crate::impact::{self, Verdict};
-use crate::planar::Vector;
+use crate::planar::{Pair, Vector};
 use crate::write::words;
 use serde::Serialize;
 
@@ -68,8 +68,8 @@ struct Effect {
     index: Option<i8>,
     energy_loss: f64,
     /// Tangential and normal.
-    impulse: Vec<Vector<f64>>,
-    after: Vec<Vector<f64>>,
+    impulse: Vec<Pair<f64>>,
+    after: Vec<Pair<f64>>,
 }
 
 /// How large stills are drawn, all alike.
@@ -105,11 +105,14 @@ impl Scale {
         let extents = || drawings.iter().map(|drawing| drawing.extent());
         let size = extents().map(|extent| extent.size()).fold(0.0, f64::max);
         let whole = Extent::of(extents().flat_map(|extent| [extent.low, extent.high]));
-        let widest =
-            [0, 1].map(|axis| extents().map(|extent| extent.high[axis] - extent.low[axis]).fold(0.0, f64::max));
-        let follows = [0, 1].map(|axis| whole.high[axis] - whole.low[axis] > FIXED * size);
+        let spans = extents().map(|extent| extent.high - extent.low);
+        let widest = spans.fold(Vector::zero(), Vector::greatest);
+        let follows = (whole.high - whole.low).components().map(|span| span > FIXED * size);
         let side = |way: f64, whole: Vector<f64>| {
-            [0, 1].map(|axis| if follows[axis] { 0.5 * way * widest[axis] } else { whole[axis] })
+            Vector::new(
+                if follows[0] { 0.5 * way * widest.x } else { whole.x },
+                if follows[1] { 0.5 * way * widest.z } else { whole.z },
+            )
         };
         let masses = drawings.iter().flat_map(|drawing| &drawing.bodies).map(|body| body.mass);
         let impulses = drawings.iter().map(|drawing| {
@@ -134,7 +137,7 @@ impl Scale {
 }
 
 fn longest(vectors: impl Iterator<Item = Vector<f64>>) -> f64 {
-    vectors.map(|[x, z]| libm::hypot(x, z)).fold(0.0, f64::max)
+    vectors.map(Vector::length).fold(0.0, f64::max)
 }
 
 /// What most of these do not exceed, of those that are anything at all.
@@ -177,6 +180,7 @@ fn refusal(error: &Error) -> String {
 
 fn effects(answer: &Answer, contacts: &[Touch], texts: &mut Texts) -> Vec<Effect> {
     let names = || contacts.iter().map(|contact| contact.name.as_str());
+    let pair = |pair: &Pair<f64>| pair.map(|entry| significant(entry, 5));
     let effect = |outcome: &impact::Outcome| Effect {
         words: texts.number(match outcome.modes[..] {
             [] => "nothing changes".to_owned(),
@@ -186,8 +190,8 @@ fn effects(answer: &Answer, contacts: &[Touch], texts: &mut Texts) -> Vec<Effect
         margin: outcome.margin.map(|margin| significant(margin, 5)),
         index: outcome.index,
         energy_loss: significant(outcome.energy_loss, 5),
-        impulse: outcome.impulse.iter().map(vector).collect(),
-        after: outcome.velocity_after.iter().map(vector).collect(),
+        impulse: outcome.impulse.iter().map(pair).collect(),
+        after: outcome.velocity_after.iter().map(pair).collect(),
     };
     answer.outcomes.iter().map(effect).collect()
 }
@@ -211,14 +215,14 @@ impl Placed {
         let at = |point: &Vector<f64>| place(*point, unit);
         let placed = |(number, (body, turn)): (usize, (&_, &Vector<f64>))| {
             let part = parts.number(number, body, *turn, unit);
-            let ([x, z], [cos, sin]) = (at(&body.origin), vector(turn));
+            let (Vector { x, z }, Vector { x: cos, z: sin }) = (at(&body.origin), vector(turn));
             (part, x, z, cos, sin)
         };
         let bones = drawing.bodies.iter().flat_map(|body| body.bones.iter().map(|end| [at(&body.origin), at(end)]));
         let extent = drawing.extent();
         Self {
             bodies: drawing.bodies.iter().zip(turns).enumerate().map(placed).collect(),
-            bones: bones.map(|[[x, z], [to_x, to_z]]| [x, z, to_x, to_z]).collect(),
+            bones: bones.map(|[Vector { x, z }, Vector { x: to_x, z: to_z }]| [x, z, to_x, to_z]).collect(),
             joints: drawing.joints.iter().map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
             contacts: drawing
@@ -236,7 +240,7 @@ impl Placed {
                 .iter()
                 .map(|arrow| Arrow { point: at(&arrow.point), vector: vector(&arrow.vector) })
                 .collect(),
-            middle: at(&[0, 1].map(|axis| 0.5 * (extent.low[axis] + extent.high[axis]))),
+            middle: at(&((extent.low + extent.high) * 0.5)),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::number::place;
 use crate::draw::robot::{Body, Outline};
-use crate::planar::{Vector, difference, dot};
+use crate::planar::Vector;
 use serde::Serialize;
 
 /// What is rigid of a body, in its frame.
@@ -44,10 +44,10 @@ impl Parts {
 
 impl Part {
     fn of(body: &Body, turn: Vector<f64>, unit: f64) -> Self {
-        let across = [-turn[1], turn[0]];
+        let across = -turn.perpendicular();
         let local = |point: Vector<f64>| {
-            let arm = difference(point, body.origin);
-            place([dot(arm, turn), dot(arm, across)], unit)
+            let arm = point - body.origin;
+            place(Vector::new(arm.dot(turn), arm.dot(across)), unit)
         };
         let outline = |outline: &Outline| match outline {
             Outline::Disc { center, radius } => {
@@ -66,7 +66,7 @@ impl Part {
     /// Whether it is the same but for what rounding made of it.
     fn is_same_as(&self, other: &Self, unit: f64) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= ROUNDING * unit;
-        let near_points = |a: &Vector<f64>, b: &Vector<f64>| near(a[0], b[0]) && near(a[1], b[1]);
+        let near_points = |a: &Vector<f64>, b: &Vector<f64>| near(a.x, b.x) && near(a.z, b.z);
         let near_outlines = |(a, b): (&Outline, &Outline)| match (a, b) {
             (Outline::Disc { center: a, radius: s }, Outline::Disc { center: b, radius: r }) => {
                 near_points(a, b) && near(*s, *r)

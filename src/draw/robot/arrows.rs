@@ -8,7 +8,7 @@ use super::{Drawing, Touch};
 use crate::contact::Contact;
 use crate::law::Mode;
 use crate::pipeline::Impact;
-use crate::planar::Vector;
+use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::state::State;
 use serde::Serialize;
@@ -39,8 +39,8 @@ const LONGEST: f64 = 0.4;
 impl Drawing {
     /// Adds contacts, outcomes and applied impulses, drawn beside a robot of this size \[m\].
     pub(super) fn act(&mut self, robot: &Robot, state: &State, impact: &Impact, size: f64) {
-        let in_world = |vectors: &[Vector<f64>]| -> Vec<Vector<f64>> {
-            impact.contacts.iter().zip(vectors).map(|(contact, &vector)| contact.ground.apply(vector)).collect()
+        let in_world = |vectors: &[Pair<f64>]| -> Vec<Vector<f64>> {
+            impact.contacts.iter().zip(vectors).map(|(contact, &vector)| contact.ground.apply(vector.into())).collect()
         };
         let touch = |(contact, velocity_before): (&Contact, Vector<f64>)| Touch {
             name: contact.name.clone(),
@@ -75,5 +75,5 @@ impl Drawing {
 }
 
 fn longest<'a>(vectors: impl Iterator<Item = &'a Vector<f64>>) -> f64 {
-    vectors.map(|[x, z]| libm::hypot(*x, *z)).fold(0.0, f64::max)
+    vectors.map(|vector| vector.length()).fold(0.0, f64::max)
 }

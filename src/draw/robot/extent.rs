@@ -18,24 +18,20 @@ const BESIDE: f64 = 2.0;
 impl Extent {
     /// About these points; of none a point at the origin.
     pub fn of(points: impl Iterator<Item = Vector<f64>>) -> Self {
-        let start = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        let spans = points.fold(start, |spans, point| {
-            std::array::from_fn(|axis| [spans[axis][0].min(point[axis]), spans[axis][1].max(point[axis])])
-        });
-        match spans {
-            [[left, right], [bottom, top]] if left <= right => Self { low: [left, bottom], high: [right, top] },
-            _ => Self { low: [0.0; 2], high: [0.0; 2] },
-        }
+        let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
+        let (low, high) =
+            points.fold((infinite, -infinite), |(low, high), point| (low.least(point), high.greatest(point)));
+        if low.x <= high.x { Self { low, high } } else { Self { low: Vector::zero(), high: Vector::zero() } }
     }
 
     /// The diagonal \[m\].
     pub fn size(self) -> f64 {
-        libm::hypot(self.high[0] - self.low[0], self.high[1] - self.low[1])
+        (self.high - self.low).length()
     }
 
     /// Whether a point lies in it.
     pub(super) fn holds(self, point: Vector<f64>) -> bool {
-        (0..2).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
+        (self.low.x..=self.high.x).contains(&point.x) && (self.low.z..=self.high.z).contains(&point.z)
     }
 
     /// The same with `room` \[m\] on every side.
@@ -45,21 +41,21 @@ impl Extent {
 
     /// The ground's surface below a robot of this size, and well beside it.
     pub(super) fn surface(self, ground: &Ground, size: f64) -> Vec<Vector<f64>> {
-        let (left, right) = (self.low[0] - BESIDE * size, self.high[0] + BESIDE * size);
+        let (left, right) = (self.low.x - BESIDE * size, self.high.x + BESIDE * size);
         match ground {
-            Ground::Slope(slope) => [left, right].map(|x| [x, libm::tan(*slope) * x]).to_vec(),
+            Ground::Slope(slope) => [left, right].map(|x| Vector::new(x, libm::tan(*slope) * x)).to_vec(),
             Ground::Profile(profile) => {
                 let mut surface: Vec<Vector<f64>> = Vec::new();
                 for pair in profile.points().windows(2) {
-                    let &[[x0, z0], [x1, z1]] = pair else { continue };
+                    let &[Vector { x: x0, z: z0 }, Vector { x: x1, z: z1 }] = pair else { continue };
                     if x1 < left || x0 > right {
                         continue;
                     }
-                    let at = |x: f64| [x, z0 + (x - x0) / (x1 - x0) * (z1 - z0)];
+                    let at = |x: f64| Vector::new(x, z0 + (x - x0) / (x1 - x0) * (z1 - z0));
                     if surface.is_empty() {
-                        surface.push(if x0 < left { at(left) } else { [x0, z0] });
+                        surface.push(if x0 < left { at(left) } else { Vector::new(x0, z0) });
                     }
-                    surface.push(if x1 > right { at(right) } else { [x1, z1] });
+                    surface.push(if x1 > right { at(right) } else { Vector::new(x1, z1) });
                 }
                 surface
             }

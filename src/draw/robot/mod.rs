@@ -20,7 +20,7 @@ pub use outline::Outline;
 
 use crate::contact::{Feet, Placement};
 use crate::pipeline::Impact;
-use crate::planar::{Vector, difference};
+use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
 use crate::state::State;
@@ -88,7 +88,7 @@ impl Drawing {
             .iter()
             .enumerate()
             .map(|(at, body)| Body {
-                origin: placement.world(at, [0.0; 2]),
+                origin: placement.world(at, Vector::zero()),
                 bones: Vec::new(),
                 outlines: Vec::new(),
                 last: true,
@@ -189,7 +189,7 @@ impl Body {
     fn grow_bones(&mut self, short: f64) {
         let origin = self.origin;
         let is_long = |end: &Vector<f64>| {
-            let [x, z] = difference(*end, origin);
+            let Vector { x, z } = *end - origin;
             libm::hypot(x, z) > short
         };
         self.bones.retain(is_long);

@@ -1,7 +1,7 @@
 //! Collision shapes where they are.
 
 use crate::contact::Placement;
-use crate::planar::{Vector, dot, sum};
+use crate::planar::Vector;
 use crate::robot::{FootShape, Rim};
 use serde::Serialize;
 
@@ -39,9 +39,9 @@ impl Outline {
     /// Points that it lies between.
     pub(super) fn corners(&self) -> Vec<Vector<f64>> {
         match self {
-            &Self::Disc { center, radius } => {
-                [[-radius, 0.0], [radius, 0.0], [0.0, -radius], [0.0, radius]].map(|out| sum(center, out)).to_vec()
-            }
+            &Self::Disc { center, radius } => [(-radius, 0.0), (radius, 0.0), (0.0, -radius), (0.0, radius)]
+                .map(|(x, z)| center + Vector::new(x, z))
+                .to_vec(),
             Self::Polygon(corners) => corners.clone(),
         }
     }
@@ -52,7 +52,7 @@ impl Outline {
             Self::Disc { center, .. } => *center,
             Self::Polygon(corners) => {
                 let share = 1.0 / corners.len().max(1) as f64;
-                corners.iter().fold([0.0; 2], |middle, corner| sum(middle, corner.map(|entry| entry * share)))
+                corners.iter().fold(Vector::zero(), |middle, corner| middle + *corner * share)
             }
         }
     }
@@ -71,9 +71,9 @@ fn swept(corners: &[Vector<f64>], rim: Rim) -> Vec<Vector<f64>> {
     let mut polygon: Vec<Vector<f64>> = (0..DIRECTIONS)
         .filter_map(|at| {
             let (sin, cos) = libm::sincos(f64::from(at) * std::f64::consts::TAU / f64::from(DIRECTIONS));
-            let direction = [cos, sin];
-            let farthest = corners.iter().max_by(|a, b| dot(**a, direction).total_cmp(&dot(**b, direction)));
-            farthest.map(|&corner| sum(corner, rim.support(direction)))
+            let direction = Vector::new(cos, sin);
+            let farthest = corners.iter().max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)));
+            farthest.map(|&corner| corner + rim.support(direction))
         })
         .collect();
     polygon.dedup();

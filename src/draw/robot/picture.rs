@@ -7,7 +7,7 @@ use crate::draw::plot::{
 };
 use crate::impact::outcome::Outcome;
 use crate::pipeline::Impact;
-use crate::planar::{Vector, scaled, sum};
+use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
 use crate::state::State;
@@ -69,16 +69,16 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     let placement = Placement::of_robot(robot, &vec![0.0; robot.dofs()]);
     let drawing = Drawing::of_robot(robot, &placement, feet);
     let size = drawing.extent().size();
-    let root = placement.world(0, [0.0; 2]);
-    let tip = |axis: Vector<f64>| sum(root, placement.turned(0, scaled(AXES * size, axis)));
+    let root = placement.world(0, Vector::zero());
+    let tip = |axis: Vector<f64>| root + placement.turned(0, axis * (AXES * size));
     let mut shapes = drawing.scene();
-    let axes = [[1.0, 0.0], [0.0, 1.0]].map(tip);
+    let axes = Vector::axes().map(tip);
     shapes.extend(axes.map(|tip| Shape::Arrow { from: point(root), to: point(tip), stroke: AFTER }));
     let mut names: Vec<(PlotPoint, String)> =
         axes.into_iter().map(point).zip(["x".to_owned(), "z".to_owned()]).collect();
     if robot.bodies.len() <= NAMED {
         // The root's name stands between its axes.
-        let places = [tip([0.2, 0.2])].into_iter().chain(drawing.bodies.iter().skip(1).map(Body::middle));
+        let places = [tip(Vector::new(0.2, 0.2))].into_iter().chain(drawing.bodies.iter().skip(1).map(Body::middle));
         names.extend(places.map(point).zip(robot.bodies.iter().map(|body| body.name.clone())));
     }
     shapes.push(Shape::Names { names, below: false });
@@ -139,11 +139,16 @@ impl Extent {
 
     /// An empty panel of this extent, of so many.
     fn panel(self, panels: usize) -> Panel {
-        let axis = |of: usize| PlotAxis { range: Some((self.low[of], self.high[of])), ..PlotAxis::default() };
-        let [across, up] = [self.high[0] - self.low[0], self.high[1] - self.low[1]];
+        let axis = |low: f64, high: f64| PlotAxis { range: Some((low, high)), ..PlotAxis::default() };
+        let [across, up] = [self.high.x - self.low.x, self.high.z - self.low.z];
         let width = [460.0, 460.0, 380.0, 320.0, 280.0][panels.min(COLUMNS)];
         let height = width * (up / across).clamp(0.4, 1.5);
-        Panel { size: (width, height), framed: false, equal: true, ..Panel::new(axis(0), axis(1)) }
+        Panel {
+            size: (width, height),
+            framed: false,
+            equal: true,
+            ..Panel::new(axis(self.low.x, self.high.x), axis(self.low.z, self.high.z))
+        }
     }
 }
 
@@ -151,7 +156,7 @@ impl Body {
     /// Where its name belongs.
     fn middle(&self) -> Vector<f64> {
         match self.bones.first() {
-            Some(end) => scaled(0.5, sum(self.origin, *end)),
+            Some(end) => (self.origin + *end) * 0.5,
             None => self.com.unwrap_or(self.origin),
         }
     }
@@ -162,9 +167,9 @@ impl Drawing {
     fn view(&self) -> Extent {
         let Extent { low, high } = self.extent();
         let size = self.extent().size();
-        let near = self.below(0.5 * (low[0] + high[0])).filter(|[_, z]| (low[1] - size..low[1]).contains(z));
+        let near = self.below(0.5 * (low.x + high.x)).filter(|Vector { z, .. }| (low.z - size..low.z).contains(z));
         let tips = self.contacts.iter().enumerate().flat_map(|(at, contact)| {
-            let tip = |scale: f64, vector: Vector<f64>| sum(contact.point, scaled(scale, vector));
+            let tip = |scale: f64, vector: Vector<f64>| contact.point + vector * scale;
             let effects = self.outcomes.iter().flat_map(move |outcome| {
                 let impulse = outcome.impulse.get(at).map(|&vector| tip(self.impulse_scale, vector));
                 let velocity = outcome.velocity_after.get(at).map(|&vector| tip(self.velocity_scale, vector));
@@ -172,7 +177,7 @@ impl Drawing {
             });
             effects.chain([tip(self.velocity_scale, contact.velocity_before)])
         });
-        let applied = self.applied.iter().map(|arrow| sum(arrow.point, scaled(self.impulse_scale, arrow.vector)));
+        let applied = self.applied.iter().map(|arrow| arrow.point + arrow.vector * self.impulse_scale);
         let whole = Extent::of([low, high].into_iter().chain(tips).chain(applied).chain(near));
         whole.with_room()
     }
@@ -180,8 +185,8 @@ impl Drawing {
     /// The ground at a place; none beside its ends.
     fn below(&self, x: f64) -> Option<Vector<f64>> {
         self.ground.windows(2).find_map(|pair| match *pair {
-            [[x0, z0], [x1, z1]] if (x0..=x1).contains(&x) && x0 < x1 => {
-                Some([x, z0 + (x - x0) / (x1 - x0) * (z1 - z0)])
+            [Vector { x: x0, z: z0 }, Vector { x: x1, z: z1 }] if (x0..=x1).contains(&x) && x0 < x1 => {
+                Some(Vector::new(x, z0 + (x - x0) / (x1 - x0) * (z1 - z0)))
             }
             _ => None,
         })
@@ -191,8 +196,8 @@ impl Drawing {
     fn scene(&self) -> Vec<Shape> {
         let mut shapes = Vec::new();
         if let ([.., right], [left, ..]) = (&self.ground[..], &self.ground[..]) {
-            let depth = self.view().low[1].min(left[1]).min(right[1]) - 10.0 * self.extent().size();
-            let below = [(right[0], depth), (left[0], depth)];
+            let depth = self.view().low.z.min(left.z).min(right.z) - 10.0 * self.extent().size();
+            let below = [(right.x, depth), (left.x, depth)];
             let surface: Vec<PlotPoint> = self.ground.iter().copied().map(point).collect();
             let soil = surface.iter().copied().chain(below).collect();
             shapes.push(Shape::Area { loops: vec![soil], fill: Some(Color::Pale), stroke: None });
@@ -236,12 +241,12 @@ impl Drawing {
         let size = self.extent().size();
         let arrow = |at: Vector<f64>, scale: f64, vector: Vector<f64>, stroke: Stroke| Shape::Arrow {
             from: point(at),
-            to: point(sum(at, scaled(scale, vector))),
+            to: point(at + vector * scale),
             stroke,
         };
         let mut shapes = Vec::new();
         for contact in &self.contacts {
-            let ends = [contact.point, sum(contact.point, scaled(SHORT * size, contact.normal))];
+            let ends = [contact.point, contact.point + contact.normal * (SHORT * size)];
             shapes.push(Shape::Line { points: ends.map(point).to_vec(), stroke: NORMAL });
         }
         let points = self.contacts.iter().map(|contact| point(contact.point)).collect();
@@ -273,10 +278,10 @@ impl Drawing {
             let name = format!("{what}: {round} {unit}");
             Some(LegendEntry { name, key: LegendKey::Arrow { stroke, length: round * scale } })
         };
-        let has = |vectors: &[Vector<f64>]| vectors.iter().any(|vector| *vector != [0.0; 2]);
+        let has = |vectors: &[Vector<f64>]| vectors.iter().any(|vector| *vector != Vector::zero());
         let struck = self.outcomes.iter().any(|outcome| has(&outcome.impulse));
         let moving = self.outcomes.iter().any(|outcome| has(&outcome.velocity_after));
-        let moved = self.contacts.iter().any(|contact| contact.velocity_before != [0.0; 2]);
+        let moved = self.contacts.iter().any(|contact| contact.velocity_before != Vector::zero());
         let arrows = [
             (struck, IMPULSE, self.impulse_scale, "N s", "impulse of the ground"),
             (!self.applied.is_empty(), APPLIED, self.impulse_scale, "N s", "applied impulse"),
@@ -303,6 +308,6 @@ fn round(most: f64) -> Option<f64> {
     [5.0, 2.0, 1.0].into_iter().map(|times| times * unit).find(|round| *round <= most)
 }
 
-fn point([x, z]: Vector<f64>) -> PlotPoint {
+fn point(Vector { x, z }: Vector<f64>) -> PlotPoint {
     (x, z)
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::pipeline::{Options, Pipeline};
+use crate::planar::Vector;
 use crate::state::Defaults;
 
 /// A ball of 2 kg and 0.5 m, on it an arm of 1 m that ends in a point foot.
@@ -31,13 +32,16 @@ fn bodies_stand_where_the_state_puts_them() {
         r#"{{"position": {{"base": {{"x": 3, "z": 0.5}}, "joints": {{"shoulder": {quarter}}}}}, "friction": 1}}"#
     ));
     let [ball, arm] = &drawing.bodies[..] else { panic!("{drawing:?}") };
-    assert_eq!((ball.origin, ball.com, ball.last), ([3.0, 0.5], Some([3.0, 0.5]), false));
+    assert_eq!((ball.origin, ball.com, ball.last), (Vector::new(3.0, 0.5), Some(Vector::new(3.0, 0.5)), false));
     assert!(ball.bones.is_empty(), "the joint is at its center");
     // A positive angle tips up toward forward.
-    assert_eq!((arm.bones.as_slice(), arm.com, arm.last), (&[[4.0, 0.5]][..], Some([3.5, 0.5]), true));
+    assert_eq!(
+        (arm.bones.as_slice(), arm.com, arm.last),
+        (&[Vector::new(4.0, 0.5)][..], Some(Vector::new(3.5, 0.5)), true)
+    );
     assert_eq!(drawing.joints, [[3.0, 0.5]]);
-    assert_eq!(drawing.extent(), Extent { low: [2.5, 0.0], high: [4.0, 1.0] });
-    assert_eq!(drawing.contacts[0].point, [3.0, 0.0]);
+    assert_eq!(drawing.extent(), Extent { low: Vector::new(2.5, 0.0), high: Vector::new(4.0, 1.0) });
+    assert_eq!(drawing.contacts[0].point, Vector::new(3.0, 0.0));
 }
 
 #[test]
@@ -46,11 +50,11 @@ fn the_longest_arrow_has_its_part_of_the_robots_size() {
     assert_eq!(drawing.outcomes.len(), 1);
     // The robot spans 1 m by 1.5 m; all of its 3 kg are stopped above the contact.
     let size = libm::hypot(1.0, 1.5);
-    let [x, z] = drawing.outcomes[0].impulse[0];
+    let Vector { x, z } = drawing.outcomes[0].impulse[0];
     assert!(x.abs() < 1e-12 && (z - 6.0).abs() < 1e-12, "{x} {z}");
     assert!((drawing.impulse_scale * 6.0 - 0.4 * size).abs() < 1e-12);
     assert!((drawing.velocity_scale * 2.0 - 0.4 * size).abs() < 1e-12);
-    assert_eq!(drawing.contacts[0].velocity_before, [0.0, -2.0]);
+    assert_eq!(drawing.contacts[0].velocity_before, Vector::new(0.0, -2.0));
 }
 
 #[test]
@@ -63,12 +67,12 @@ fn arrows_on_a_slope_are_in_the_worlds_axes() {
     );
     let drawing = drawn(&state);
     let [contact] = &drawing.contacts[..] else { panic!("{drawing:?}") };
-    assert!((contact.normal[0] + sin).abs() < 1e-12 && (contact.normal[1] - cos).abs() < 1e-12);
-    let [x, z] = drawing.outcomes[0].impulse[0];
+    assert!((contact.normal.x + sin).abs() < 1e-12 && (contact.normal.z - cos).abs() < 1e-12);
+    let Vector { x, z } = drawing.outcomes[0].impulse[0];
     assert!((x / z + libm::tan(slope)).abs() < 1e-9, "without friction it is along the normal: {x} {z}");
-    assert_eq!(drawing.applied[0].vector, [0.0, -3.0]);
+    assert_eq!(drawing.applied[0].vector, Vector::new(0.0, -3.0));
     let [left, right] = drawing.ground[..] else { panic!("{drawing:?}") };
-    assert!(((right[1] - left[1]) / (right[0] - left[0]) - libm::tan(slope)).abs() < 1e-4);
+    assert!(((right.z - left.z) / (right.x - left.x) - libm::tan(slope)).abs() < 1e-4);
 }
 
 #[test]
@@ -77,8 +81,8 @@ fn a_profile_ends_where_it_ends_and_is_cut_where_the_drawing_does() {
         "ground": {"profile": [[-900, 0], [0.5, 0], [0.6, -1]]}}"#;
     let drawing = drawn(state);
     let [left, edge, end] = drawing.ground[..] else { panic!("{drawing:?}") };
-    assert!(left[0] > -9.0 && left[1] == 0.0, "{left:?}");
-    assert_eq!((edge, end), ([0.5, 0.0], [0.6, -1.0]));
+    assert!(left.x > -9.0 && left.z == 0.0, "{left:?}");
+    assert_eq!((edge, end), (Vector::new(0.5, 0.0), Vector::new(0.6, -1.0)));
 }
 
 #[test]

@@ -4,7 +4,6 @@ use super::style::{COMPONENTS, Styles};
 use super::{Kind, WIDTH, angles, fills_along, is_seen};
 use crate::draw::plot::{Arrangement, Band, Color, Legend, Panel, Picture, PlotAxis, PlotPoint, Shape, Stroke};
 use crate::impact::Motion;
-use crate::planar::Vector;
 use crate::sweep::{CurvePoint, Region, RegionCurves, Survey};
 use crate::write::sweep::Happening;
 
@@ -13,7 +12,7 @@ struct Quantity {
     label: &'static str,
     /// Its name within a sentence.
     name: &'static str,
-    of: fn(&Motion) -> &[Vector<f64>],
+    of: fn(&Motion) -> &[[f64; 2]],
 }
 
 const QUANTITIES: [Quantity; 2] = [

@@ -5,7 +5,6 @@ use super::{Kind, fills_of_map};
 use crate::draw::plot::{
     Arrangement, Color, Legend, LegendEntry, LegendKey, Panel, Picture, Pixel, PlotAxis, PlotPoint, Shape, Stroke,
 };
-use crate::planar::Vector;
 use crate::sweep::{Area, Map};
 use crate::write::sweep::Happening;
 
@@ -53,9 +52,9 @@ pub fn picture([x, y]: [PlotAxis; 2], map: &Map) -> Picture {
 /// The letters of all areas: within each part that has room for it, or beside the largest part, with a line to it.
 fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<Shape> {
     let (Some(x), Some(y)) = (x.range, y.range) else { return Vec::new() };
-    let pixel = |[a, b]: Vector<f64>| (SIZE.0 * (a - x.0) / (x.1 - x.0), SIZE.1 * (b - y.0) / (y.1 - y.0));
+    let pixel = |[a, b]: [f64; 2]| (SIZE.0 * (a - x.0) / (x.1 - x.0), SIZE.1 * (b - y.0) / (y.1 - y.0));
     let point = |(a, b): Pixel| -> PlotPoint { (x.0 + (x.1 - x.0) * a / SIZE.0, y.0 + (y.1 - y.0) * b / SIZE.1) };
-    let pixels = |points: &Vec<Vector<f64>>| points.iter().copied().map(pixel).collect();
+    let pixels = |points: &Vec<[f64; 2]>| points.iter().copied().map(pixel).collect();
     let mut taken: Vec<Vec<Pixel>> = map.curves.iter().map(|curve| pixels(&curve.points)).collect();
     let text = |index: usize, at: Pixel| {
         let (letter, half) = lettered(index);
@@ -109,7 +108,7 @@ fn lettered(index: usize) -> (String, Pixel) {
 }
 
 /// The point of an area that is farthest from its edges.
-fn deepest(area: &Area) -> Option<Vector<f64>> {
+fn deepest(area: &Area) -> Option<[f64; 2]> {
     let middle = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| *middle);
     // An area between the lines of the grid has none: then a place on its edge.
     middle.or_else(|| area.loops.first()?.first().copied())
@@ -133,7 +132,7 @@ mod tests {
             let y = step as f64 / 1600.0;
             [x + if (0.01..0.99).contains(&x) { 0.004 * libm::sin(60.0 * y) } else { 0.0 }, y]
         };
-        let line = |x: f64| -> Vec<Vector<f64>> { (0..=1600).map(|step| edge(x, step)).collect() };
+        let line = |x: f64| -> Vec<[f64; 2]> { (0..=1600).map(|step| edge(x, step)).collect() };
         let (mut areas, mut curves, mut x) = (Vec::new(), Vec::new(), 0.0);
         for (index, width) in widths.iter().enumerate() {
             let outcomes = vec![vec![Mode::ALL[index % 4], Mode::ALL[index / 4 % 4]]];

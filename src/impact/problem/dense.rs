@@ -4,7 +4,7 @@ use super::checks::check_matrix_size;
 use super::{ContactProblem, Origin};
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::Law;
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::scalar::Real;
 
 /// M, J and v as they were given, every digit meant; of M only what is on and below its diagonal.
@@ -21,7 +21,7 @@ pub(super) struct Dynamics {
 impl Dynamics {
     /// G = J M^-1 J^T by rows and c = J v, in numbers of any kind. M is eliminated without pivoting: it is positive
     /// definite.
-    pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Vector<T>>) {
+    pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Pair<T>>) {
         let dofs = self.velocity.len();
         let lower = |i: usize, j: usize| T::from_f64(self.mass_matrix[i.max(j)][i.min(j)]);
         let mut mass: Vec<Vec<T>> = (0..dofs).map(|i| (0..dofs).map(|j| lower(i, j)).collect()).collect();
@@ -106,7 +106,7 @@ impl ContactProblem {
             }
         }
         let speed = |row: &[f64]| row.iter().zip(velocity).map(|(j, v)| j * v).sum::<f64>();
-        let before: Vec<Vector<f64>> =
+        let before: Vec<Pair<f64>> =
             contact_jacobian.chunks_exact(2).map(|pair| [speed(&pair[0]), speed(&pair[1])]).collect();
         let mut problem = Self::checked(delassus, (before.clone(), before), (friction, restitution))?;
         problem.origin = Origin::Dynamics(Box::new(Dynamics {

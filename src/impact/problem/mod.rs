@@ -21,7 +21,7 @@ use self::dense::Dynamics;
 use self::repair::{Rows, is_semidefinite};
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::{ContactLaw, Friction, Law, restitution};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::scalar::{Ordered, Real};
 
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
@@ -32,9 +32,9 @@ pub struct ContactProblem<T = f64> {
     /// G, 2n x 2n by rows \[1/kg\].
     delassus: Vec<T>,
     /// c- of the given state \[m/s\].
-    velocity_before: Vec<Vector<T>>,
+    velocity_before: Vec<Pair<T>>,
     /// c- and the effect of applied impulses \[m/s\].
-    velocity_free: Vec<Vector<T>>,
+    velocity_free: Vec<Pair<T>>,
     /// min(c_n-, 0) \[m/s\].
     approach: Vec<T>,
     laws: Vec<Law>,
@@ -65,12 +65,12 @@ impl<T: Real> ContactProblem<T> {
     }
 
     /// Contact velocities of the given state, before any applied impulse \[m/s\].
-    pub fn velocity_before(&self) -> &[Vector<T>] {
+    pub fn velocity_before(&self) -> &[Pair<T>] {
         &self.velocity_before
     }
 
     /// Contact velocities if the ground gave no impulse \[m/s\].
-    pub fn velocity_free(&self) -> &[Vector<T>] {
+    pub fn velocity_free(&self) -> &[Pair<T>] {
         &self.velocity_free
     }
 
@@ -102,7 +102,7 @@ impl<T: Real> ContactProblem<T> {
 
     /// The same problem in another number.
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> ContactProblem<U> {
-        let vectors = |list: &[Vector<T>]| list.iter().map(|c| c.map(&number)).collect();
+        let vectors = |list: &[Pair<T>]| list.iter().map(|c| c.map(&number)).collect();
         ContactProblem {
             delassus: self.delassus.iter().map(|&entry| number(entry)).collect(),
             velocity_before: vectors(&self.velocity_before),
@@ -119,8 +119,8 @@ impl<T: Ordered> ContactProblem<T> {
     /// A problem from numbers whose signs depend on their precision, already known to be one in f64.
     pub(crate) fn of_parts(
         delassus: Vec<T>,
-        velocity_before: Vec<Vector<T>>,
-        velocity_free: Vec<Vector<T>>,
+        velocity_before: Vec<Pair<T>>,
+        velocity_free: Vec<Pair<T>>,
         laws: Vec<Law>,
         restitution: Vec<f64>,
     ) -> Self {
@@ -139,7 +139,7 @@ impl ContactProblem {
     /// largest entry.
     pub fn new(
         delassus: Vec<f64>,
-        velocity_before: Vec<Vector<f64>>,
+        velocity_before: Vec<Pair<f64>>,
         friction: Vec<impl Into<Law>>,
         restitution: Vec<f64>,
     ) -> Result<Self> {
@@ -182,7 +182,7 @@ impl ContactProblem {
     /// As [`ContactProblem::new`], of numbers that overflowed or lie outside the range.
     pub(crate) fn checked(
         delassus: Vec<f64>,
-        (velocity_before, velocity_free): (Vec<Vector<f64>>, Vec<Vector<f64>>),
+        (velocity_before, velocity_free): (Vec<Pair<f64>>, Vec<Pair<f64>>),
         (friction, restitution): (Vec<impl Into<Law>>, Vec<f64>),
     ) -> Result<Self> {
         let contacts = velocity_before.len();

@@ -1,7 +1,7 @@
 //! Where a contact problem's numbers come from, so that they can be computed again with more digits.
 
 use super::{ContactProblem, Origin};
-use crate::planar::Vector;
+use crate::planar::Pair;
 use crate::scalar::{Ordered, Trigonometry};
 
 /// What stands behind the rounded numbers of a [`ContactProblem`]: data that are exact, and the way from them to G and
@@ -26,7 +26,7 @@ pub struct Errors<'a> {
     /// of the velocities.
     pub delassus: f64,
     /// Of c- and c_free, per contact \[m/s\]; `None` if they are exact.
-    pub velocity: Option<&'a [Vector<f64>]>,
+    pub velocity: Option<&'a [Pair<f64>]>,
 }
 
 impl Errors<'_> {

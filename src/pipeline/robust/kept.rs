@@ -9,7 +9,6 @@ use crate::contact::Contact;
 use crate::dynamics::Constraints;
 use crate::impact::Analysis;
 use crate::law::{ContactLaw, Coulomb, Friction, Frictionless, Law, Mode, Unbounded};
-use crate::planar::{difference, dot};
 use crate::robot::Robot;
 use crate::scalar::{Affine, Real};
 use crate::state::{ByLink, NamedContact, State};
@@ -51,8 +50,8 @@ impl KeptContacts<'_, '_> {
         let Answer { impact, foot, stance, resting } = self.pipeline.answer(&state, None).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
-                let far = difference(one.centre, other.centre);
-                (one.body, one.radius) == (other.body, other.radius) && dot(far, far) <= self.place_rounding()
+                let far = one.centre - other.centre;
+                (one.body, one.radius) == (other.body, other.radius) && far.dot(far) <= self.place_rounding()
             }
             (one, other) => one.is_none() == other.is_none(),
         };

@@ -10,7 +10,7 @@
 //! farther off than [`FLAT`] (Douglas and Peucker, 1973); corners are dropped, never moved, so a side loses at most that
 //! much, and what is kept are points of the file. In n points with h on the hull: n log h as a rule.
 
-use crate::planar::{Vector, difference};
+use crate::planar::Vector;
 use parry2d::math::Vector as ParryVector;
 use parry2d::transformation::convex_hull_idx;
 use std::cmp::Ordering;
@@ -26,13 +26,14 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// why there are none.
 pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String> {
     let Some(&first) = points.first() else { return Err("it has no vertices".into()) };
-    let largest = points.iter().flatten().fold(0.0, |largest: f64, coordinate| largest.max(coordinate.abs()));
+    let coordinates = || points.iter().flat_map(|point| point.components());
+    let largest = coordinates().fold(0.0, |largest: f64, coordinate| largest.max(coordinate.abs()));
     let size = points.iter().fold(0.0, |size: f64, &point| {
-        let [x, z] = difference(point, first);
+        let Vector { x, z } = point - first;
         size.max(x.abs()).max(z.abs())
     });
     // Not finite either where only the distance of two points leaves the range.
-    if points.iter().flatten().any(|coordinate| !coordinate.is_finite()) || !size.is_finite() {
+    if coordinates().any(|coordinate| !coordinate.is_finite()) || !size.is_finite() {
         return Err("its vertices leave the range of f64".into());
     }
     if size <= ROUNDING * largest {
@@ -40,12 +41,12 @@ pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String
     }
     // parry compares with fixed tolerances: it is given points of size one, exactly scaled, about the origin.
     let unit = |length: f64| libm::scalbn(length, -libm::ilogb(size));
-    let about: Vec<Vector<f64>> = points.iter().map(|&point| difference(point, first).map(unit)).collect();
-    let cloud: Vec<ParryVector> = about.iter().map(|&[x, z]| ParryVector::new(x, z)).collect();
+    let about: Vec<Vector<f64>> = points.iter().map(|&point| (point - first).map(unit)).collect();
+    let cloud: Vec<ParryVector> = about.iter().map(|&Vector { x, z }| ParryVector::new(x, z)).collect();
     let hull = convex_hull_idx(&cloud);
     let chain: Vec<Vector<f64>> = hull.iter().map(|&index| about[index]).collect();
     let mut corners: Vec<Vector<f64>> = straightened(&chain).into_iter().map(|at| points[hull[at]]).collect();
-    let height = |at: &usize| (corners[*at][1], corners[*at][0]);
+    let height = |at: &usize| (corners[*at].z, corners[*at].x);
     let lowest = (0..corners.len()).min_by(|a, b| height(a).partial_cmp(&height(b)).unwrap_or(Ordering::Equal));
     corners.rotate_left(lowest.unwrap_or(0));
     Ok(corners)
@@ -55,10 +56,7 @@ pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String
 fn straightened(chain: &[Vector<f64>]) -> Vec<usize> {
     // A farthest point from anywhere is no point within a side.
     let farthest = |from: Vector<f64>| {
-        let far = |&at: &usize| {
-            let [x, z] = difference(chain[at], from);
-            libm::hypot(x, z)
-        };
+        let far = |&at: &usize| (chain[at] - from).length();
         (0..chain.len()).max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
     };
     let start = farthest(chain[0]);
@@ -82,12 +80,12 @@ fn straightened(chain: &[Vector<f64>]) -> Vec<usize> {
 
 /// How far `point` is from the segment between `a` and `b`.
 fn bulge(a: Vector<f64>, b: Vector<f64>, point: Vector<f64>) -> f64 {
-    let (side, arm) = (difference(b, a), difference(point, a));
-    let length = libm::hypot(side[0], side[1]);
+    let (side, arm) = (b - a, point - a);
+    let length = side.length();
     if length == 0.0 {
-        return libm::hypot(arm[0], arm[1]);
+        return arm.length();
     }
-    (side[0] * arm[1] - side[1] * arm[0]).abs() / length
+    (side.x * arm.z - side.z * arm.x).abs() / length
 }
 
 #[cfg(test)]
@@ -104,8 +102,8 @@ mod tests {
 
     /// The area to the left of a, b, c, twice.
     fn turn(a: Vector<f64>, b: Vector<f64>, c: Vector<f64>) -> f64 {
-        let (side, arm) = (difference(b, a), difference(c, a));
-        side[0] * arm[1] - side[1] * arm[0]
+        let (side, arm) = (b - a, c - a);
+        side.x * arm.z - side.z * arm.x
     }
 
     /// All points lie inside the corners, off by `beyond` at most; corners are points, and turn left.
@@ -116,7 +114,7 @@ mod tests {
             if corners.len() > 2 {
                 assert!(turn(a, b, c) > 0.0, "{a:?} {b:?} {c:?}");
             }
-            let side = libm::hypot(b[0] - a[0], b[1] - a[1]);
+            let side = libm::hypot(b.x - a.x, b.z - a.z);
             let outside = points.iter().map(|&point| -turn(a, b, point) / side).fold(0.0, f64::max);
             assert!(outside <= beyond, "{outside} outside {a:?} {b:?}");
         }
@@ -129,7 +127,7 @@ mod tests {
         let sole = |round: fn(f64) -> f64| -> Vec<Vector<f64>> {
             let along = (0..=50).map(|step| f64::from(step) / 250.0 - 0.1);
             let both = along.flat_map(|x| [[x, -0.02], [x, 0.02]]);
-            both.map(|[x, z]| [cos * x + sin * z, cos * z - sin * x].map(round)).collect()
+            both.map(|[x, z]| Vector::new(cos * x + sin * z, cos * z - sin * x).map(round)).collect()
         };
         for round in [|x| x, |x| f64::from(x as f32), |x: f64| (x * 1e7).round() / 1e7] {
             let points = sole(round);
@@ -144,7 +142,8 @@ mod tests {
         for (seed, scale) in [(1, 1.0), (2, 1e-9), (3, 1e12), (4, 1e-100)] {
             let mut next = numbers(seed);
             for count in [3, 4, 10, 300] {
-                let points: Vec<Vector<f64>> = (0..count).map(|_| [next() * scale, next() * scale]).collect();
+                let points: Vec<Vector<f64>> =
+                    (0..count).map(|_| Vector::new(next() * scale, next() * scale)).collect();
                 let found = corners(&points).expect("a hull");
                 assert_hull(&points, &found, 4e-6 * scale);
             }
@@ -154,7 +153,8 @@ mod tests {
     #[test]
     fn a_fine_round_mesh_of_a_hundred_thousand_vertices_keeps_its_shape() {
         let turn = |step: u32| (f64::from(step % 50_000) * std::f64::consts::TAU / 5e4).sin_cos();
-        let points: Vec<Vector<f64>> = (0..100_000).map(turn).map(|(sin, cos)| [0.3 * cos, 0.3 * sin]).collect();
+        let points: Vec<Vector<f64>> =
+            (0..100_000).map(turn).map(|(sin, cos)| Vector::new(0.3 * cos, 0.3 * sin)).collect();
         let found = corners(&points).expect("a hull");
         // A chord over the angle a bulges by r (1 - cos(a / 2)).
         assert!((500..5_000).contains(&found.len()), "{}", found.len());
@@ -163,17 +163,21 @@ mod tests {
 
     #[test]
     fn points_lines_and_copies_have_their_ends_alone() {
-        assert_eq!(corners(&[[0.3, 0.1]; 5]), Ok(vec![[0.3, 0.1]]));
+        assert_eq!(corners(&[Vector::new(0.3, 0.1); 5]), Ok(vec![Vector::new(0.3, 0.1)]));
         // Apart by the rounding of where they are.
-        assert_eq!(corners(&[[1e9, 1e9], [1e9 + 1e-7, 1e9]]), Ok(vec![[1e9, 1e9]]));
-        let line: Vec<Vector<f64>> = (0..100).map(|step| f64::from(step % 34)).map(|t| [0.1 * t, -0.3 * t]).collect();
+        assert_eq!(corners(&[Vector::new(1e9, 1e9), Vector::new(1e9 + 1e-7, 1e9)]), Ok(vec![Vector::new(1e9, 1e9)]));
+        let line: Vec<Vector<f64>> =
+            (0..100).map(|step| f64::from(step % 34)).map(|t| Vector::new(0.1 * t, -0.3 * t)).collect();
         let mut ends = corners(&line).expect("a line");
-        ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        ends.sort_by(|a, b| a.x.total_cmp(&b.x));
         assert_eq!(ends, [line[0], line[33]]);
-        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector::from);
         let copies: Vec<Vector<f64>> = square.into_iter().cycle().take(40).collect();
         assert_eq!(corners(&copies).expect("a square").len(), 4);
         assert_eq!(corners(&[]), Err("it has no vertices".into()));
-        assert_eq!(corners(&[[0.0; 2], [f64::INFINITY, 0.0]]), Err("its vertices leave the range of f64".into()));
+        assert_eq!(
+            corners(&[Vector::zero(), Vector::new(f64::INFINITY, 0.0)]),
+            Err("its vertices leave the range of f64".into())
+        );
     }
 }

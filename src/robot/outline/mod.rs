@@ -13,7 +13,7 @@ mod zonogon;
 
 use super::{FootShape, Rim};
 use crate::description::{Geometry, Matrix, Mesh, apply};
-use crate::planar::{Vector, sum};
+use crate::planar::Vector;
 
 /// The outline of `geometry`, whose frame has its origin at `centre` and its axes in the columns of `rotation`, both in
 /// the body's frame; `off_axis` is the greatest angle \[rad\] that still counts as parallel. Or why there is none.
@@ -24,9 +24,9 @@ pub(super) fn outline(
     off_axis: f64,
 ) -> Result<FootShape, String> {
     // The shape's axis `k` in the plane.
-    let axis = |k: usize| [rotation[0][k], rotation[2][k]];
+    let axis = |k: usize| Vector::new(rotation[0][k], rotation[2][k]);
     let half = |k: usize, length: f64| axis(k).map(|component| component * (0.5 * length));
-    let [x, z] = axis(2);
+    let Vector { x, z } = axis(2);
     let (in_plane, along_normal) = (libm::hypot(x, z), rotation[1][2].abs());
     let lies_along_normal = libm::atan2(in_plane, along_normal) <= off_axis;
     let lies_in_plane = libm::atan2(along_normal, in_plane) <= off_axis;
@@ -37,7 +37,7 @@ pub(super) fn outline(
         }
         &Geometry::Capsule { radius, length } => projected(centre, &[half(2, length)], Rim::Circle { radius }),
         &Geometry::Cylinder { radius, length } if lies_in_plane => {
-            projected(centre, &[half(2, length), [z * radius, -x * radius]], POINT)
+            projected(centre, &[half(2, length), Vector::new(z * radius, -x * radius)], POINT)
         }
         &Geometry::Cylinder { radius, length } => {
             // The rims are circles about the shape's own z axis; their half diameters along its x and y stay conjugate.
@@ -53,7 +53,7 @@ pub(super) fn outline(
             };
             let project = |vertex: &[f64; 3]| {
                 let [x, _, z] = apply(rotation, [0, 1, 2].map(|k| scale[k] * vertex[k]));
-                sum(centre, [x, z])
+                centre + Vector::new(x, z)
             };
             let corners = hull::corners(&vertices.iter().map(project).collect::<Vec<_>>())?;
             let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
@@ -79,17 +79,17 @@ fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
 mod tests {
     use super::*;
     use crate::description::Pose;
-    use crate::planar::{difference, dot};
+
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4};
 
     fn outline_of(geometry: Geometry, rpy: [f64; 3]) -> Result<FootShape, String> {
-        outline(&geometry, &Pose { xyz: [0.0; 3], rpy }.rotation(), [0.1, -0.3], 1e-3)
+        outline(&geometry, &Pose { xyz: [0.0; 3], rpy }.rotation(), Vector::new(0.1, -0.3), 1e-3)
     }
 
     fn polygon_of(geometry: Geometry, rpy: [f64; 3]) -> (Vec<Vector<f64>>, Rim) {
         let shape = outline_of(geometry, rpy).expect("an outline");
         if let Some(polygon) = shape.polygon().and_then(|polygon| polygon.as_convex_polygon()) {
-            assert_eq!(polygon.points().iter().map(|p| [p.x, p.y]).collect::<Vec<_>>(), shape.corners());
+            assert_eq!(polygon.points().iter().map(|p| Vector::new(p.x, p.y)).collect::<Vec<_>>(), shape.corners());
         }
         (shape.corners().to_vec(), shape.rim())
     }
@@ -109,7 +109,9 @@ mod tests {
 
     fn assert_near(corners: &[Vector<f64>], expected: &[Vector<f64>]) {
         assert_eq!(corners.len(), expected.len(), "{corners:?}");
-        for (corner, expected) in corners.iter().flatten().zip(expected.iter().flatten()) {
+        for (corner, expected) in
+            corners.iter().flat_map(|at| at.components()).zip(expected.iter().flat_map(|at| at.components()))
+        {
             assert!((corner - expected).abs() < 1e-15, "{corners:?}");
         }
     }
@@ -127,14 +129,18 @@ mod tests {
     #[test]
     fn a_quarter_turn_leaves_four_corners() {
         // Roll: the y side stands upright. Pitch: x and z change places. Yaw: y lies forward.
-        let rectangle =
-            |x: f64, z: f64| [[0.1 - x, -0.3 - z], [0.1 + x, -0.3 - z], [0.1 + x, -0.3 + z], [0.1 - x, -0.3 + z]];
+        let rectangle = |x: f64, z: f64| {
+            [[0.1 - x, -0.3 - z], [0.1 + x, -0.3 - z], [0.1 + x, -0.3 + z], [0.1 - x, -0.3 + z]].map(Vector::from)
+        };
         assert_near(&corners_of(SOLE, [FRAC_PI_2, 0.0, 0.0]), &rectangle(0.1, 0.05));
         assert_near(&corners_of(SOLE, [0.0, 0.0, FRAC_PI_2]), &rectangle(0.05, 0.02));
         let mut corners = corners_of(SOLE, [0.0, FRAC_PI_2, 0.0]);
         // Which of the two level corners comes first is a matter of rounding.
-        corners.sort_by(|a, b| (a[1] + 0.01 * a[0]).total_cmp(&(b[1] + 0.01 * b[0])));
-        assert_near(&corners, &[[0.08, -0.4], [0.12, -0.4], [0.08, -0.2], [0.12, -0.2]]);
+        corners.sort_by(|a, b| (a.z + 0.01 * a.x).total_cmp(&(b.z + 0.01 * b.x)));
+        assert_near(
+            &corners,
+            &[Vector::new(0.08, -0.4), Vector::new(0.12, -0.4), Vector::new(0.08, -0.2), Vector::new(0.12, -0.2)],
+        );
     }
 
     #[test]
@@ -147,20 +153,20 @@ mod tests {
         let all = (0..8).map(|bits| [0, 1, 2].map(|k| if bits >> k & 1 == 0 { -1.0 } else { 1.0 }));
         let projected: Vec<_> = all
             .map(|corner| crate::description::apply(&rotation, corner))
-            .map(|[x, _, z]| [0.1 + x, -0.3 + z])
+            .map(|[x, _, z]| Vector::new(0.1 + x, -0.3 + z))
             .collect();
         for (index, &corner) in corners.iter().enumerate() {
-            assert!(projected.iter().any(|&other| libm::hypot(other[0] - corner[0], other[1] - corner[1]) < 1e-15));
-            let side = difference(corners[(index + 1) % 6], corner);
-            let left_of = |[x, z]: Vector<f64>| side[0] * z - side[1] * x;
-            assert!(projected.iter().all(|&other| left_of(difference(other, corner)) > -1e-14));
+            assert!(projected.iter().any(|&other| libm::hypot(other.x - corner.x, other.z - corner.z) < 1e-15));
+            let side = corners[(index + 1) % 6] - corner;
+            let left_of = |Vector { x, z }: Vector<f64>| side.x * z - side.z * x;
+            assert!(projected.iter().all(|&other| left_of(other - corner) > -1e-14));
         }
     }
 
     #[test]
     fn a_cylinder_is_a_disc_along_the_normal_and_a_rectangle_in_the_plane() {
-        assert_eq!(disc_of(ROD, [FRAC_PI_2, 0.0, 0.0]), ([0.1, -0.3], 0.05));
-        assert_eq!(disc_of(ROD, [-FRAC_PI_2, 0.0, 0.0]), ([0.1, -0.3], 0.05));
+        assert_eq!(disc_of(ROD, [FRAC_PI_2, 0.0, 0.0]), (Vector::new(0.1, -0.3), 0.05));
+        assert_eq!(disc_of(ROD, [-FRAC_PI_2, 0.0, 0.0]), (Vector::new(0.1, -0.3), 0.05));
         let upright = corners_of(ROD, [0.0; 3]);
         assert_eq!(
             upright,
@@ -171,19 +177,22 @@ mod tests {
     #[test]
     fn a_capsule_is_a_disc_along_the_normal_and_else_its_centre_line_with_its_radius() {
         let capsule = Geometry::Capsule { radius: 0.05, length: 0.4 };
-        assert_eq!(disc_of(capsule.clone(), [FRAC_PI_2, 0.0, 0.0]), ([0.1, -0.3], 0.05));
+        assert_eq!(disc_of(capsule.clone(), [FRAC_PI_2, 0.0, 0.0]), (Vector::new(0.1, -0.3), 0.05));
         let round = Rim::Circle { radius: 0.05 };
-        assert_eq!(polygon_of(capsule.clone(), [0.0; 3]), (vec![[0.1, -0.5], [0.1, -0.3 + 0.2]], round));
+        assert_eq!(
+            polygon_of(capsule.clone(), [0.0; 3]),
+            (vec![Vector::new(0.1, -0.5), Vector::new(0.1, -0.3 + 0.2)], round)
+        );
         // Rolled by 60 degrees the centre line is seen at half its length.
         let (corners, rim) = polygon_of(capsule, [FRAC_PI_3, 0.0, 0.0]);
-        assert_near(&corners, &[[0.1, -0.4], [0.1, -0.2]]);
+        assert_near(&corners, &[Vector::new(0.1, -0.4), Vector::new(0.1, -0.2)]);
         assert_eq!(rim, round);
     }
 
     /// How far the outline reaches from (0.1, -0.3) along `direction`, and its point there.
     fn farthest(shape: &FootShape, direction: Vector<f64>) -> (f64, Vector<f64>) {
-        let along = |point: Vector<f64>| dot(difference(point, [0.1, -0.3]), direction);
-        let tip = |&corner: &Vector<f64>| sum(corner, shape.rim().support(direction));
+        let along = |point: Vector<f64>| (point - Vector::new(0.1, -0.3)).dot(direction);
+        let tip = |&corner: &Vector<f64>| corner + shape.rim().support(direction);
         let point = shape.corners().iter().map(tip).max_by(|&a, &b| along(a).total_cmp(&along(b))).expect("a corner");
         (along(point), point)
     }
@@ -205,15 +214,14 @@ mod tests {
             for (geometry, surface) in &shapes {
                 let shape = outline_of(geometry.clone(), rpy).expect("an outline");
                 let seen: Vec<Vector<f64>> =
-                    surface.iter().map(|&point| apply(&rotation, point)).map(|[x, _, z]| [x, z]).collect();
-                for direction in (0..24).map(|step| (0.1 + f64::from(step)).sin_cos()).map(|(s, c)| [c, s]) {
+                    surface.iter().map(|&point| apply(&rotation, point)).map(|[x, _, z]| Vector::new(x, z)).collect();
+                for direction in (0..24).map(|step| (0.1 + f64::from(step)).sin_cos()).map(|(s, c)| Vector::new(c, s)) {
                     let (reach, point) = farthest(&shape, direction);
-                    let sampled = seen.iter().map(|&at| dot(at, direction)).fold(f64::NEG_INFINITY, f64::max);
+                    let sampled = seen.iter().map(|&at| at.dot(direction)).fold(f64::NEG_INFINITY, f64::max);
                     assert!((reach - sampled).abs() < 1e-7, "{geometry:?} {rpy:?} {direction:?}: {reach}, {sampled}");
                     // The point is one of the surface, not merely as high as one.
-                    let apart = |at: &Vector<f64>| difference(difference(point, [0.1, -0.3]), *at);
-                    let nearest =
-                        seen.iter().map(|at| libm::hypot(apart(at)[0], apart(at)[1])).fold(f64::MAX, f64::min);
+                    let apart = |at: &Vector<f64>| point - Vector::new(0.1, -0.3) - *at;
+                    let nearest = seen.iter().map(|at| libm::hypot(apart(at).x, apart(at).z)).fold(f64::MAX, f64::min);
                     assert!(nearest < 1e-4, "{geometry:?} {rpy:?} {direction:?}: {nearest}");
                 }
             }
@@ -248,10 +256,13 @@ mod tests {
         // A wedge whose tip points forward and down, seen from the side; as seen after the factors.
         let wedge = || vec![[0.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.5, 1.0]];
         let corners = |scale| corners_of(mesh(wedge(), scale), [0.0; 3]);
-        assert_near(&corners([1.0; 3]), &[[1.1, -1.3], [0.1, 0.7], [0.1, -0.3]]);
-        assert_near(&corners([-0.5, 3.0, 0.25]), &[[-0.4, -0.55], [0.1, -0.3], [0.1, -0.05]]);
-        assert_near(&corners([1.0, 1.0, 0.0]), &[[0.1, -0.3], [1.1, -0.3]]);
-        assert_eq!(disc_of(mesh(wedge(), [0.0; 3]), [0.0; 3]), ([0.1, -0.3], 0.0));
+        assert_near(&corners([1.0; 3]), &[Vector::new(1.1, -1.3), Vector::new(0.1, 0.7), Vector::new(0.1, -0.3)]);
+        assert_near(
+            &corners([-0.5, 3.0, 0.25]),
+            &[Vector::new(-0.4, -0.55), Vector::new(0.1, -0.3), Vector::new(0.1, -0.05)],
+        );
+        assert_near(&corners([1.0, 1.0, 0.0]), &[Vector::new(0.1, -0.3), Vector::new(1.1, -0.3)]);
+        assert_eq!(disc_of(mesh(wedge(), [0.0; 3]), [0.0; 3]), (Vector::new(0.1, -0.3), 0.0));
     }
 
     #[test]
@@ -260,7 +271,7 @@ mod tests {
         assert_eq!(corners_of(plate, [0.0; 3]), [[0.1 - 0.1, -0.3], [0.1 + 0.1, -0.3]]);
         let wall = Geometry::Box { size: [0.0, 0.1, 0.4] };
         assert_eq!(corners_of(wall, [0.0; 3]), [[0.1, -0.5], [0.1, -0.3 + 0.2]]);
-        assert_eq!(disc_of(Geometry::Box { size: [0.0, 0.1, 0.0] }, [0.0; 3]), ([0.1, -0.3], 0.0));
-        assert_eq!(disc_of(Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0]), ([0.1, -0.3], 0.0));
+        assert_eq!(disc_of(Geometry::Box { size: [0.0, 0.1, 0.0] }, [0.0; 3]), (Vector::new(0.1, -0.3), 0.0));
+        assert_eq!(disc_of(Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0]), (Vector::new(0.1, -0.3), 0.0));
     }
 }

@@ -4,7 +4,7 @@
 //! Walking along the half sides in the order of their angles gives the corners, so those of a shape that is not turned come
 //! from its centre and half sizes by one sum each.
 
-use crate::planar::{Vector, difference, dot, sum};
+use crate::planar::Vector;
 
 /// Half sides shorter than this part of the longest, or as nearly parallel, are rounding (a quarter turn, whose cosine is
 /// 6e-17 in f64, leaves them) and would tear one corner into two.
@@ -17,12 +17,12 @@ pub(super) fn corners(centre: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Ve
     // From the lowest corner up along all sides, and back down along them.
     let count = sides.len();
     let corner = |step: usize| {
-        sides.iter().enumerate().fold([0.0; 2], |corner, (index, &side)| {
+        sides.iter().enumerate().fold(Vector::zero(), |corner: Vector<f64>, (index, &side)| {
             let forward = index < step && step <= index + count;
-            if forward { sum(corner, side) } else { difference(corner, side) }
+            if forward { corner + side } else { corner - side }
         })
     };
-    (0..(2 * count).max(1)).map(|step| sum(centre, corner(step))).collect()
+    (0..(2 * count).max(1)).map(|step| centre + corner(step)).collect()
 }
 
 /// The half sides that remain when rounding is dropped and parallel ones are joined, all pointing up (or level and
@@ -36,13 +36,13 @@ fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
         }
         let parallel = sides.iter_mut().find(|known| sine(**known, side).abs() <= ROUNDING);
         match parallel {
-            Some(known) if dot(*known, side) > 0.0 => *known = sum(*known, side),
-            Some(known) => *known = difference(*known, side),
+            Some(known) if known.dot(side) > 0.0 => *known = *known + side,
+            Some(known) => *known = *known - side,
             None => sides.push(side),
         }
     }
     for side in &mut sides {
-        if side[1] < 0.0 || (side[1] == 0.0 && side[0] < 0.0) {
+        if side.z < 0.0 || (side.z == 0.0 && side.x < 0.0) {
             *side = side.map(|component| 0.0 - component);
         }
     }
@@ -50,7 +50,7 @@ fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     sides
 }
 
-fn length([x, z]: Vector<f64>) -> f64 {
+fn length(Vector { x, z }: Vector<f64>) -> f64 {
     libm::hypot(x, z)
 }
 
@@ -58,5 +58,5 @@ fn length([x, z]: Vector<f64>) -> f64 {
 /// upward.
 fn sine(a: Vector<f64>, b: Vector<f64>) -> f64 {
     let (la, lb) = (length(a), length(b));
-    (a[0] / la) * (b[1] / lb) - (a[1] / la) * (b[0] / lb)
+    (a.x / la) * (b.z / lb) - (a.z / la) * (b.x / lb)
 }

@@ -1,6 +1,7 @@
 //! What was read of a robot, as text that fits a screen: first what a user needs to trust the model, long lists cut short.
 
 use super::{Inspection, Joint};
+use crate::planar::Vector;
 use crate::robot::Still;
 use crate::write::list::list;
 use crate::write::text::Palette;
@@ -52,13 +53,13 @@ impl Inspection<'_> {
         let (bodies, joints) = (&self.bodies, &self.joints);
         let hinges = || joints.iter().chain(self.followers.iter().map(|follower| &follower.joint));
         let points = bodies.iter().map(|body| body.com).chain(hinges().map(|joint| joint.origin));
-        let lengths = scale(points.flatten());
+        let lengths = scale(points.flat_map(Vector::components));
         let moments = scale(bodies.iter().map(|body| body.moment));
         Table::default()
             .text("body", bodies.iter().map(|body| body.name))
             .numbers("mass [kg]", self.mass, bodies.iter().map(|body| body.mass))
-            .numbers("CoG x [m]", lengths, bodies.iter().map(|body| body.com[0]))
-            .numbers("z [m]", lengths, bodies.iter().map(|body| body.com[1]))
+            .numbers("CoG x [m]", lengths, bodies.iter().map(|body| body.com.x))
+            .numbers("z [m]", lengths, bodies.iter().map(|body| body.com.z))
             .numbers("moment [kg m^2]", moments, bodies.iter().map(|body| body.moment))
             .text("links", bodies.iter().map(|body| list(&body.links, LINKS)))
             .write(out);
@@ -76,8 +77,8 @@ impl Inspection<'_> {
                 .text("motion", hinges().zip(led).map(|(joint, led)| joint.in_words(self.normal()) + &led))
                 .text("from", hinges().map(|joint| joint.parent))
                 .text("to", hinges().map(|joint| joint.child))
-                .numbers("origin x [m]", lengths, hinges().map(|joint| joint.origin[0]))
-                .numbers("z [m]", lengths, hinges().map(|joint| joint.origin[1]))
+                .numbers("origin x [m]", lengths, hinges().map(|joint| joint.origin.x))
+                .numbers("z [m]", lengths, hinges().map(|joint| joint.origin.z))
                 .write(out);
         }
 
@@ -198,7 +199,7 @@ impl Joint<'_> {
         match (self.sign, self.direction) {
             (Some(sign), _) => format!("turns about {}{letter}", if (sign < 0.0) == along { '-' } else { '+' }),
             (_, direction) => {
-                let [x, z] = direction.unwrap_or_default();
+                let Vector { x, z } = direction.unwrap_or_default();
                 format!("slides along ({}, {})", number(x), number(z))
             }
         }

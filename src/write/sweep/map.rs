@@ -1,7 +1,6 @@
 //! The regions of a study of two parameters.
 
 use super::{Happening, Turns, letter, not_guaranteed};
-use crate::planar::Vector;
 use crate::sweep::{Area, BorderCurve, CELLS, Map, Parameter};
 use crate::write::Palette;
 use serde::Serialize;
@@ -37,7 +36,7 @@ pub struct MapRegion<'a> {
     pub share: f64,
     /// Closed loops of points, in the order of the parameters, with the region on their left (the second parameter up); holes
     /// run the other way.
-    pub loops: &'a [Vec<Vector<f64>>],
+    pub loops: &'a [Vec<[f64; 2]>],
 }
 
 /// A border between two regions.
@@ -50,7 +49,7 @@ pub struct MapBorder<'a> {
     #[serde(flatten)]
     pub turns: Turns<'a>,
     /// Its points, in the order of the parameters.
-    pub points: &'a [Vector<f64>],
+    pub points: &'a [[f64; 2]],
 }
 
 impl<'a> MapSweep<'a> {
@@ -122,7 +121,7 @@ impl<'a> MapSweep<'a> {
 }
 
 /// What a loop encloses; negative where it runs clockwise.
-fn surface(points: &[Vector<f64>]) -> f64 {
+fn surface(points: &[[f64; 2]]) -> f64 {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
 }

@@ -4,6 +4,7 @@ mod outcome;
 mod reasons;
 
 use self::outcome::graded;
+use crate::planar::Vector;
 pub(crate) mod table;
 
 use super::holds::Holds;
@@ -140,9 +141,10 @@ impl<'w> Writer<'w> {
     fn contacts(&mut self) {
         let contacts = &self.report.contacts;
         let mut table = Table::default().text("contact", self.names());
-        let lengths = scale(contacts.iter().filter_map(|contact| contact.point).flatten());
+        let lengths = scale(contacts.iter().filter_map(|contact| contact.point).flat_map(Vector::components));
         if contacts.iter().all(|contact| contact.point.is_some()) {
-            let point = |axis: usize| contacts.iter().map(move |contact| contact.point.map(|point| point[axis]));
+            let point =
+                |axis: usize| contacts.iter().map(move |contact| contact.point.map(|point| point.components()[axis]));
             table = table.numbers("x [m]", lengths, point(0)).numbers("z [m]", lengths, point(1));
         }
         let gaps = contacts.iter().map(|contact| contact.gap);
@@ -152,7 +154,7 @@ impl<'w> Writer<'w> {
         // On a profile each contact may have axes of its own.
         let normals = contacts.iter().map(|contact| contact.normal);
         if normals.clone().any(|normal| normal != contacts[0].normal) {
-            let entry = |axis: usize| normals.clone().map(move |normal| normal.map(|normal| normal[axis]));
+            let entry = |axis: usize| normals.clone().map(move |normal| normal.map(|normal| normal.components()[axis]));
             table = table.numbers("n: x", 1.0, entry(0)).numbers("z", 1.0, entry(1));
         }
         let speeds = self.speeds();

@@ -3,6 +3,7 @@
 use super::Palette;
 use super::Writer;
 use crate::law::Mode;
+use crate::planar::Vector;
 use crate::write::outcome::Outcome;
 use crate::write::text::table::{Table, number, scale};
 use crate::write::words;
@@ -62,11 +63,11 @@ impl Writer<'_> {
         if impulses.is_empty() {
             return;
         }
-        let size = scale(impulses.iter().copied().flatten());
+        let size = scale(impulses.iter().copied().flat_map(Vector::components));
         Table::default()
             .text("loop", (0..impulses.len()).map(|index| format!("loops[{index}]")))
-            .numbers("impulse on a: x [N s]", size, impulses.iter().map(|impulse| impulse[0]))
-            .numbers("z [N s]", size, impulses.iter().map(|impulse| impulse[1]))
+            .numbers("impulse on a: x [N s]", size, impulses.iter().map(|impulse| impulse.x))
+            .numbers("z [N s]", size, impulses.iter().map(|impulse| impulse.z))
             .write(&mut self.out);
     }
 

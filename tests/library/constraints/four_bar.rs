@@ -14,6 +14,7 @@
 use crate::constraints::mechanism::{Joint, Mechanism, Part, impact, part, point};
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
+use heelstrike::planar::Vector;
 use heelstrike::robot::{Base, Reduction, Robot};
 use serde_json::{Value, json};
 
@@ -86,7 +87,7 @@ fn a_parallelogram_strikes_the_ground_as_on_paper() {
     let change = -rate;
     let f_z = 0.5 * (normal - M_COUPLER * L * change * q.sin());
     let f_x = (M * L * change / 3.0 - f_z * q.sin()) / -q.cos();
-    let [[x, z]] = found.loop_impulse[0][..] else { panic!("{:?}", found.loop_impulse) };
+    let [Vector { x, z }] = found.loop_impulse[0][..] else { panic!("{:?}", found.loop_impulse) };
     assert!((x - f_x).abs() < 1e-13 && (z - f_z).abs() < 1e-13, "{x} {z}, not {f_x} {f_z}");
 }
 
@@ -118,7 +119,7 @@ fn a_rod_pinned_to_the_ground_by_a_loop_is_a_pendulum() {
     // What the rod's middle gains comes from the ground and the pivot together.
     let analysis = found.analysis.as_ref().expect("an answer");
     let normal = analysis.outcomes[0].impulse[0][1];
-    let [[x, z]] = found.loop_impulse[0][..] else { panic!("{:?}", found.loop_impulse) };
+    let [Vector { x, z }] = found.loop_impulse[0][..] else { panic!("{:?}", found.loop_impulse) };
     let gained = [-q.cos(), q.sin()].map(|along| M * 0.5 * L * -rate * along);
     assert!((x - gained[0]).abs() < 1e-13 && (z + normal - gained[1]).abs() < 1e-13, "{x} {z} {normal}");
 }

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 fn a_sole_across_an_edge_stands_on_its_corner_and_on_the_edge() {
     let found = impact(&sole(), &state([0.0, 0.1, 0.0], FALLING, "0.5", &step_down(0.1, 0.2)));
     assert_touches(&found, &[[[-0.2, 0.0], [0.0, 1.0]], [[0.1, 0.0], [0.0, 1.0]]]);
-    assert_close(&found.contacts[1].centre, &[0.1, -0.1]);
+    assert_close(&found.contacts[1].centre.components(), &[0.1, -0.1]);
     // The CoG is between both: the box stops. L1 + L2 = 2 kg * 1 m/s, and 0.2 L1 = 0.1 L2 keeps it from turning. What both
     // could squeeze along the ground is free, and least at none.
     let (impulse, after) = only_outcome(&found);
@@ -84,11 +84,11 @@ fn a_toe_against_a_riser_touches_tread_and_riser() {
     let stairs = [[-2.0, 0.0], [0.2, 0.0], [0.2 + 1e-9, 0.5], [2.0, 0.5]];
     let found = impact(&sole(), &state([0.0, 0.1, 0.0], [1.0, -1.0, 0.0], "0", &stairs));
     let up = [0.0, 1.0];
-    let points: Vec<[f64; 2]> = found.contacts.iter().map(|contact| contact.point).collect();
+    let points: Vec<[f64; 2]> = found.contacts.iter().map(|contact| contact.point.components()).collect();
     assert_close(points.as_flattened(), &[-0.2, 0.0, 0.2, 0.0, 0.2, 0.0, 0.2, 0.2]);
     assert_eq!([found.contacts[0].normal(), found.contacts[1].normal()], [up, up]);
     for contact in &found.contacts[2..] {
-        let [x, z] = contact.normal();
+        let Vector { x, z } = contact.normal();
         assert!(x == -1.0 && (z - 2e-9).abs() < 1e-15, "{:?}", contact.normal());
     }
     // A riser of 1e-9 m a half metre leans by 2e-9.

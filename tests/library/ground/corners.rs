@@ -10,7 +10,7 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     let s = FRAC_1_SQRT_2;
     let found = impact(&point(), &state([0.0; 3], FALLING, "1", &edge));
     assert_eq!(found.contacts.len(), 1);
-    let [x, z] = found.contacts[0].normal();
+    let Vector { x, z } = found.contacts[0].normal();
     assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
     // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over the
     // void: all of the quarter between riser and tread.
@@ -18,7 +18,7 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     assert_touches(&flat, &[[[-0.4, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]]]);
     let hung = impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, "1", &edge));
     assert_eq!(hung.contacts.len(), 1);
-    let [x, z] = hung.contacts[0].normal();
+    let Vector { x, z } = hung.contacts[0].normal();
     assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
     // The heel of a sole that is pitched by -0.4 (nose up) allows -0.4 to pi/2 - 0.4 from upright toward +x; the edge 0 to
     // pi/2. The middle of both is pi/4 - 0.2.
@@ -28,7 +28,7 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     let tilted = impact(&sole(), &state([-heel[0], -heel[1], -0.4], FALLING, "1", &edge));
     let angle = std::f64::consts::FRAC_PI_4 - 0.2;
     assert_eq!(tilted.contacts.len(), 1);
-    let [x, z] = tilted.contacts[0].normal();
+    let Vector { x, z } = tilted.contacts[0].normal();
     assert!((x - angle.sin()).abs() < 1e-9 && (z - angle.cos()).abs() < 1e-9, "{x} {z}");
 }
 
@@ -55,7 +55,7 @@ fn a_plate_without_thickness_lies_on_an_edge() {
     for height in [-1e-9, 0.0, 1e-9] {
         let found = impact(&plate, &state([0.0, height, 0.2], FALLING, "1", &step_down(0.0, 0.5)));
         assert_eq!(found.contacts.len(), 1, "{height}");
-        assert_close(&found.contacts[0].normal(), &[0.2_f64.sin(), 0.2_f64.cos()]);
+        assert_close(&found.contacts[0].normal().components(), &[0.2_f64.sin(), 0.2_f64.cos()]);
     }
 }
 
@@ -119,7 +119,7 @@ fn contacts_named_by_hand_take_the_nearest_ground() {
                 "ground": {{"profile": [[-1, 0], [1, 0], [2, -1]]}}}}"#
         );
         let contact = impact(&robot, &text).contacts[0].clone();
-        ([contact.normal()[0], contact.normal()[1], contact.gap], contact.point)
+        ([contact.normal().x, contact.normal().z, contact.gap], contact.point.components())
     };
     let s = FRAC_1_SQRT_2;
     assert_eq!(named(0.0, 2.0, 0.5), ([0.0, 1.0, 1.5], [0.0, 1.5]));

@@ -12,6 +12,7 @@ mod scenes;
 
 use heelstrike::impact::Verdict;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::planar::Vector;
 use heelstrike::state::{Defaults, State};
 use heelstrike::{Error, Reason, Robot};
 
@@ -73,7 +74,7 @@ fn assert_close(found: &[f64], expected: &[f64]) {
 
 /// Points and normals of all contacts.
 fn touches(impact: &Impact) -> Vec<[[f64; 2]; 2]> {
-    impact.contacts.iter().map(|contact| [contact.point, contact.normal()]).collect()
+    impact.contacts.iter().map(|contact| [contact.point, contact.normal()].map(Vector::components)).collect()
 }
 
 #[track_caller]

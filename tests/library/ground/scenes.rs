@@ -59,7 +59,7 @@ fn a_stance_stands_on_the_profile_at_x_0() {
         format!(r#"{{"stance": "body", "friction": 1{more}, "ground": {{"profile": {profile}}}}}"#)
     };
     let raised = impact(&robot, &state("[[-1, 0.25], [1, 0.75]]", r#", "position": {"base": {"pitch": 0.1}}"#));
-    assert_close(&raised.contacts[0].point, &[0.0, 0.5]);
+    assert_close(&raised.contacts[0].point.components(), &[0.0, 0.5]);
     assert_eq!(raised.velocity_before, [[0.0; 2]]);
     // Of the two segments at the foot of a riser it is the tread; the rear end stands there, and the rest is in the step.
     let error =
@@ -104,7 +104,10 @@ fn a_box_of_uncertainty_keeps_the_contacts_of_its_state() {
     let text = state([-1.0, 0.5, 0.0], [-0.9, -1.0, 0.0], "0.5", &[[-3.0, 0.0], [3.0, 0.0]]);
     let found = impact(&disc(), &with(text, r#"{"friction": 0.25}"#));
     let Some(Robustness::Not(other)) = &found.holds else { panic!("{:?}", found.holds) };
-    assert_eq!(other.state.scene.ground, Ground::Profile(Profile::new(vec![[-3.0, 0.0], [3.0, 0.0]]).unwrap()));
+    assert_eq!(
+        other.state.scene.ground,
+        Ground::Profile(Profile::new(vec![Vector::new(-3.0, 0.0), Vector::new(3.0, 0.0)]).unwrap())
+    );
     let again = Pipeline::new(&disc(), Options::default()).impact(&other.state).expect("an answer");
     let modes: Vec<_> = again.analysis.unwrap().outcomes.into_iter().map(|outcome| outcome.modes).collect();
     assert_eq!(modes, other.outcomes);

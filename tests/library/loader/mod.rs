@@ -3,6 +3,7 @@
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
 use heelstrike::description::Description;
+use heelstrike::planar::Vector;
 use heelstrike::robot::{Axis, Base, LeftOut, Link, Mover, Reduction, Rim, Robot};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
@@ -25,7 +26,7 @@ fn load(text: &str) -> Robot {
 fn disc(link: &Link) -> ([f64; 2], f64) {
     let [shape] = &link.shapes[..] else { panic!("one shape") };
     match (shape.corners(), shape.rim()) {
-        (&[centre], Rim::Circle { radius }) => (centre, radius),
+        (&[centre], Rim::Circle { radius }) => (centre.components(), radius),
         other => panic!("{other:?} is no disc"),
     }
 }
@@ -69,8 +70,11 @@ fn ramone_keeps_the_digits_of_table_1() {
         let coordinates: Vec<&str> = ramone.coordinates().collect();
         assert_eq!(coordinates, ["x", "z", "pitch", "left_hip", "left_knee", "right_hip", "right_knee"]);
 
-        let bodies: Vec<_> =
-            ramone.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com, body.moment)).collect();
+        let bodies: Vec<_> = ramone
+            .bodies
+            .iter()
+            .map(|body| (body.name.as_str(), body.mass, body.com.components(), body.moment))
+            .collect();
         let thigh = (0.7887, [0.0, -0.019399], 0.00221);
         let expected = [
             ("torso", 7.9026, [0.0, 0.0], 0.0800),
@@ -81,7 +85,8 @@ fn ramone_keeps_the_digits_of_table_1() {
         ];
         assert_eq!(bodies, expected);
 
-        let joints: Vec<_> = ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin)).collect();
+        let joints: Vec<_> =
+            ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin.components())).collect();
         let (hip, knee) = ([0.0, -0.137675], [0.0, -0.200]);
         assert_eq!(joints, [(0, 1, hip), (1, 2, knee), (0, 3, hip), (3, 4, knee)]);
         assert!(ramone.joints.iter().all(|joint| joint.axis == Axis::Turn { sign: -1.0 }));
@@ -109,9 +114,9 @@ fn walkers_hang_from_the_hip_with_point_feet() {
         assert_eq!(walker.coordinates().collect::<Vec<_>>(), ["x", "z", "pitch", "hip"]);
         assert_eq!((walker.bodies[0].name.as_str(), walker.bodies[1].name.as_str()), ("left_leg", "right_leg"));
         for body in &walker.bodies {
-            assert_eq!((body.mass, body.com, body.moment), (1.0, [0.0, -along], moment));
+            assert_eq!((body.mass, body.com, body.moment), (1.0, Vector::new(0.0, -along), moment));
         }
-        assert_eq!((walker.joints[0].origin, walker.joints[0].axis), ([0.0, 0.0], Axis::Turn { sign: -1.0 }));
+        assert_eq!((walker.joints[0].origin, walker.joints[0].axis), (Vector::zero(), Axis::Turn { sign: -1.0 }));
         for link in &walker.links {
             let (centre, radius) = disc(link);
             assert_eq!((centre, radius), ([0.0, -1.0], 0.0));
@@ -124,7 +129,7 @@ fn walkers_hang_from_the_hip_with_point_feet() {
 fn block_is_one_body_on_one_point() {
     let block = model("block");
     assert_eq!((block.bodies.len(), block.dofs()), (1, 3));
-    assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, [-1.0, 1.0], 1.0));
+    assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, Vector::new(-1.0, 1.0), 1.0));
     let (centre, radius) = disc(&block.links[0]);
     assert_eq!((centre, radius), ([0.0, 0.0], 0.0));
 }
@@ -191,10 +196,10 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
         close(robot.mass(), expected.total_mass);
 
         // Body origins at zero in the root's frame.
-        let mut origins = vec![[0.0; 2]; robot.bodies.len()];
+        let mut origins = vec![Vector::zero(); robot.bodies.len()];
         for (index, body) in robot.bodies.iter().enumerate().skip(1) {
             let (parent, origin, _) = robot.hinge(body.joint.expect("all but the root have a joint"));
-            origins[index] = [0, 1].map(|k| origins[parent][k] + origin[k]);
+            origins[index] = origins[parent] + origin;
         }
 
         let body = |name: &str| robot.bodies.iter().position(|body| body.name == name).expect("the body");
@@ -203,9 +208,9 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
             let reduced = &robot.bodies[index];
             close(reduced.mass, expected.mass);
             close(reduced.moment, expected.moment);
-            for k in [0, 1] {
-                close(origins[index][k] + reduced.com[k], expected.com_zero[k]);
-            }
+            let com = origins[index] + reduced.com;
+            close(com.x, expected.com_zero[0]);
+            close(com.z, expected.com_zero[1]);
             for link in &expected.merged_links {
                 assert_eq!(robot.links[robot.link(link).expect("the link")].body, index, "{link}");
             }
@@ -220,7 +225,7 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
                 (axis, ..) => panic!("{}: {axis:?}", joint.name),
             }
             for k in [0, 1] {
-                close(origins[joint.child][k], reference.origin_zero[k]);
+                close(origins[joint.child].components()[k], reference.origin_zero[k]);
             }
         }
     }
@@ -284,7 +289,7 @@ fn a_slide_has_its_direction_in_the_roots_axes_at_length_one() {
     assert_eq!(direction("<axis xyz=\"0.6 0 0.8\"/>"), [0.6, 0.8]);
     assert_eq!(direction(""), [1.0, 0.0]);
     // Pitched by a: x points down by sin a.
-    let [x, z] = direction("<origin rpy=\"0 0.3 0\"/>");
+    let Vector { x, z } = direction("<origin rpy=\"0 0.3 0\"/>");
     assert!((x - 0.3_f64.cos()).abs() < 1e-16 && (z + 0.3_f64.sin()).abs() < 1e-16);
 }
 
@@ -345,16 +350,16 @@ fn fixed_links_are_welded_with_their_turned_inertia() {
     assert_eq!((robot.bodies.len(), body.mass), (2, 4.0));
     // CoG (-5 * 3 / 4, 4 / 4), arms (3.75, 3) and (-1.25, -1).
     let expected = [-3.75, 1.0, 0.5 + 3.75 * 3.75 + 9.0 + 0.1 + 3.0 * (1.25 * 1.25 + 1.0)];
-    for (value, expected) in [body.com[0], body.com[1], body.moment].into_iter().zip(expected) {
+    for (value, expected) in [body.com.x, body.com.z, body.moment].into_iter().zip(expected) {
         assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");
     }
     // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
-    let [x, z] = robot.links[1].point::<f64>([1.0, 2.0, 3.0]);
+    let Vector { x, z } = robot.links[1].point::<f64>([1.0, 2.0, 3.0]);
     assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15);
     let (centre, radius) = disc(&robot.links[1]);
     assert_eq!((centre, radius, robot.links[1].body), ([2.0, 0.0], 0.1, 0));
     // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
-    let [x, z] = robot.joints[0].origin;
+    let Vector { x, z } = robot.joints[0].origin;
     assert!((x - 2.0).abs() < 1e-15 && z.abs() < 1e-15);
     assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Turn { sign: 1.0 }));
 }
@@ -380,7 +385,7 @@ fn a_link_without_inertial_weighs_nothing_and_a_missing_inertia_is_told() {
          <joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>",
     );
     let robot = load(&text);
-    assert_eq!((robot.bodies[0].mass, robot.bodies[0].com, robot.bodies[0].moment), (2.0, [0.1, 0.0], 0.0));
+    assert_eq!((robot.bodies[0].mass, robot.bodies[0].com, robot.bodies[0].moment), (2.0, Vector::new(0.1, 0.0), 0.0));
     assert_eq!(robot.links.iter().map(|link| link.has_inertial).collect::<Vec<_>>(), [true, false]);
     let expected = [
         left_out("joint \"j\"", "fixed: welded into a"),

@@ -82,11 +82,11 @@ fn each_plane_takes_its_own_components_bit_for_bit() {
         (Plane::XY, [0.1, 0.2], 0.13, [0.7 + 1.0, 0.8 + 2.0], [0.7 + 1.0, 0.8 + 2.0]),
     ] {
         let robot = reduce(&alone, &in_plane(plane));
-        assert_eq!((robot.bodies[0].com, robot.bodies[0].moment), (com, moment), "{plane:?}");
+        assert_eq!((robot.bodies[0].com.components(), robot.bodies[0].moment), (com, moment), "{plane:?}");
         assert_eq!(robot.links[1].point::<f64>([1.0, 2.0, 3.0]), point);
         let [shape] = &robot.links[1].shapes[..] else { panic!("one shape") };
         let corners = shape.corners();
-        assert!(corners.contains(&corner), "{plane:?}: {corners:?}");
+        assert!(corners.contains(&corner.into()), "{plane:?}: {corners:?}");
     }
 }
 
@@ -96,7 +96,8 @@ fn joints_that_leave_the_plane_are_welded_at_zero_and_their_angle_told() {
         chain(&[("revolute", "1 0 0"), ("revolute", "0 1 0"), ("continuous", "0 -1 0.0787"), ("revolute", "0 1 0")]);
     let robot = load(&text);
     assert_eq!(kept(&robot), ["k", "m"]);
-    let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com)).collect();
+    let bodies: Vec<_> =
+        robot.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com.components())).collect();
     // a and b are one body with its CoG half way; so are c and d, behind k.
     assert_eq!(bodies, [("a", 2.0, [0.0, -0.5]), ("c", 2.0, [0.0, -0.5]), ("e", 1.0, [0.0, 0.0])]);
     assert_eq!(robot.joints[0].origin, [0.0, -2.0]);
@@ -122,7 +123,7 @@ fn held_joints_are_welded_at_their_values_and_axes_judged_there() {
     assert_eq!((kept(&robot), robot.joints[0].axis), (vec!["k"], Axis::Turn { sign: -1.0 }));
     assert_eq!(still(&robot, "j"), &Still::Asked { value: FRAC_PI_2 });
     // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
-    let [x, z] = robot.joints[0].origin;
+    let Vector { x, z } = robot.joints[0].origin;
     assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15, "{x} {z}");
 
     // A slide that is held carries its child along: 1 m down and 0.25 m up.
@@ -145,7 +146,7 @@ fn a_held_pitch_turns_all_that_hangs_on_it() {
     // j dips the nose by a: what hung down points backward by sin a.
     let text = chain(&[("revolute", "0 1 0"), ("revolute", "0 1 0")]);
     let robot = reduce(&text, &Reduction { hold: vec![(0, 0.3)], ..Reduction::default() });
-    let [x, z] = robot.joints[0].origin;
+    let Vector { x, z } = robot.joints[0].origin;
     assert!((x + 0.3_f64.sin()).abs() < 1e-15 && (z + 1.0 + 0.3_f64.cos()).abs() < 1e-15);
 }
 
@@ -257,7 +258,7 @@ fn a_follower_of_a_held_joint_is_held_with_it() {
 
     // A leader that is held at a value takes its follower along: 2 * 0.2 + 0.1.
     let robot = reduce(&mimic("0 1 0", "j"), &Reduction { hold: vec![(0, 0.2)], ..Reduction::default() });
-    let [x, z] = robot.links[2].point::<f64>([0.0, 0.0, -1.0]);
+    let Vector { x, z } = robot.links[2].point::<f64>([0.0, 0.0, -1.0]);
     let (first, both): (f64, f64) = (0.2, 0.2 + 2.0 * 0.2 + 0.1);
     assert!((x + first.sin() + both.sin()).abs() < 1e-15 && (z + 1.0 + first.cos() + both.cos()).abs() < 1e-15);
 

@@ -79,7 +79,8 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         near("impulses", &scaled(&a.impulse, 1), &scaled(&b.impulse, 1), 1.0)?;
         near("contact velocities", &scaled(&a.velocity_after, -1), &scaled(&b.velocity_after, -1), 1.0)?;
         if let Some(rate) = rate {
-            let [loops, others] = [&one.loop_impulse[at], &other.loop_impulse[bt]].map(|impulse| impulse.concat());
+            let [loops, others] = [&one.loop_impulse[at], &other.loop_impulse[bt]]
+                .map(|impulse| impulse.iter().flat_map(|own| own.components()).collect::<Vec<f64>>());
             let largest = a.impulse.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.abs()));
             near("impulses of loops", &loops, &others, largest)?;
             near("velocities", &one.velocity_after[at], &other.velocity_after[bt], rate)?;

@@ -18,7 +18,7 @@ proptest! {
         let one = answer(0);
         for root in 1..case.mechanism.links.len() {
             let other = answer(root);
-            let places = |impact: &heelstrike::pipeline::Impact| impact.contacts.iter().flat_map(|own| own.point).collect::<Vec<_>>();
+            let places = |impact: &heelstrike::pipeline::Impact| impact.contacts.iter().flat_map(|own| own.point.components()).collect::<Vec<_>>();
             for (a, b) in places(&one).into_iter().zip(places(&other)) {
                 // Sums of a few lengths of order one.
                 prop_assert!((a - b).abs() < 1e-13 * 16.0, "root {root}: points {a} and {b}");

@@ -9,6 +9,7 @@
 
 use crate::balls::number::Number;
 use heelstrike::impact::Friction;
+use heelstrike::planar::Vector;
 use heelstrike::robot::{Axis, Mover, Robot};
 use heelstrike::state::Ground;
 use heelstrike::state::State;
@@ -125,7 +126,7 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                 let joint = &robot.joints[index];
                 let parent = &poses[joint.parent];
                 let coordinate = base + index;
-                let mut pose = Pose { origin: parent.point(&joint.origin.map(number)), ..parent.clone() };
+                let mut pose = Pose { origin: parent.point(&joint.origin.map(number).into()), ..parent.clone() };
                 let displacement = number(position[coordinate]);
                 pose.motions[coordinate] = Some(match joint.axis {
                     Axis::Turn { sign } => {
@@ -134,7 +135,7 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                         Motion::Turn(pose.origin.clone(), sign)
                     }
                     Axis::Slide { direction } => {
-                        let direction = parent.axes(&direction.map(number));
+                        let direction = parent.axes(&direction.map(number).into());
                         pose.origin = add(&pose.origin, &direction.clone().map(|entry| entry.times(&displacement)));
                         Motion::Slide(direction)
                     }
@@ -214,7 +215,7 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
 
     let mut mass_matrix = vec![vec![number(0.0); free.len()]; free.len()];
     for (body, pose) in robot.bodies.iter().zip(&poses) {
-        let velocities = pose.velocities(&pose.point(&body.com.map(number)), bits);
+        let velocities = pose.velocities(&pose.point(&body.com.map(number).into()), bits);
         let [mass, moment] = [body.mass, body.moment].map(number);
         for (i, row) in mass_matrix.iter_mut().enumerate() {
             let pushed = velocities[free[i]].clone().map(|entry| entry.times(&mass));
@@ -237,7 +238,7 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     let [cos, sin] = match &scene.ground {
         Ground::Slope(slope) => number(*slope).cos_sin(),
         Ground::Profile(profile) => {
-            let [[x, z], [to_x, to_z]] = profile.points()[..] else { return None };
+            let [Vector { x, z }, Vector { x: to_x, z: to_z }] = profile.points()[..] else { return None };
             let length = f64::hypot(to_x - x, to_z - z);
             [number((to_x - x) / length), number((to_z - z) / length)]
         }
@@ -289,7 +290,7 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     for impulse in &scene.impulses {
         let pose = &poses[robot.links[impulse.link].body];
         let velocities = pose.velocities(&pose.point(&in_body(impulse.link, impulse.offset)), bits);
-        let vector = impulse.vector.map(number);
+        let vector = impulse.vector.components().map(number);
         for (entry, coordinate) in applied.iter_mut().zip(&free) {
             *entry = entry.plus(&dot(velocities[*coordinate].iter().zip(&vector), bits));
         }

@@ -3,6 +3,7 @@
 use crate::balls::oracle;
 use crate::support::random::Random;
 use heelstrike::impact::{Friction, Mode};
+use heelstrike::planar::Vector;
 use heelstrike::robot::Robot;
 use heelstrike::state::State;
 use heelstrike::state::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene};
@@ -200,7 +201,7 @@ impl Model {
             scene.impulses = vec![AppliedImpulse {
                 link: self.feet[order[0]].link,
                 offset: [random.between(-0.1, 0.1), 0.0, random.between(-0.1, 0.1)],
-                vector: [random.between(-1.0, 1.0), random.between(-1.0, 1.0)],
+                vector: Vector::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0)),
             }];
         }
         scene.contacts = Some(contacts);
@@ -337,5 +338,5 @@ fn ground(random: &mut Random) -> Ground {
         return Ground::Slope(random.between(-0.6, 0.6));
     }
     let [x, z] = random.pick(&[[4.0, 3.0], [4.0, -3.0], [12.0, 5.0], [8.0, -6.0]]);
-    Ground::Profile(Profile::new(vec![[-x, -z], [x, z]]).expect("a profile"))
+    Ground::Profile(Profile::new(vec![Vector::new(-x, -z), Vector::new(x, z)]).expect("a profile"))
 }
