@@ -30,7 +30,7 @@ pub use model::{RobotStudy, Solver, WATCHED_CONTACTS, Watched};
 pub use parallel::Workers;
 pub use regime::Regime;
 pub use survey::{Region, RegionBorder, Survey};
-pub use transition::{Side, Transition, EndedOutcome};
+pub use transition::{EndedOutcome, Side, Transition};
 
 use crate::Error;
 use std::sync::Arc;

@@ -4,7 +4,7 @@ use super::super::Palette;
 use super::super::words;
 use super::{Happening, Sweep};
 use crate::impact::Verdict;
-use crate::sweep::{Side, Transition, EndedOutcome};
+use crate::sweep::{EndedOutcome, Side, Transition};
 use std::fmt::Write;
 
 impl Sweep<'_> {
