@@ -132,7 +132,14 @@ fn studies_are_refused_word_for_word() {
         let study = Study::from_json(text)?;
         let defaults = Defaults::default();
         let options = Options::default();
-        RobotStudy { study: &study, description: &description, reduction: &reduction, robot: &ramone, options, defaults }
-            .readable()
+        RobotStudy {
+            study: &study,
+            description: &description,
+            reduction: &reduction,
+            robot: &ramone,
+            options,
+            defaults,
+        }
+        .readable()
     });
 }
