@@ -44,23 +44,23 @@ struct BorderEntry {
     before: Arc<Regime>,
     after: Arc<Regime>,
     /// What changes, with `before` below; `None` at a corner.
-    turns: Option<Arc<Transition>>,
+    transition: Option<Arc<Transition>>,
 }
 
 impl BorderEntry {
-    fn new(line: GridLine, Crossing { at, below, above, turns }: &Crossing, direction: Direction) -> Self {
+    fn new(line: GridLine, Crossing { at, below, above, transition }: &Crossing, direction: Direction) -> Self {
         let point = line.point(*at);
-        let (before, after, turns) = match direction {
-            Direction::Forward => (below, above, Arc::clone(turns)),
-            Direction::Backward => (above, below, Arc::new(turns.reversed())),
+        let (before, after, transition) = match direction {
+            Direction::Forward => (below, above, Arc::clone(transition)),
+            Direction::Backward => (above, below, Arc::new(transition.reversed())),
         };
-        Self { point, before: Arc::clone(before), after: Arc::clone(after), turns: Some(turns) }
+        Self { point, before: Arc::clone(before), after: Arc::clone(after), transition: Some(transition) }
     }
 
     /// The piece of the border from here to `to`.
     fn segment(&self, to: [f64; 2]) -> Segment {
         let (left, right) = (Arc::clone(&self.before), Arc::clone(&self.after));
-        Segment { from: self.point, to, left, right, turns: self.turns.clone() }
+        Segment { from: self.point, to, left, right, transition: self.transition.clone() }
     }
 }
 
@@ -89,7 +89,7 @@ impl GridCell {
             let (_, _, before) = ends[(k + 3) % 4];
             if before != after {
                 let (before, after) = (Arc::clone(before), Arc::clone(after));
-                entries.insert(at, BorderEntry { point: corners[k], before, after, turns: None });
+                entries.insert(at, BorderEntry { point: corners[k], before, after, transition: None });
             }
         }
         entries
@@ -114,7 +114,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         if entries.is_empty() {
             return;
         }
-        let alike = |a: &BorderEntry, b: &BorderEntry| match (&a.turns, &b.turns) {
+        let alike = |a: &BorderEntry, b: &BorderEntry| match (&a.transition, &b.transition) {
             (Some(a), Some(b)) => a.is_same_as(&b.reversed()),
             _ => false,
         };

@@ -28,7 +28,7 @@ pub struct Crossing {
     /// The regimes at smaller and at greater values.
     pub below: Arc<Regime>,
     pub above: Arc<Regime>,
-    pub turns: Arc<Transition>,
+    pub transition: Arc<Transition>,
 }
 
 /// An edge of a cell, from its least to its greatest place.
@@ -60,7 +60,7 @@ pub struct Segment {
     /// The regime on its right; of the frame the left one.
     pub right: Arc<Regime>,
     /// What changes, with `left` below; `None` for the frame.
-    pub turns: Option<Arc<Transition>>,
+    pub transition: Option<Arc<Transition>>,
 }
 
 impl Edge {
@@ -74,7 +74,7 @@ impl Edge {
             at: bracket.at(),
             below: Arc::clone(&bracket.below.regime),
             above: Arc::clone(&bracket.above.regime),
-            turns: Arc::new(Transition::at(solver, bracket, place)),
+            transition: Arc::new(Transition::at(solver, bracket, place)),
         };
         let crossings = borders.iter().map(crossing).collect();
         let first = stretches.first().map_or(a.regime, |stretch| Arc::clone(&stretch.regime));
@@ -112,7 +112,13 @@ impl Edge {
         for (to, next) in ends {
             let [a, b] = [from, to].map(|at| self.line.point(at));
             let (a, b) = if direction == Direction::Forward { (a, b) } else { (b, a) };
-            pieces.push(Segment { from: a, to: b, left: Arc::clone(regime), right: Arc::clone(regime), turns: None });
+            pieces.push(Segment {
+                from: a,
+                to: b,
+                left: Arc::clone(regime),
+                right: Arc::clone(regime),
+                transition: None,
+            });
             (from, regime) = (to, next);
         }
         pieces

@@ -12,6 +12,7 @@
 use super::cell::{GridCell, Trace};
 use super::edge::{Direction, Edge, GridLine, Segment};
 use super::interior::{deepest_nodes, distance};
+use super::letter;
 use super::line::{Probe, RESOLUTION};
 use super::model::{RobotStudy, Solver};
 use super::parallel::Workers;
@@ -21,6 +22,7 @@ use super::transition::Transition;
 use crate::Error;
 use crate::impact::Verdict;
 use crate::read::Parameter;
+use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// Curves are traced through at least so many cells along each parameter.
@@ -60,14 +62,22 @@ pub struct Area {
 }
 
 /// A border between two areas.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BorderCurve {
-    /// The areas on its left and on its right, as indices.
+    /// The areas on its left and on its right, as indices; written as their letters.
+    #[serde(rename = "between", serialize_with = "as_letters")]
+    #[cfg_attr(feature = "schema", schemars(with = "[String; 2]"))]
     pub sides: [usize; 2],
-    /// Its points; of a closed one the first is the last.
+    /// What changes there; `below` is its left side.
+    #[serde(flatten)]
+    pub transition: Transition,
+    /// Its points, in the order of the parameters; of a closed curve the first is the last.
     pub points: Vec<[f64; 2]>,
-    /// What turns there; `below` is its left side.
-    pub turns: Transition,
+}
+
+fn as_letters<S: Serializer>(sides: &[usize; 2], serializer: S) -> Result<S::Ok, S::Error> {
+    sides.map(letter).serialize(serializer)
 }
 
 /// The lines of the grid along a parameter.
@@ -215,11 +225,11 @@ impl Map {
         let curve = |line: super::polyline::Polyline| {
             let sides = [index(&line.left)?, index(&line.right)?];
             let points = line.points.into_iter().map(|point| grid.outward(point)).collect();
-            Some(BorderCurve { sides, points, turns: line.turns })
+            Some(BorderCurve { sides, points, transition: line.transition })
         };
         let curves: Vec<BorderCurve> = polylines(&segments).into_iter().filter_map(curve).collect();
-        for BorderCurve { sides, turns, .. } in &curves {
-            for (side, refused) in sides.iter().zip([&turns.refused_below, &turns.refused_above]) {
+        for BorderCurve { sides, transition, .. } in &curves {
+            for (side, refused) in sides.iter().zip([&transition.refused_below, &transition.refused_above]) {
                 let area = &mut areas[*side];
                 if area.regime.outcomes().is_none() && area.refused.is_none() {
                     area.refused.clone_from(refused);

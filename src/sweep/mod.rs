@@ -3,7 +3,7 @@
 //! ```text
 //!     JSON --[study]--> Study: parameters, expressions     point --[model, variation]--> Robot, State --[pipeline]--> Impact
 //!     Impact --[regime]--> which outcomes are valid        inequalities of all combinations --[hunt]--> where they may change
-//!     samples --[line]--> borders, bisected to 1e-12 of the range --[transition]--> which inequality of which contact is zero there
+//!     samples --[line]--> borders, bisected to 1e-12 of the range --[turn]--> which inequality of which contact is zero there
 //!     one parameter --[survey]--> Survey --[course]--> RegionCurves    two parameters --[map, cell, chain]--> Map
 //! ```
 
@@ -72,5 +72,25 @@ impl Findings {
                 areas.map(|(kind, area)| (&area.regime, kind, area.refused.as_ref())).collect()
             }
         }
+    }
+}
+
+/// A, B, ..., Z, AA, AB, ...
+pub fn letter(kind: usize) -> String {
+    let last = char::from(b'A' + (kind % 26) as u8);
+    match kind / 26 {
+        0 => last.to_string(),
+        more => letter(more - 1) + &last.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_go_on_behind_z() {
+        let letters: Vec<String> = [0, 25, 26, 51, 52, 701, 702].map(letter).into();
+        assert_eq!(letters, ["A", "Z", "AA", "AZ", "BA", "ZZ", "AAA"]);
     }
 }

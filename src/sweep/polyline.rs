@@ -12,7 +12,7 @@ pub struct Polyline {
     pub left: Arc<Regime>,
     pub right: Arc<Regime>,
     pub points: Vec<[f64; 2]>,
-    pub turns: Transition,
+    pub transition: Transition,
 }
 
 /// A point by its digits: ends that meet are the same numbers.
@@ -22,7 +22,7 @@ fn key(point: [f64; 2]) -> Key {
     point.map(f64::to_bits)
 }
 
-/// The curves that segments of the same regimes and turns join to.
+/// The curves that segments of the same regimes and transition join to.
 pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
     let mut starts: HashMap<Key, Vec<(usize, bool)>> = HashMap::new();
     for (index, segment) in segments.iter().enumerate() {
@@ -55,21 +55,22 @@ pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
         points.reverse();
         points.extend([own.from, own.to]);
         points.extend(onward);
-        let turns = own.turns.as_deref().cloned().unwrap_or_default();
-        polylines.push(Polyline { left: Arc::clone(&own.left), right: Arc::clone(&own.right), points, turns });
+        let transition = own.transition.as_deref().cloned().unwrap_or_default();
+        polylines.push(Polyline { left: Arc::clone(&own.left), right: Arc::clone(&own.right), points, transition });
     }
     polylines
 }
 
 /// Whether two segments are of one border, the other one in the same direction or reversed.
 fn same_border(own: &Segment, other: &Segment, along: bool) -> bool {
-    let turns = |along: bool| match (&own.turns, &other.turns) {
-        (Some(a), Some(b)) => a.is_same_as(&if along { (**b).clone() } else { b.reversed() }),
-        (None, None) => true,
-        _ => false,
-    };
     let sides = if along { (&other.left, &other.right) } else { (&other.right, &other.left) };
-    (&own.left, &own.right) == sides && turns(along)
+    (&own.left, &own.right) == sides
+        && match (&own.transition, &other.transition) {
+            (Some(a), Some(b)) if along => a.is_same_as(b),
+            (Some(a), Some(b)) => a.is_same_as(&b.reversed()),
+            (None, None) => true,
+            _ => false,
+        }
 }
 
 /// The closed loops that have `regime` on their left, of borders and of the frame.

@@ -1,4 +1,4 @@
-//! The regions of a study of one parameter, with what turns between them.
+//! The regions of a study of one parameter, with what transition between them.
 
 use super::line::{Along, Bracket, Probe, RESOLUTION, Stretch, brackets, stretches};
 use super::model::{RobotStudy, Solver};
@@ -7,6 +7,7 @@ use super::regime::Regime;
 use super::transition::Transition;
 use crate::Error;
 use crate::impact::Verdict;
+use serde::Serialize;
 use std::sync::Arc;
 
 /// All regions along one parameter.
@@ -38,12 +39,14 @@ pub struct Region {
 }
 
 /// A border between two regions.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RegionBorder {
     /// Where it is, to [`RESOLUTION`] of the parameter's range.
     pub at: f64,
-    /// What turns.
-    pub turns: Transition,
+    /// What transition.
+    #[serde(flatten)]
+    pub transition: Transition,
 }
 
 impl Survey {
@@ -85,7 +88,7 @@ impl Survey {
         let regions = stretches.into_iter().enumerate().map(&mut region).collect();
         let border = |solver: &mut Solver, index: usize| {
             let bracket: &Bracket = &brackets[index];
-            RegionBorder { at: bracket.at(), turns: Transition::at(solver, bracket, |at| vec![at]) }
+            RegionBorder { at: bracket.at(), transition: Transition::at(solver, bracket, |at| vec![at]) }
         };
         let quiet = Workers { done: &|| (), ..workers };
         Self { regions, borders: quiet.map(brackets.len(), begin, border), dependent }

@@ -1,4 +1,4 @@
-//! What happens at a border: which outcomes end, and which inequality of which contact is zero there.
+//! What changes at a border: which inequality of which contact is zero there.
 //!
 //! ```text
 //!     an outcome that ends at a border is rejected beyond it, because of the slack that is zero on it
@@ -12,17 +12,19 @@ use crate::law::{Inequality, Mode};
 use crate::{Error, Result};
 use serde::Serialize;
 
-/// An outcome that ends at a border, and the inequality that is zero there.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+/// An inequality that is zero on a border.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EndedOutcome {
-    /// Its modes.
-    pub modes: Vec<Mode>,
-    /// On which side of the border it is an outcome.
-    pub side: Side,
     /// The contact's name.
     pub contact: String,
-    /// What is zero.
+    /// What of it is zero.
     pub inequality: Inequality,
+    /// The outcome that begins or ends there.
+    pub modes: Vec<Mode>,
+    /// On which side of the border it is an outcome.
+    #[serde(rename = "valid")]
+    pub side: Side,
 }
 
 /// A side of a border.
@@ -46,23 +48,29 @@ impl Side {
     }
 }
 
-/// The change from one side of a border to the other.
-#[derive(Debug, Clone, Default)]
+/// What changes at a border.
+#[derive(Debug, Clone, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Transition {
-    /// The outcomes that end there.
-    pub inequalities: Vec<EndedOutcome>,
-    /// Contacts that are closed on the lower side alone.
+    /// The inequalities that are zero there.
+    #[serde(rename = "turns")]
+    pub ended: Vec<EndedOutcome>,
+    /// Contacts that are closed below it and open above it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub opening: Vec<String>,
-    /// Contacts that are closed on the upper side alone.
+    /// Contacts that are open below it and closed above it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub closing: Vec<String>,
-    /// Why the lower side is refused, if it is.
+    /// Why states are refused below it, if they are.
+    #[serde(skip)]
     pub refused_below: Option<Error>,
-    /// Why the upper side is refused, if it is.
+    /// Why states are refused above it, if they are.
+    #[serde(skip)]
     pub refused_above: Option<Error>,
 }
 
 impl Transition {
-    /// What changes between the sides of a `bracket`, which `place` puts into the space of all parameters.
+    /// The transition between the sides of a `bracket`, which `place` puts into the space of all parameters.
     pub fn at(solver: &mut Solver, bracket: &Bracket, place: impl Fn(f64) -> Vec<f64>) -> Self {
         let outcomes = |regime: &Regime| regime.outcomes().unwrap_or_default().to_vec();
         let below = solver.explained(&place(bracket.below.at), &outcomes(&bracket.above.regime));
@@ -72,9 +80,9 @@ impl Transition {
 
     /// The same, seen from the other side.
     pub fn reversed(&self) -> Self {
-        let ended = |own: &EndedOutcome| EndedOutcome { side: own.side.other(), ..own.clone() };
+        let reversed = |cause: &EndedOutcome| EndedOutcome { side: cause.side.other(), ..cause.clone() };
         Self {
-            inequalities: self.inequalities.iter().map(ended).collect(),
+            ended: self.ended.iter().map(reversed).collect(),
             opening: self.closing.clone(),
             closing: self.opening.clone(),
             refused_below: self.refused_above.clone(),
@@ -84,7 +92,7 @@ impl Transition {
 
     /// Whether the same changes, in any order.
     pub fn is_same_as(&self, other: &Self) -> bool {
-        let all = |one: &Self, two: &Self| one.inequalities.iter().all(|own| two.inequalities.contains(own));
+        let all = |one: &Self, two: &Self| one.ended.iter().all(|cause| two.ended.contains(cause));
         all(self, other)
             && all(other, self)
             && (&self.opening, &self.closing) == (&other.opening, &other.closing)
@@ -106,26 +114,26 @@ impl Transition {
             let (opening, closing) = (missing(&below.0, &above.0), missing(&above.0, &below.0));
             return Self { opening, closing, ..Self::default() };
         }
-        let mut inequalities = ending(&below, &above.1, Side::Below);
-        inequalities.extend(ending(&above, &below.1, Side::Above));
-        Self { inequalities, ..Self::default() }
+        let mut ended = ending(&below, &above.1, Side::Below);
+        ended.extend(ending(&above, &below.1, Side::Above));
+        Self { ended, ..Self::default() }
     }
 }
 
-/// A margin next to a border is at most this, unless the state jumps there.
+/// Next to a border a margin is not greater than this, unless the state jumps there.
 const ZERO: f64 = 1e-4;
 
-/// The outcomes of one side that the other rejects because of an inequality.
+/// The outcomes of one side that the other rejects, and for which inequality.
 fn ending((names, here): &(Vec<String>, Analysis), there: &Analysis, side: Side) -> Vec<EndedOutcome> {
-    let ended = |outcome: &Outcome| {
+    let cause = |outcome: &Outcome| {
         let modes = &outcome.modes;
-        // An outcome far from its own borders ends because the state jumps, and no inequality is zero.
+        // An outcome far from its own borders ends where the state jumps, and no inequality is zero.
         if outcome.margin.is_some_and(|margin| margin > ZERO) {
             return None;
         }
         let rejection = there.rejected.iter().find(|rejection| rejection.modes == *modes)?;
         let RejectionReason::Violated { contact, inequality } = rejection.because else { return None };
-        Some(EndedOutcome { modes: modes.clone(), side, contact: names.get(contact)?.clone(), inequality })
+        Some(EndedOutcome { contact: names.get(contact)?.clone(), inequality, modes: modes.clone(), side })
     };
-    here.outcomes.iter().filter_map(ended).collect()
+    here.outcomes.iter().filter_map(cause).collect()
 }

@@ -1,6 +1,6 @@
 //! `accuracy`: tables for people with their times masked, the JSON's numbers, pictures, and what is refused.
 
-use super::{heelstrike, heelstrike_reads};
+use super::{heelstrike, heelstrike_reads, place};
 use serde_json::Value;
 
 const RAMONE: [&str; 5] = ["accuracy", "urdf/ramone.urdf", "examples/ramone.json", "--time", "0"];
@@ -115,11 +115,9 @@ fn the_suite_is_picked_from_by_name() {
 
 #[test]
 fn a_picture_names_the_cases_or_says_what_a_mark_is() {
-    let directory = std::env::temp_dir().join(format!("heelstrike-picture-{}", std::process::id()));
-    std::fs::create_dir_all(&directory).expect("a directory");
-    let path = directory.join("cases.svg");
+    let path = place("cases.svg");
     let drawn = |case: &str| {
-        let plot = path.to_str().expect("UTF-8");
+        let plot = &path;
         let run = heelstrike(&["accuracy", "--case", case, "--time", "0", "--plot", plot]);
         assert_eq!(run.status, 0, "{}", run.stderr);
         std::fs::read_to_string(&path).expect("written")
@@ -135,20 +133,16 @@ fn a_picture_names_the_cases_or_says_what_a_mark_is() {
     let many = drawn("friction");
     assert!(many.contains("each mark is one of 13 cases by one method"));
     assert!(!many.contains("RAMone"));
-    std::fs::remove_dir_all(&directory).expect("removed");
 }
 
 #[test]
 fn pictures_are_drawn_as_svg_and_png() {
-    let directory = std::env::temp_dir().join(format!("heelstrike-accuracy-{}", std::process::id()));
-    std::fs::create_dir_all(&directory).expect("a directory");
     for (name, start) in [("a.svg", b"<svg".as_slice()), ("a.png", b"\x89PNG".as_slice())] {
-        let path = directory.join(name);
-        let run = heelstrike(&[&RAMONE[..], &["--plot", path.to_str().expect("UTF-8")]].concat());
+        let path = place(name);
+        let run = heelstrike(&[&RAMONE[..], &["--plot", &path]].concat());
         assert_eq!(run.status, 0, "{}", run.stderr);
         assert!(std::fs::read(&path).expect("written").starts_with(start), "{name}");
     }
-    std::fs::remove_dir_all(&directory).expect("removed");
 }
 
 #[test]

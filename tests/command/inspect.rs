@@ -1,6 +1,6 @@
 //! `inspect`, and what options and cautions make of a robot.
 
-use super::{RAMONE, heelstrike, heelstrike_reads, keys};
+use super::{RAMONE, heelstrike, heelstrike_reads};
 
 #[test]
 fn inspect_tells_what_was_read() {
@@ -76,8 +76,7 @@ fn a_robot_that_loses_its_joints_is_told_loudly_by_every_command() {
     };
     let joint = "<joint name='j' type='revolute'><origin rpy='0.0872665 0 0'/><axis xyz='0 1 0'/><parent link='a'/>\
                  <child link='b'/></joint>";
-    let file = format!("{}/tilted.urdf", env!("CARGO_TARGET_TMPDIR"));
-    std::fs::write(&file, format!("<robot name='r'>{}{}{joint}</robot>", link("a"), link("b"))).expect("a file");
+    let file = super::file("tilted.urdf", format!("<robot name='r'>{}{}{joint}</robot>", link("a"), link("b")));
     let word = "1 of 1 joints that could move are held only because their axes are 5.0 degrees off the plane (j); to keep \
                 them: straighten the rpy of j";
     let inspect = heelstrike(&["inspect", &file]);
@@ -89,26 +88,6 @@ fn a_robot_that_loses_its_joints_is_told_loudly_by_every_command() {
 #[test]
 fn inspect_prints_the_reduced_robot_with_every_digit() {
     let run = heelstrike(&["inspect", "urdf/ramone_paper.urdf", "--format", "json"]);
-    assert_eq!(
-        keys(&run.stdout),
-        [
-            "name",
-            "plane",
-            "plane_because",
-            "base",
-            "base_because",
-            "cautions",
-            "mass",
-            "coordinates",
-            "bodies",
-            "joints",
-            "followers",
-            "held",
-            "links",
-            "feet",
-            "left_out"
-        ]
-    );
     let robot = run.line();
     assert_eq!(robot["plane"], "xz");
     assert_eq!(robot["bodies"][2]["com"], serde_json::json!([0.0, -0.073265]));

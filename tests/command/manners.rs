@@ -1,6 +1,8 @@
 //! How the command behaves beside its answers: usage, help, pipes, disks, colours.
 
 use super::*;
+use std::io::Read;
+use std::process::Stdio;
 
 #[test]
 fn exit_status_is_two_for_wrong_usage_alone() {
@@ -95,10 +97,9 @@ fn completions_and_man_pages_are_written() {
 #[test]
 fn a_closed_pipe_ends_quietly() {
     let states = "{\"friction\": 0.5, \"velocity\": {\"base\": {\"z\": -1}}}\n".repeat(2000);
-    let path = std::env::temp_dir().join(format!("heelstrike-pipe-{}.ndjson", std::process::id()));
-    std::fs::write(&path, states).expect("writable");
+    let path = file("states.ndjson", states);
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"))
-        .args(["batch", BLOCK, path.to_str().expect("UTF-8")])
+        .args(["batch", BLOCK, &path])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -107,7 +108,6 @@ fn a_closed_pipe_ends_quietly() {
     let mut stderr = String::new();
     child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("UTF-8");
     let status = child.wait().expect("it ends");
-    std::fs::remove_file(path).expect("it was ours");
     assert_eq!((status.code(), stderr.as_str()), (Some(0), ""));
 }
 
@@ -124,7 +124,7 @@ fn head_sees_the_first_lines_and_nothing_else_is_told() {
         format!("'{binary}' completions bash"),
     ] {
         let script = format!("{{ {command}; echo $? >&2; }} | head -1");
-        let mut shell = Command::new("sh");
+        let mut shell = assert_cmd::Command::new("sh");
         let run = finished(shell.args(["-c", &script]).write_stdin(problem.repeat(5000)));
         assert_eq!((run.status, run.stdout.lines().count(), run.stderr.as_str()), (0, 1, "0\n"), "{command}");
     }

@@ -3,22 +3,15 @@
 //!
 //! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
 
-use super::{Run, heelstrike, heelstrike_reads};
-use std::path::PathBuf;
+use super::{Run, heelstrike, heelstrike_reads, place};
+use std::path::Path;
 
 /// No SVG is larger \[bytes\].
 const LARGEST: usize = 500_000;
 
-/// A file of this test alone.
-pub(super) fn file(name: &str) -> PathBuf {
-    let directory = std::env::temp_dir().join(format!("heelstrike-robots-{}", std::process::id()));
-    std::fs::create_dir_all(&directory).expect("a directory");
-    directory.join(name)
-}
-
-fn plotted(args: &[&str], name: &str) -> (Run, PathBuf) {
-    let path = file(name);
-    let run = heelstrike(&[args, &["--plot", path.to_str().expect("UTF-8")]].concat());
+fn plotted(args: &[&str], name: &str) -> (Run, String) {
+    let path = place(name);
+    let run = heelstrike(&[args, &["--plot", &path]].concat());
     (run, path)
 }
 
@@ -82,8 +75,8 @@ fn every_robot_can_be_drawn() {
 #[test]
 fn a_robot_in_the_air_has_the_ground_below_it_and_no_arrows() {
     let state = r#"{"position": {"base": {"z": 0.8}}, "velocity": {"base": {"z": -1}}, "friction": 1}"#;
-    let path = file("air.svg");
-    let run = heelstrike_reads(&["impact", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")], state);
+    let path = place("air.svg");
+    let run = heelstrike_reads(&["impact", "urdf/ramone.urdf", "-", "--plot", &path], state);
     assert_eq!(run.status, 0, "{}", run.stderr);
     let svg = std::fs::read_to_string(path).expect("an SVG");
     assert!(svg.contains("nothing changes"), "{svg}");
@@ -93,32 +86,32 @@ fn a_robot_in_the_air_has_the_ground_below_it_and_no_arrows() {
 
 #[test]
 fn of_a_refused_state_nothing_is_drawn() {
-    let path = file("refused.svg");
-    let args = ["impact", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")];
+    let path = place("refused.svg");
+    let args = ["impact", "urdf/ramone.urdf", "-", "--plot", &path];
     let run = heelstrike_reads(&args, r#"{"position": {"base": {"z": -1}}, "friction": 1}"#);
     assert_eq!(run.status, 1);
     assert!(run.stderr.ends_with("note: no picture is drawn of a state that is refused\n"), "{}", run.stderr);
-    assert!(!path.exists());
+    assert!(!Path::new(&path).exists());
 }
 
 #[test]
 fn of_several_states_none_is_answered_where_a_picture_is_asked_for() {
-    let path = file("several.svg");
-    let args = ["impact", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")];
+    let path = place("several.svg");
+    let args = ["impact", "urdf/ramone.urdf", "-", "--plot", &path];
     let run = heelstrike_reads(&args, r#"{"friction": 1} {"friction": 2}"#);
     assert_eq!((run.status, run.stdout.as_str()), (2, ""));
     assert_eq!(
         run.stderr,
         "error: --plot: a picture is drawn of one state, and several are given\nhint: give the states one by one\n"
     );
-    assert!(!path.exists());
+    assert!(!Path::new(&path).exists());
 }
 
 #[test]
 fn a_picture_does_not_replace_what_is_read() {
-    let path = file("robot.svg");
+    let path = place("robot.svg");
     std::fs::copy("urdf/block.urdf", &path).expect("a copy");
-    let robot = path.to_str().expect("UTF-8");
+    let robot = path.as_str();
     let run = heelstrike(&["inspect", robot, "--plot", robot]);
     assert_eq!(run.status, 1);
     assert!(run.stderr.contains("is an input of this command"), "{}", run.stderr);
@@ -127,8 +120,8 @@ fn a_picture_does_not_replace_what_is_read() {
 
 #[test]
 fn a_picture_and_the_results_are_two_files() {
-    let (name, again) = (file("both.svg"), file(".").join("both.svg"));
-    let (name, again) = (name.to_str().expect("UTF-8"), again.to_str().expect("UTF-8"));
+    let (name, again) = (place("both.svg"), place("./both.svg"));
+    let (name, again) = (name.as_str(), again.as_str());
     for command in [
         &["inspect", "urdf/block.urdf"][..],
         &["impact", "urdf/ramone.urdf", "examples/ramone.json"],
@@ -142,13 +135,12 @@ fn a_picture_and_the_results_are_two_files() {
     }
     let run = heelstrike(&["batch", "urdf/ramone.urdf", "-", "--summary", name, "--plot", again]);
     assert!(run.status == 2 && run.stderr.contains("summary and picture"), "{}", run.stderr);
-    assert!(!file("both.svg").exists());
+    assert!(!Path::new(name).exists());
 }
 
 #[test]
 fn a_file_that_cannot_be_written_is_told_before_the_work() {
-    let path = file("no_such_directory").join("x.svg");
-    let path = path.to_str().expect("UTF-8");
+    let path = &place("no_such_directory/x.svg");
     for command in [
         &["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.ndjson", "--plot"][..],
         &["sweep", "urdf/minimalistic.urdf", "examples/paper/figure_7.json", "--plot"],

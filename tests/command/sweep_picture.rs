@@ -3,17 +3,12 @@
 //!
 //! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
 
-use super::heelstrike;
-use super::picture::{file, svg};
+use std::path::Path;
+
+use super::picture::svg;
+use super::{file, heelstrike, place};
 
 const MINIMALISTIC: [&str; 3] = ["sweep", "urdf/minimalistic.urdf", "examples/paper/figures_3_and_6.json"];
-
-/// A study in a file of this test alone.
-fn study(name: &str, text: &str) -> String {
-    let path = file(name);
-    std::fs::write(&path, text).expect("a file");
-    path.to_str().expect("UTF-8").to_owned()
-}
 
 /// How often a text stands in the picture.
 fn count(svg: &str, text: &str) -> usize {
@@ -51,7 +46,7 @@ fn beta_and_gamma_are_drawn_where_they_are_asked_for() {
 
 #[test]
 fn two_parameters_make_a_map() {
-    let map = study(
+    let map = file(
         "inertia.json",
         r#"{
             "parameters": {"alpha": {"from": 0.001, "to": 1.5697, "steps": 2}, "j": {"from": 0.0, "to": 0.5, "steps": 2}},
@@ -79,15 +74,15 @@ fn a_picture_has_the_same_bytes_for_any_number_of_threads() {
 
 #[test]
 fn the_text_still_goes_to_standard_output() {
-    let path = file("beside.svg");
-    let plotted = heelstrike(&[&MINIMALISTIC[..], &["--plot", path.to_str().expect("UTF-8")]].concat());
+    let path = place("beside.svg");
+    let plotted = heelstrike(&[&MINIMALISTIC[..], &["--plot", &path]].concat());
     assert_eq!(plotted.stdout, heelstrike(&MINIMALISTIC).stdout);
-    assert!(path.exists());
+    assert!(Path::new(&path).exists());
 }
 
 #[test]
 fn what_is_refused_is_grey_and_told() {
-    let refused = study(
+    let refused = file(
         "refused.json",
         r#"{
             "parameters": {"alpha": {"from": 0.2, "to": 1.2, "steps": 20}},
@@ -98,8 +93,8 @@ fn what_is_refused_is_grey_and_told() {
             }
         }"#,
     );
-    let path = file("refused.svg");
-    let run = heelstrike(&["sweep", "urdf/minimalistic.urdf", &refused, "--plot", path.to_str().expect("UTF-8")]);
+    let path = place("refused.svg");
+    let run = heelstrike(&["sweep", "urdf/minimalistic.urdf", &refused, "--plot", &path]);
     assert_eq!(run.status, 1, "{}", run.stderr);
     let svg = std::fs::read_to_string(path).expect("an SVG");
     assert!(svg.contains(">A: refused: restitution must be between 0 and 1"), "{svg}");
@@ -108,7 +103,7 @@ fn what_is_refused_is_grey_and_told() {
 
 #[test]
 fn where_nothing_touches_the_regions_alone_are_drawn() {
-    let air = study(
+    let air = file(
         "air.json",
         r#"{"parameters": {"h": {"from": 5, "to": 6, "steps": 3}}, "state": {"position": {"base": {"z": "h"}, "joints": {"hip": 0.5}}, "friction": 1}}"#,
     );
@@ -121,7 +116,7 @@ fn where_nothing_touches_the_regions_alone_are_drawn() {
 fn pictures_overwrite_no_input_and_have_a_known_ending() {
     let run = heelstrike(&[&MINIMALISTIC[..], &["--plot", "picture.pdf"]].concat());
     assert_eq!((run.status, run.stdout.as_str()), (2, ""));
-    let own = study("own.svg", "{}");
+    let own = file("own.svg", "{}");
     let run = heelstrike(&["sweep", "urdf/minimalistic.urdf", &own, "--plot", &own]);
     assert_eq!(run.status, 1);
     assert_eq!(std::fs::read_to_string(own).expect("a file"), "{}");

@@ -199,7 +199,7 @@ fn curves_and_areas_are_labelled_with_what_turns_and_what_holds() {
         }
         for curve in &map.curves {
             assert_ne!(curve.sides[0], curve.sides[1]);
-            assert!(!curve.turns.inequalities.is_empty());
+            assert!(!curve.transition.ended.is_empty());
         }
     });
 }

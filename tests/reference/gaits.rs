@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::support::binary::answers;
+use crate::support::answers::answers;
 use crate::support::scaled::{Differences, largest};
 
 const FRICTIONS: [&str; 3] = ["0.4", "0.8", "infinite"];

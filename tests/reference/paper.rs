@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::support::binary::{Answer, answers};
+use crate::support::answers::{Answer, answers};
 use crate::support::scaled::{Differences, largest, matrix};
 
 /// To this share of the largest entry, contact velocity or impulse of the case.

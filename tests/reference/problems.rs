@@ -4,7 +4,7 @@
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::support::binary::{Answer, Outcome, answers};
+use crate::support::answers::{Answer, Outcome, answers};
 use crate::support::scaled::{Differences, largest};
 
 /// To this share of the largest speed before or after, or of the largest impulse.

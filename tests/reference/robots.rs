@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::support::binary::{Answer, Outcome, answers};
+use crate::support::answers::{Answer, Outcome, answers};
 use crate::support::scaled::{Differences, largest, matrix};
 
 /// To this share of the largest entry.

@@ -2,7 +2,9 @@
 
 #![allow(dead_code, reason = "each binary uses its own part")]
 
-pub mod binary;
+pub mod answers;
+pub mod command;
 pub mod mechanism;
 pub mod random;
 pub mod scaled;
+pub mod urdf;

@@ -25,7 +25,6 @@ impl Differences {
     }
 
     /// Compares two matrices to `factor` of the reference's largest entry.
-    #[allow(dead_code, reason = "not every test file has matrices to compare")]
     pub fn compare_matrix(&mut self, place: &str, is: &[Vec<f64>], should: &DMatrix<f64>, factor: f64) {
         if is.len() != should.nrows() || is.iter().any(|row| row.len() != should.ncols()) {
             return self.note(place, format!("not {} x {}: {is:?}", should.nrows(), should.ncols()));
@@ -46,7 +45,6 @@ pub fn largest(numbers: &[f64]) -> f64 {
 }
 
 /// The rows as a matrix.
-#[allow(dead_code, reason = "not every test file builds matrices")]
 pub fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
 }

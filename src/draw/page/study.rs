@@ -9,7 +9,7 @@ use crate::draw::Keyframe;
 use crate::draw::plot::Rendered;
 use crate::draw::sweep::{fills_along, fills_of_map};
 use crate::state::State;
-use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, RobotStudy, Solver, Survey, Workers};
+use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, RobotStudy, Solver, Survey, Workers, letter};
 use crate::write::sweep::{MapSweep, Sweep};
 
 /// How far the sides of a region lie from its borders, as part of the parameter's range.
@@ -158,10 +158,10 @@ fn along(sweep: &Sweep, survey: &Survey) -> (Vec<Region>, Vec<String>) {
     let border = |at: usize, side: &str| {
         let border = &sweep.borders[at];
         let sides = [&sweep.regions[at].letter, &sweep.regions[at + 1].letter];
-        [format!("{side}, at {:?}", border.at), border.turns.in_words(sides)]
+        [format!("{side}, at {:?}", border.at), border.transition.in_words(sides)]
     };
     let fills = fills_along(survey);
-    let region = |(at, region): (usize, &crate::write::sweep::Region)| Region {
+    let region = |(at, region): (usize, &crate::write::sweep::RegionRecord)| Region {
         name: region.letter.clone(),
         fill: fills.get(survey.regions[at].kind).map_or("", |fill| fill.hex()),
         borders: [
@@ -180,14 +180,14 @@ fn areas(sweep: &MapSweep, map: &Map) -> (Vec<Region>, Vec<String>) {
     let fills = fills_of_map(map);
     let region = |(at, region): (usize, &crate::write::sweep::MapRegion)| {
         let mut borders: Vec<[String; 2]> = Vec::new();
-        for border in &sweep.borders {
-            let [left, right] = &border.between;
+        for border in sweep.borders {
+            let [left, right] = &border.sides.map(letter);
             let beyond = match (*left == region.letter, *right == region.letter) {
                 (true, _) => right,
                 (_, true) => left,
                 _ => continue,
             };
-            let told = [format!("toward {beyond}"), border.turns.in_words([left, right])];
+            let told = [format!("toward {beyond}"), border.transition.in_words([left, right])];
             if !borders.contains(&told) {
                 borders.push(told);
             }

@@ -143,7 +143,11 @@ mod tests {
             let middles = vec![(edge(x + 0.5 * width, 800), 0.5 * width)];
             areas.push(Area { regime: regime.into(), loops, middles, verdict: None, refused: None });
             if index > 0 {
-                curves.push(BorderCurve { sides: [index - 1, index], points: line(x), turns: Transition::default() });
+                curves.push(BorderCurve {
+                    sides: [index - 1, index],
+                    transition: Transition::default(),
+                    points: line(x),
+                });
             }
             x += width;
         }

@@ -13,8 +13,8 @@ mod place;
 mod style;
 
 use crate::draw::plot::{Color, Picture, PlotAxis};
-use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers};
-use crate::write::sweep::{Happening, letter};
+use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers, letter};
+use crate::write::sweep::Happening;
 
 /// How wide panels along a parameter are inside of their axes \[px\].
 const WIDTH: f64 = 540.0;

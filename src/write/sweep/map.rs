@@ -1,7 +1,7 @@
 //! The regions of a study of two parameters.
 
-use super::{Happening, Turns, letter, not_guaranteed};
-use crate::sweep::{Area, BorderCurve, CELLS, Map, Parameter};
+use super::{Happening, not_guaranteed};
+use crate::sweep::{Area, BorderCurve, CELLS, Map, Parameter, letter};
 use crate::write::Palette;
 use serde::Serialize;
 use std::fmt::Write;
@@ -15,7 +15,7 @@ pub struct MapSweep<'a> {
     /// The regions.
     pub regions: Vec<MapRegion<'a>>,
     /// The borders between them.
-    pub borders: Vec<MapBorder<'a>>,
+    pub borders: &'a [BorderCurve],
     /// What a reader should know, in whole sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
@@ -39,19 +39,6 @@ pub struct MapRegion<'a> {
     pub loops: &'a [Vec<[f64; 2]>],
 }
 
-/// A border between two regions.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct MapBorder<'a> {
-    /// The letters of the regions on its left and on its right.
-    pub between: [String; 2],
-    /// What turns; `below` is its left side.
-    #[serde(flatten)]
-    pub turns: Turns<'a>,
-    /// Its points, in the order of the parameters.
-    pub points: &'a [[f64; 2]],
-}
-
 impl<'a> MapSweep<'a> {
     /// What the `map` of these parameters shows.
     pub fn new(parameters: &'a [Parameter], map: &'a Map) -> Self {
@@ -61,11 +48,6 @@ impl<'a> MapSweep<'a> {
             happening: Happening::of(&area.regime, area.verdict, area.refused.as_ref()),
             share: area.loops.iter().map(|points| surface(points)).sum::<f64>() / whole,
             loops: &area.loops,
-        };
-        let border = |curve: &'a BorderCurve| MapBorder {
-            between: curve.sides.map(letter),
-            turns: Turns::new(&curve.turns),
-            points: &curve.points,
         };
         let contacts = map.areas.iter().map(|area| area.regime.contacts().len()).max().unwrap_or(0);
         let mut notes = not_guaranteed(contacts, map.dependent);
@@ -78,7 +60,7 @@ impl<'a> MapSweep<'a> {
         Self {
             parameters: parameters.iter().map(|parameter| parameter.name.as_str()).collect(),
             regions: map.areas.iter().enumerate().map(region).collect(),
-            borders: map.curves.iter().map(border).collect(),
+            borders: &map.curves,
             notes,
             samples: parameters.iter().map(|parameter| parameter.steps).product(),
         }
@@ -105,12 +87,13 @@ impl<'a> MapSweep<'a> {
             }
         }
         writeln!(out)?;
-        let mut told: Vec<String> = Vec::new();
-        for MapBorder { between: [left, right], turns, .. } in &self.borders {
-            let line = format!("between {left} and {right}: {}", turns.in_words([left, right]));
-            if !told.contains(&line) {
+        let mut written: Vec<String> = Vec::new();
+        for BorderCurve { sides, transition, .. } in self.borders {
+            let [left, right] = sides.map(letter);
+            let line = format!("between {left} and {right}: {}", transition.in_words([&left, &right]));
+            if !written.contains(&line) {
                 writeln!(out, "{faint}{line}{plain}")?;
-                told.push(line);
+                written.push(line);
             }
         }
         for note in &self.notes {

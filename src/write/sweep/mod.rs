@@ -10,7 +10,7 @@ mod map;
 mod samples;
 mod text;
 
-pub use map::{MapBorder, MapRegion, MapSweep};
+pub use map::{MapRegion, MapSweep};
 #[cfg(feature = "schema")]
 pub(super) use samples::RefusedSample;
 pub use samples::{Sample, columns};
@@ -18,8 +18,8 @@ pub use samples::{Sample, columns};
 use super::{ErrorObject, Palette};
 use crate::Error;
 use crate::impact::Verdict;
-use crate::law::{Inequality, Mode};
-use crate::sweep::{self, Findings, Parameter, Regime, Side, Survey, WATCHED_CONTACTS};
+use crate::law::Mode;
+use crate::sweep::{Findings, Parameter, Regime, Region, RegionBorder, Survey, WATCHED_CONTACTS, letter};
 use serde::Serialize;
 
 /// What is known of a study of one parameter, without its samples.
@@ -29,9 +29,9 @@ pub struct Sweep<'a> {
     /// The parameter.
     pub parameter: &'a str,
     /// The regions, from the least to the greatest value.
-    pub regions: Vec<Region<'a>>,
+    pub regions: Vec<RegionRecord<'a>>,
     /// The border between each two of them.
-    pub borders: Vec<Border<'a>>,
+    pub borders: &'a [RegionBorder],
     /// What a reader should know, in whole sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
@@ -53,7 +53,7 @@ pub enum Regions<'a> {
 /// A stretch of the parameter with one set of outcomes.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Region<'a> {
+pub struct RegionRecord<'a> {
     /// Regions of the same letter have the same contacts and outcomes.
     pub letter: String,
     /// Where it begins.
@@ -86,48 +86,6 @@ pub struct Happening<'a> {
     pub error: Option<ErrorObject<'a>>,
 }
 
-/// A border between two regions.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Border<'a> {
-    /// Where it is.
-    pub at: f64,
-    /// What turns.
-    #[serde(flatten)]
-    pub turns: Turns<'a>,
-}
-
-/// What turns at a border.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Turns<'a> {
-    /// The inequalities that are zero there.
-    pub turns: Vec<Turn<'a>>,
-    /// Contacts that are closed below it and open above it.
-    #[serde(skip_serializing_if = "<[String]>::is_empty")]
-    pub opening: &'a [String],
-    /// Contacts that are open below it and closed above it.
-    #[serde(skip_serializing_if = "<[String]>::is_empty")]
-    pub closing: &'a [String],
-    /// Whether states are refused below it, and above it.
-    #[serde(skip)]
-    refused: [bool; 2],
-}
-
-/// An inequality that is zero on a border.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Turn<'a> {
-    /// The contact's name.
-    pub contact: &'a str,
-    /// What of it is zero.
-    pub inequality: Inequality,
-    /// The outcome that begins or ends there.
-    pub modes: &'a [Mode],
-    /// On which side of the border it is one.
-    pub valid: Side,
-}
-
 impl<'a> Regions<'a> {
     /// What was found in a study of these parameters.
     pub fn new(parameters: &'a [Parameter], findings: &'a Findings) -> Self {
@@ -149,18 +107,17 @@ impl<'a> Regions<'a> {
 impl<'a> Sweep<'a> {
     /// What a survey of `parameter` has found.
     pub fn new(parameter: &'a Parameter, survey: &'a Survey) -> Self {
-        let region = |region: &'a sweep::Region| Region {
+        let region = |region: &'a Region| RegionRecord {
             letter: letter(region.kind),
             from: region.from,
             to: region.to,
             happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
         };
-        let border = |border: &'a sweep::RegionBorder| Border { at: border.at, turns: Turns::new(&border.turns) };
         let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
         Self {
             parameter: &parameter.name,
             regions: survey.regions.iter().map(region).collect(),
-            borders: survey.borders.iter().map(border).collect(),
+            borders: &survey.borders,
             notes: not_guaranteed(contacts, survey.dependent),
             steps: parameter.steps,
         }
@@ -176,33 +133,6 @@ impl<'a> Happening<'a> {
         };
         let (contacts, outcomes) = (regime.outcomes().map(|_| regime.contacts()), regime.outcomes());
         Self { contacts, verdict, outcomes, undecided, error: refused.map(ErrorObject::new) }
-    }
-}
-
-impl<'a> Turns<'a> {
-    /// What was found to turn.
-    pub fn new(turns: &'a sweep::Transition) -> Self {
-        let turn = |turn: &'a sweep::EndedOutcome| Turn {
-            contact: &turn.contact,
-            inequality: turn.inequality,
-            modes: &turn.modes,
-            valid: turn.side,
-        };
-        Self {
-            turns: turns.inequalities.iter().map(turn).collect(),
-            opening: &turns.opening,
-            closing: &turns.closing,
-            refused: [turns.refused_below.is_some(), turns.refused_above.is_some()],
-        }
-    }
-}
-
-/// A, B, ..., Z, AA, AB, ...
-pub fn letter(kind: usize) -> String {
-    let last = char::from(b'A' + (kind % 26) as u8);
-    match kind / 26 {
-        0 => last.to_string(),
-        more => letter(more - 1) + &last.to_string(),
     }
 }
 
@@ -230,15 +160,4 @@ fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
         );
     }
     notes
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn letters_go_on_behind_z() {
-        let letters: Vec<String> = [0, 25, 26, 51, 52, 701, 702].map(letter).into();
-        assert_eq!(letters, ["A", "Z", "AA", "AZ", "BA", "ZZ", "AAA"]);
-    }
 }

@@ -2,9 +2,9 @@
 
 use super::super::Palette;
 use super::super::words;
-use super::{Happening, Sweep, Turn, Turns};
+use super::{Happening, Sweep};
 use crate::impact::Verdict;
-use crate::sweep::Side;
+use crate::sweep::{EndedOutcome, Side, Transition};
 use std::fmt::Write;
 
 impl Sweep<'_> {
@@ -32,8 +32,8 @@ impl Sweep<'_> {
             }
             if let Some(border) = self.borders.get(index) {
                 let sides = [&region.letter, &self.regions[index + 1].letter];
-                let turns = border.turns.in_words(sides);
-                writeln!(out, "{:letters$}  {faint}at {:?}: {turns}{plain}", "", border.at)?;
+                let transition = border.transition.in_words(sides);
+                writeln!(out, "{:letters$}  {faint}at {:?}: {transition}{plain}", "", border.at)?;
             }
         }
         for note in &self.notes {
@@ -75,31 +75,31 @@ impl Happening<'_> {
     }
 }
 
-impl Turns<'_> {
-    /// What turns between regions of these letters, as a sentence without its end.
+impl Transition {
+    /// What changes between regions of these letters, as a sentence without its end.
     pub fn in_words(&self, [below, above]: [&String; 2]) -> String {
-        let turn = |Turn { contact, inequality, modes, valid }: &Turn| {
+        match (&self.refused_below, &self.refused_above) {
+            (Some(_), None) => return format!("from {above} on states are answered"),
+            (None, Some(_)) => return format!("from {above} on states are refused"),
+            (Some(_), Some(_)) => return "states are refused for another reason".to_owned(),
+            (None, None) => {}
+        }
+        let ends = |EndedOutcome { contact, inequality, modes, side }: &EndedOutcome| {
             let modes: Vec<String> = modes.iter().map(ToString::to_string).collect();
-            let side = match valid {
+            let side = match side {
                 Side::Below => below,
                 Side::Above => above,
             };
-            format!("{contact} has {} where {} of {side} ends", inequality, modes.join("/"))
+            format!("{contact} has {inequality} where {} of {side} ends", modes.join("/"))
         };
-        let alone = |contact: &String, side: &str| format!("{contact} touches the ground in {side} alone");
+        let alone = |contact: &String, side: &str| format!("{contact} touches the ground in {side} only");
         let opening = self.opening.iter().map(|contact| alone(contact, below));
         let closing = self.closing.iter().map(|contact| alone(contact, above));
-        let all: Vec<String> = self.turns.iter().map(turn).chain(opening).chain(closing).collect();
-        match self.refused {
-            [true, false] => return format!("from {above} on states are answered"),
-            [false, true] => return format!("from {above} on states are refused"),
-            [true, true] => return "states are refused for another reason".to_owned(),
-            [false, false] => {}
+        let all: Vec<String> = self.ended.iter().map(ends).chain(opening).chain(closing).collect();
+        if all.is_empty() {
+            return "the outcomes change, but no inequality of either side is seen to pass zero".to_owned();
         }
-        match all.is_empty() {
-            true => "the outcomes change, and no inequality of either side is seen to pass zero".to_owned(),
-            false => all.join("; "),
-        }
+        all.join("; ")
     }
 }
 

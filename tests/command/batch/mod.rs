@@ -1,11 +1,10 @@
 //! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary. What a single result says is
 //! checked in `cli`; tables and touchdowns have tests of their own.
 
-use assert_cmd::Command;
+use super::{Run, file, heelstrike_reads, place};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::PathBuf;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 mod memory;
 mod refusals;
@@ -18,40 +17,17 @@ const DISC: &str = r#"<robot name="disc"><link name="disc">
     <collision><geometry><sphere radius="0.5"/></geometry></collision>
 </link></robot>"#;
 
-/// What a run left behind.
-struct Run {
-    status: i32,
-    stdout: Vec<u8>,
-    stderr: String,
-}
-
-impl Run {
-    fn lines(&self) -> Vec<Value> {
-        self.stdout.split(|&byte| byte == b'\n').filter(|line| !line.is_empty()).map(parsed).collect()
-    }
-}
-
-fn parsed(line: &[u8]) -> Value {
-    serde_json::from_slice(line).expect("JSON")
-}
-
-/// A file of this test alone.
-fn file(name: &str, content: impl AsRef<[u8]>) -> String {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&path, content).expect("writable");
-    path.to_str().expect("UTF-8").to_owned()
-}
-
-fn disc(test: &str) -> String {
-    file(&format!("{test}.urdf"), DISC)
+fn disc() -> String {
+    file("disc.urdf", DISC)
 }
 
 /// Runs `heelstrike batch` on a disc.
-fn batch(test: &str, arguments: &[&str], stdin: impl Into<Vec<u8>>) -> Run {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    let output = command.args(["batch", &disc(test)]).args(arguments).write_stdin(stdin).output().expect("it runs");
-    let stderr = String::from_utf8(output.stderr).expect("UTF-8");
-    Run { status: output.status.code().expect("no signal"), stdout: output.stdout, stderr }
+fn batch(arguments: &[&str], stdin: impl Into<Vec<u8>>) -> Run {
+    heelstrike_reads(&[&["batch", &disc()], arguments].concat(), stdin)
+}
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).expect("JSON")
 }
 
 /// A disc that strikes the ground with the tangential speed `x`.
@@ -72,7 +48,7 @@ fn many() -> String {
 
 #[test]
 fn answers_come_in_order_and_refusals_in_their_place() {
-    let run = batch("order", &["-", "--friction", "0.5"], many());
+    let run = batch(&["-", "--friction", "0.5"], many());
     assert_eq!(run.status, 1);
     let answers = run.lines();
     assert_eq!(answers.len(), 2000);
@@ -92,12 +68,10 @@ fn answers_come_in_order_and_refusals_in_their_place() {
 #[test]
 fn the_bytes_do_not_depend_on_threads_or_on_the_way_in() {
     let states = file("bytes.ndjson", many());
-    let summary = |name: &str| PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let run = |threads: &str, input: &str, stdin: String| {
-        let summary = summary(&format!("bytes-{threads}.json"));
-        let arguments =
-            [input, "--friction", "0.5", "--threads", threads, "--summary", summary.to_str().expect("UTF-8")];
-        let run = batch(&format!("bytes-{threads}"), &arguments, stdin);
+        let summary = place(&format!("bytes-{threads}.json"));
+        let arguments = [input, "--friction", "0.5", "--threads", threads, "--summary", &summary];
+        let run = batch(&arguments, stdin);
         (run.stdout, std::fs::read(summary).expect("written"))
     };
     let expected = run("1", &states, String::new());
@@ -105,17 +79,17 @@ fn the_bytes_do_not_depend_on_threads_or_on_the_way_in() {
         assert!(run(threads, &states, String::new()) == expected, "{threads} threads, file");
         assert!(run(threads, "-", many()) == expected, "{threads} threads, pipe");
     }
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
     let stdin = std::fs::File::open(&states).expect("it is there");
-    let arguments = ["batch", &disc("bytes"), "-", "--friction", "0.5"];
+    let arguments = ["batch", &disc(), "-", "--friction", "0.5"];
     let output = command.args(arguments).stdin(stdin).output().expect("it runs");
-    assert!(output.stdout == expected.0, "redirected");
+    assert!(output.stdout == expected.0.as_bytes(), "redirected");
 }
 
 #[test]
 fn refused_lines_are_no_failure_where_that_is_said() {
-    let fails = batch("refused", &["-"], "oops\n");
-    let passes = batch("refused", &["-", "--refused", "ok"], "oops\n");
+    let fails = batch(&["-"], "oops\n");
+    let passes = batch(&["-", "--refused", "ok"], "oops\n");
     assert_eq!((fails.status, passes.status), (1, 0));
     assert_eq!(fails.stdout, passes.stdout);
     assert!(passes.stderr.starts_with("error: expected value\n --> <stdin>:1:1\n"), "{}", passes.stderr);
@@ -123,7 +97,7 @@ fn refused_lines_are_no_failure_where_that_is_said() {
 
 #[test]
 fn many_refusals_do_not_flood_standard_error() {
-    let run = batch("flood", &["-"], "oops\n".repeat(1000));
+    let run = batch(&["-"], "oops\n".repeat(1000));
     assert_eq!((run.status, run.lines().len()), (1, 1000));
     assert_eq!(run.stderr.matches("error: ").count(), 20);
     assert!(run.stderr.contains(" --> <stdin>:20:1\n"), "{}", run.stderr);
@@ -134,17 +108,17 @@ fn many_refusals_do_not_flood_standard_error() {
 #[test]
 fn an_empty_input_gives_an_empty_output() {
     for threads in ["1", "4"] {
-        let run = batch("empty", &["-", "--threads", threads], "");
+        let run = batch(&["-", "--threads", threads], "");
         assert_eq!((run.status, run.stdout.len(), run.stderr.as_str()), (0, 0, ""));
     }
 }
 
 #[test]
 fn line_ends_may_be_of_either_kind_and_the_last_one_is_optional() {
-    let expected = batch("ends", &["-", "--friction", "1"], strike(1, 0.0) + &strike(2, 0.1)).stdout;
+    let expected = batch(&["-", "--friction", "1"], strike(1, 0.0) + &strike(2, 0.1)).stdout;
     for end in ["\n", "\r\n", "\n\n"] {
         let lines = (strike(1, 0.0) + strike(2, 0.1).trim_end()).replace('\n', end);
-        let run = batch("ends", &["-", "--friction", "1"], lines);
+        let run = batch(&["-", "--friction", "1"], lines);
         assert_eq!((run.status, run.stdout == expected), (0, true), "{end:?}");
     }
 }
@@ -152,14 +126,11 @@ fn line_ends_may_be_of_either_kind_and_the_last_one_is_optional() {
 #[test]
 fn a_long_line_is_read_and_its_refusal_is_short() {
     let blanks = " ".repeat(1 << 20);
-    let run = batch(
-        "long",
-        &["-", "--friction", "1"],
-        strike(1, 0.0).replace(", ", &blanks).replace(':', &format!(":{blanks}")),
-    );
+    let run =
+        batch(&["-", "--friction", "1"], strike(1, 0.0).replace(", ", &blanks).replace(':', &format!(":{blanks}")));
     assert_eq!((run.status, &run.lines()[0]["verdict"]), (0, &json!("unique")));
     let name = "x".repeat(1 << 20);
-    let run = batch("long", &["-"], format!("{{\"{name}\": 1}}\n{}", strike(2, 0.0)));
+    let run = batch(&["-"], format!("{{\"{name}\": 1}}\n{}", strike(2, 0.0)));
     assert_eq!((run.status, run.lines().len()), (1, 2));
     assert!(run.stderr.len() < 5000, "{} bytes", run.stderr.len());
 }
@@ -167,7 +138,7 @@ fn a_long_line_is_read_and_its_refusal_is_short() {
 #[test]
 fn an_endless_line_is_refused_and_the_rest_goes_on() {
     let line = format!("{}\n", "x".repeat((1 << 24) + 1));
-    let run = batch("endless", &["-", "--friction", "1"], strike(1, 0.0) + &line + &strike(3, 0.0));
+    let run = batch(&["-", "--friction", "1"], strike(1, 0.0) + &line + &strike(3, 0.0));
     assert_eq!(run.status, 1);
     let refused = json!({"line": 2, "error": {"message": "the record is longer than 16 MiB",
         "hint": "is a line break or a closing quote missing?"}});
@@ -176,22 +147,22 @@ fn an_endless_line_is_refused_and_the_rest_goes_on() {
 
 // Ends.
 
-fn spawned(test: &str, threads: &str) -> std::process::Child {
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.args(["batch", &disc(test), "-", "--friction", "1", "--threads", threads]);
+fn spawned(threads: &str) -> std::process::Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.args(["batch", &disc(), "-", "--friction", "1", "--threads", threads]);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs")
 }
 
 #[test]
 fn an_answer_does_not_wait_for_the_next_line() {
     for threads in ["1", "2"] {
-        let mut child = spawned("prompt", threads);
+        let mut child = spawned(threads);
         let mut stdin = child.stdin.take().expect("piped");
         let mut answers = BufReader::new(child.stdout.take().expect("piped")).lines();
         for id in 0..3 {
             stdin.write_all(strike(id, 0.0).as_bytes()).expect("it reads");
             let answer = answers.next().expect("an answer").expect("UTF-8");
-            assert_eq!(parsed(answer.as_bytes())["id"], id);
+            assert_eq!(parsed(&answer)["id"], id);
         }
         drop(stdin);
         assert!(answers.next().is_none());
@@ -202,7 +173,7 @@ fn an_answer_does_not_wait_for_the_next_line() {
 #[test]
 fn a_reader_that_has_seen_enough_ends_it_quietly() {
     for threads in ["1", "4"] {
-        let mut child = spawned("head", threads);
+        let mut child = spawned(threads);
         let mut stdin = child.stdin.take().expect("piped");
         // The writer is told by a closed pipe, too.
         let writer = std::thread::spawn(move || while stdin.write_all(strike(1, 0.0).as_bytes()).is_ok() {});
@@ -221,12 +192,12 @@ fn a_full_disk_is_told_with_what_was_written() {
     let told =
         "error: the output cannot be written: No space left on device (os error 28); it ends after 0 whole lines\n";
     for threads in ["1", "4"] {
-        let run = batch("full", &["-", "--friction", "1", "--threads", threads, "-o", "/dev/full"], strike(1, 0.0));
+        let run = batch(&["-", "--friction", "1", "--threads", threads, "-o", "/dev/full"], strike(1, 0.0));
         assert_eq!((run.status, run.stderr.as_str()), (1, told));
         let full = std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
         let states = file(&format!("full-{threads}.ndjson"), strike(1, 0.0));
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"))
-            .args(["batch", &disc("full"), &states, "--friction", "1", "--threads", threads])
+        let output = Command::new(env!("CARGO_BIN_EXE_heelstrike"))
+            .args(["batch", &disc(), &states, "--friction", "1", "--threads", threads])
             .stdout(full)
             .output()
             .expect("it runs");
@@ -237,7 +208,7 @@ fn a_full_disk_is_told_with_what_was_written() {
 #[test]
 fn a_reader_that_is_gone_ends_it_also_while_the_input_is_silent() {
     for threads in ["1", "4"] {
-        let mut child = spawned("gone", threads);
+        let mut child = spawned(threads);
         drop(child.stdout.take());
         // Processes that other tests are just starting hold the pipe for a moment.
         std::thread::sleep(std::time::Duration::from_millis(300));
@@ -269,8 +240,8 @@ fn ended(child: &mut std::process::Child) -> (Option<i32>, String) {
 #[test]
 fn a_failed_output_ends_it_also_while_the_input_is_silent() {
     for threads in ["1", "4"] {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-        command.args(["batch", &disc("silent"), "-", "--friction", "1", "--threads", threads, "-o", "/dev/full"]);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+        command.args(["batch", &disc(), "-", "--friction", "1", "--threads", threads, "-o", "/dev/full"]);
         let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
         let mut stdin = child.stdin.take().expect("piped");
         stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
@@ -285,12 +256,12 @@ fn a_failed_output_ends_it_also_while_the_input_is_silent() {
 fn nothing_that_is_read_or_written_beside_is_replaced() {
     let states = file("spared.ndjson", strike(1, 0.0));
     for arguments in [[&states, "-o", &states], [&states, "--summary", &states]] {
-        assert_eq!(batch("spared", &arguments, "").status, 1, "{arguments:?}");
+        assert_eq!(batch(&arguments, "").status, 1, "{arguments:?}");
     }
     let both = file("both.ndjson", "");
-    assert_eq!(batch("spared", &[&states, "-o", &both, "--summary", &both], "").status, 2);
+    assert_eq!(batch(&[&states, "-o", &both, "--summary", &both], "").status, 2);
     assert_eq!(std::fs::read_to_string(&states).expect("still there"), strike(1, 0.0));
-    let dash = batch("spared", &["-", "--summary", "-"], "");
+    let dash = batch(&["-", "--summary", "-"], "");
     assert!(dash.status == 2 && dash.stderr.contains("--summary: "), "{}", dash.stderr);
 }
 
@@ -302,12 +273,12 @@ fn standard_input_is_not_replaced_under_whatever_name() {
     let _ = std::fs::remove_file(&link);
     std::fs::hard_link(&states, &link).expect("linked");
     let run = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-        command.args(["batch", &disc("redirected"), "-", "--friction", "1"]).args(arguments);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+        command.args(["batch", &disc(), "-", "--friction", "1"]).args(arguments);
         command.stdin(std::fs::File::open(&states).expect("it is there"));
         command
     };
-    let refused = |command: &mut std::process::Command| {
+    let refused = |command: &mut Command| {
         let output = command.output().expect("it runs");
         let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(1) && stderr.contains("is an input of this command"), "{stderr}");

@@ -7,76 +7,34 @@ use super::*;
 fn a_refused_line_is_shown_with_its_place_and_remedy() {
     let lines =
         strike(1, 0.0) + "{\"id\": 2,\t\"velocty\": {}}\r\n\n{\"id\": 3, \"position\": {\"base\": {\"z\": 0.25}}}\n";
-    insta::assert_snapshot!(batch("shown", &["-", "--friction", "1"], lines).stderr, @r#"
-    error: unknown field "velocty"
-     --> <stdin>:2:11
-      |
-    2 | {"id": 2,    "velocty": {}}
-      |              ^^^^^^^^^ velocty
-      |
-    hint: did you mean velocity?
-    error: <stdin>:4:1: link "disc" is 2.500e-1 m deep in the ground, more than the contact tolerance of 5.000e-7 m
-    hint: raise the base by 0.25 m, correct the pose, or accept it by a greater --contact-tolerance
-    3 states: 1 unique, 2 refused
-    smallest margins: 0.77 1 (line 1)
-           1 x disc stick
-    "#);
+    insta::assert_snapshot!("line", batch(&["-", "--friction", "1"], lines).stderr);
 }
 
 #[test]
 fn a_refused_row_is_shown_with_its_place_also_in_the_midst_of_a_row() {
     let table = "id,note,q_base_z,v_base_z\n1,\"two\nlines\",0.5,oops\n2,\u{e9},0,5,-1\n3,x,,1\n4,x,0.5,-1\n";
-    let run = batch("row-shown", &["-", "--input-format", "csv"], table);
+    let run = batch(&["-", "--input-format", "csv"], table);
     assert_eq!(run.status, 1);
-    insta::assert_snapshot!(run.stderr, @r#"
-    error: expected a number, found "oops"
-     --> <stdin>:3:12
-      |
-    3 | lines",0.5,oops
-      |            ^^^^ v_base_z
-    error: the row has 5 fields, the header 4
-     --> <stdin>:4:1
-      |
-    4 | 2,é,0,5,-1
-      | ^
-    error: expected a number, found an empty cell
-     --> <stdin>:5:5
-      |
-    5 | 3,x,,1
-      |     ^ q_base_z
-      |
-    hint: write 0 where it is 0, or leave the column out
-    error: <stdin>:6:1: friction: the friction of link "disc", which touches the ground, is missing
-    hint: add a column friction, or give --friction 0.8 (or infinite)
-    4 states: 4 refused
-    "#);
+    insta::assert_snapshot!("row", run.stderr);
     // Rows that follow each other in time are refused on another way, and shown alike.
     let timed = table.replace("note", "time").replace("\"two\nlines\"", "\"0\n\"").replace(",x,", ",1,");
-    let run = batch("row-in-time", &["-", "--input-format", "csv", "--touchdowns", "--friction", "1"], timed);
+    let run = batch(&["-", "--input-format", "csv", "--touchdowns", "--friction", "1"], timed);
     assert!(run.stderr.contains("3 | \",0.5,oops\n  |       ^^^^ v_base_z\n"), "{}", run.stderr);
 }
 
 #[test]
 fn a_line_that_is_cut_off_is_marked_at_its_end() {
     for end in ["", "\n", "\r\n", "  \n{}\n"] {
-        let run = batch("cut", &["-", "--friction", "1"], format!("{{\"position\": {{\"base\": {{\"z\":{end}"));
+        let run = batch(&["-", "--friction", "1"], format!("{{\"position\": {{\"base\": {{\"z\":{end}"));
         assert!(run.stderr.contains(" --> <stdin>:1:27\n"), "{end:?}: {}", run.stderr);
     }
 }
 
 #[test]
 fn a_refused_header_is_shown_on_its_own_line() {
-    let run = batch("header", &["-", "--input-format", "csv"], "\n  \nid,q_base_zz,v_base_z\n1,0.5,-1\n");
+    let run = batch(&["-", "--input-format", "csv"], "\n  \nid,q_base_zz,v_base_z\n1,0.5,-1\n");
     assert_eq!((run.status, run.stdout.len()), (1, 0));
-    insta::assert_snapshot!(run.stderr, @r#"
-    error: the robot has no coordinate named "base_zz"
-     --> <stdin>:3:4
-      |
-    3 | id,q_base_zz,v_base_z
-      |    ^^^^^^^^^ column 2
-      |
-    hint: did you mean q_base_z?
-    "#);
+    insta::assert_snapshot!("header", run.stderr);
 }
 
 #[test]
@@ -90,7 +48,7 @@ fn a_refusal_of_a_long_record_shows_a_short_piece() {
         (row, &["-", "--input-format", "csv"], "0.5,oops,xxx"),
         (name, &["-", "--input-format", "csv"], "id,q_xxx"),
     ] {
-        let run = batch("long-record", arguments, input);
+        let run = batch(arguments, input);
         assert_eq!(run.status, 1);
         assert!(run.stderr.len() < 1500, "{} bytes: {}", run.stderr.len(), run.stderr);
         assert!(run.stderr.contains(shown), "{}", run.stderr);
@@ -105,7 +63,7 @@ fn a_long_id_is_cut_where_it_is_repeated_and_whole_in_its_result() {
         "{{\"id\": \"{id}\", \"position\": {{\"base\": {{\"z\": 0.5}}}}, \"velocity\": {{\"base\": {{\"z\": -1}}}}}}\n"
     );
     let lines = good.replace("\"z\": -1", "\"z\": \"-1\"") + &good;
-    let run = batch("long-id", &["-", "--friction", "1"], lines);
+    let run = batch(&["-", "--friction", "1"], lines);
     let answers = run.lines();
     assert_eq!(answers[0]["id"], format!("{}... (cut)", &id[..200]));
     assert_eq!(answers[1]["id"], id);
@@ -134,7 +92,7 @@ const FOREIGN: [(&[u8], &str, &str); 11] = [
 #[test]
 fn an_input_of_another_form_is_refused_as_a_whole() {
     for (input, form, told) in FOREIGN {
-        let run = batch("foreign", &["-", "--input-format", form], input);
+        let run = batch(&["-", "--input-format", form], input);
         assert_eq!((run.status, run.stdout.len()), (1, 0), "{told}");
         assert!(run.stderr.starts_with(told), "{}", run.stderr);
     }
@@ -143,7 +101,7 @@ fn an_input_of_another_form_is_refused_as_a_whole() {
 #[test]
 fn a_header_without_end_is_told_so() {
     let header = format!("\nid,\"{}", "x".repeat((1 << 24) + 1));
-    let run = batch("endless-header", &["-", "--input-format", "csv"], header);
+    let run = batch(&["-", "--input-format", "csv"], header);
     let told =
         "error: <stdin>:2:1: the record is longer than 16 MiB\nhint: is a line break or a closing quote missing?\n";
     assert_eq!((run.status, run.stdout.len(), run.stderr.as_str()), (1, 0, told));
@@ -151,7 +109,7 @@ fn a_header_without_end_is_told_so() {
 
 #[test]
 fn lines_that_are_no_states_of_their_own_get_a_remedy() {
-    let hint = |input: &str| batch("remedy", &["-"], input).lines()[0]["error"]["hint"].clone();
+    let hint = |input: &str| batch(&["-"], input).lines()[0]["error"]["hint"].clone();
     let indented = "{\n  \"friction\": 1\n}\n";
     assert_eq!(hint(indented), "each line must hold a whole state; `jq -c .` writes JSON so");
     let list = "each line must hold one state; `jq -c '.[]'` takes a list apart";
@@ -163,7 +121,7 @@ fn lines_that_are_no_states_of_their_own_get_a_remedy() {
 #[test]
 fn missing_friction_is_told_in_the_words_of_the_form() {
     let hint = |arguments: &[&str], input: String| {
-        batch("no-friction", &[&["-"], arguments].concat(), input).lines()[0]["error"]["hint"].clone()
+        batch(&[&["-"], arguments].concat(), input).lines()[0]["error"]["hint"].clone()
     };
     assert_eq!(hint(&[], strike(1, 0.0)), "add \"friction\": 0.8 to the state, or --friction 0.8 (or infinite)");
     let table = "q_base_z,v_base_z\n0.5,-1\n".to_owned();
@@ -173,21 +131,21 @@ fn missing_friction_is_told_in_the_words_of_the_form() {
 #[test]
 fn a_byte_order_mark_belongs_to_no_name_and_no_line() {
     let quoted = "\u{feff}\"id\nof the state\",\"q_base_z\",\"v_base_z\"\n1,0.5,-1\n";
-    let run = batch("bom", &["-", "--input-format", "csv", "--friction", "1"], quoted);
+    let run = batch(&["-", "--input-format", "csv", "--friction", "1"], quoted);
     assert_eq!((run.status, &run.lines()[0]["carried"]), (0, &json!({"id\nof the state": "1"})), "{}", run.stderr);
-    let run = batch("bom", &["-", "--friction", "1"], format!("\u{feff}{}", strike(1, 0.0)));
+    let run = batch(&["-", "--friction", "1"], format!("\u{feff}{}", strike(1, 0.0)));
     assert_eq!((run.status, run.lines().len()), (0, 1), "{}", run.stderr);
 }
 
 #[test]
 fn a_table_without_any_line_has_no_states_like_an_empty_text() {
     for input in ["", "\n \n"] {
-        let run = batch("empty-table", &["-", "--input-format", "csv"], input);
+        let run = batch(&["-", "--input-format", "csv"], input);
         assert_eq!((run.status, run.stdout.len(), run.stderr.as_str()), (0, 0, ""));
         for form in ["csv", "ndjson"] {
-            let run = batch("empty-table", &["-", "--input-format", form, "--output-format", "csv"], input);
+            let run = batch(&["-", "--input-format", form, "--output-format", "csv"], input);
             assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-            assert!(run.stdout.starts_with(b"id,verdict,") && run.stdout.ends_with(b",error\n"), "the header alone");
+            assert!(run.stdout.starts_with("id,verdict,") && run.stdout.ends_with(",error\n"), "the header alone");
         }
     }
 }

@@ -13,9 +13,9 @@ fn discs() -> String {
 #[test]
 fn the_summary_counts_and_names() {
     let path = file("summary.json", "what was there before");
-    let run = batch("summary", &["-", "--friction", "0.5", "--summary", &path], discs());
+    let run = batch(&["-", "--friction", "0.5", "--summary", &path], discs());
     assert_eq!(run.status, 1);
-    let mut summary = parsed(&std::fs::read(path).expect("written"));
+    let mut summary = parsed(&std::fs::read_to_string(path).expect("written"));
     let margins: Vec<f64> = summary["smallest_margins"]
         .as_array_mut()
         .expect("a list")
@@ -60,16 +60,16 @@ all outcomes slide for want of friction: 2; most is needed by 3 (line 3): 2.000
 
 #[test]
 fn a_single_state_has_a_summary_only_where_it_is_asked_for() {
-    assert_eq!(batch("single", &["-", "--friction", "1"], strike(1, 0.0)).stderr, "");
+    assert_eq!(batch(&["-", "--friction", "1"], strike(1, 0.0)).stderr, "");
     let path = file("single.json", "");
-    let run = batch("single", &["-", "--friction", "1", "--summary", &path], strike(1, 0.0));
+    let run = batch(&["-", "--friction", "1", "--summary", &path], strike(1, 0.0));
     assert!(run.stderr.starts_with("1 state: 1 unique\n"), "{}", run.stderr);
-    assert_eq!(parsed(&std::fs::read(path).expect("written"))["states"], 1);
+    assert_eq!(parsed(&std::fs::read_to_string(path).expect("written"))["states"], 1);
 }
 
 #[test]
 fn a_summary_that_cannot_be_written_is_told_before_the_work() {
-    let run = batch("unwritable", &["-", "--summary", "nowhere/at/all.json"], strike(1, 0.0));
+    let run = batch(&["-", "--summary", "nowhere/at/all.json"], strike(1, 0.0));
     assert_eq!((run.status, run.stdout.len()), (1, 0));
     assert!(run.stderr.starts_with("error: the output cannot be written: nowhere/at/all.json: "), "{}", run.stderr);
 }
@@ -78,9 +78,7 @@ fn a_summary_that_cannot_be_written_is_told_before_the_work() {
 #[test]
 fn the_example_s_walk_has_its_two_touchdowns() {
     let arguments = ["examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9", "--brief"];
-    let binary = std::path::Path::new(env!("CARGO_BIN_EXE_heelstrike"));
-    let run = std::process::Command::new(binary).args(["batch", "urdf/ramone.urdf"]).args(arguments).output();
-    let told = String::from_utf8(run.expect("it runs").stderr).expect("UTF-8");
+    let told = heelstrike_reads(&[&["batch", "urdf/ramone.urdf"], &arguments[..]].concat(), "").stderr;
     assert!(told.contains("102 states: 2 unique, 100 without impact\n"), "{told}");
     assert!(told.contains("smallest margins: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)\n"), "{told}");
 }

@@ -16,36 +16,16 @@ const VARIABLE: &str = "HEELSTRIKE_BROWSER";
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Stands before the page's own script: keeps errors, and whatever the page's policy forbids, as a request would be.
-const LISTENER: &str = r#"<script>
-    const wrong = [];
-    addEventListener("error", (event) => wrong.push(String(event.message)));
-    addEventListener("securitypolicyviolation", (event) => wrong.push(`${event.violatedDirective} ${event.blockedURI}`));
-    for (const kind of ["error", "warn"]) console[kind] = (...what) => wrong.push(what.join(" "));
-    globalThis.alert = (what) => wrong.push(`alert ${what}`);
-</script>"#;
+const LISTENER: &str = include_str!("scripts/listener.js");
 
 /// Stands at the page's end, before the test's script.
-const TOOLS: &str = r#"
-    const one = (selector) => document.querySelector(selector);
-    const all = (selector) => [...document.querySelectorAll(selector)];
-    const press = (...keys) => keys.forEach((key) => (document.activeElement ?? document.body).dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true })));
-    const slide = (axis, stop) => { const input = one(`#axis${axis}`); input.value = stop; input.dispatchEvent(new Event("input", { bubbles: true })); };
-    const middle = (element) => { const box = element.getBoundingClientRect(); return box.left + box.width / 2; };
-    const text = (selector) => one(selector)?.textContent ?? null;
-    const found = (what) => {
-        const all = JSON.stringify({ ...what, wrong, loaded: performance.getEntriesByType("resource").length });
-        const place = document.createElement("pre");
-        place.id = "found";
-        place.textContent = encodeURIComponent(all);
-        document.body.append(place);
-    };
-"#;
+const TOOLS: &str = include_str!("scripts/tools.js");
 
 /// What `script` finds in the page of this file, in a window of this size; none, which is told, where there is no browser.
 pub fn found(page: &Path, window: (u32, u32), script: &str) -> Option<Value> {
     let browser = browser()?;
     let html = std::fs::read_to_string(page).expect("a page");
-    let html = html.replacen("<head>", &format!("<head>{LISTENER}"), 1);
+    let html = html.replacen("<head>", &format!("<head><script>{LISTENER}</script>"), 1);
     let (html, end) = html.rsplit_once("</body>").expect("a body");
     let name = page.file_stem().and_then(|name| name.to_str()).expect("a name");
     let number = std::thread::current().id();

@@ -1,7 +1,7 @@
 //! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
 
 use super::browser::found;
-use super::{data, heelstrike, hostile, near_a_border, page, study, swept};
+use super::{data, file, heelstrike, hostile, near_a_border, page, swept};
 use serde_json::{Value, json};
 
 const WINDOW: (u32, u32) = (1280, 800);
@@ -23,28 +23,8 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
 
 #[test]
 fn keys_and_slider_move_the_robot_and_the_cursor() {
-    let (_, path) = swept("urdf/minimalistic.urdf", &study("keys.json", &near_a_border()), "keys.html");
-    let script = r##"
-        const seen = () => ({
-            stop: Number(one("#axis0").value), alpha: Number(text("output")), told: one("#axis0").getAttribute("aria-valuetext"),
-            hip: one(".joint").getAttribute("cy"), badge: text(".badge"), cursors: all("line.cursor").map(middle),
-        });
-        const steps = {};
-        const then = (name, act) => { act(); steps[name] = seen(); };
-        then("start", () => {});
-        then("right", () => press("ArrowRight"));
-        then("left", () => press("ArrowLeft"));
-        then("before", () => press("ArrowLeft"));
-        then("border", () => press("PageUp"));
-        then("back", () => press("PageDown"));
-        then("end", () => press("End"));
-        then("behind", () => press("ArrowUp"));
-        then("slide", () => slide(0, 2));
-        then("home", () => press("Home"));
-        // The shaded parts of a panel, from left to right.
-        const boxes = all("#plots g[clip-path]").map((group) => group.querySelector("path").getBoundingClientRect());
-        found({ steps, regions: boxes.map(({ left, right }) => [left, right]), windows: all("line.cursor").length });
-    "##;
+    let (_, path) = swept("urdf/minimalistic.urdf", &near_a_border(), "keys.html");
+    let script = include_str!("scripts/keys.js");
     let Some(found) = found(&path, WINDOW, script) else { return };
     let steps = &found["steps"];
     let step = |name: &str, of: &str| steps[name][of].as_f64().expect("a number");
@@ -81,34 +61,13 @@ fn outcomes_are_those_of_the_tool() {
     let robot = "urdf/minimalistic.urdf";
     let example = "examples/paper/figures_3_and_6.json";
     let (_, path) = page(&["sweep", robot, example], "", "outcomes.html");
-    let (_, json, _) = heelstrike(&["sweep", robot, example, "--format", "json"], "");
-    let sweep: Value = serde_json::from_str(&json).expect("JSON");
+    let sweep = heelstrike(&["sweep", robot, example, "--format", "json"]).line();
     let samples = sweep["samples"].as_array().expect("samples");
     // Three outcomes.
     let sample = &samples[45];
     let outcomes = sample["result"]["outcomes"].as_array().expect("outcomes");
     assert_eq!(outcomes.len(), 3);
-    let script = format!(
-        r##"
-        const alpha = {};
-        press("Home");
-        while (Number(text("output")) < alpha) press("ArrowRight");
-        const shown = () => all("tbody").map((body) => ({{
-            words: body.querySelector("th").textContent, faded: body.className, pressed: body.querySelector("button").getAttribute("aria-pressed"),
-            numbers: [...body.querySelectorAll("tr:not(:first-child)")].map((row) => [...row.cells].slice(1).map((cell) => cell.textContent)),
-        }}));
-        const everything = shown();
-        press("2");
-        const second = shown();
-        const effects = all(".effect").map((effect) => effect.getAttribute("class"));
-        press("9");
-        const none = shown();
-        one("button[data-outcome='3']").click();
-        const third = shown();
-        found({{ alpha: Number(text("output")), sentence: text(".sentence"), everything, second, none, third, effects, status: text("#status") }});
-        "##,
-        sample["alpha"]
-    );
+    let script = format!("const alpha = {};{}", sample["alpha"], include_str!("scripts/outcomes.js"));
     let Some(found) = found(&path, WINDOW, &script) else { return };
     assert_eq!(found["alpha"], sample["alpha"]);
     assert_eq!(found["sentence"], "DThree outcomes are equally valid. Proven.");
@@ -152,24 +111,8 @@ fn a_map_is_walked_in_both_directions() {
     let mut grid = near_a_border();
     grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 5});
     grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
-    let (_, path) = swept("urdf/minimalistic.urdf", &study("map.json", &grid), "map.html");
-    let script = r##"
-        const seen = () => [Number(all("output")[0].textContent), Number(all("output")[1].textContent), text(".badge")];
-        const dot = () => { const { left, right, top, bottom } = one("circle.cursor").getBoundingClientRect(); return [(left + right) / 2, (top + bottom) / 2]; };
-        const start = [...seen(), ...dot()];
-        press("ArrowUp");
-        const up = [...seen(), ...dot()];
-        press("End", "PageDown");
-        const beyond = seen();
-        press("End", "ArrowUp", "ArrowUp", "ArrowUp", "ArrowUp");
-        const last = [...seen(), ...dot()];
-        // A click beside the middle of the map.
-        const [x, y] = [start[3] + 0.52 * (last[3] - start[3]), start[4] + 0.48 * (last[4] - start[4])];
-        one("#plots svg").dispatchEvent(new PointerEvent("pointerdown", { clientX: x, clientY: y, buttons: 1, bubbles: true }));
-        const clicked = [...seen(), ...dot()];
-        slide(1, 0);
-        found({ start, up, beyond, last, clicked, slid: seen() });
-    "##;
+    let (_, path) = swept("urdf/minimalistic.urdf", &grid, "map.html");
+    let script = include_str!("scripts/map.js");
     let Some(found) = found(&path, WINDOW, script) else { return };
     let pair = |name: &str| (found[name][0].as_f64(), found[name][1].as_f64());
     assert_eq!(pair("start"), (Some(0.5), Some(-2.0)));
@@ -190,13 +133,7 @@ fn a_gait_is_walked_from_impact_to_impact() {
     let walk =
         ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9"];
     let (_, path) = page(&walk, "", "walk.html");
-    let script = r##"
-        const seen = () => ({ time: Number(text("output")), name: text(".name"), badge: text(".badge"), words: text("th.outcome"), x: middle(one(".contact")) });
-        const list = [seen()];
-        for (let k = 0; k < 3; k += 1) { press("PageUp"); list.push(seen()); }
-        press("End");
-        found({ list, end: seen(), track: all(".track span").length });
-    "##;
+    let script = include_str!("scripts/batch.js");
     let Some(found) = found(&path, WINDOW, script) else { return };
     assert_eq!(found["list"][2]["name"], "gait/050, line 52");
     assert_eq!(found["list"][2]["badge"], "unique");
@@ -213,14 +150,10 @@ fn what_is_refused_says_why() {
         "parameters": {"z": {"from": 0.3, "to": 0.6, "steps": 4}},
         "state": {"position": {"base": {"z": "z"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5}
     });
-    let study = study("refused.json", &height);
-    let args = ["sweep", "urdf/ramone.urdf", study.to_str().expect("UTF-8"), "--contact-tolerance", "0.01"];
+    let study = file("refused.json", height.to_string());
+    let args = ["sweep", "urdf/ramone.urdf", &study, "--contact-tolerance", "0.01"];
     let (_, path) = page(&args, "", "refused.html");
-    let script = r##"
-        const refused = { scene: one("#scene").textContent, sentence: text(".sentence"), bodies: all(".body").length };
-        press("End");
-        found({ refused, answered: { sentence: text(".sentence"), bodies: all(".body").length } });
-    "##;
+    let script = include_str!("scripts/refused.js");
     let Some(found) = found(&path, WINDOW, script) else { return };
     assert_eq!(
         (&found["refused"]["scene"], &found["refused"]["bodies"]),
@@ -251,11 +184,7 @@ fn hostile_names_are_shown_and_not_run() {
 #[test]
 fn pages_fit_into_narrow_and_wide_windows() {
     let (_, path) = page(&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"], "", "fits.html");
-    let script = r##"
-        press("End", "PageDown");
-        const inside = (element) => { const { left, right } = element.getBoundingClientRect(); return left >= 0 && right <= innerWidth; };
-        found({ width: document.documentElement.scrollWidth, window: innerWidth, inside: ["#axis0", "#scene", "#answer", "#plots svg", ".track"].map((part) => inside(one(part))) });
-    "##;
+    let script = include_str!("scripts/fits.js");
     for window in [(390, 844), (1280, 800)] {
         let Some(found) = found(&path, window, script) else { return };
         assert_eq!(found["inside"], json!([true, true, true, true, true]), "{window:?}");

@@ -6,34 +6,19 @@
 mod browser;
 mod live;
 
-use assert_cmd::Command;
+use super::{file, heelstrike, heelstrike_reads, place};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// The largest page of 400 samples of RAMone \[bytes\].
 const LARGEST: usize = 3_000_000;
 
-/// A file of these tests alone.
-fn file(name: &str) -> PathBuf {
-    let directory = std::env::temp_dir().join(format!("heelstrike-page-{}", std::process::id()));
-    std::fs::create_dir_all(&directory).expect("a directory");
-    directory.join(name)
-}
-
-/// Runs the binary: exit status, standard output and standard error.
-fn heelstrike(args: &[&str], stdin: &str) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    let output = command.args(args).write_stdin(stdin).output().expect("the command runs");
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    (output.status.code().expect("no signal"), text(output.stdout), text(output.stderr))
-}
-
 /// The page that a command writes, and where it is.
 fn page(args: &[&str], stdin: &str, name: &str) -> (String, PathBuf) {
-    let path = file(name);
-    let run = heelstrike(&[args, &["--plot", path.to_str().expect("UTF-8")]].concat(), stdin);
-    assert!(path.exists(), "{}", run.2);
-    (std::fs::read_to_string(&path).expect("UTF-8"), path)
+    let path = place(name);
+    let run = heelstrike_reads(&[args, &["--plot", &path]].concat(), stdin);
+    let page = std::fs::read_to_string(&path).unwrap_or_else(|_| panic!("{}", run.stderr));
+    (page, path.into())
 }
 
 /// The page's data.
@@ -41,13 +26,6 @@ fn data(page: &str) -> Value {
     let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).expect("data");
     let (data, _) = rest.split_once("</script>").expect("their end");
     serde_json::from_str(data).expect("JSON")
-}
-
-/// A study as a file.
-fn study(name: &str, study: &Value) -> PathBuf {
-    let path = file(name);
-    std::fs::write(&path, study.to_string()).expect("written");
-    path
 }
 
 /// The minimalistic biped beside its border at pi / 6, where its trailing foot stops sliding.
@@ -63,8 +41,9 @@ fn near_a_border() -> Value {
     })
 }
 
-fn swept(robot: &str, study: &Path, name: &str) -> (String, PathBuf) {
-    page(&["sweep", robot, study.to_str().expect("UTF-8")], "", name)
+fn swept(robot: &str, study: &Value, name: &str) -> (String, PathBuf) {
+    let study = file(&name.replace("html", "json"), study.to_string());
+    page(&["sweep", robot, &study], "", name)
 }
 
 /// A robot whose link and study whose parameter do their best to leave their places.
@@ -77,17 +56,16 @@ fn hostile() -> (String, PathBuf) {
             <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
             <collision><geometry><sphere radius="0.5"/></geometry></collision></link></robot>"#
     );
-    let robot = file("hostile.urdf");
-    std::fs::write(&robot, urdf).expect("written");
+    let robot = file("hostile.urdf", urdf);
     let state =
         json!({"id": HOSTILE, "position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1}}, "friction": 1});
     let states = format!("{state}\n{}\n", json!({"id": "{data}", "position": {"base": {"z": 0.5, "{program}": 1}}}));
-    page(&["batch", robot.to_str().expect("UTF-8"), "-"], &states, "hostile.html")
+    page(&["batch", &robot, "-"], &states, "hostile.html")
 }
 
 #[test]
 fn the_data_of_a_small_study() {
-    let (page, _) = swept("urdf/minimalistic.urdf", &study("small.json", &near_a_border()), "small.html");
+    let (page, _) = swept("urdf/minimalistic.urdf", &near_a_border(), "small.html");
     let mut data = data(&page);
     // What is found beside a border hangs on the last digits of its place.
     let samples = [0, 5, 8].map(|sample| data["frames"][sample].take());
@@ -104,7 +82,7 @@ fn the_data_of_a_small_study() {
 
 #[test]
 fn a_page_stops_at_samples_and_within_every_region() {
-    let (page, _) = swept("urdf/minimalistic.urdf", &study("stops.json", &near_a_border()), "stops.html");
+    let (page, _) = swept("urdf/minimalistic.urdf", &near_a_border(), "stops.html");
     let data = data(&page);
     let stops: Vec<f64> = serde_json::from_value(data["axes"][0]["values"].clone()).expect("numbers");
     let border = std::f64::consts::FRAC_PI_6;
@@ -123,7 +101,7 @@ fn a_page_stops_at_samples_and_within_every_region() {
 
 #[test]
 fn nothing_is_loaded() {
-    let (page, _) = swept("urdf/minimalistic.urdf", &study("alone.json", &near_a_border()), "alone.html");
+    let (page, _) = swept("urdf/minimalistic.urdf", &near_a_border(), "alone.html");
     assert!(page.contains(r#"content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'""#));
     let named = page.matches("://").count();
     let spaces = page.matches(r#""http://www.w3.org/2000/svg""#).count();
@@ -150,8 +128,7 @@ fn names_stay_names() {
 #[test]
 fn four_hundred_samples_of_ramone_are_small() {
     let text = std::fs::read_to_string("examples/paper/table_1.json").expect("the study");
-    let dense = file("dense.json");
-    std::fs::write(&dense, text.replace(r#""steps": 50"#, r#""steps": 400"#)).expect("written");
+    let dense = serde_json::from_str(&text.replace(r#""steps": 50"#, r#""steps": 400"#)).expect("JSON");
     let (page, _) = swept("urdf/ramone_paper.urdf", &dense, "dense.html");
     assert!(page.len() < LARGEST, "{} bytes", page.len());
     let data = data(&page);
@@ -166,7 +143,7 @@ fn two_parameters_make_a_grid_that_is_thinned_where_it_is_too_fine() {
         grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 2});
         grid["parameters"]["alpha"]["steps"] = json!(steps);
         grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
-        let (page, _) = swept("urdf/minimalistic.urdf", &study("grid.json", &grid), "grid.html");
+        let (page, _) = swept("urdf/minimalistic.urdf", &grid, "grid.html");
         data(&page)
     };
     let axis = |data: &Value, axis: usize| data["axes"][axis]["values"].as_array().expect("numbers").clone();
@@ -194,12 +171,11 @@ fn a_long_batch_is_thinned_evenly_and_says_so() {
 #[test]
 fn a_batch_writes_the_same_results_beside_its_page() {
     let args = ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6"];
-    let (_, alone, _) = heelstrike(&args, "");
-    let path = file("same.html");
+    let alone = heelstrike(&args).stdout;
+    let path = place("same.html");
     let run = |threads| {
-        let page = ["--threads", threads, "--plot", path.to_str().expect("UTF-8")];
-        let (_, beside, _) = heelstrike(&[&args[..], &page].concat(), "");
-        assert_eq!(alone, beside);
+        let page = ["--threads", threads, "--plot", &path];
+        assert_eq!(alone, heelstrike(&[&args[..], &page].concat()).stdout);
         std::fs::read(&path).expect("a page")
     };
     assert_eq!(run("1"), run("4"));
@@ -209,20 +185,19 @@ fn a_batch_writes_the_same_results_beside_its_page() {
 fn a_batch_draws_its_margins_as_svg() {
     let args =
         ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9"];
-    let path = file("walk.svg");
-    let (status, ..) = heelstrike(&[&args[..], &["--plot", path.to_str().expect("UTF-8")]].concat(), "");
+    let path = place("walk.svg");
+    let status = heelstrike(&[&args[..], &["--plot", &path]].concat()).status;
     assert_eq!(status, 0);
     insta::assert_snapshot!("walk", std::fs::read_to_string(&path).expect("an SVG").replace("><", ">\n<"));
 }
 
 #[test]
 fn a_page_of_nothing_is_refused() {
-    let path = file("nothing.html");
-    let (status, _, told) =
-        heelstrike(&["batch", "urdf/ramone.urdf", "-", "--plot", path.to_str().expect("UTF-8")], "");
-    assert_eq!(status, 1);
-    assert_eq!(told, "error: --plot: there is nothing to draw\nhint: the input holds no states\n");
-    assert!(!path.exists());
+    let path = place("nothing.html");
+    let run = heelstrike(&["batch", "urdf/ramone.urdf", "-", "--plot", &path]);
+    assert_eq!(run.status, 1);
+    assert_eq!(run.stderr, "error: --plot: there is nothing to draw\nhint: the input holds no states\n");
+    assert!(!Path::new(&path).exists());
 }
 
 #[test]
@@ -232,15 +207,15 @@ fn other_commands_say_who_writes_pages() {
         &["inspect", "urdf/ramone.urdf"],
         &["accuracy", "--case", "massless", "--time", "0"],
     ] {
-        let (status, out, told) = heelstrike(&[args, &["--plot", "report.html"]].concat(), "");
-        assert_eq!((status, out.as_str()), (2, ""), "{args:?}");
-        assert!(told.contains("interactive pages are written by `sweep` and `batch`"), "{told}");
+        let run = heelstrike(&[args, &["--plot", "report.html"]].concat());
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{args:?}");
+        assert!(run.stderr.contains("interactive pages are written by `sweep` and `batch`"), "{}", run.stderr);
     }
     for args in
         [&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"][..], &["batch", "urdf/ramone.urdf", "-"]]
     {
-        let (status, out, told) = heelstrike(&[args, &["--plot", "report.htm"]].concat(), "");
-        assert_eq!((status, out.as_str()), (2, ""), "{args:?}");
-        assert!(told.contains("an interactive page as .html"), "{told}");
+        let run = heelstrike(&[args, &["--plot", "report.htm"]].concat());
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{args:?}");
+        assert!(run.stderr.contains("an interactive page as .html"), "{}", run.stderr);
     }
 }

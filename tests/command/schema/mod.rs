@@ -3,7 +3,7 @@
 //! Inputs: a full sample is changed in every place and in every way; schema and reader must agree about each. Results: every
 //! form of result that the command writes must be valid, and not with a field more or less.
 
-use assert_cmd::Command;
+use super::heelstrike_reads;
 use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};
 use heelstrike::write::schema;
@@ -21,9 +21,7 @@ fn robot() -> Robot {
 
 /// What the command writes, whatever its exit status.
 fn written(arguments: &[&str], stdin: &str) -> String {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    let output = command.args(arguments).write_stdin(stdin).output().expect("the command runs");
-    String::from_utf8(output.stdout).expect("UTF-8")
+    heelstrike_reads(arguments, stdin).stdout
 }
 
 /// The sample, each of its values replaced by each of some others, left out, and each object with an unknown field.

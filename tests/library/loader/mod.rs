@@ -10,7 +10,6 @@ use std::f64::consts::FRAC_PI_2;
 
 mod base;
 mod plane;
-mod refusals;
 mod untidy;
 
 fn model(name: &str) -> Robot {

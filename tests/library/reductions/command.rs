@@ -1,19 +1,12 @@
 //! `--no-reduction` on the command line, and what results tell of it.
 
-use assert_cmd::Command;
+use crate::support::command::heelstrike_reads;
 use serde_json::{Value, json};
 
-const RAMONE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/ramone.urdf");
+const RAMONE: &str = "urdf/ramone.urdf";
 
 fn run(arguments: &[&str], input: &Value) -> Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_heelstrike"))
-        .args(arguments)
-        .write_stdin(input.to_string())
-        .output()
-        .expect("the binary starts");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {stderr}");
-    serde_json::from_slice(&output.stdout).expect("one line of JSON")
+    heelstrike_reads(arguments, input.to_string()).well().line()
 }
 
 fn state(friction: Value) -> Value {

@@ -1,10 +1,9 @@
 //! Runs `heelstrike sweep` on a study and reads what it writes.
 
-use assert_cmd::Command;
+use crate::support::command::{Run, heelstrike_reads};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::time::Duration;
 
 /// What is written as JSON, as far as the tests read it.
 #[derive(Debug, Clone, Deserialize)]
@@ -41,26 +40,15 @@ pub struct Turn {
     pub valid: String,
 }
 
-/// What a run of the command leaves.
-pub struct Run {
-    pub status: Option<i32>,
-    pub stdout: String,
-    pub stderr: String,
-}
-
 /// Runs `heelstrike sweep ROBOT -` with more arguments; the study goes to standard input.
 pub fn run(robot: &str, study: &Value, arguments: &[&str]) -> Run {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.args(["sweep", robot, "-"]).args(arguments).write_stdin(study.to_string());
-    let output = command.timeout(Duration::from_secs(300)).output().expect("the binary starts");
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    Run { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    heelstrike_reads(&[&["sweep", robot, "-"], arguments].concat(), study.to_string())
 }
 
 /// The regions, borders and samples of a study that is answered everywhere.
 pub fn sweep(robot: &str, study: &Value) -> Sweep {
     let Run { status, stdout, stderr } = run(robot, study, &["--format", "json"]);
-    assert_eq!(status, Some(0), "{study}\n{stderr}");
+    assert_eq!(status, 0, "{study}\n{stderr}");
     serde_json::from_str(&stdout).unwrap_or_else(|error| panic!("{error}: {stdout}"))
 }
 

@@ -1,17 +1,14 @@
 //! What is written: samples, tables, text, endings, and what happens to refused samples.
 
-use crate::sweep::command::{Run, run, sweep};
+use crate::support::command::{Run, heelstrike_reads, place};
+use crate::sweep::command::{run, sweep};
 use crate::sweep::walkers::{kneed, straight};
-use assert_cmd::Command;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
 /// What `impact` writes of a state, as JSON.
 fn impact(robot: &str, state: &Value, arguments: &[&str]) -> Value {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.args(["impact", robot, "-", "--format", "json"]).args(arguments).write_stdin(state.to_string());
-    let output = command.output().expect("the binary starts");
-    serde_json::from_slice(&output.stdout).expect("a line of JSON")
+    heelstrike_reads(&[&["impact", robot, "-", "--format", "json"], arguments].concat(), state.to_string()).line()
 }
 
 #[test]
@@ -22,7 +19,7 @@ fn every_sample_is_the_result_of_impact_for_the_same_numbers() {
         study["state"]["id"] = json!("alpha");
         let Run { status, stdout, stderr } =
             run("urdf/ramone.urdf", &study, &[&["--format", "json"], arguments].concat());
-        assert_eq!(status, Some(0), "{stderr}");
+        assert_eq!(status, 0, "{stderr}");
         let written: Value = serde_json::from_str(&stdout).expect("JSON");
         let samples = written["samples"].as_array().expect("a list");
         assert_eq!(samples.len(), 7);
@@ -71,7 +68,7 @@ fn samples_on_borders_make_no_regions_of_their_own() {
 #[test]
 fn text_is_for_people() {
     let run = run("urdf/minimalistic.urdf", &straight(None), &[]);
-    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
     insta::assert_snapshot!("minimalistic", run.stdout);
 }
 
@@ -86,7 +83,7 @@ fn partly_refused() -> Value {
 #[test]
 fn refused_samples_stand_in_their_place_and_the_rest_goes_on() {
     let Run { status, stdout, stderr } = run("urdf/block.urdf", &partly_refused(), &["--format", "json"]);
-    assert_eq!(status, Some(1));
+    assert_eq!(status, 1);
     assert!(stderr.contains("the expression has no value"), "{stderr}");
     let found: Value = serde_json::from_str(&stdout).expect("JSON");
     let regions = found["regions"].as_array().expect("a list");
@@ -116,7 +113,7 @@ fn a_refused_region_with_an_answered_middle_says_why_it_is_refused() {
         "state": {"position": {"base": {"z": "1 + sqrt(max(p - 0.6, 1e-14 - (p - 0.3)^2))"}}, "friction": 1},
     });
     let Run { status, stdout, stderr } = run("urdf/block.urdf", &study, &["--format", "text"]);
-    assert_eq!(status, Some(1), "{stdout}");
+    assert_eq!(status, 1, "{stdout}");
     assert!(stderr.contains("the expression has no value"), "{stderr}");
     assert!(stdout.contains("A  0 .. 0.6  refused: the expression has no value"), "{stdout}");
 }
@@ -126,7 +123,7 @@ fn tables_have_the_parameter_and_the_region_beside_the_columns_of_batch() {
     let mut study = straight(None);
     study["parameters"]["alpha"]["steps"] = json!(4);
     let Run { status, stdout, .. } = run("urdf/minimalistic.urdf", &study, &["--format", "csv"]);
-    assert_eq!(status, Some(0));
+    assert_eq!(status, 0);
     let mut lines = stdout.lines();
     let header = "id,verdict,outcome,margin,proven,mode_left_leg,p_left_leg_t,p_left_leg_n,mode_right_leg,p_right_leg_t,\
                   p_right_leg_n,v_base_x,v_base_z,v_base_pitch,v_hip,alpha,region,border,family,error";
@@ -145,7 +142,7 @@ fn tables_have_the_parameter_and_the_region_beside_the_columns_of_batch() {
     assert_eq!(of("alpha")[5], "1.57");
 
     let Run { status, stdout, .. } = run("urdf/block.urdf", &partly_refused(), &["--format", "csv"]);
-    assert_eq!(status, Some(1));
+    assert_eq!(status, 1);
     let rows: Vec<&str> = stdout.lines().skip(1).collect();
     assert_eq!(rows.len(), 5, "{stdout}");
     assert!(rows[1].contains("no_contact") && rows[2].contains("the expression has no value"), "{stdout}");
@@ -153,17 +150,14 @@ fn tables_have_the_parameter_and_the_region_beside_the_columns_of_batch() {
 
 #[test]
 fn the_ending_of_the_output_chooses_its_form() {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
     let mut study = straight(None);
     study["parameters"]["alpha"]["steps"] = json!(3);
     for (ending, format) in [("json", "json"), ("ndjson", "json"), ("csv", "csv"), ("txt", "text"), ("", "text")] {
-        let file = folder.join(format!("sweep-{}.{ending}", std::process::id()));
-        let path = file.to_str().expect("UTF-8");
+        let path = &place(&format!("sweep.{ending}"));
         let written = run("urdf/minimalistic.urdf", &study, &["-o", path]);
-        assert_eq!((written.status, written.stdout.as_str()), (Some(0), ""), "{}", written.stderr);
+        assert_eq!((written.status, written.stdout.as_str()), (0, ""), "{}", written.stderr);
         let told = run("urdf/minimalistic.urdf", &study, &["--format", format]).stdout;
-        assert_eq!(std::fs::read_to_string(&file).expect("the output"), told, "{ending}");
-        std::fs::remove_file(&file).expect("it is there");
+        assert_eq!(std::fs::read_to_string(path).expect("the output"), told, "{ending}");
     }
 }
 
@@ -174,7 +168,7 @@ fn a_border_to_what_is_refused_says_so() {
         "state": {"position": {"base": {"z": "s/10"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5}
     });
     let Run { status, stdout, .. } = run("urdf/block.urdf", &study, &[]);
-    assert_eq!(status, Some(1));
+    assert_eq!(status, 1);
     assert!(stdout.contains(": from B on states are answered\n"), "{stdout}");
     assert!(stdout.contains(": block touches the ground in B alone\n"), "{stdout}");
 }

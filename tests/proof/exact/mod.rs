@@ -376,7 +376,8 @@ fn the_binary_has_the_outcomes_of_exact_arithmetic() {
         let states: Vec<_> = cases.iter().map(|(case, _)| case.state(&tree)).collect();
         let path = path.to_str().expect("UTF-8");
         let mut counts = [0, 0];
-        for ((case, all), answer) in cases.iter().zip(crate::support::binary::answers(&["batch", path, "-"], &states)) {
+        for ((case, all), answer) in cases.iter().zip(crate::support::answers::answers(&["batch", path, "-"], &states))
+        {
             let answer = answer.unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
             check_line(&tree, case, all, &answer).unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
             counts = added(counts, [1, usize::from(answer.outcomes.len() > 1)]);
@@ -391,7 +392,7 @@ fn check_line(
     tree: &Tree,
     case: &Case,
     all: &Enumeration,
-    answer: &crate::support::binary::Answer,
+    answer: &crate::support::answers::Answer,
 ) -> Result<(), String> {
     let answers = answer.outcomes.iter().map(|outcome| {
         let numbers = Answer {

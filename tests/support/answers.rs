@@ -2,15 +2,13 @@
 //! numbers, a missing field or a line too few is a failure.
 
 use std::collections::BTreeMap;
-use std::time::Duration;
 
-use assert_cmd::Command;
+use super::command::heelstrike_reads;
 use serde::Deserialize;
 use serde_json::Value;
 
 /// A result line, as far as the tests read it.
 #[derive(Debug, Clone, Deserialize)]
-#[allow(dead_code, reason = "each test file reads its own part of a result")]
 pub struct Answer {
     pub id: Option<Value>,
     pub verdict: Option<String>,
@@ -38,7 +36,6 @@ pub struct Answer {
 
 /// A contact of a result.
 #[derive(Debug, Clone, Deserialize)]
-#[allow(dead_code, reason = "each test file reads its own part of a result")]
 pub struct Contact {
     pub link: Option<String>,
     pub name: Option<String>,
@@ -48,7 +45,6 @@ pub struct Contact {
 
 /// An outcome of a result.
 #[derive(Debug, Clone, Deserialize)]
-#[allow(dead_code, reason = "each test file reads its own part of a result")]
 pub struct Outcome {
     pub modes: Vec<String>,
     pub impulse: Vec<[f64; 2]>,
@@ -68,7 +64,6 @@ pub struct Outcome {
 
 /// A rejected combination of modes; without numbers where it has no solution.
 #[derive(Debug, Clone, Deserialize)]
-#[allow(dead_code, reason = "each test file reads its own part of a result")]
 pub struct Rejected {
     pub modes: Vec<String>,
     pub because: String,
@@ -80,17 +75,10 @@ pub struct Rejected {
 /// order, what cannot be read as a result as the error.
 pub fn answers(arguments: &[&str], inputs: &[Value]) -> Vec<Result<Answer, String>> {
     let stream: String = inputs.iter().map(|input| format!("{input}\n")).collect();
-    let output = Command::new(env!("CARGO_BIN_EXE_heelstrike"))
-        .args(arguments)
-        .write_stdin(stream)
-        .timeout(Duration::from_secs(600))
-        .output()
-        .expect("the binary starts");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(matches!(output.status.code(), Some(0 | 1)), "{arguments:?} ended with {}:\n{stderr}", output.status);
-    let stdout = String::from_utf8(output.stdout).expect("UTF-8 on stdout");
-    let lines: Vec<&str> = stdout.lines().collect();
-    assert_eq!(lines.len(), inputs.len(), "{arguments:?}: a line for each input\n{stderr}");
+    let run = heelstrike_reads(arguments, stream);
+    assert!(matches!(run.status, 0 | 1), "{arguments:?} ended with {}:\n{}", run.status, run.stderr);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!(lines.len(), inputs.len(), "{arguments:?}: a line for each input\n{}", run.stderr);
     let answers = lines.iter().zip(inputs).map(|(line, input)| {
         let answer: Answer = serde_json::from_str(line).map_err(|error| format!("{error} in {line}"))?;
         match &answer.error {

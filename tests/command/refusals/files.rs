@@ -1,22 +1,17 @@
 //! What only the command meets: folders, devices, bytes that are no text, outputs that cannot be written.
 
-use assert_cmd::Command;
-
-const RAMONE: &str = "urdf/ramone.urdf";
+use super::super::{RAMONE, heelstrike_reads};
 
 /// Exit status, standard output and standard error of a run.
-fn run(arguments: &[&str], stdin: &[u8]) -> (Option<i32>, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
-    let output = command.args(arguments).write_stdin(stdin).output().expect("the command runs");
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    (output.status.code(), text(output.stdout), text(output.stderr))
+fn run(arguments: &[&str], stdin: &[u8]) -> (i32, String, String) {
+    let run = heelstrike_reads(arguments, stdin);
+    (run.status, run.stdout, run.stderr)
 }
 
 #[track_caller]
 fn assert_refused(arguments: &[&str], stdin: &[u8], stderr: &str) {
     let told = run(arguments, stdin);
-    assert_eq!(told, (Some(1), String::new(), stderr.to_owned()), "{arguments:?}");
+    assert_eq!(told, (1, String::new(), stderr.to_owned()), "{arguments:?}");
 }
 
 #[test]
@@ -42,7 +37,7 @@ fn what_is_empty_is_refused() {
     assert_refused(&["inspect", "-"], b"\xef\xbb\xbf", nothing);
     assert_refused(&["impact", RAMONE, "-"], b"", "error: <stdin>: a state is missing\nhint: the input is empty\n");
     assert_refused(&["solve", "-"], b" \n", "error: <stdin>: a problem is missing\nhint: the input is empty\n");
-    assert_eq!(run(&["batch", RAMONE, "-"], b"").0, Some(0));
+    assert_eq!(run(&["batch", RAMONE, "-"], b"").0, 0);
 }
 
 #[test]
@@ -88,9 +83,9 @@ fn escape_sequences_of_a_file_do_not_reach_the_terminal() {
     let urdf = b"<robot name=\"r\"><link name=\"a\"/><link name=\"\x1b[2J\"/></robot>";
     // XML has no such character; JSON strings may hold it escaped.
     let (status, _, stderr) = run(&["inspect", "-"], urdf);
-    assert_eq!((status, stderr.contains('\x1b')), (Some(1), false), "{stderr}");
+    assert_eq!((status, stderr.contains('\x1b')), (1, false), "{stderr}");
     let (status, _, stderr) = run(&["impact", RAMONE, "-"], b"{\"stance\": \"\\u001b[2J\"}");
-    assert_eq!((status, stderr.contains('\x1b')), (Some(1), false), "{stderr}");
+    assert_eq!((status, stderr.contains('\x1b')), (1, false), "{stderr}");
 }
 
 #[test]
@@ -103,10 +98,10 @@ fn a_refusal_of_a_line_of_1_mb_stays_short() {
         format!("{{\"friction\": 1, \"contacts\": {}1", "[".repeat(1_000_000)),
     ] {
         let (status, stdout, stderr) = run(&["impact", RAMONE, "-"], state.as_bytes());
-        assert_eq!((status, stdout.as_str()), (Some(1), ""));
+        assert_eq!((status, stdout.as_str()), (1, ""));
         assert!(stderr.starts_with("error: ") && stderr.len() < 1500, "{} bytes: {stderr}", stderr.len());
     }
     let urdf = format!("<robot><link name=\"a\"/><!-- {pad} --><link nam=\"{pad}\"/></robot>");
     let (status, _, stderr) = run(&["inspect", "-"], urdf.as_bytes());
-    assert!(status == Some(1) && stderr.len() < 1500, "{} bytes: {stderr}", stderr.len());
+    assert!(status == 1 && stderr.len() < 1500, "{} bytes: {stderr}", stderr.len());
 }

@@ -1,0 +1,5 @@
+const wrong = [];
+addEventListener("error", (event) => wrong.push(String(event.message)));
+addEventListener("securitypolicyviolation", (event) => wrong.push(`${event.violatedDirective} ${event.blockedURI}`));
+for (const kind of ["error", "warn"]) console[kind] = (...what) => wrong.push(what.join(" "));
+globalThis.alert = (what) => wrong.push(`alert ${what}`);

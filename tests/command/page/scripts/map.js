@@ -1,0 +1,15 @@
+const seen = () => [Number(all("output")[0].textContent), Number(all("output")[1].textContent), text(".badge")];
+const dot = () => { const { left, right, top, bottom } = one("circle.cursor").getBoundingClientRect(); return [(left + right) / 2, (top + bottom) / 2]; };
+const start = [...seen(), ...dot()];
+press("ArrowUp");
+const up = [...seen(), ...dot()];
+press("End", "PageDown");
+const beyond = seen();
+press("End", "ArrowUp", "ArrowUp", "ArrowUp", "ArrowUp");
+const last = [...seen(), ...dot()];
+// A click beside the middle of the map.
+const [x, y] = [start[3] + 0.52 * (last[3] - start[3]), start[4] + 0.48 * (last[4] - start[4])];
+one("#plots svg").dispatchEvent(new PointerEvent("pointerdown", { clientX: x, clientY: y, buttons: 1, bubbles: true }));
+const clicked = [...seen(), ...dot()];
+slide(1, 0);
+found({ start, up, beyond, last, clicked, slid: seen() });

@@ -1,0 +1,188 @@
+//! Robots that are refused.
+
+use super::{assert_refused, lines};
+use heelstrike::Robot;
+
+fn robot(body: &str) -> String {
+    format!("<robot name=\"r\">\n{body}</robot>")
+}
+
+fn mass(value: &str) -> String {
+    robot(&format!(
+        "<link name=\"a\"><inertial><mass value=\"{value}\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial></link>"
+    ))
+}
+
+fn shape(shape: &str) -> String {
+    robot(&format!("<link name=\"a\"><collision><geometry>{shape}</geometry></collision></link>"))
+}
+
+fn joint(kind: &str, body: &str) -> String {
+    robot(&format!(
+        "<link name=\"a\"/><link name=\"b\"/>\n\
+         <joint name=\"j\" type=\"{kind}\"><parent link=\"a\"/><child link=\"b\"/>{body}</joint>"
+    ))
+}
+
+/// Links a, b and c with a fixed joint for each pair of parent and child, such as "ab bc".
+fn joints(pairs: &str) -> String {
+    let joint = |pair: &str| {
+        let (parent, child) = pair.split_at(1);
+        format!("<joint name=\"{pair}\" type=\"fixed\"><parent link=\"{parent}\"/><child link=\"{child}\"/></joint>\n")
+    };
+    let joints: String = pairs.split(' ').map(joint).collect();
+    robot(&format!("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n{joints}"))
+}
+
+fn chain(links: usize, kind: &str) -> String {
+    let link = |k| format!("<link name=\"{k}\"/>\n");
+    let joint = |k| {
+        let parent = k - 1;
+        format!("<joint name=\"{k}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{k}\"/></joint>\n")
+    };
+    robot(&(0..links).map(link).chain((1..links).map(joint)).collect::<String>())
+}
+
+/// Files, a line each.
+const FILES: &str = r#"
+<!DOCTYPE r [<!ENTITY a "lol"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;">]>\n<robot>&c;</robot>
+<!DOCTYPE r [<!ENTITY passwd SYSTEM "file:///etc/passwd">]>\n<robot name="&passwd;"/>
+<?xml version="1.0"?>\n<!DOCTYPE robot SYSTEM "http://example.com/robot.dtd">\n<robot/>
+<!DOCTYPE r [<!ENTITY % p SYSTEM "p.dtd"> %p;]>\n<robot/>
+<robot name="&unknown;"><link name="a"/></robot>
+<robot
+<robot><link
+<robot name="r">\n<link name="a
+<robot>\n<link name="a"/>\n
+<robot>\n<!-- to be continued
+<robot><link name="a">\n</lnik></robot>
+<robot>\n<link name="a">\n </lnik></robot>
+{"friction": 1}
+<sdf/>
+<sdf version="1.7"/>
+<roboter/>
+<robot/>
+<robot name="r"/>
+<robot xmlns:xacro="http://ros.org/wiki/xacro">\n  <xacro:leg/></robot>
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/>\n<xacro:property name="l" value="1"/></robot>
+<robot><link name="a"/>\n<xacro:property name="l" value="1"/></robot>
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"><inertial>\n<xacro:mass/></inertial></link></robot>
+<robot>\n<link name="${p}a"><inertial><mass value="1"/></inertial></link></robot>
+<robot><link name="a"/>\n<include filename="$(find x)/y.xacro"/></robot>
+<robot><link name="a">\n<collision><geometry><sphere radius="$(arg r)"/></geometry></collision></link></robot>
+"#;
+
+/// What `<robot>` holds, a line each.
+const ROBOTS: &str = r#"
+<link name="a"/>\n<link name="a"/>
+<link name="a" name="b"/>
+<link name="a"><inertial><mass value="1"/></inertial>\n<inertial/></link>
+<link name="a"><inertial>\n<inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<link name="a"><collision><geometry></geometry></collision></link>
+<link name=""/>
+<link/>
+<link name="a"/>
+"#;
+
+/// What `<geometry>` holds, a line each.
+const SHAPES: &str = r#"
+<sphere radius="-0.1"/>
+<box size="1 -2 3"/>
+<cylinder radius="1" length="-1"/>
+<cylinder radius="1"/>
+<box size="1 1 1"/><sphere radius="1"/>
+"#;
+
+/// A joint's type and what it holds besides parent a and child b, a line each.
+const JOINTS: &str = r#"
+fixed <origin xyz="1 2 x 3"/>
+fixed <origin xyz="1 2"/>
+fixed <origin quat_xyzw="0 0 0 1"/>
+fixed <origin/>\n<origin/>
+fixed <parent link="b"/>
+fixed </joint>\n<joint name="j" type="fixed"><parent link="a"/><child link="b"/>
+continuous <mimic joint="k"/>
+revolut <axis xyz="0 1 0"/>
+ <axis xyz="0 1 0"/>
+Fixed <axis xyz="0 1 0"/>
+screw <axis xyz="0 1 0"/>
+revolute <origin xyz="0 ${l} 0"/>
+revolute <axis xyz="0 0 0"/>
+prismatic <axis xyz="0 -0 0e9"/>
+revolute <axis xyz="0 NaN 0"/>
+revolute <axis xyz="0 1"/>
+"#;
+
+#[test]
+fn robots_are_refused_word_for_word() {
+    let typed = |line: &str| line.split_once(' ').map(|(kind, body)| joint(kind, body)).expect("a type");
+    let fixed = |part: &str, by: &str| joint("fixed", "").replace(part, by);
+    let many = |count, one: fn(usize) -> String| (0..count).map(one).collect::<String>();
+    let massive = |mass: &str| format!("<link name=\"a\"><inertial><mass value=\"{mass}\"/></inertial></link>");
+    let cases = lines(FILES, str::to_owned)
+        .chain(lines(ROBOTS, robot))
+        .chain(lines(SHAPES, shape))
+        .chain(lines(JOINTS, typed))
+        .chain(["NaN", "inf", "1e999", "1,5", "-1", "0", ""].map(mass))
+        .chain(["ab bc ca", "ac bc", "ac", "ab", "bc cb", "aa"].map(joints))
+        .chain([
+            String::new(),
+            " \n\t".into(),
+            "\u{0}\u{1}ELF\u{2}".into(),
+            mass("1").replace("iyy=\"1\"", "iyy=\"-0.5\""),
+            fixed("<link name=\"a\"/>", &massive("1"))
+                .replace("<link name=\"b\"/>", &massive("1e308").replace("\"a\"", "\"b\""))
+                .replace("<child", "<origin xyz=\"9 0 0\"/><child"),
+            fixed("<link name=\"b\"/>", &massive("1").replace("\"a\"", "\"b\""))
+                .replace("<child", "<origin xyz=\"1e300 0 0\"/><child")
+                .replace("<link name=\"a\"/>", &massive("1")),
+            fixed("<child link=\"b\"/>", "<child link=\"a\"/>"),
+            fixed("<child link=\"b\"/>", "<child link=\"B\"/>"),
+            fixed("<child link=\"b\"/>", "<child link=\"bb\"/>"),
+            fixed("<child link=\"b\"/>", "<child link=\"world\"/>"),
+            fixed("<child link=\"b\"/>", ""),
+            fixed("<parent link=\"a\"/>", "<parent link=\"world\"/>"),
+            fixed("<child link=\"b\"/>", &format!("<child link=\"{}\"/>", "b".repeat(1_000_000))),
+            format!("<robot>{}{}</robot>", "<a>".repeat(200_000), "</a>".repeat(200_000)),
+            format!("<robot>\n<link name=\"a\">{}", "<collision>".repeat(200_000)),
+            format!("<robot>{}<link name=\"a\"/>{}</robot>", "<robot>".repeat(201), "</robot>".repeat(201)),
+            chain(300_000, "fixed"),
+            chain(2_002, "continuous"),
+            chain(10_002, "fixed").replacen("<link ", "<lonk ", 2),
+            format!("<robot>\n{}</robot>", "<link name=\"a\"/>\n".repeat(1_000_000)),
+            robot(&format!(
+                "<link name=\"a\">{}</link>",
+                "<collision><geometry><sphere radius=\"0\"/></geometry></collision>".repeat(10_001)
+            )),
+            robot(&format!("<link name=\"a\" {}/>", many(1_000_000, |k| format!("a{k}='' ")))),
+            format!("<robot>{}", many(100_000, |k| format!("<a xmlns:n{k}=\"u{k}\">"))),
+            robot(&many(200_000, |k| format!("<a{k}/>\n"))),
+            robot(&format!("<a {}/>\n", many(100, |k| format!("a{k}='' "))).repeat(100_000)),
+            robot(&"<a/>".repeat(2_000_000)),
+        ]);
+    assert_refused("robots", cases, &["inspect", "-"], |text| Robot::from_urdf(text).map(drop));
+}
+
+#[test]
+fn a_chain_of_1000_links_is_read() {
+    let inertial = "<inertial><mass value=\"1\"/></inertial>";
+    let text =
+        chain(1000, "continuous").replace("<link name=\"999\"/>", &format!("<link name=\"999\">{inertial}</link>"));
+    let text = text.replace("type=\"continuous\">", "type=\"continuous\"><axis xyz=\"0 1 0\"/>");
+    assert_eq!(Robot::from_urdf(&text).expect("a robot").joints.len(), 999);
+}
+
+#[test]
+fn a_mesh_outside_its_package_is_not_opened() {
+    // No mesh is read so far; whatever its path, it is told as left out.
+    for path in ["package://robot/../../../../etc/passwd", "file:///dev/zero", "/dev/zero", "http://example.com/a.stl"]
+    {
+        let link = mass("1").replace(
+            "</link>",
+            &format!("<collision><geometry><mesh filename=\"{path}\"/></geometry></collision></link>"),
+        );
+        let robot = Robot::from_urdf(&link).expect("a robot");
+        assert!(robot.links[0].shapes.is_empty());
+        assert!(robot.left_out[0].what.contains(path), "{}", robot.left_out[0].what);
+    }
+}

@@ -1,0 +1,145 @@
+//! Studies that are refused as a whole.
+
+use super::{assert_refused, lines};
+use heelstrike::Robot;
+use heelstrike::description::Description;
+use heelstrike::pipeline::Options;
+use heelstrike::robot::Reduction;
+use heelstrike::state::Defaults;
+use heelstrike::sweep::{RobotStudy, Study};
+
+/// A study of the parameter a from 0 to 1 with these other fields.
+fn study(rest: &str) -> String {
+    format!(r#"{{"parameters": {{"a": {{"from": 0, "to": 1, "steps": 5}}}}, {rest}}}"#)
+}
+
+/// A study with these parameters.
+fn parameters(fields: &str) -> String {
+    format!(r#"{{"parameters": {{{fields}}}, "state": {{"friction": 1}}}}"#)
+}
+
+/// A study whose friction is this JSON.
+fn friction(value: &str) -> String {
+    study(&format!("\"state\": {{\"friction\": {value}}}"))
+}
+
+/// A study of this robot.
+fn robot(fields: &str) -> String {
+    study(&format!("\"state\": {{\"friction\": 1}}, \"robot\": {fields}"))
+}
+
+/// A line each.
+const STUDIES: &str = r#"
+[]
+{}
+{"parameters": {"a": {"from": 0, "to": 1, "steps": 5}}}
+"#;
+
+/// Parameters, a line each.
+const PARAMETERS: &str = r#"
+"a": {"from": 0, "to": 1, "steps": 5}, "b": {"from": 0, "to": 1, "steps": 5}, "c": {"from": 0, "to": 1, "steps": 5}
+"a": 1
+"a": {"from": 0, "to": 1}
+"a": {"from": 0, "to": 1, "step": 5}
+"a": {"from": 1, "to": 0, "steps": 5}
+"a": {"from": 1, "to": 1, "steps": 5}
+"a": {"from": -1.7e308, "to": 1.7e308, "steps": 5}
+"a": {"from": 0, "to": "2*b", "steps": 5}
+"a": {"from": 1, "to": 1.0000000000000002, "steps": 5}
+"a": {"from": 0, "to": 1, "steps": 1}
+"a": {"from": 0, "to": 1, "steps": 1e9}
+"a": {"from": 0, "to": 1, "steps": 2.5}
+"a": {"from": 0, "to": 1, "steps": -3}
+"a": {"from": 0, "to": 1, "steps": 10000}, "b": {"from": 0, "to": 1, "steps": 10000}
+"leg angle": {"from": 0, "to": 1, "steps": 5}
+"2a": {"from": 0, "to": 1, "steps": 5}
+"": {"from": 0, "to": 1, "steps": 5}
+"α": {"from": 0, "to": 1, "steps": 5}
+"#;
+
+/// Friction, a line each.
+const FRICTION: &str = r#"
+"beta"
+"sine(a)"
+"infinit"
+"α"
+"sin"
+"sin()"
+"(a"
+""
+"1 2"
+"1/(a-a)"
+"sqrt(-1-a)"
+"1e308*10 + a"
+"nan"
+"-1-a"
+"#;
+
+/// The robot, a line each.
+const ROBOT: &str = r#"
+[]
+{"link": {}}
+{"links": {"left_fot": {"mass": 1}}}
+{"joints": {"left_hipp": {"origin": [0, 0, 0]}}}
+{"links": {"torso": {"weight": 1}}}
+{"links": {"torso": {"mass": "-1-a"}}}
+{"links": {"torso": {"inertia": -1}}}
+{"links": {"torso": {"com": [0, 1]}}}
+{"links": {"torso": {"radius": 0.1}}}
+{"joints": {"left_hip": {"origin": "a"}}}
+"#;
+
+/// All but the parameter, a line each.
+const STUDY: &str = r#"
+"state": [], "constants": {}
+"state": {}, "constant": {}
+"constants": {"a": 1}, "state": {}
+"constants": {"b": "c", "c": "b"}, "state": {}
+"constants": {"b": "2*a"}, "state": {}
+"constants": {"b": "infinite"}, "state": {}
+"constants": {"b": [1]}, "state": {}
+"constants": {"knee": 1}, "state": {"friction": "2*kne + 1"}
+"state": {"stance": "a", "friction": 1}
+"state": {"held": ["2*a"], "friction": 1}
+"state": {"friction": {"a": 1}}
+"state": {"2*a": 1}
+"state": {"id": [1], "friction": 1}
+"#;
+
+#[test]
+fn studies_are_refused_word_for_word() {
+    let urdf = std::fs::read_to_string("urdf/ramone.urdf").expect("the file");
+    let description = Description::from_urdf(&urdf).expect("a description");
+    let reduction = Reduction::default();
+    let ramone = Robot::reduce(&description, &reduction).expect("a robot");
+    let quoted = |text: &str, count: usize| friction(&format!("\"{}\"", text.repeat(count)));
+    let constants: Vec<String> = (0..100_000).map(|k| format!("\"c{k}\": {k}")).collect();
+    let cases = lines(STUDIES, str::to_owned)
+        .chain(lines(PARAMETERS, parameters))
+        .chain(lines(FRICTION, friction))
+        .chain(lines(ROBOT, robot))
+        .chain(lines(STUDY, study))
+        .chain([
+            parameters(""),
+            study(&format!("\"constants\": {{{}}}, \"state\": {{}}", constants.join(", "))),
+            quoted("(", 1_000_000),
+            quoted("-", 1_000_000),
+            quoted("1+", 500_000),
+            quoted("x", 1_000_000),
+            study(&format!("\"state\": {}", "[".repeat(100_000))),
+        ]);
+    assert_refused("studies", cases, &["sweep", "urdf/ramone.urdf", "-"], |text| {
+        let study = Study::from_json(text)?;
+        let defaults = Defaults::default();
+        let options = Options::default();
+        RobotStudy {
+            study: &study,
+            description: &description,
+            reduction: &reduction,
+            robot: &ramone,
+            options,
+            defaults,
+        }
+        .readable()
+    });
+}

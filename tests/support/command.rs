@@ -1,0 +1,77 @@
+//! Runs the real binary.
+
+use std::path::Path;
+use std::time::Duration;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+/// What a run left behind.
+pub struct Run {
+    pub status: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Run {
+    /// The lines of standard output as JSON.
+    pub fn lines(&self) -> Vec<Value> {
+        self.stdout.lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect()
+    }
+
+    /// The only line of standard output as JSON.
+    #[track_caller]
+    pub fn line(&self) -> Value {
+        assert_eq!(self.stdout.lines().count(), 1, "{}{}", self.stdout, self.stderr);
+        serde_json::from_str(&self.stdout).expect("JSON")
+    }
+
+    /// The run, which must have ended well.
+    #[track_caller]
+    pub fn well(self) -> Self {
+        assert_eq!(self.status, 0, "{}", self.stderr);
+        self
+    }
+}
+
+pub fn heelstrike(args: &[&str]) -> Run {
+    heelstrike_reads(args, "")
+}
+
+pub fn heelstrike_reads(args: &[&str], stdin: impl Into<Vec<u8>>) -> Run {
+    finished(command().args(args).write_stdin(stdin))
+}
+
+pub fn command() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE").timeout(Duration::from_secs(600));
+    command
+}
+
+pub fn finished(command: &mut Command) -> Run {
+    let output = command.output().expect("the command runs");
+    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+    Run { status: output.status.code().expect("no signal"), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+/// The text of a file of this repository.
+#[track_caller]
+pub fn read(path: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A place for a file of the running test alone.
+pub fn place(name: &str) -> String {
+    let test = std::thread::current().name().unwrap_or("several").replace("::", "-");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder.join(name).to_str().expect("UTF-8").to_owned()
+}
+
+/// The path of such a file with this content.
+pub fn file(name: &str, content: impl AsRef<[u8]>) -> String {
+    let path = place(name);
+    std::fs::write(&path, content).expect("a file");
+    path
+}

@@ -1,0 +1,46 @@
+//! Elements of URDF files in the x-z plane.
+
+use std::fmt::Display;
+
+/// A robot of these elements.
+pub fn robot(elements: &[String]) -> String {
+    format!("<robot name=\"robot\">\n{}</robot>\n", elements.concat())
+}
+
+/// A link with the same moment of inertia about every axis, and its `<collision>` elements.
+pub fn link(name: impl Display, mass: f64, [x, z]: [f64; 2], moment: f64, collisions: &str) -> String {
+    format!(
+        "<link name=\"{name}\"><inertial><origin xyz=\"{x} 0 {z}\"/><mass value=\"{mass}\"/>\
+         <inertia ixx=\"{moment}\" iyy=\"{moment}\" izz=\"{moment}\"/></inertial>{collisions}</link>\n"
+    )
+}
+
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Axis {
+    /// About the plane's normal, times this.
+    Revolute(f64),
+    /// Along this direction.
+    Prismatic([f64; 2]),
+    Fixed,
+}
+
+/// A joint, with `more` of its elements.
+pub fn joint(name: impl Display, axis: Axis, ends: [&str; 2], [x, z]: [f64; 2], more: &str) -> String {
+    let (kind, axis) = match axis {
+        Axis::Revolute(sign) => ("continuous", format!("0 {sign} 0")),
+        Axis::Prismatic([x, z]) => ("prismatic", format!("{x} 0 {z}")),
+        Axis::Fixed => ("fixed", "1 0 0".to_owned()),
+    };
+    let limit = if kind == "prismatic" { "<limit lower=\"-9\" upper=\"9\" effort=\"9\" velocity=\"9\"/>" } else { "" };
+    format!(
+        "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"{x} 0 {z}\"/>\
+         <axis xyz=\"{axis}\"/>{limit}{more}</joint>\n",
+        ends[0], ends[1]
+    )
+}
+
+/// A `<collision>` with this shape.
+pub fn collision(shape: &str) -> String {
+    format!("<collision><geometry>{shape}</geometry></collision>")
+}
