@@ -5,7 +5,7 @@ use super::combination::Solved;
 use super::outcome::{Effort, Motion, Outcome, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::reading::Reading;
-use super::singular::{Rejected, SingularCase, SingularOutcome};
+use super::singular::{SingularCase, SingularOutcome};
 use super::slack::Scale;
 use crate::law::{Inequality, Mode};
 use crate::reductions::Reductions;
@@ -56,27 +56,13 @@ impl Default for AnalysisOptions<'_> {
     }
 }
 
-/// A combination of modes and its place among all.
+/// A combination that needs more digits.
 #[derive(Debug, Clone)]
-pub struct Candidate<M> {
-    /// Its number, from 0.
+pub struct Pending {
+    /// Its number among all, from 0.
     pub number: usize,
     /// One mode per contact.
-    pub modes: M,
-}
-
-impl Candidate<&[Mode]> {
-    /// The same to keep.
-    pub fn pending(&self) -> Candidate<Vec<Mode>> {
-        Candidate { number: self.number, modes: self.modes.to_vec() }
-    }
-}
-
-impl Candidate<Vec<Mode>> {
-    /// The same to look at.
-    pub fn borrowed(&self) -> Candidate<&[Mode]> {
-        Candidate { number: self.number, modes: &self.modes }
-    }
+    pub modes: Vec<Mode>,
 }
 
 /// An outcome and the combination that led to it.
@@ -107,19 +93,22 @@ impl<'a> Collected<'a> {
     }
 
     /// Adds a combination that was solved with more digits than f64 has.
-    pub fn add(&mut self, candidate: Candidate<&[Mode]>, solved: Solved) {
+    pub fn add(&mut self, Pending { number, modes }: &Pending, solved: Solved) {
+        let number = *number;
         match solved {
-            Solved::Regular { reading, index, motion, .. } => self.add_regular(candidate, reading, index, || motion),
-            Solved::Singular(SingularCase::Rejected(rejection)) => self.reject(candidate, rejection),
+            Solved::Regular { reading, index, motion, .. } => {
+                self.add_regular(number, modes, reading, index, || motion);
+            }
+            Solved::Singular(SingularCase::Rejected(rejection)) => self.reject(number, modes, || rejection),
             Solved::Singular(SingularCase::Valid(own)) => {
                 let outcome = self.singular_outcome(own);
-                self.outcomes.push(Numbered { number: candidate.number, on_rim: false, outcome });
+                self.outcomes.push(Numbered { number, on_rim: false, outcome });
             }
             Solved::Singular(SingularCase::Family(ends)) => {
                 for end in ends {
-                    let on_rim = end.modes != candidate.modes;
+                    let on_rim = end.modes != *modes;
                     let outcome = Outcome { family: true, ..self.singular_outcome(end) };
-                    self.outcomes.push(Numbered { number: candidate.number, on_rim, outcome });
+                    self.outcomes.push(Numbered { number, on_rim, outcome });
                 }
             }
         }
@@ -128,26 +117,29 @@ impl<'a> Collected<'a> {
     /// Adds a combination whose equations have one solution.
     pub fn add_regular(
         &mut self,
-        candidate: Candidate<&[Mode]>,
+        number: usize,
+        modes: &[Mode],
         reading: Reading,
         index: i8,
         motion: impl FnOnce() -> Motion,
     ) {
         if reading.sign == Sign::Negative {
             let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
-            let motion = (self.options.rejections.contain(candidate.modes) && solved).then(motion);
-            self.reject(candidate, Rejected { because: reading.because, margin: reading.margin, motion });
+            self.reject(number, modes, || Rejection {
+                margin: reading.margin,
+                motion: solved.then(motion),
+                ..Rejection::of(modes, reading.because)
+            });
             return;
         }
-        let mut outcome = self.outcome(candidate.modes.to_vec(), motion(), &reading.at_zero);
+        let mut outcome = self.outcome(modes.to_vec(), motion(), &reading.at_zero);
         outcome.index = reading.at_zero.is_empty().then_some(index);
         outcome.margin = reading.margin.map(|margin| margin + 0.0);
-        self.outcomes.push(Numbered { number: candidate.number, on_rim: false, outcome });
+        self.outcomes.push(Numbered { number, on_rim: false, outcome });
     }
 
     /// Adds a combination that no precision decided, with zeros for the impulses that are not known.
-    pub fn add_undecided(&mut self, candidate: Candidate<Vec<Mode>>) {
-        let Candidate { number, modes } = candidate;
+    pub fn add_undecided(&mut self, Pending { number, modes }: Pending) {
         let velocity_after = self.problem.velocity_free().to_vec();
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
         let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, motion, &[]) };
@@ -155,12 +147,12 @@ impl<'a> Collected<'a> {
     }
 
     /// Adds a rejected combination, if it is to be listed.
-    pub fn reject(&mut self, candidate: Candidate<&[Mode]>, rejection: Rejected) {
-        if self.options.rejections.contain(candidate.modes) {
-            let Rejected { because, margin, motion } = rejection;
-            let (margin, motion) = (margin.filter(|margin| margin.is_finite()), motion.filter(Motion::is_finite));
-            let modes = candidate.modes.to_vec();
-            self.rejected.push((candidate.number, Rejection { modes, because, margin, motion }));
+    pub fn reject(&mut self, number: usize, modes: &[Mode], rejection: impl FnOnce() -> Rejection) {
+        if self.options.rejections.contain(modes) {
+            let mut rejection = rejection();
+            rejection.margin = rejection.margin.filter(|margin| margin.is_finite());
+            rejection.motion = rejection.motion.filter(Motion::is_finite);
+            self.rejected.push((number, rejection));
         }
     }
 

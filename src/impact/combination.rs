@@ -2,10 +2,10 @@
 
 use super::enumerate::Tableau;
 use super::linear::Unsettled;
-use super::outcome::Motion;
+use super::outcome::{Motion, Rejection};
 use super::problem::ContactProblem;
 use super::reading::{Reading, motion, read_signed};
-use super::singular::{Rejected, SingularCase, solve_singular};
+use super::singular::{SingularCase, solve_singular};
 use super::slack::Scale;
 use crate::law::Mode;
 use crate::scalar::{Ordered, Sign};
@@ -33,7 +33,7 @@ impl Solved {
     pub fn error(&self) -> Option<f64> {
         match self {
             Self::Regular { reading, error, .. } => (reading.sign != Sign::Negative).then_some(*error),
-            Self::Singular(SingularCase::Valid(member)) => Some(member.error),
+            Self::Singular(SingularCase::Valid(own)) => Some(own.error),
             Self::Singular(SingularCase::Family([one, other])) => Some(one.error.max(other.error)),
             Self::Singular(SingularCase::Rejected(_)) => None,
         }
@@ -43,7 +43,7 @@ impl Solved {
     pub fn is_vague(&self) -> bool {
         match self {
             Self::Regular { reading, motion, .. } => !(motion.is_finite() && reading.margin.is_none_or(f64::is_finite)),
-            Self::Singular(SingularCase::Rejected(Rejected { margin, motion, .. })) => {
+            Self::Singular(SingularCase::Rejected(Rejection { margin, motion, .. })) => {
                 !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
             }
             Self::Singular(_) => false,

@@ -126,6 +126,13 @@ pub struct Rejection {
     pub motion: Option<Motion>,
 }
 
+impl Rejection {
+    /// Of a combination whose numbers are not known.
+    pub(super) fn of(modes: &[Mode], because: RejectionReason) -> Self {
+        Self { modes: modes.to_vec(), because, margin: None, motion: None }
+    }
+}
+
 /// Why a combination is no outcome; `contact` counts from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RejectionReason {

@@ -1,16 +1,16 @@
 //! The passes over all combinations: first in f64, then with more digits those that need them.
 
 use super::bound::Bounds;
-use super::collected::{Candidate, Collected};
+use super::collected::{Collected, Pending};
 use super::combination::{Solved, solve_combination};
 use super::enumerate::{Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
 use super::labels::Labels;
 use super::linear::Unsettled;
+use super::outcome::Rejection;
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read_f64};
-use super::singular::Rejected;
-use crate::law::{ContactLaw, Impulse, Mode};
+use crate::law::{ContactLaw, Impulse};
 use crate::scalar::{Ordered, Sign};
 
 /// Beyond this growth of rounding, f64 has lost the digits that an answer is expected to have.
@@ -18,8 +18,6 @@ const F64_SERVES: f64 = 1e4;
 
 /// What an answer's numbers may be off by, in the scale of margins.
 const DIGITS: f64 = 1e-12;
-
-type Pending = Candidate<Vec<Mode>>;
 
 /// All combinations in f64.
 pub struct F64Pass<'a, 'm> {
@@ -49,17 +47,18 @@ impl Visitor<f64> for F64Pass<'_, '_> {
             && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
         self.labels.start(leaf.modes, problem.laws(), self.shares);
         while let Some(modes) = self.labels.next() {
-            let candidate = Candidate { number: self.collected.total, modes };
+            let number = self.collected.total;
+            let pending = || Pending { number, modes: modes.to_vec() };
             let reading = read_f64(leaf, modes, problem, scale, bound, options.rejections.contain(modes));
             if reading.sign == Sign::Undecided {
-                self.undecided.push(candidate.pending());
+                self.undecided.push(pending());
             } else {
                 if reading.sign != Sign::Negative && bound.growth() > F64_SERVES {
-                    self.coarse.push(candidate.pending());
+                    self.coarse.push(pending());
                 }
                 let index = leaf.pivots.iter().fold(1, |sign, &pivot| if pivot < 0.0 { -sign } else { sign });
                 let motion = || motion(leaf, modes, problem, |number| number);
-                self.collected.add_regular(candidate, reading, index, motion);
+                self.collected.add_regular(number, modes, reading, index, motion);
             }
             self.collected.total += 1;
         }
@@ -84,7 +83,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let mut left = precision.combinations();
         undecided.retain(|pending| {
             if let Some(because) = kernel.excludes(&pending.modes) {
-                collected.reject(pending.borrowed(), Rejected { because, margin: None, motion: None });
+                collected.reject(pending.number, &pending.modes, || Rejection::of(&pending.modes, because));
                 return false;
             }
             if left == 0 {
@@ -99,7 +98,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             if solved.error().is_some_and(|error| error > DIGITS) {
                 coarse.push(pending.clone());
             }
-            collected.add(pending.borrowed(), solved);
+            collected.add(pending, solved);
             false
         });
         precision.count(&mut collected.effort, before - undecided.len());
@@ -120,7 +119,7 @@ impl PrecisionTask for CoarsePass<'_, '_> {
         coarse.retain(|pending| match solver.solve(pending, collected) {
             Ok(solved) if solved.error().is_some_and(|error| error <= DIGITS) => {
                 collected.remove(pending.number);
-                collected.add(pending.borrowed(), solved);
+                collected.add(pending, solved);
                 false
             }
             _ => true,

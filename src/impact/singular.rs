@@ -14,7 +14,7 @@
 use super::generators::Generators;
 use super::index::index;
 use super::linear::{Affine, Solutions, Unsettled, maximize, settled, solve, widest};
-use super::outcome::{Motion, Range, RejectionReason};
+use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
 use super::slack::Scale;
@@ -29,28 +29,11 @@ const UNBOUNDED: f64 = 1e3;
 #[derive(Debug, Clone)]
 pub enum SingularCase {
     /// It is no outcome.
-    Rejected(Rejected),
+    Rejected(Rejection),
     /// Its velocity is the only one of these modes.
     Valid(SingularOutcome),
     /// Its velocities form a set: the two ends. An end's own modes may be others, if it lies on the set's rim.
     Family([SingularOutcome; 2]),
-}
-
-/// Why a combination is no outcome, and what it would have been.
-#[derive(Debug, Clone)]
-pub struct Rejected {
-    /// Why.
-    pub because: RejectionReason,
-    /// The smallest slack; `None` if there is none.
-    pub margin: Option<f64>,
-    /// What it would have been; `None` if its equations have no solution.
-    pub motion: Option<Motion>,
-}
-
-impl Rejected {
-    fn without_motion(because: RejectionReason) -> SingularCase {
-        SingularCase::Rejected(Self { because, margin: None, motion: None })
-    }
 }
 
 /// One velocity and the impulses that lead to it.
@@ -95,7 +78,7 @@ pub fn solve_singular<T: Ordered>(
         })
         .collect();
     let Some(solutions) = solve(generators.count(), equations)? else {
-        return Ok(Rejected::without_motion(RejectionReason::NoSolution));
+        return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
     };
     Equations { problem, rounded, scale, modes, generators }.weigh(&solutions)
 }
@@ -121,7 +104,7 @@ impl<T: Ordered> Equations<'_, T> {
         let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
         for inequality in inequalities.iter().filter(|inequality| inequality.inequality.is_strict()) {
             if inequality.function.is_constant()? && settled(inequality.function.constant)?.is_eq() {
-                return Ok(Rejected::without_motion(RejectionReason::RedundantTwin));
+                return Ok(SingularCase::Rejected(Rejection::of(self.modes, RejectionReason::RedundantTwin)));
             }
         }
         let dimension = solutions.directions.len();
@@ -140,7 +123,7 @@ impl<T: Ordered> Equations<'_, T> {
         }
         // The rim of a family belongs to other modes; some velocity of its own must be left.
         if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
-            return Ok(Rejected::without_motion(RejectionReason::RedundantTwin));
+            return Ok(SingularCase::Rejected(Rejection::of(self.modes, RejectionReason::RedundantTwin)));
         }
         let ends = [T::one(), -T::one()].map(|sign| self.end(solutions, &inside, sign));
         let [greatest, least] = ends;
@@ -186,13 +169,14 @@ impl<T: Ordered> Equations<'_, T> {
         // The linear program makes several equally bad; of one contact's the cone is named.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
         let worst = values.min_by(|a, b| a.1.total_cmp(&b.1).then_with(|| order(a.0).cmp(&order(b.0))));
-        SingularCase::Rejected(Rejected {
-            because: worst.map_or(RejectionReason::NoSolution, |(worst, _)| RejectionReason::Violated {
-                contact: worst.contact,
-                inequality: worst.inequality,
-            }),
+        let because = worst.map_or(RejectionReason::NoSolution, |(worst, _)| RejectionReason::Violated {
+            contact: worst.contact,
+            inequality: worst.inequality,
+        });
+        SingularCase::Rejected(Rejection {
             margin: worst.map(|(_, value)| value),
             motion: Some(self.motion(solutions, y, self.modes)),
+            ..Rejection::of(self.modes, because)
         })
     }
 
