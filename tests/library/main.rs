@@ -4,7 +4,6 @@
 mod accuracy;
 mod architecture;
 mod constraints;
-mod contacts;
 mod courses;
 mod csv;
 mod ground;

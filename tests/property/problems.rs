@@ -1,9 +1,9 @@
 //! Contact problems given as matrices.
 
+use crate::support::parallel::total;
 use crate::support::random::Random;
 use heelstrike::impact::{Analysis, ContactProblem, Friction, Mode, Verdict, analyse};
 use std::collections::BTreeMap;
-use std::thread;
 
 /// The parts of a contact problem, kept for transforming and printing.
 #[derive(Debug, Clone)]
@@ -63,7 +63,7 @@ impl Parts {
         };
         let restitution = |random: &mut Random| match random.whole(0, 5) {
             0 => 1.0,
-            1 | 2 => uniform(random),
+            1 | 2 => random.uniform(),
             _ => 0.0,
         };
         Self {
@@ -79,14 +79,10 @@ impl Parts {
     }
 }
 
-pub fn uniform(random: &mut Random) -> f64 {
-    (random.bits() >> 11) as f64 / (1u64 << 53) as f64
-}
-
 /// Box and Muller.
 fn gauss(random: &mut Random) -> f64 {
-    let radius = (-2.0 * (1.0 - uniform(random)).ln()).sqrt();
-    radius * (std::f64::consts::TAU * uniform(random)).cos()
+    let radius = (-2.0 * (1.0 - random.uniform()).ln()).sqrt();
+    radius * (std::f64::consts::TAU * random.uniform()).cos()
 }
 
 /// Modes and margin of every outcome, in an order of its own.
@@ -108,29 +104,6 @@ fn assert_same(analysis: &Analysis, other: &Analysis, context: &dyn Fn() -> Stri
         assert!(difference <= 1e-9 * margin.abs().max(1.0), "{modes:?}: {difference:e} of {margin}\n{}", context());
     }
     assert_eq!(analysis.index_sum, other.index_sum, "{}", context());
-}
-
-/// Runs `check` on the seeds below `count` in four threads and adds up what it returns.
-fn total<const N: usize>(count: u64, check: impl Fn(u64) -> [u64; N] + Sync) -> [u64; N] {
-    let mut sums = [0; N];
-    thread::scope(|scope| {
-        let check = &check;
-        let workers: Vec<_> = (0..4)
-            .map(|worker| {
-                scope.spawn(move || {
-                    (worker..count)
-                        .step_by(4)
-                        .map(check)
-                        .fold([0; N], |sum, one| std::array::from_fn(|i| sum[i] + one[i]))
-                })
-            })
-            .collect();
-        for worker in workers {
-            let part = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            sums = std::array::from_fn(|i| sums[i] + part[i]);
-        }
-    });
-    sums
 }
 
 #[test]

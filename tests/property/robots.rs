@@ -1,13 +1,13 @@
 //! A robot and its state seen another way: mirrored, in other units, under other names, with axes flipped, on a slope.
 
-use super::problems::{mirror, uniform};
+use super::problems::mirror;
 use crate::support::random::Random;
+use crate::support::urdf::{self, Axis};
 use heelstrike::Robot;
 use heelstrike::impact::{Analysis, Mode, Outcome, Verdict};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
 use serde_json::{Value, json};
-use std::fmt::Write;
 
 const MODELS: u64 = 400;
 
@@ -30,8 +30,7 @@ struct Link {
     joint: String,
     parent: usize,
     origin: [f64; 2],
-    /// The sign of a turn about y, or a direction in x and z.
-    axis: Result<f64, [f64; 2]>,
+    axis: Axis,
     position: f64,
     velocity: f64,
 }
@@ -51,26 +50,26 @@ struct Contact {
     restitution: f64,
 }
 
-fn between(random: &mut Random, low: f64, high: f64) -> f64 {
-    low + (high - low) * uniform(random)
-}
-
 impl Model {
     fn random(seed: u64) -> Self {
         let random = &mut Random::new(seed);
         let count = random.whole(2, 5) as usize;
-        let pair = |random: &mut Random| [between(random, -1.0, 1.0), between(random, -1.0, 1.0)];
+        let pair = |random: &mut Random| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
         let links = (0..count).map(|index| Link {
             name: format!("link_{index}"),
-            mass: between(random, 0.5, 4.0),
+            mass: random.between(0.5, 4.0),
             com: pair(random),
-            moment: between(random, 0.05, 0.5),
+            moment: random.between(0.05, 0.5),
             joint: format!("joint_{index}"),
             parent: if index > 0 { random.whole(0, index as i64 - 1) as usize } else { 0 },
             origin: pair(random),
-            axis: if random.once_in(5) { Err(pair(random)) } else { Ok(random.pick(&[1.0, -1.0])) },
-            position: between(random, -2.0, 2.0),
-            velocity: between(random, -2.0, 2.0),
+            axis: if random.once_in(5) {
+                Axis::Prismatic(pair(random))
+            } else {
+                Axis::Revolute(random.pick(&[1.0, -1.0]))
+            },
+            position: random.between(-2.0, 2.0),
+            velocity: random.between(-2.0, 2.0),
         });
         let links: Vec<Link> = links.collect();
         let contacts =
@@ -84,40 +83,21 @@ impl Model {
             restitution: random.pick(&[0.0, 0.0, 0.3]),
         });
         let contacts = contacts.collect();
-        let fall = between(random, -3.0, 0.5);
+        let fall = random.between(-3.0, 0.5);
         let base = Coordinates {
-            position: [between(random, -1.0, 1.0), between(random, 0.0, 1.0), between(random, -2.0, 2.0)],
-            velocity: [between(random, -2.0, 2.0), fall, between(random, -2.0, 2.0)],
+            position: [random.between(-1.0, 1.0), random.between(0.0, 1.0), random.between(-2.0, 2.0)],
+            velocity: [random.between(-2.0, 2.0), fall, random.between(-2.0, 2.0)],
         };
         Self { links, base, slope: 0.0, contacts }
     }
 
     fn urdf(&self) -> String {
-        let mut text = String::from("<robot name=\"model\">\n");
-        for link in &self.links {
-            let Link { name, mass, com: [x, z], moment, .. } = link;
-            let inertia = format!("ixx=\"{moment}\" ixy=\"0\" ixz=\"0\" iyy=\"{moment}\" iyz=\"0\" izz=\"{moment}\"");
-            writeln!(
-                text,
-                "<link name=\"{name}\"><inertial><origin xyz=\"{x} 0 {z}\"/><mass value=\"{mass}\"/><inertia {inertia}/></inertial></link>"
-            )
-            .expect("a string takes all");
-        }
-        for link in self.links.iter().skip(1) {
-            let Link { name, joint, parent, origin: [x, z], axis, .. } = link;
-            let parent = &self.links[*parent].name;
-            let (kind, axis) = match axis {
-                Ok(sign) => ("revolute", format!("0 {sign} 0")),
-                Err([x, z]) => ("prismatic", format!("{x} 0 {z}")),
-            };
-            writeln!(
-                text,
-                "<joint name=\"{joint}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{name}\"/><origin xyz=\"{x} 0 {z}\"/>\
-                 <axis xyz=\"{axis}\"/><limit lower=\"-9\" upper=\"9\" effort=\"9\" velocity=\"9\"/></joint>"
-            )
-            .expect("a string takes all");
-        }
-        text + "</robot>\n"
+        let links = self.links.iter().map(|link| urdf::link(&link.name, link.mass, link.com, link.moment, ""));
+        let joints = self.links.iter().skip(1).map(|link| {
+            let ends = [&self.links[link.parent].name, &link.name].map(String::as_str);
+            urdf::joint(&link.joint, link.axis, ends, link.origin, "")
+        });
+        urdf::robot(&links.chain(joints).collect::<Vec<_>>())
     }
 
     fn state(&self) -> Value {
@@ -238,8 +218,8 @@ fn a_mirrored_robot_slides_the_other_way() {
             link.com[0] = -link.com[0];
             link.origin[0] = -link.origin[0];
             match &mut link.axis {
-                Ok(_) => (link.position, link.velocity) = (-link.position, -link.velocity),
-                Err(direction) => direction[0] = -direction[0],
+                Axis::Revolute(_) | Axis::Fixed => (link.position, link.velocity) = (-link.position, -link.velocity),
+                Axis::Prismatic(direction) => direction[0] = -direction[0],
             }
         }
         mirrored.contacts.iter_mut().for_each(|contact| contact.offset[0] = -contact.offset[0]);
@@ -247,7 +227,7 @@ fn a_mirrored_robot_slides_the_other_way() {
             mirrored.base.position[k] = -mirrored.base.position[k];
             mirrored.base.velocity[k] = -mirrored.base.velocity[k];
         }
-        let turns: Vec<bool> = model.links.iter().skip(1).map(|link| link.axis.is_ok()).collect();
+        let turns: Vec<bool> = model.links.iter().skip(1).map(|link| !link.axis.slides()).collect();
         let signs = |k: usize| if k == 0 || k == 2 || (k > 2 && turns[k - 3]) { -1.0 } else { 1.0 };
         let view = View {
             mode: mirror,
@@ -277,7 +257,7 @@ fn units_change_no_verdict_and_no_margin_of_a_robot() {
                 link.moment *= mass * length * length;
                 link.com.iter_mut().chain(&mut link.origin).for_each(|x| *x *= length);
                 link.velocity /= time;
-                if link.axis.is_err() {
+                if link.axis.slides() {
                     link.position *= length;
                     link.velocity *= length;
                 }
@@ -289,7 +269,7 @@ fn units_change_no_verdict_and_no_margin_of_a_robot() {
             scaled.base.position[..2].iter_mut().for_each(|x| *x *= length);
             scaled.base.velocity.iter_mut().for_each(|v| *v /= time);
             scaled.base.velocity[..2].iter_mut().for_each(|v| *v *= length);
-            let slides: Vec<bool> = model.links.iter().skip(1).map(|link| link.axis.is_err()).collect();
+            let slides: Vec<bool> = model.links.iter().skip(1).map(|link| link.axis.slides()).collect();
             let unit = |k: usize| if k < 2 || (k > 2 && slides[k - 3]) { length / time } else { 1.0 / time };
             let view = View {
                 mode: |mode| mode,
@@ -310,8 +290,9 @@ fn a_flipped_axis_with_its_coordinate_negated_is_the_same_joint() {
         let mut flipped = model.clone();
         for (_, link) in flipped.links.iter_mut().enumerate().skip(1).filter(|(k, _)| flips(*k)) {
             match &mut link.axis {
-                Ok(sign) => *sign = -*sign,
-                Err(direction) => *direction = direction.map(|x| -x),
+                Axis::Revolute(sign) => *sign = -*sign,
+                Axis::Prismatic(direction) => *direction = direction.map(|x| -x),
+                Axis::Fixed => {}
             }
             (link.position, link.velocity) = (-link.position, -link.velocity);
         }

@@ -5,6 +5,7 @@
 pub mod answers;
 pub mod command;
 pub mod mechanism;
+pub mod parallel;
 pub mod random;
 pub mod scaled;
 pub mod urdf;

@@ -17,6 +17,17 @@ impl Random {
         z ^ (z >> 31)
     }
 
+    /// From 0 to 1, with all the digits of an f64.
+    pub fn uniform(&mut self) -> f64 {
+        // 53 bits make a number below one.
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// From `low` to `high`, with all its digits.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
     /// A whole number from `low` to `high`, both included.
     pub fn whole(&mut self, low: i64, high: i64) -> i64 {
         low + (self.bits() % (high - low + 1) as u64) as i64

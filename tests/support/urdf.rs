@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 /// A robot of these elements.
 pub fn robot(elements: &[String]) -> String {
-    format!("<robot name=\"robot\">\n{}</robot>\n", elements.concat())
+    format!("<robot name=\"mechanism\">\n{}</robot>\n", elements.concat())
 }
 
 /// A link with the same moment of inertia about every axis, and its `<collision>` elements.
@@ -25,14 +25,20 @@ pub enum Axis {
     Fixed,
 }
 
+impl Axis {
+    pub fn slides(self) -> bool {
+        matches!(self, Self::Prismatic(_))
+    }
+}
+
 /// A joint, with `more` of its elements.
 pub fn joint(name: impl Display, axis: Axis, ends: [&str; 2], [x, z]: [f64; 2], more: &str) -> String {
     let (kind, axis) = match axis {
-        Axis::Revolute(sign) => ("continuous", format!("0 {sign} 0")),
+        Axis::Revolute(sign) => ("revolute", format!("0 {sign} 0")),
         Axis::Prismatic([x, z]) => ("prismatic", format!("{x} 0 {z}")),
         Axis::Fixed => ("fixed", "1 0 0".to_owned()),
     };
-    let limit = if kind == "prismatic" { "<limit lower=\"-9\" upper=\"9\" effort=\"9\" velocity=\"9\"/>" } else { "" };
+    let limit = "<limit lower=\"-9\" upper=\"9\" effort=\"9\" velocity=\"9\"/>";
     format!(
         "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"{x} 0 {z}\"/>\
          <axis xyz=\"{axis}\"/>{limit}{more}</joint>\n",

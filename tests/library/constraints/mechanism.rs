@@ -1,6 +1,7 @@
 //! A planar mechanism written down twice: as URDF, and as Jacobians of its CoGs by which M = sum m J'J + I w'w is summed up
 //! body by body, without recursion.
 
+use crate::support::urdf::{self, Axis};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
 use heelstrike::{Result, Robot};
@@ -45,32 +46,20 @@ pub fn part(name: &'static str, parent: &'static str, origin: [f64; 2], mass: f6
 
 impl Mechanism {
     pub fn urdf(&self) -> String {
-        let link = |name: &str, mass: f64, com: [f64; 2], moment: f64| {
-            format!(
-                "<link name=\"{name}\"><inertial><origin xyz=\"{} 0 {}\"/><mass value=\"{mass}\"/>\
-                 <inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"{moment}\" iyz=\"0\" izz=\"1\"/></inertial></link>",
-                com[0], com[1]
-            )
-        };
-        let mut text = format!("<robot name=\"mechanism\">{}", link("root", self.root.0, self.root.1, self.root.2));
+        let (mass, com, moment) = self.root;
+        let mut elements = vec![urdf::link("root", mass, com, moment, "")];
         for part in &self.parts {
-            let (kind, axis) = match part.joint {
-                Joint::Turn(sign) => ("continuous", format!("0 {sign} 0")),
-                Joint::Slide([x, z]) => ("prismatic", format!("{x} 0 {z}")),
+            let axis = match part.joint {
+                Joint::Turn(sign) => Axis::Revolute(sign),
+                Joint::Slide(along) => Axis::Prismatic(along),
             };
-            let limit =
-                if kind == "prismatic" { "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>" } else { "" };
-            let mimic = part.follows.map_or(String::new(), |(leader, multiplier, offset)| {
-                format!("<mimic joint=\"{leader}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>")
+            let mimic = part.follows.map_or(String::new(), |(mimicked, multiplier, offset)| {
+                format!("<mimic joint=\"{mimicked}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>")
             });
-            text += &link(part.name, part.mass, part.com, part.moment);
-            text += &format!(
-                "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"{} 0 {}\"/>\
-                 <axis xyz=\"{axis}\"/>{limit}{mimic}</joint>",
-                part.name, part.parent, part.name, part.origin[0], part.origin[1]
-            );
+            elements.push(urdf::link(part.name, part.mass, part.com, part.moment, ""));
+            elements.push(urdf::joint(part.name, axis, [part.parent, part.name], part.origin, &mimic));
         }
-        text + "</robot>"
+        urdf::robot(&elements)
     }
 
     pub fn robot(&self) -> Robot {

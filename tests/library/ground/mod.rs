@@ -8,6 +8,7 @@ mod by_hand;
 mod corners;
 mod depth;
 mod invariances;
+mod level;
 mod scenes;
 
 use heelstrike::impact::Verdict;

@@ -55,29 +55,25 @@ impl Subject {
     }
 }
 
-fn between(random: &mut Random, low: f64, high: f64) -> f64 {
-    low + (high - low) * (random.bits() >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 /// A constant, or a line in the parameter p.
 fn linear(random: &mut Random, size: f64) -> Value {
-    let constant = between(random, -size, size);
+    let constant = random.between(-size, size);
     match random.once_in(3) {
         true => json!(constant),
-        false => json!(format!("{constant} + {}*p", between(random, -size, size))),
+        false => json!(format!("{constant} + {}*p", random.between(-size, size))),
     }
 }
 
 /// A line in the parameter, which runs from -1 to 1, that stays positive and near `value`.
 fn near(random: &mut Random, value: f64) -> Value {
-    json!(format!("{}*(1 + {}*p)", value.max(0.01), between(random, -0.8, 0.8)))
+    json!(format!("{}*(1 + {}*p)", value.max(0.01), random.between(-0.8, 0.8)))
 }
 
 fn friction(random: &mut Random) -> Value {
     match random.whole(0, 5) {
         0 => json!(0),
-        1 | 2 => json!(between(random, 0.05, 2.0)),
-        3 => json!(format!("0.7 + {}*p", between(random, -0.6, 0.6))),
+        1 | 2 => json!(random.between(0.05, 2.0)),
+        3 => json!(format!("0.7 + {}*p", random.between(-0.6, 0.6))),
         _ => json!("infinite"),
     }
 }

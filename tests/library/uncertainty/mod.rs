@@ -9,7 +9,7 @@ use crate::support::random::Random;
 use heelstrike::pipeline::robust::Robustness;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::{Robot, state::State};
-use states::{between, impact, in_the_box, modes, on_both_feet, ramone, walking};
+use states::{impact, in_the_box, modes, on_both_feet, ramone, walking};
 use std::time::Instant;
 
 /// How many boxes hold, do not, and stay unknown.
@@ -29,7 +29,7 @@ fn count(robot: &Robot, state: &State, random: &mut Random, shares: &mut Shares)
             for _ in 0..20 {
                 let corner = in_the_box(robot, state, || if random.once_in(2) { 1.0 } else { -1.0 });
                 assert_eq!(modes(&impact(robot, &corner)), modes(&answer), "{corner:?}");
-                let within = in_the_box(robot, state, || between(random, -1.0, 1.0));
+                let within = in_the_box(robot, state, || random.between(-1.0, 1.0));
                 assert_eq!(modes(&impact(robot, &within)), modes(&answer), "{within:?}");
             }
         }

@@ -19,15 +19,10 @@ pub fn impact(robot: &Robot, state: &State) -> Impact {
     Pipeline::new(robot, Options::default()).impact(state).expect("an answer")
 }
 
-/// Any number from `low` to `high`.
-pub fn between(random: &mut Random, low: f64, high: f64) -> f64 {
-    low + (high - low) * (random.bits() >> 11) as f64 / (1u64 << 53) as f64
-}
-
 /// Both feet on the ground, in any posture, with any velocities of order one and friction from 0.2 to 1.5, all half-widths
 /// `width`.
 pub fn on_both_feet(robot: &Robot, random: &mut Random, width: f64) -> State {
-    let mut number = |scale: f64| between(random, -scale, scale);
+    let mut number = |scale: f64| random.between(-scale, scale);
     let joints = |value: &mut dyn FnMut() -> f64| -> Value {
         robot.joints.iter().map(|joint| (joint.name.clone(), json!(value()))).collect()
     };
@@ -44,18 +39,18 @@ pub fn on_both_feet(robot: &Robot, random: &mut Random, width: f64) -> State {
 /// One foot stands on a slope while the other strikes, with whatever else a state may have.
 pub fn walking(robot: &Robot, random: &mut Random) -> State {
     let joints: Value =
-        robot.joints.iter().map(|joint| (joint.name.clone(), json!(between(random, -1.2, 1.2)))).collect();
+        robot.joints.iter().map(|joint| (joint.name.clone(), json!(random.between(-1.2, 1.2)))).collect();
     let rates: Value =
-        robot.joints.iter().map(|joint| (joint.name.clone(), json!(between(random, -2.0, 2.0)))).collect();
+        robot.joints.iter().map(|joint| (joint.name.clone(), json!(random.between(-2.0, 2.0)))).collect();
     let held: &[&str] = if random.once_in(2) { &["left_knee"] } else { &[] };
     let state = json!({
-        "position": {"base": {"pitch": between(random, -0.5, 0.5)}, "joints": joints},
-        "velocity": {"base": {"pitch": between(random, -2.0, 2.0)}, "joints": rates},
+        "position": {"base": {"pitch": random.between(-0.5, 0.5)}, "joints": joints},
+        "velocity": {"base": {"pitch": random.between(-2.0, 2.0)}, "joints": rates},
         "stance": "left_foot",
-        "ground": {"slope": between(random, -0.3, 0.3)},
+        "ground": {"slope": random.between(-0.3, 0.3)},
         "held": held,
         "rotor_inertia": {"right_knee": 0.01},
-        "friction": {"default": between(random, 0.2, 1.5), "right_foot": random.pick(&[json!("infinite"), json!(0.7), json!(0)])},
+        "friction": {"default": random.between(0.2, 1.5), "right_foot": random.pick(&[json!("infinite"), json!(0.7), json!(0)])},
         "restitution": {"left_foot": 0, "right_foot": random.pick(&[0.0, 0.5])},
         "contacts": [{"link": "left_foot", "radius": 0.02815}, {"link": "right_foot", "radius": 0.02815}],
         "uncertainty": {

@@ -101,6 +101,29 @@ pub struct Counts {
     pub layers: [u64; 4],
 }
 
+impl Counts {
+    fn columns(&self) -> [(&'static str, u64); 15] {
+        let [bound, ball, double, precise] = self.layers;
+        [
+            ("number", self.states),
+            ("proven", self.proven),
+            ("same", self.same),
+            ("undecided", self.undecided),
+            ("wrong", self.wrong),
+            ("different", self.different),
+            ("refused", self.refused),
+            ("unknown", self.unknown),
+            ("border", self.border),
+            ("ambiguous", self.ambiguous),
+            ("deeper", self.deeper),
+            ("bound", bound),
+            ("ball", ball),
+            ("double", double),
+            ("precise", precise),
+        ]
+    }
+}
+
 impl AddAssign for Counts {
     fn add_assign(&mut self, other: Self) {
         self.states += other.states;
@@ -164,49 +187,13 @@ impl Census {
 
 impl fmt::Display for Census {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{:14} {:6} {:>8} {:>8} {:>8} {:>9} {:>6} {:>9} {:>7} {:>7} {:>7} {:>9} {:>7} | {:>9} {:>8} {:>7} {:>7}",
-            "robot",
-            "states",
-            "number",
-            "proven",
-            "same",
-            "undecided",
-            "wrong",
-            "different",
-            "refused",
-            "unknown",
-            "border",
-            "ambiguous",
-            "deeper",
-            "bound",
-            "ball",
-            "double",
-            "precise"
-        )?;
+        let names = Counts::default().columns().map(|(name, _)| format!("{name:>10}"));
+        writeln!(f, "{:14} {:6} {}", "robot", "states", names.concat())?;
         let total = ("all", self.total());
         for (name, row) in self.rows.iter().chain([&total]) {
-            for (kind, c) in [("random", row.random), ("near", row.near)] {
-                writeln!(
-                    f,
-                    "{name:14} {kind:6} {:8} {:8} {:8} {:9} {:6} {:9} {:7} {:7} {:7} {:9} {:7} | {:9} {:8} {:7} {:7}",
-                    c.states,
-                    c.proven,
-                    c.same,
-                    c.undecided,
-                    c.wrong,
-                    c.different,
-                    c.refused,
-                    c.unknown,
-                    c.border,
-                    c.ambiguous,
-                    c.deeper,
-                    c.layers[0],
-                    c.layers[1],
-                    c.layers[2],
-                    c.layers[3]
-                )?;
+            for (kind, counts) in [("random", row.random), ("near", row.near)] {
+                let numbers = counts.columns().map(|(_, number)| format!("{number:>10}"));
+                writeln!(f, "{name:14} {kind:6} {}", numbers.concat())?;
             }
         }
         for Failure { unproven, block, text } in &self.failures {

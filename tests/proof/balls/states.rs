@@ -124,12 +124,6 @@ pub fn models() -> Vec<Model> {
 
 /// Choices of real numbers.
 impl Random {
-    /// From `low` to `high`, every f64 with all its digits.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        // 53 bits make a number below one.
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-
     /// 10 to a power from `low` to `high`.
     fn decades(&mut self, low: f64, high: f64) -> f64 {
         10_f64.powf(self.between(low, high))

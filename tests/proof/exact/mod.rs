@@ -6,6 +6,9 @@ mod rational;
 mod self_test;
 mod tree;
 
+use crate::support::answers::{self, answers};
+use crate::support::command::place;
+use crate::support::parallel::{added, total};
 use crate::support::random::Random;
 use case::Case;
 use dashu::rational::RBig;
@@ -17,7 +20,6 @@ use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::NamedContact;
 use rational::{ratio, to_f64};
 use std::collections::BTreeMap;
-use std::thread;
 use tree::Tree;
 
 /// What is left of an outcome once names and formats are gone; contact vectors flat, [t, n] per contact.
@@ -106,26 +108,20 @@ fn compare(problem: &Problem, all: &Enumeration, verdict: &str, answers: &Answer
     Ok(())
 }
 
-/// Runs `check` on the numbers below `count` in four threads; adds up what it returns.
-fn total<const N: usize>(count: u64, check: impl Fn(u64) -> [usize; N] + Sync) -> [usize; N] {
-    let mut sums = [0; N];
-    thread::scope(|scope| {
-        let check = &check;
-        let work = |worker| move || (worker..count).step_by(4).map(check).fold([0; N], added);
-        let workers: Vec<_> = (0..4).map(|worker| scope.spawn(work(worker))).collect();
-        for worker in workers {
-            sums = added(sums, worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-        }
-    });
-    sums
-}
-
-fn added<const N: usize>(a: [usize; N], b: [usize; N]) -> [usize; N] {
-    std::array::from_fn(|i| a[i] + b[i])
-}
-
 fn given(friction: &Friction) -> impact::Friction {
     friction.as_ref().map_or(impact::Friction::Infinite, |mu| impact::Friction::Finite(to_f64(mu)))
+}
+
+/// The crate's analysis of a problem.
+fn analyse_problem(problem: &Problem, seed: u64) -> Analysis {
+    let contact_problem = ContactProblem::new(
+        problem.delassus.iter().flatten().map(to_f64).collect(),
+        problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
+        problem.friction.iter().map(given).collect(),
+        problem.restitution.iter().map(to_f64).collect(),
+    );
+    let analysis = contact_problem.and_then(|problem| impact::analyse(&problem, false));
+    analysis.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{problem:?}"))
 }
 
 fn name(verdict: Verdict) -> String {
@@ -159,18 +155,11 @@ fn matrices_have_the_outcomes_of_exact_arithmetic() {
         if all.clearance() < 1e-9 {
             return [0, 0];
         }
-        let library = ContactProblem::new(
-            problem.delassus.iter().flatten().map(to_f64).collect(),
-            problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
-            problem.friction.iter().map(given).collect(),
-            problem.restitution.iter().map(to_f64).collect(),
-        );
-        let analysis = library.and_then(|library| impact::analyse(&library, false));
-        let analysis = analysis.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{problem:?}"));
+        let analysis = analyse_problem(&problem, seed);
         let answers = from_analysis(&analysis);
         compare(&problem, &all, &name(analysis.verdict), &answers, analysis.outcomes.len())
             .unwrap_or_else(|difference| panic!("seed {seed}: {difference}\n{}", solve_json(&problem)));
-        [1, usize::from(answers.len() > 1)]
+        [1, u64::from(answers.len() > 1)]
     });
     assert!(compared > 7_000 && ambiguous > 300, "{compared} compared, {ambiguous} ambiguous");
 }
@@ -248,14 +237,7 @@ fn matrices_beside_borders_have_the_outcomes_of_exact_arithmetic() {
         if all.dependent > 0 {
             return [0; 4];
         }
-        let library = ContactProblem::new(
-            problem.delassus.iter().flatten().map(to_f64).collect(),
-            problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
-            problem.friction.iter().map(given).collect(),
-            problem.restitution.iter().map(to_f64).collect(),
-        );
-        let analysis = library.and_then(|library| impact::analyse(&library, false));
-        let analysis = analysis.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{problem:?}"));
+        let analysis = analyse_problem(&problem, seed);
         let frictionless = problem.friction.contains(&Some(RBig::ZERO));
         // Without any velocity no slack has a size, and all are zero.
         let clear = |outcome: &&Combination| outcome.margin > 0.0 && outcome.margin.is_finite();
@@ -268,7 +250,7 @@ fn matrices_beside_borders_have_the_outcomes_of_exact_arithmetic() {
             .into_iter()
             .map(|(modes, answer)| (modes, answer.index.filter(|_| !frictionless)))
             .collect();
-        let border = usize::from(!all.outcomes().all(|outcome| clear(&outcome)));
+        let border = u64::from(!all.outcomes().all(|outcome| clear(&outcome)));
         if analysis.verdict == Verdict::Undecided {
             assert!(!analysis.proven, "seed {seed}: undecided, but proven\n{}", solve_json(&problem));
             return [0, 0, 0, 1];
@@ -281,7 +263,7 @@ fn matrices_beside_borders_have_the_outcomes_of_exact_arithmetic() {
             solve_json(&problem)
         );
         let clearance = all.clearance();
-        [1, border, usize::from(clearance > 0.0 && clearance < 1e-9), 0]
+        [1, border, u64::from(clearance > 0.0 && clearance < 1e-9), 0]
     });
     let counts = format!("{compared} compared, {borders} on and {near} beside a border, {undecided} undecided");
     assert!(compared >= 10_000 && borders > 5_000 && near > 1_000 && undecided * 300 < compared, "{counts}");
@@ -353,7 +335,7 @@ fn trees_have_the_outcomes_of_exact_arithmetic() {
             let answers = from_analysis(&analysis);
             compare(&case.problem, all, &name(analysis.verdict), &answers, analysis.outcomes.len())
                 .unwrap_or_else(|difference| fail(&difference));
-            counts = added(counts, [1, usize::from(answers.len() > 1), usize::from(case.contacts.len() > 2)]);
+            counts = added(counts, [1, u64::from(answers.len() > 1), u64::from(case.contacts.len() > 2)]);
         }
         counts
     });
@@ -368,19 +350,17 @@ fn report(tree: &Tree, case: &Case, difference: &str) -> String {
 
 #[test]
 fn the_binary_has_the_outcomes_of_exact_arithmetic() {
-    let directory = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let folder = place("");
     let [compared, ambiguous] = total(110, |number| {
         let (tree, cases) = robot(number);
-        let path = directory.join(format!("oracle_{number}.urdf"));
+        let path = format!("{folder}{number}.urdf");
         std::fs::write(&path, tree.urdf()).expect("the target directory can be written");
         let states: Vec<_> = cases.iter().map(|(case, _)| case.state(&tree)).collect();
-        let path = path.to_str().expect("UTF-8");
         let mut counts = [0, 0];
-        for ((case, all), answer) in cases.iter().zip(crate::support::answers::answers(&["batch", path, "-"], &states))
-        {
+        for ((case, all), answer) in cases.iter().zip(answers(&["batch", &path, "-"], &states)) {
             let answer = answer.unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
             check_line(&tree, case, all, &answer).unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
-            counts = added(counts, [1, usize::from(answer.outcomes.len() > 1)]);
+            counts = added(counts, [1, u64::from(answer.outcomes.len() > 1)]);
         }
         counts
     });
@@ -388,12 +368,7 @@ fn the_binary_has_the_outcomes_of_exact_arithmetic() {
 }
 
 /// Compares a line of the batch with the exact outcomes, coordinates by their names.
-fn check_line(
-    tree: &Tree,
-    case: &Case,
-    all: &Enumeration,
-    answer: &crate::support::answers::Answer,
-) -> Result<(), String> {
+fn check_line(tree: &Tree, case: &Case, all: &Enumeration, answer: &answers::Answer) -> Result<(), String> {
     let answers = answer.outcomes.iter().map(|outcome| {
         let numbers = Answer {
             impulse: outcome.impulse.concat(),

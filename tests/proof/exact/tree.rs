@@ -6,8 +6,8 @@
 
 use super::rational::{Matrix, dot, ratio, to_f64, zeros};
 use crate::support::random::Random;
+use crate::support::urdf::{self, Axis};
 use dashu::rational::RBig;
-use std::fmt::Write;
 
 /// [x, z].
 pub type Point = [RBig; 2];
@@ -213,39 +213,23 @@ impl Tree {
 
     /// The tree as a URDF file; every number in it is exact.
     pub fn urdf(&self) -> String {
-        let mut text = String::from("<robot name=\"random_tree\">\n");
-        for &index in &self.link_order {
+        let links = self.link_order.iter().map(|&index| {
             let body = &self.bodies[index];
-            let [x, z] = body.com.each_ref().map(to_f64);
-            let (mass, moment) = (to_f64(&body.mass), to_f64(&body.moment));
-            writeln!(
-                text,
-                "  <link name=\"{}\"><inertial><origin xyz=\"{x} 0 {z}\"/><mass value=\"{mass}\"/><inertia ixx=\"{moment}\" \
-                 ixy=\"0\" ixz=\"0\" iyy=\"{moment}\" iyz=\"0\" izz=\"{moment}\"/></inertial></link>",
-                Self::link(index)
-            )
-            .expect("a string takes all");
-        }
-        for &index in &self.joint_order {
+            urdf::link(Self::link(index), to_f64(&body.mass), body.com.each_ref().map(to_f64), to_f64(&body.moment), "")
+        });
+        let joints = self.joint_order.iter().map(|&index| {
             let body = &self.bodies[index];
-            let [x, z] = body.origin.each_ref().map(to_f64);
-            let length = body.axis_length;
-            let (kind, axis) = match body.motion {
-                Motion::Turn(sign) => (["revolute", "continuous"][index % 2], format!("0 {} 0", sign * length)),
-                Motion::Slide([x, z]) => ("prismatic", format!("{} 0 {}", x * length, z * length)),
-                Motion::Fixed => ("fixed", "1 0 0".to_owned()),
+            let axis = match body.motion {
+                Motion::Turn(sign) => Axis::Revolute((sign * body.axis_length) as f64),
+                Motion::Slide(along) => Axis::Prismatic(along.map(|x| (x * body.axis_length) as f64)),
+                Motion::Fixed => Axis::Fixed,
             };
-            writeln!(
-                text,
-                "  <joint name=\"{}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"{x} 0 {z}\"/>\
-                 <axis xyz=\"{axis}\"/><limit lower=\"-9\" upper=\"9\" effort=\"9\" velocity=\"9\"/></joint>",
-                Self::joint(index),
-                Self::link(body.parent.expect("only the root has none")),
-                Self::link(index),
-            )
-            .expect("a string takes all");
-        }
-        text + "</robot>\n"
+            let ends = [Self::link(body.parent.expect("only the root has none")), Self::link(index)];
+            let joint =
+                urdf::joint(Self::joint(index), axis, [&ends[0], &ends[1]], body.origin.each_ref().map(to_f64), "");
+            if index % 2 == 0 { joint } else { joint.replace("revolute", "continuous") }
+        });
+        urdf::robot(&links.chain(joints).collect::<Vec<_>>())
     }
 
     /// A random state: angles with rational cosine and sine, the rest dyadic.

@@ -1,25 +1,11 @@
 //! Which points touch the ground: shapes, slopes, tolerances, stance, contacts named by hand, held joints, impulses.
 
+use super::{body, sole};
 use heelstrike::impact::{Friction, Verdict};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::robot::{FootShape, Rim};
 use heelstrike::state::{Defaults, State};
 use heelstrike::{Error, Reason, Robot};
-
-/// A body of 2 kg and 0.5 kg m^2 with one collision shape.
-fn body(shape: &str) -> Robot {
-    let text = format!(
-        r#"<robot name="body"><link name="body">
-            <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="0.5" iyz="0" izz="1"/></inertial>
-            <collision>{shape}</collision>
-        </link></robot>"#
-    );
-    Robot::from_urdf(&text).expect("a good robot")
-}
-
-fn flat_box() -> Robot {
-    body(r#"<geometry><box size="0.4 0.1 0.2"/></geometry>"#)
-}
 
 fn try_impact(robot: &Robot, options: Options, state: &str) -> Result<Impact, Error> {
     let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
@@ -41,7 +27,7 @@ fn close(found: impl Into<[f64; 2]>, expected: [f64; 2]) -> bool {
 
 #[test]
 fn a_flat_box_touches_with_two_corners_from_rear_to_front() {
-    let found = impact(&flat_box(), r#"{"position": {"base": {"z": 0.1}}, "velocity": {"base": {"z": -1}}}"#);
+    let found = impact(&sole(), r#"{"position": {"base": {"z": 0.1}}, "velocity": {"base": {"z": -1}}}"#);
     assert_eq!(names(&found), ["body/0", "body/1"]);
     assert_eq!([found.contacts[0].point, found.contacts[1].point], [[-0.2, 0.0], [0.2, 0.0]]);
     let analysis = found.analysis.unwrap();
@@ -61,7 +47,7 @@ fn a_tilted_box_touches_with_one_corner() {
     let z = 0.2 * sin + 0.1 * cos;
     let state =
         format!(r#"{{"position": {{"base": {{"z": {z}, "pitch": 0.1}}}}, "velocity": {{"base": {{"z": -1}}}}}}"#);
-    let found = impact(&flat_box(), &state);
+    let found = impact(&sole(), &state);
     assert_eq!(names(&found), ["body"]);
     assert_eq!(found.contacts[0].centre, [0.2, -0.1]);
     assert!(close(found.contacts[0].point, [0.2 * cos - 0.1 * sin, 0.0]));
@@ -77,7 +63,7 @@ fn a_box_lies_flat_on_a_slope() {
         -0.1 * sin,
         0.1 * cos
     );
-    let found = impact(&flat_box(), &state);
+    let found = impact(&sole(), &state);
     assert_eq!(names(&found), ["body/0", "body/1"]);
     assert!(close(found.contacts[1].point, [0.2 * cos, 0.2 * sin]));
     assert!(close(found.contacts[0].normal(), [-sin, cos]));
@@ -120,7 +106,7 @@ fn a_lying_capsule_touches_below_both_ends_and_a_tilted_one_below_the_lower() {
 
 #[test]
 fn a_rounded_box_touches_below_the_centres_of_its_rounding() {
-    let mut robot = flat_box();
+    let mut robot = sole();
     let corners = robot.links[0].shapes[0].corners().to_vec();
     robot.links[0].shapes = vec![FootShape::swept(corners, Rim::Circle { radius: 0.05 }).expect("convex")];
     let slope = 0.3_f64;
@@ -194,7 +180,7 @@ fn a_sphere_without_radius_is_a_point() {
 fn a_foot_above_the_tolerance_is_open_and_below_it_refused() {
     // The size of the box robot is sqrt(0.05), so the tolerance is 2.2e-7 m.
     let state = |z: f64| format!(r#"{{"position": {{"base": {{"z": {z}}}}}}}"#);
-    let robot = flat_box();
+    let robot = sole();
     assert_eq!(impact(&robot, &state(0.1 + 1e-7)).contacts.len(), 2);
     let open = impact(&robot, &state(0.1 + 1e-6));
     assert_eq!(open.contacts.len(), 0);
@@ -209,7 +195,7 @@ fn a_foot_above_the_tolerance_is_open_and_below_it_refused() {
 
 #[test]
 fn a_stance_puts_the_rear_end_of_a_flat_side_at_the_origin_and_at_rest() {
-    let found = impact(&flat_box(), r#"{"stance": "body", "velocity": {"base": {"pitch": -1.0}}}"#);
+    let found = impact(&sole(), r#"{"stance": "body", "velocity": {"base": {"pitch": -1.0}}}"#);
     assert_eq!(found.contacts[0].point, [0.0, 0.0]);
     assert_eq!(found.velocity_before[0], [0.0, 0.0]);
     // The front corner, 0.4 m ahead, rises at 0.4 m/s and does not move along the ground.
@@ -218,7 +204,7 @@ fn a_stance_puts_the_rear_end_of_a_flat_side_at_the_origin_and_at_rest() {
 
 #[test]
 fn a_standing_robot_has_no_impact() {
-    let found = impact(&flat_box(), r#"{"stance": "body"}"#);
+    let found = impact(&sole(), r#"{"stance": "body"}"#);
     let analysis = found.analysis.unwrap();
     assert_eq!(analysis.verdict, Verdict::NoImpact);
     assert_eq!(analysis.outcomes[0].velocity_after, [[0.0; 2]; 2]);
@@ -229,7 +215,7 @@ fn a_standing_robot_has_no_impact() {
 fn named_contacts_are_closed_whatever_their_height_and_keep_their_order() {
     let state = r#"{"position": {"base": {"z": 5}}, "contacts": [
         {"link": "body", "offset": [0.3, 7, -1]}, {"link": "body", "offset": [-0.3, 0, -1], "radius": 0.5}]}"#;
-    let found = impact(&flat_box(), state);
+    let found = impact(&sole(), state);
     assert_eq!(names(&found), ["body/0", "body/1"]);
     assert_eq!([found.contacts[0].gap, found.contacts[1].gap], [4.0, 3.5]);
     assert_eq!(found.contacts[1].point, [-0.3, 3.5]);
@@ -250,7 +236,7 @@ fn feet_from_the_options_are_detected_by_their_height() {
 fn an_applied_impulse_counts_but_not_as_velocity_before() {
     let state = r#"{"position": {"base": {"z": 0.1}}, "friction": 10,
         "impulse": [{"link": "body", "offset": [0, 0, 0], "vector": [0.5, -4]}]}"#;
-    let found = impact(&flat_box(), state);
+    let found = impact(&sole(), state);
     assert_eq!(found.velocity_before, [[0.0; 2]; 2]);
     let analysis = found.analysis.unwrap();
     assert_eq!(analysis.verdict, Verdict::Unique);
@@ -296,7 +282,7 @@ fn a_massless_leg_is_refused_with_its_joint_unless_held_or_with_a_rotor() {
 
 #[test]
 fn slow_contacts_rest_only_where_asked() {
-    let robot = flat_box();
+    let robot = sole();
     let state = r#"{"position": {"base": {"z": 0.1}}, "velocity": {"base": {"z": -1e-3}}}"#;
     let moving = impact(&robot, state);
     assert_eq!(moving.velocity_before[0], [0.0, -1e-3]);
