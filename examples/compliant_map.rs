@@ -2,9 +2,7 @@
 //! d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
 
 use heelstrike::accuracy::compliant::{Biped, Map, NEAR};
-use heelstrike::draw::plot::{
-    Arrangement, Color, Legend, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, Shape, Stroke,
-};
+use heelstrike::draw::plot::{Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Stroke};
 use heelstrike::impact::{Friction, Mode};
 use std::error::Error;
 use std::fmt::Write;
@@ -76,13 +74,13 @@ fn picture(map: &Map) -> Picture {
     let marks = drawn.iter().map(|&(name, _, mark, color)| (name, LegendKey::Mark(mark, color)));
     let keys = marks.chain([("separatrix", LegendKey::Line(stroke))]);
     let entries = keys.map(|(name, key)| LegendEntry { name: name.into(), key }).collect();
-    let shapes = drawn.into_iter().map(|(_, points, mark, color)| Shape::Marks { points, mark, color, size: 3.0 });
+    let shapes = drawn.into_iter().map(|(_, points, mark, color)| PlotShape::Marks { points, mark, color, size: 3.0 });
     let x = PlotAxis { label: "approach speed of the trailing foot [m/s]".into(), ..PlotAxis::default() };
     let y = PlotAxis { label: "d_t / d_n".into(), logarithmic: true, ..PlotAxis::default() };
-    let line = Shape::Line { points: border.collect(), stroke };
+    let line = PlotShape::Line { points: border.collect(), stroke };
     Picture {
         title: "Minimalistic biped at α = 1.4, overdamped contact".into(),
         rows: vec![vec![Panel { shapes: shapes.chain([line]).collect(), ..Panel::new(x, y) }]],
-        legend: Legend { entries, arrangement: Arrangement::Right },
+        legend: entries,
     }
 }

@@ -1,12 +1,10 @@
-//! `--plot` of commands that write an interactive page, too.
+//! `--plot` of commands that also write an interactive page.
 
 use super::Failure;
-use super::output::named;
-use super::picture::{PlotOptions, nothing_to_draw};
+use super::picture::{PlotFormat, claim, draw, unknown_ending, write};
 use heelstrike::draw::Picture;
 use heelstrike::draw::page::Page;
 use heelstrike::draw::plot::Rendered;
-use heelstrike::{Error, Reason};
 use std::path::{Path, PathBuf};
 
 /// Where a picture or a page goes.
@@ -24,19 +22,21 @@ impl PageOptions {
     /// # Errors
     /// [`Failure::Usage`], naming the option.
     pub fn check(&self) -> Result<(), Failure> {
-        if self.is_page() || self.picture().check().is_ok() {
-            return Ok(());
+        match self.plot.as_deref().map(PlotFormat::of) {
+            Some(None) => Err(unknown_ending(
+                "a picture is written as .svg or .png, an interactive page as .html",
+                "name a file that ends in .svg, .png or .html",
+            )),
+            _ => Ok(()),
         }
-        let reason = Reason::Unsupported("a picture is written as .svg or .png, an interactive page as .html".into());
-        Err(Failure::Usage(Error::new(reason).at("--plot").hint("name a file that ends in .svg, .png or .html")))
     }
 
-    /// As [`PlotOptions::claim`].
+    /// As [`PlotOptions::claim`](super::picture::PlotOptions::claim).
     ///
     /// # Errors
     /// As there.
     pub fn claim(&self, inputs: &[&Path], results: Option<&Path>) -> Result<(), Failure> {
-        PlotOptions::to(self.plot.clone()).claim(inputs, results)
+        claim(self.plot.as_deref(), inputs, results)
     }
 
     /// The file.
@@ -49,37 +49,27 @@ impl PageOptions {
         self.plot.is_some()
     }
 
+    /// Whether a page is asked for.
+    pub fn is_page(&self) -> bool {
+        self.plot.as_deref().and_then(PlotFormat::of) == Some(PlotFormat::Html)
+    }
+
     /// Draws the picture, or writes the page that `page` makes around it, if one of both is asked for.
     ///
     /// # Errors
-    /// Whatever keeps the file from being written, and a picture that nothing can be drawn in, with why that may be.
+    /// As [`PlotOptions::draw`](super::picture::PlotOptions::draw).
     pub fn draw(
         &self,
         picture: &Picture,
         why_empty: &'static str,
         page: impl FnOnce(Rendered) -> Page,
     ) -> Result<(), Failure> {
-        match (self.plot.as_deref().filter(|plot| is_page(plot)), picture.render()) {
-            (Some(path), Some(rendered)) => {
-                std::fs::write(path, page(rendered).html()).map_err(|error| Failure::Output(named(path, error)))
+        match self.plot.as_deref() {
+            None => Ok(()),
+            Some(path) if self.is_page() => {
+                write(path, picture.render().map(|rendered| page(rendered).html().into_bytes()), why_empty)
             }
-            (Some(_), None) => Err(nothing_to_draw(why_empty)),
-            (None, _) => self.picture().draw(picture, why_empty),
+            Some(path) => draw(path, picture, why_empty),
         }
     }
-
-    /// Whether a page is asked for.
-    pub fn is_page(&self) -> bool {
-        self.plot.as_deref().is_some_and(is_page)
-    }
-
-    /// Where a picture goes; nowhere where a page is asked for.
-    fn picture(&self) -> PlotOptions {
-        PlotOptions::to(self.plot.clone().filter(|plot| !is_page(plot)))
-    }
-}
-
-/// Whether a file's ending says that it is a page.
-pub(super) fn is_page(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
 }

@@ -1,17 +1,15 @@
 //! Errors against run time as a picture: a panel for G and one for the outcomes.
 
 use crate::accuracy::{Errors, Factorization, Method, Study};
-use crate::draw::plot::{
-    Arrangement, Color, Legend, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, Shape,
-};
+use crate::draw::plot::{Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape};
 use crate::write::accuracy::{Accuracy, name_of};
 
-/// Marks by which cases are told from each other; where there are more cases they are not.
+/// Marks that distinguish cases, if there are not more cases than marks.
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
 
 impl Accuracy {
-    /// Errors of G and of the outcomes against run time, a point for each method and case; not of the reference, whose
-    /// hundred digits would press all others together. An error of exactly zero has no place on a logarithmic axis.
+    /// Errors of G and of the outcomes against run time, a point for each method and case. The reference is left out: its
+    /// hundred digits would squeeze all others together. An error of exactly zero has no place on a logarithmic axis.
     pub fn picture(&self) -> Picture {
         let named = self.studies.len() <= MARKS.len();
         let title = match self.studies.as_slice() {
@@ -50,7 +48,7 @@ impl Accuracy {
                     }
                 }
             }
-            let marks = |(mark, color, points)| Shape::Marks { points, mark, color, size: MARK };
+            let marks = |(mark, color, points)| PlotShape::Marks { points, mark, color, size: MARK };
             let axis = |label: &str| PlotAxis { label: label.into(), logarithmic: true, ..PlotAxis::default() };
             let shapes = series.into_iter().map(marks).collect();
             Panel { shapes, ..Panel::new(axis("time from state to G [s]"), axis(what)) }
@@ -61,14 +59,14 @@ impl Accuracy {
         ];
         let range = span_of(&panels);
         panels.iter_mut().for_each(|panel| panel.y.range = range);
-        Picture { title, rows: vec![panels], legend: Legend { entries: legend, arrangement: Arrangement::Right } }
+        Picture { title, rows: vec![panels], legend }
     }
 }
 
 /// The least and the greatest error of all panels, so that their axes are the same.
 fn span_of(panels: &[Panel]) -> Option<(f64, f64)> {
-    let marks = |shape: &Shape| match shape {
-        Shape::Marks { points, .. } => points.clone(),
+    let marks = |shape: &PlotShape| match shape {
+        PlotShape::Marks { points, .. } => points.clone(),
         _ => Vec::new(),
     };
     let errors = panels.iter().flat_map(|panel| &panel.shapes).flat_map(marks).map(|(_, error)| error);
@@ -79,7 +77,7 @@ fn span_of(panels: &[Panel]) -> Option<(f64, f64)> {
     })
 }
 
-/// Whether the method has a place in the picture.
+/// Whether the method is in the picture.
 fn is_drawn(method: &Method) -> bool {
     method.number != "reference" && method.factorization.is_some() && method.time.is_some() && method.error.is_some()
 }

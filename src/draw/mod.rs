@@ -1,9 +1,11 @@
 //! Pictures and pages of robots, impacts, sweeps and gaits.
 
-pub mod robot;
-mod keyframe;
 #[cfg(feature = "plot")]
 pub mod plot;
+#[cfg(feature = "plot")]
+mod caption;
+pub mod robot;
+mod keyframe;
 #[cfg(feature = "plot")]
 pub mod sweep;
 #[cfg(all(feature = "accuracy", feature = "plot"))]
@@ -11,7 +13,7 @@ mod accuracy;
 #[cfg(feature = "plot")]
 pub mod page;
 
-pub use keyframe::{Answer, Keyframe, ListedKeyframe, Pose};
+pub use keyframe::{Keyframe, KeyframeAnswer, ListedKeyframe};
 #[cfg(feature = "plot")]
 pub use plot::Picture;
 pub use robot::Drawing;

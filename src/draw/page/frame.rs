@@ -1,20 +1,19 @@
-//! A still as its data: poses, contacts and outcomes, and the scale on which all stills are drawn.
+//! States as the data of a page: bodies, contacts and outcomes, and the scale of all drawings.
 
-use super::Still;
-use super::number::{place, significant, unit, vector};
-use super::part::Parts;
-use super::texts::Texts;
+use super::number::{place, significant, to_unit, unit, vector};
+use super::{Interned, PageState};
 use crate::Error;
-use crate::draw::keyframe::{Answer, Pose};
-use crate::draw::robot::{Arrow, Drawing, Extent, Touch};
-use crate::impact::{self, Verdict};
+use crate::draw::caption;
+use crate::draw::keyframe::KeyframeAnswer;
+use crate::draw::robot::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnShape, Extent};
+use crate::impact::{Outcome, Verdict};
 use crate::planar::{Pair, Vector};
 use crate::write::words;
 use serde::Serialize;
 
-/// A still. Texts are given by their numbers.
+/// A state. Texts and bodies are given by their numbers.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Frame {
+pub(super) struct PageFrame {
     #[serde(skip_serializing_if = "Option::is_none")]
     region: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -28,28 +27,37 @@ pub(super) struct Frame {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pose: Option<Placed>,
-    outcomes: Vec<Effect>,
+    pose: Option<PageDrawing>,
+    outcomes: Vec<PageOutcome>,
 }
 
-/// A robot where it is.
+/// A robot in its configuration.
 #[derive(Debug, Clone, Serialize)]
-struct Placed {
+struct PageDrawing {
     /// Of each body its part, and its frame's origin and x axis in the world.
     bodies: Vec<(usize, f64, f64, f64, f64)>,
-    /// From where to where.
+    /// The beginning and the end of each.
     bones: Vec<[f64; 4]>,
     joints: Vec<Vector<f64>>,
     ground: Vec<Vector<f64>>,
-    contacts: Vec<Contact>,
+    contacts: Vec<PageContact>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     applied: Vec<Arrow>,
     /// The middle of all that is drawn.
     middle: Vector<f64>,
 }
 
+/// The rigid part of a drawn body, in its frame.
 #[derive(Debug, Clone, Serialize)]
-struct Contact {
+struct BodyPart {
+    outlines: Vec<DrawnShape>,
+    com: Option<Vector<f64>>,
+    mass: f64,
+    last: bool,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct PageContact {
     name: usize,
     point: Vector<f64>,
     normal: Vector<f64>,
@@ -58,12 +66,11 @@ struct Contact {
 }
 
 #[derive(Debug, Clone, Serialize)]
-struct Effect {
+struct PageOutcome {
     /// What each contact does, in words.
     words: usize,
-    /// What else is to be said of it.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    marks: Vec<usize>,
+    #[serde(rename = "marks", skip_serializing_if = "Vec::is_empty")]
+    remarks: Vec<usize>,
     margin: Option<f64>,
     index: Option<i8>,
     energy_loss: f64,
@@ -72,13 +79,13 @@ struct Effect {
     after: Vec<Pair<f64>>,
 }
 
-/// How large stills are drawn, all alike.
+/// The scale of all drawings of a page.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct Scale {
-    /// What places are told to \[m\].
+pub(super) struct PageScale {
+    /// Coordinates are multiples of this \[m\].
     #[serde(skip)]
     pub unit: f64,
-    /// The lower left corner of what is in view, from the middle of the robot along an axis on which the view follows it \[m\].
+    /// The lower left corner of the view, from the middle of the robot along an axis on which the view follows it \[m\].
     low: Vector<f64>,
     /// The upper right one \[m\].
     high: Vector<f64>,
@@ -86,43 +93,31 @@ pub(super) struct Scale {
     follows: [bool; 2],
     /// The mass of the heaviest body \[kg\].
     mass: f64,
-    /// An impulse that is drawn as long as an arrow should be \[N s\].
+    /// An impulse whose arrow has the usual length \[N s\].
     impulse: f64,
-    /// A velocity that is \[m/s\].
+    /// A velocity whose arrow has the usual length \[m/s\].
     velocity: f64,
 }
 
-/// Of the largest robot: where all stills are within less, the view stays where it is.
+/// The view stays fixed if all states lie within this multiple of the largest robot's size.
 const FIXED: f64 = 1.5;
-/// So many of a hundred stills have no longer arrow than one should be.
+/// So many of a hundred states have no arrow longer than the usual one.
 const USUAL: usize = 90;
 
-impl Scale {
-    /// That of these stills.
-    pub fn of(stills: &[Still]) -> Self {
-        let drawings: Vec<&Drawing> =
-            stills.iter().filter_map(|still| still.keyframe.pose.as_ref()).map(|pose| &pose.drawing).collect();
-        let extents = || drawings.iter().map(|drawing| drawing.extent());
-        let size = extents().map(|extent| extent.size()).fold(0.0, f64::max);
-        let whole = Extent::of(extents().flat_map(|extent| [extent.low, extent.high]));
-        let spans = extents().map(|extent| extent.high - extent.low);
-        let widest = spans.fold(Vector::zero(), Vector::greatest);
+impl PageScale {
+    /// The scale of these states.
+    pub fn of(states: &[PageState]) -> Self {
+        let drawings: Vec<&Drawing> = states.iter().filter_map(|state| state.keyframe.drawing.as_ref()).collect();
+        let extents: Vec<Extent> = drawings.iter().map(|drawing| drawing.extent()).collect();
+        let size = extents.iter().map(|extent| extent.size()).fold(0.0, f64::max);
+        let whole = Extent::of(extents.iter().flat_map(|extent| [extent.low, extent.high]));
+        let widest = extents.iter().map(|extent| extent.high - extent.low).fold(Vector::zero(), Vector::greatest);
         let follows = (whole.high - whole.low).components().map(|span| span > FIXED * size);
         let side = |way: f64, whole: Vector<f64>| {
-            Vector::new(
-                if follows[0] { 0.5 * way * widest.x } else { whole.x },
-                if follows[1] { 0.5 * way * widest.z } else { whole.z },
-            )
+            let x = if follows[0] { 0.5 * way * widest.x } else { whole.x };
+            Vector::new(x, if follows[1] { 0.5 * way * widest.z } else { whole.z })
         };
         let masses = drawings.iter().flat_map(|drawing| &drawing.bodies).map(|body| body.mass);
-        let impulses = drawings.iter().map(|drawing| {
-            let applied = drawing.applied.iter().map(|arrow| arrow.vector);
-            longest(drawing.outcomes.iter().flat_map(|outcome| outcome.impulse.iter().copied()).chain(applied))
-        });
-        let velocities = drawings.iter().map(|drawing| {
-            let before = drawing.contacts.iter().map(|contact| contact.velocity_before);
-            longest(drawing.outcomes.iter().flat_map(|outcome| outcome.velocity_after.iter().copied()).chain(before))
-        });
         let unit = unit(size);
         Self {
             unit,
@@ -130,34 +125,31 @@ impl Scale {
             high: place(side(1.0, whole.high), unit),
             follows,
             mass: significant(masses.fold(0.0, f64::max), 5),
-            impulse: significant(usual(impulses.collect()), 5),
-            velocity: significant(usual(velocities.collect()), 5),
+            impulse: usual(drawings.iter().map(|drawing| drawing.greatest_impulse())),
+            velocity: usual(drawings.iter().map(|drawing| drawing.greatest_velocity())),
         }
     }
 }
 
-fn longest(vectors: impl Iterator<Item = Vector<f64>>) -> f64 {
-    vectors.map(Vector::length).fold(0.0, f64::max)
+/// The value that most of the positive ones do not exceed.
+fn usual(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.filter(|value| *value > 0.0).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let usual = values.get((values.len() * USUAL / 100).min(values.len().saturating_sub(1)));
+    significant(usual.copied().unwrap_or(0.0), 5)
 }
 
-/// What most of these do not exceed, of those that are anything at all.
-fn usual(mut lengths: Vec<f64>) -> f64 {
-    lengths.retain(|length| *length > 0.0);
-    lengths.sort_unstable_by(f64::total_cmp);
-    lengths.get((lengths.len() * USUAL / 100).min(lengths.len().saturating_sub(1))).copied().unwrap_or(0.0)
-}
-
-impl Frame {
-    /// A still; its places are multiples of `unit` \[m\].
-    pub fn new(still: &Still, unit: f64, parts: &mut Parts, texts: &mut Texts) -> Self {
-        let Still { keyframe, region, name } = still;
+impl PageFrame {
+    /// A state; its coordinates are multiples of `unit` \[m\].
+    pub fn new(state: &PageState, unit: f64, parts: &mut Interned, texts: &mut Interned) -> Self {
+        let PageState { keyframe, region, name } = state;
         let answer = keyframe.answer.as_ref();
         let (verdict, proven) = (answer.ok().map(|answer| answer.verdict), answer.ok().map(|answer| answer.proven));
         let sentence = match answer {
             Ok(answer) => words::verdict(answer.verdict, answer.outcomes.len()),
             Err(error) => refusal(error),
         };
-        let contacts = keyframe.pose.as_ref().map_or(&[][..], |pose| &pose.drawing.contacts);
+        let contacts = keyframe.drawing.as_ref().map_or(&[][..], |drawing| &drawing.contacts);
         Self {
             region: *region,
             name: name.clone(),
@@ -165,8 +157,8 @@ impl Frame {
             proven,
             sentence: texts.number(sentence),
             notes: keyframe.notes.iter().map(|note| texts.number(note.clone())).collect(),
-            outcomes: answer.map_or_else(|_| Vec::new(), |answer| effects(answer, contacts, texts)),
-            pose: keyframe.pose.as_ref().map(|pose| Placed::new(pose, unit, parts, texts)),
+            outcomes: answer.map_or_else(|_| Vec::new(), |answer| outcomes(answer, contacts, texts)),
+            pose: keyframe.drawing.as_ref().map(|drawing| PageDrawing::new(drawing, unit, parts, texts)),
         }
     }
 }
@@ -178,69 +170,66 @@ fn refusal(error: &Error) -> String {
     format!("Refused: {place}{}{remedy}", error.reason())
 }
 
-fn effects(answer: &Answer, contacts: &[Touch], texts: &mut Texts) -> Vec<Effect> {
+fn outcomes(answer: &KeyframeAnswer, contacts: &[DrawnContact], texts: &mut Interned) -> Vec<PageOutcome> {
     let names = || contacts.iter().map(|contact| contact.name.as_str());
     let pair = |pair: &Pair<f64>| pair.map(|entry| significant(entry, 5));
-    let effect = |outcome: &impact::Outcome| Effect {
-        words: texts.number(match outcome.modes[..] {
-            [] => "nothing changes".to_owned(),
-            _ => words::modes(names(), &outcome.modes),
-        }),
-        marks: marks(outcome).into_iter().map(|mark| texts.number(mark)).collect(),
+    let outcome = |outcome: &Outcome| PageOutcome {
+        words: texts.number(caption::modes(names(), outcome)),
+        remarks: caption::remarks(outcome).into_iter().map(|remark| texts.number(remark)).collect(),
         margin: outcome.margin.map(|margin| significant(margin, 5)),
         index: outcome.index,
         energy_loss: significant(outcome.energy_loss, 5),
         impulse: outcome.impulse.iter().map(pair).collect(),
         after: outcome.velocity_after.iter().map(pair).collect(),
     };
-    answer.outcomes.iter().map(effect).collect()
+    answer.outcomes.iter().map(outcome).collect()
 }
 
-fn marks(outcome: &impact::Outcome) -> Vec<String> {
-    let border = outcome.border.as_ref().map(|border| {
-        let zeros: Vec<String> = border.at_zero.iter().map(|(_, zero)| zero.to_string()).collect();
-        format!("on a border: {}", zeros.join(", "))
-    });
-    let marks = [
-        (outcome.family, "the end of a family"),
-        (!outcome.impulse_unique, "one of many impulses"),
-        (!outcome.decided, "not excluded"),
-        (outcome.decided && !outcome.proven, "not proven"),
-    ];
-    border.into_iter().chain(marks.into_iter().filter(|mark| mark.0).map(|mark| mark.1.to_owned())).collect()
-}
-
-impl Placed {
-    fn new(Pose { drawing, turns }: &Pose, unit: f64, parts: &mut Parts, texts: &mut Texts) -> Self {
+impl PageDrawing {
+    fn new(drawing: &Drawing, unit: f64, parts: &mut Interned, texts: &mut Interned) -> Self {
         let at = |point: &Vector<f64>| place(*point, unit);
-        let placed = |(number, (body, turn)): (usize, (&_, &Vector<f64>))| {
-            let part = parts.number(number, body, *turn, unit);
-            let (Vector { x, z }, Vector { x: cos, z: sin }) = (at(&body.origin), vector(turn));
+        let bodies = drawing.bodies.iter().map(|body| {
+            // Writing into memory cannot fail.
+            let part = parts.number(serde_json::to_string(&BodyPart::new(body, unit)).unwrap_or_default());
+            let (Vector { x, z }, Vector { x: cos, z: sin }) = (at(&body.origin), vector(&body.x_axis));
             (part, x, z, cos, sin)
-        };
+        });
         let bones = drawing.bodies.iter().flat_map(|body| body.bones.iter().map(|end| [at(&body.origin), at(end)]));
-        let extent = drawing.extent();
+        let contacts = drawing.contacts.iter().map(|contact| PageContact {
+            name: texts.number(contact.name.clone()),
+            point: at(&contact.point),
+            normal: vector(&contact.normal),
+            before: vector(&contact.velocity_before),
+        });
+        let applied = drawing.applied.iter();
+        let Extent { low, high } = drawing.extent();
         Self {
-            bodies: drawing.bodies.iter().zip(turns).enumerate().map(placed).collect(),
-            bones: bones.map(|[Vector { x, z }, Vector { x: to_x, z: to_z }]| [x, z, to_x, to_z]).collect(),
+            bodies: bodies.collect(),
+            bones: bones.map(|[from, to]| [from.x, from.z, to.x, to.z]).collect(),
             joints: drawing.joints.iter().map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
-            contacts: drawing
-                .contacts
-                .iter()
-                .map(|contact| Contact {
-                    name: texts.number(contact.name.clone()),
-                    point: at(&contact.point),
-                    normal: vector(&contact.normal),
-                    before: vector(&contact.velocity_before),
-                })
-                .collect(),
-            applied: drawing
-                .applied
-                .iter()
-                .map(|arrow| Arrow { point: at(&arrow.point), vector: vector(&arrow.vector) })
-                .collect(),
-            middle: at(&((extent.low + extent.high) * 0.5)),
+            contacts: contacts.collect(),
+            applied: applied.map(|arrow| Arrow { point: at(&arrow.point), vector: vector(&arrow.vector) }).collect(),
+            middle: at(&((low + high) * 0.5)),
+        }
+    }
+}
+
+impl BodyPart {
+    fn new(body: &DrawnBody, unit: f64) -> Self {
+        let outline = |shape: &DrawnShape| match shape {
+            DrawnShape::Disc { center, radius } => {
+                DrawnShape::Disc { center: place(*center, unit), radius: to_unit(*radius, unit) }
+            }
+            DrawnShape::Polygon(corners) => {
+                DrawnShape::Polygon(corners.iter().map(|&corner| place(corner, unit)).collect())
+            }
+        };
+        Self {
+            outlines: body.shapes.iter().map(outline).collect(),
+            com: body.com.map(|com| place(com, unit)),
+            mass: significant(body.mass, 5),
+            last: body.is_last,
         }
     }
 }

@@ -1,15 +1,13 @@
 //! The states of a batch, their margins as a picture, and their page.
 
-use super::{Axis, Page, Region, STILLS, Still};
+use super::{MOST, Page, PageAxis, PageRegion, PageState};
 use crate::draw::ListedKeyframe;
-use crate::draw::plot::{
-    self, Arrangement, Band, Color, Legend, LegendEntry, LegendKey, Mark, Panel, Picture, Rendered, Shape, Stroke,
-};
+use crate::draw::plot::{self, Band, Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotShape, Rendered, Stroke};
 use crate::impact::Verdict;
 use crate::law::Mode;
 use serde_json::Value;
 
-/// States in their order, at most [`STILLS`] of them: of more every second, third ... one is kept.
+/// States in their order, at most [`MOST`] of them: of more every second, third ... one is kept.
 #[derive(Debug, Clone)]
 pub struct Gait {
     states: Vec<ListedKeyframe>,
@@ -23,10 +21,10 @@ impl Default for Gait {
     }
 }
 
-/// States that follow each other and have the same outcomes.
-struct Run<'g> {
+/// Successive states with the same outcomes.
+struct GaitRun<'g> {
     states: &'g [ListedKeyframe],
-    /// What the first one is called on the axis, and the others.
+    /// Their values on the axis.
     at: &'g [f64],
 }
 
@@ -37,14 +35,14 @@ impl Gait {
             self.states.push(state);
         }
         self.count += 1;
-        if self.states.len() > STILLS {
+        if self.states.len() > MOST {
             self.every *= 2;
             let mut kept = [true, false].into_iter().cycle();
             self.states.retain(|_| kept.next().unwrap_or(true));
         }
     }
 
-    /// What the states are ordered by: their times where all have one that does not fall back, else their lines.
+    /// The order of the states: their times if all have one and none decreases, else their lines.
     fn order(&self) -> (&'static str, Vec<f64>) {
         let times: Option<Vec<f64>> = self.states.iter().map(|state| state.time).collect();
         match times.filter(|times| times.is_sorted()) {
@@ -53,14 +51,14 @@ impl Gait {
         }
     }
 
-    fn runs<'g>(&'g self, order: &'g [f64]) -> Vec<Run<'g>> {
+    fn runs<'g>(&'g self, order: &'g [f64]) -> Vec<GaitRun<'g>> {
         let mut from = 0;
         self.states
             .chunk_by(|a, b| happening(a) == happening(b))
             .map(|states| {
                 let at = &order[from..from + states.len()];
                 from += states.len();
-                Run { states, at }
+                GaitRun { states, at }
             })
             .collect()
     }
@@ -71,18 +69,16 @@ impl Gait {
         let runs = self.runs(&order);
         let axis = |label: &str| plot::PlotAxis { label: label.into(), ..plot::PlotAxis::default() };
         let label = if name == "time" { "time [s]" } else { name };
-        let shapes = runs.iter().flat_map(Run::shapes).collect();
+        let shapes = runs.iter().flat_map(GaitRun::shapes).collect();
         let bands = bands(&runs);
         let panel = Panel { size: (640.0, 260.0), bands, shapes, ..Panel::new(axis(label), axis("margin")) };
-        let told = |kind: &Kind| runs.iter().any(|run| run.kind() == *kind);
-        let entry = |kind: Kind| LegendEntry { name: kind.words().into(), key: LegendKey::Fill(kind.fill()) };
+        let occurs = |kind: &StateKind| runs.iter().any(|run| run.kind() == *kind);
+        let entry =
+            |kind: StateKind| LegendEntry { name: kind.look().words.into(), key: LegendKey::Fill(kind.look().fill) };
         Picture {
             title: format!("{robot}: margins of all outcomes"),
             rows: vec![vec![panel]],
-            legend: Legend {
-                entries: Kind::ALL.into_iter().filter(told).map(entry).collect(),
-                arrangement: Arrangement::Rows,
-            },
+            legend: StateKind::ALL.into_iter().filter(occurs).map(entry).collect(),
         }
     }
 
@@ -90,33 +86,36 @@ impl Gait {
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
         let runs = self.runs(&order);
-        let region =
-            |run: &Run| Region { name: run.kind().words().into(), fill: run.kind().fill().hex(), borders: Vec::new() };
+        let region = |run: &GaitRun| PageRegion {
+            name: run.kind().look().words.into(),
+            fill: run.kind().look().fill.hex(),
+            borders: Vec::new(),
+        };
         let numbers = runs.iter().enumerate().flat_map(|(number, run)| vec![number; run.states.len()]);
-        let still = |(state, region): (&ListedKeyframe, usize)| {
+        let page_state = |(state, region): (&ListedKeyframe, usize)| {
             let line = format!("line {}", state.line);
             let name = match &state.id {
                 Some(Value::String(id)) => format!("{id}, {line}"),
                 Some(id) => format!("{id}, {line}"),
                 None => line,
             };
-            Still { keyframe: state.keyframe.clone(), region: Some(region), name: Some(name) }
+            PageState { keyframe: state.keyframe.clone(), region: Some(region), name: Some(name) }
         };
-        let stills: Vec<Still> = self.states.iter().zip(numbers).map(still).collect();
+        let states: Vec<PageState> = self.states.iter().zip(numbers).map(page_state).collect();
         let regions = runs.iter().map(region).collect();
         let thinned = || format!("this page shows one of every {} of the {} states", self.every, self.count);
         let notes = (self.every > 1).then(thinned).into_iter().collect();
-        let axes = vec![Axis { name: name.into(), values: order.clone() }];
-        Page::new(format!("{robot}, state by state"), axes, regions, &stills, rendered, notes)
+        let axes = vec![PageAxis { name: name.into(), values: order.clone() }];
+        Page::new(format!("{robot}, state by state"), axes, regions, &states, rendered, notes)
     }
 }
 
-/// So many bands are seen apart.
+/// More bands are not distinguishable.
 const BANDS: usize = 400;
 
-/// A band for all neighbouring runs of one kind, if they can be seen apart.
-fn bands(runs: &[Run]) -> Vec<Band> {
-    let mut bands: Vec<(Kind, Band)> = Vec::new();
+/// A band for all neighboring runs of one kind; no bands if they are not distinguishable.
+fn bands(runs: &[GaitRun]) -> Vec<Band> {
+    let mut bands: Vec<(StateKind, Band)> = Vec::new();
     for run in runs {
         let [Some(&from), Some(&to)] = [run.at.first(), run.at.last()] else { continue };
         match bands.last_mut() {
@@ -127,32 +126,33 @@ fn bands(runs: &[Run]) -> Vec<Band> {
                     band.to = 0.5 * (band.to + from);
                     band.to
                 });
-                bands.push((run.kind(), Band { from, to, letter: String::new(), fill: run.kind().fill() }));
+                bands.push((run.kind(), Band { from, to, letter: String::new(), fill: run.kind().look().fill }));
             }
         }
     }
     if bands.len() > BANDS { Vec::new() } else { bands.into_iter().map(|(_, band)| band).collect() }
 }
 
-/// The verdict, and the modes of all outcomes; nothing of what is refused.
+/// The verdict, and the modes of all outcomes; `None` if the state is refused.
 fn happening(state: &ListedKeyframe) -> Option<(Verdict, Vec<&[Mode]>)> {
     let answer = state.keyframe.answer.as_ref().ok()?;
     Some((answer.verdict, answer.outcomes.iter().map(|outcome| outcome.modes.as_slice()).collect()))
 }
 
-impl Run<'_> {
-    fn kind(&self) -> Kind {
+impl GaitRun<'_> {
+    fn kind(&self) -> StateKind {
         let verdict = self.states.first().and_then(|state| state.keyframe.answer.as_ref().ok());
-        verdict.map_or(Kind::Refused, |answer| Kind::Answered(answer.verdict))
+        verdict.map_or(StateKind::Refused, |answer| StateKind::Answered(answer.verdict))
     }
 
-    /// A line for each outcome, or a mark where there is a single state.
-    fn shapes(&self) -> Vec<Shape> {
+    /// A line for each outcome, or a mark for a single state.
+    fn shapes(&self) -> Vec<PlotShape> {
         let kind = self.kind();
-        let marks = |points| Shape::Marks { points, mark: kind.mark(), color: kind.color(), size: plot::MARK };
+        let marks =
+            |points| PlotShape::Marks { points, mark: kind.look().mark, color: kind.look().color, size: plot::MARK };
         let outcomes =
             |state: &ListedKeyframe| state.keyframe.answer.as_ref().map_or(0, |answer| answer.outcomes.len());
-        if kind == Kind::Refused {
+        if kind == StateKind::Refused {
             return vec![marks(self.at.iter().map(|&at| (at, 0.0)).collect())];
         }
         let curve = |outcome: usize| -> Vec<plot::PlotPoint> {
@@ -162,20 +162,30 @@ impl Run<'_> {
         let count = self.states.first().map_or(0, outcomes);
         let shape = |outcome: usize| match self.states {
             [_] => marks(curve(outcome)),
-            _ => Shape::Line { points: curve(outcome), stroke: Stroke::solid(kind.color(), 1.6) },
+            _ => PlotShape::Line { points: curve(outcome), stroke: Stroke::solid(kind.look().color, 1.6) },
         };
         (0..count).map(shape).collect()
     }
 }
 
-/// What is said of a state at a glance.
+/// How the states of a kind are drawn.
+struct StateLook {
+    words: &'static str,
+    /// Of lines and marks.
+    color: Color,
+    /// Of bands, and of the track behind the slider.
+    fill: Color,
+    mark: Mark,
+}
+
+/// The answer for a state, in brief.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum StateKind {
     Answered(Verdict),
     Refused,
 }
 
-impl Kind {
+impl StateKind {
     const ALL: [Self; 7] = [
         Self::Answered(Verdict::Unique),
         Self::Answered(Verdict::Ambiguous),
@@ -186,49 +196,16 @@ impl Kind {
         Self::Refused,
     ];
 
-    fn words(self) -> &'static str {
+    fn look(self) -> StateLook {
+        let look = |words, color, fill, mark| StateLook { words, color, fill, mark };
         match self {
-            Self::Answered(Verdict::Unique) => "unique",
-            Self::Answered(Verdict::Ambiguous) => "ambiguous",
-            Self::Answered(Verdict::None) => "none",
-            Self::Answered(Verdict::Undecided) => "undecided",
-            Self::Answered(Verdict::NoImpact) => "no impact",
-            Self::Answered(Verdict::NoContact) => "no contact",
-            Self::Refused => "refused",
-        }
-    }
-
-    fn color(self) -> Color {
-        match self {
-            Self::Answered(Verdict::Unique) => Color::Blue,
-            Self::Answered(Verdict::Ambiguous) => Color::Vermilion,
-            Self::Answered(Verdict::None) | Self::Refused => Color::Black,
-            Self::Answered(Verdict::Undecided) => Color::Purple,
-            Self::Answered(Verdict::NoImpact) => Color::Green,
-            Self::Answered(Verdict::NoContact) => Color::Gray,
-        }
-    }
-
-    /// Behind the slider and under words.
-    fn fill(self) -> Color {
-        match self {
-            Self::Answered(Verdict::Unique) => Color::Tint(3),
-            Self::Answered(Verdict::Ambiguous) => Color::Tint(1),
-            Self::Answered(Verdict::None | Verdict::Undecided) => Color::Tint(5),
-            Self::Answered(Verdict::NoImpact) => Color::Tint(2),
-            Self::Answered(Verdict::NoContact) => Color::White,
-            Self::Refused => Color::Pale,
-        }
-    }
-
-    fn mark(self) -> Mark {
-        match self {
-            Self::Answered(Verdict::Ambiguous) => Mark::Diamond,
-            Self::Answered(Verdict::None) => Mark::Star,
-            Self::Answered(Verdict::Undecided) => Mark::Triangle,
-            Self::Answered(Verdict::NoContact) => Mark::Ring,
-            Self::Answered(Verdict::Unique | Verdict::NoImpact) => Mark::Circle,
-            Self::Refused => Mark::Cross,
+            Self::Answered(Verdict::Unique) => look("unique", Color::Blue, Color::Tint(3), Mark::Circle),
+            Self::Answered(Verdict::Ambiguous) => look("ambiguous", Color::Vermilion, Color::Tint(1), Mark::Diamond),
+            Self::Answered(Verdict::None) => look("none", Color::Black, Color::Tint(5), Mark::Star),
+            Self::Answered(Verdict::Undecided) => look("undecided", Color::Purple, Color::Tint(5), Mark::Triangle),
+            Self::Answered(Verdict::NoImpact) => look("no impact", Color::Green, Color::Tint(2), Mark::Circle),
+            Self::Answered(Verdict::NoContact) => look("no contact", Color::Gray, Color::White, Mark::Ring),
+            Self::Refused => look("refused", Color::Black, Color::Pale, Mark::Cross),
         }
     }
 }

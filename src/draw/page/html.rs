@@ -26,7 +26,7 @@ impl Page {
         ];
         let (mut html, mut rest) = (String::new(), TEMPLATE);
         for (place, content) in parts {
-            // What is put in is not looked at again, whatever it holds.
+            // Inserted text is never searched for further places.
             let (before, after) = rest.split_once(place).unwrap_or((rest, ""));
             html += before;
             html += content;

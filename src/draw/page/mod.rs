@@ -2,93 +2,107 @@
 //!
 //! ```text
 //!     study, findings --[study]--┐
-//!     Gait (a batch)  --[gait]---┴--> stills, regions --[frame, part]--> Page --[html]--> HTML
-//!     Picture --rendered--> SVG, windows of its panels ────────────────────┘
+//!     Gait (a batch)  --[gait]---┴--> states, regions --[frame]--> Page --[html]--> HTML
+//!     Picture --rendered--> SVG, windows of its panels ──────────────┘
 //! ```
 //!
-//! A page stops at stills: states with the robot where it is and every outcome. What many of them share (texts, collision
-//! shapes) stands in the data once; numbers have the digits that a screen shows.
+//! A page stops at states with the robot in its configuration and every outcome. Texts and collision shapes that many states
+//! share are in the data once; numbers have the digits that a screen shows.
 
-mod frame;
-mod gait;
-mod html;
 mod number;
-mod part;
+mod frame;
+mod html;
 mod study;
-mod texts;
+mod gait;
 
 pub use gait::Gait;
 pub use study::Stops;
 
 use super::Keyframe;
 use super::plot::{PlotWindow, Rendered};
-use frame::{Frame, Scale};
-use part::{Part, Parts};
+use frame::{PageFrame, PageScale};
 use serde::Serialize;
-use texts::Texts;
+use serde_json::value::RawValue;
+use std::collections::HashMap;
 
 /// The most states that a page stops at; of more it takes every second, third ... one.
-pub const STILLS: usize = 5000;
+pub const MOST: usize = 5000;
 
-/// What a page shows.
+/// An interactive page.
 #[derive(Debug, Clone, Serialize)]
 pub struct Page {
     title: String,
-    /// One or two: what the stills are ordered by.
-    axes: Vec<Axis>,
-    regions: Vec<Region>,
+    /// One or two: what the states are ordered by.
+    axes: Vec<PageAxis>,
+    regions: Vec<PageRegion>,
     /// In the order of the axes, the last of which changes fastest.
-    frames: Vec<Frame>,
-    parts: Vec<Part>,
+    frames: Vec<PageFrame>,
+    parts: Vec<Box<RawValue>>,
     texts: Vec<String>,
-    scale: Scale,
+    scale: PageScale,
     windows: Vec<PlotWindow>,
     notes: Vec<String>,
     #[serde(skip)]
     svg: String,
 }
 
-/// What stills are ordered by.
+/// What states are ordered by.
 #[derive(Debug, Clone, Serialize)]
-struct Axis {
+struct PageAxis {
     name: String,
     values: Vec<f64>,
 }
 
-/// Neighbouring stills with the same outcomes.
+/// Neighboring states with the same outcomes.
 #[derive(Debug, Clone, Serialize)]
-struct Region {
+struct PageRegion {
     /// A letter, or a word.
     name: String,
     /// The color of its part of the track.
     fill: &'static str,
-    /// Where it ends, and what turns there.
+    /// Its ends, and what changes there.
     borders: Vec<[String; 2]>,
 }
 
 /// A state that the page stops at.
 #[derive(Debug, Clone)]
-struct Still {
+struct PageState {
     keyframe: Keyframe,
-    /// In which region it is, if it is in one.
+    /// The region it is in, if any.
     region: Option<usize>,
-    /// What the user calls it.
+    /// Its name in the input.
     name: Option<String>,
+}
+
+/// Different texts, by number.
+#[derive(Debug, Default)]
+struct Interned {
+    all: Vec<String>,
+    known: HashMap<String, usize>,
+}
+
+impl Interned {
+    fn number(&mut self, text: String) -> usize {
+        *self.known.entry(text).or_insert_with_key(|text| {
+            self.all.push(text.clone());
+            self.all.len() - 1
+        })
+    }
 }
 
 impl Page {
     fn new(
         title: String,
-        axes: Vec<Axis>,
-        regions: Vec<Region>,
-        stills: &[Still],
+        axes: Vec<PageAxis>,
+        regions: Vec<PageRegion>,
+        states: &[PageState],
         Rendered { svg, windows }: Rendered,
         notes: Vec<String>,
     ) -> Self {
-        let (mut parts, mut texts) = (Parts::default(), Texts::default());
-        let scale = Scale::of(stills);
-        let frames = stills.iter().map(|still| Frame::new(still, scale.unit, &mut parts, &mut texts)).collect();
-        let (parts, texts) = (parts.all, texts.all);
-        Self { title, axes, regions, frames, parts, texts, scale, windows, notes, svg }
+        let (mut parts, mut texts) = (Interned::default(), Interned::default());
+        let scale = PageScale::of(states);
+        let frames = states.iter().map(|state| PageFrame::new(state, scale.unit, &mut parts, &mut texts)).collect();
+        let parts = parts.all.into_iter().filter_map(|part| RawValue::from_string(part).ok()).collect();
+        Self { title, axes, regions, frames, parts, texts: texts.all, scale, windows, notes, svg }
     }
 }

@@ -12,7 +12,7 @@ pub(super) fn vector(vector: &Vector<f64>) -> Vector<f64> {
     vector.map(|entry| significant(entry, 5))
 }
 
-/// A power of ten that a robot of this size has ten thousand or more of: places are told to it \[m\].
+/// The unit of coordinates \[m\], a power of ten: a robot of this size spans ten thousand of them or more.
 pub(super) fn unit(size: f64) -> f64 {
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
     libm::pow(10.0, libm::floor(libm::log10(size)) - 4.0)
@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_as_short_as_a_screen_is_small() {
+    fn numbers_have_the_digits_of_a_screen() {
         let unit = unit(1.3);
         assert_eq!(
             [0.1 + 0.2, -1e-9, 1234.56789].map(|value| format!("{}", to_unit(value, unit))),

@@ -80,8 +80,8 @@ class Robot {
       return;
     }
     const { low, high, follows } = this.data.scale;
-    const centre = [0, 1].map((axis) => (low[axis] + high[axis]) / 2 + (follows[axis] ? pose.middle[axis] : 0));
-    this.at = ([x, z]) => [this.middle[0] + (x - centre[0]) * this.zoom, this.middle[1] - (z - centre[1]) * this.zoom];
+    const center = [0, 1].map((axis) => (low[axis] + high[axis]) / 2 + (follows[axis] ? pose.middle[axis] : 0));
+    this.at = ([x, z]) => [this.middle[0] + (x - center[0]) * this.zoom, this.middle[1] - (z - center[1]) * this.zoom];
     this.element.append(...this.ground(pose.ground), ...pose.bodies.map((body) => this.part(body)), ...this.skeleton(pose), ...this.contacts(frame, chosen));
   }
 
@@ -111,9 +111,9 @@ class Robot {
       if (Array.isArray(outline)) {
         group.append(svg("polygon", { class: kind, points: outline.map((corner) => corner.join(",")).join(" ") }));
       } else if (outline.radius > 0) {
-        group.append(svg("circle", { class: kind, cx: outline.centre[0], cy: outline.centre[1], r: outline.radius }));
+        group.append(svg("circle", { class: kind, cx: outline.center[0], cy: outline.center[1], r: outline.radius }));
       } else {
-        group.append(svg("circle", { class: "tip", cx: outline.centre[0], cy: outline.centre[1], r: 4 / this.zoom }));
+        group.append(svg("circle", { class: "tip", cx: outline.center[0], cy: outline.center[1], r: 4 / this.zoom }));
       }
     }
     if (com) {

@@ -1,10 +1,10 @@
 //! The page of a study: its samples, and of one parameter also both sides and the middle of every region.
 //!
 //! ```text
-//!     a region         |.........|.........|      sides lie beside the borders, further than these are bisected
+//!     a region         |.........|.........|      sides lie next to the borders, farther away than these are located
 //! ```
 
-use super::{Axis, Page, Region, STILLS, Still};
+use super::{MOST, Page, PageAxis, PageRegion, PageState};
 use crate::draw::Keyframe;
 use crate::draw::plot::Rendered;
 use crate::draw::sweep::{fills_along, fills_of_map};
@@ -13,19 +13,19 @@ use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, RobotStudy, Sol
 use crate::write::sweep::{MapSweep, Sweep};
 
 /// How far the sides of a region lie from its borders, as part of the parameter's range.
-const BESIDE: f64 = 4.0 * RESOLUTION;
+const AWAY: f64 = 4.0 * RESOLUTION;
 
-/// Where the page of a study stops.
+/// The states at which the page of a study stops.
 #[derive(Debug, Clone)]
 pub struct Stops {
     /// The values of each parameter; a page stops at each combination.
     values: Vec<Vec<f64>>,
-    /// For each parameter, of how many samples one is among them.
+    /// For each parameter, a page stops at one of so many samples.
     every: Vec<usize>,
 }
 
 impl Stops {
-    /// Those of a study and what was found in it.
+    /// The stops of a study and its findings.
     pub fn new(model: &RobotStudy, findings: &Findings) -> Self {
         let parameters = model.study.parameters();
         let mut every = vec![1; parameters.len()];
@@ -33,8 +33,8 @@ impl Stops {
             parameters.iter().zip(every).map(|(parameter, every)| (parameter.steps - 1).div_ceil(*every) + 1).collect()
         };
         let mut counts = stops(&every);
-        while counts.iter().product::<usize>() > STILLS {
-            // That of most stops, one by one.
+        while counts.iter().product::<usize>() > MOST {
+            // Thin out the parameter with the most stops, step by step.
             let longest = if counts.first() < counts.last() { counts.len() - 1 } else { 0 };
             every[longest] += 1;
             counts = stops(&every);
@@ -70,12 +70,12 @@ impl Stops {
         point
     }
 
-    /// What is left out, if anything is.
+    /// A note on samples that are left out, if any are.
     fn note(&self, parameters: &[Parameter]) -> Option<String> {
         let thinned = parameters.iter().zip(&self.every).filter(|(_, every)| **every > 1);
-        let told: Vec<String> =
+        let parts: Vec<String> =
             thinned.map(|(parameter, every)| format!("one of {every} samples of {}", parameter.name)).collect();
-        (!told.is_empty()).then(|| format!("this page stops at {}", told.join(" and ")))
+        (!parts.is_empty()).then(|| format!("this page stops at {}", parts.join(" and ")))
     }
 }
 
@@ -87,17 +87,17 @@ fn samples(parameter: &Parameter, every: usize) -> Vec<f64> {
 
 /// Both sides and the middle of every region.
 fn special(parameter: &Parameter, survey: &Survey) -> Vec<f64> {
-    let beside = BESIDE * parameter.range();
+    let away = AWAY * parameter.range();
     let of_region = |region: &crate::sweep::Region| {
         let (from, to) = (region.from, region.to);
-        let sides = [from + beside, 0.5 * (from + to), to - beside];
+        let sides = [from + away, 0.5 * (from + to), to - away];
         sides.into_iter().filter(move |side| from < *side && *side < to)
     };
     survey.regions.iter().flat_map(of_region).collect()
 }
 
 impl Page {
-    /// The page of a study: what was found, the stops, its picture; tells `workers` of each stop.
+    /// The page of a study: what was found, the stops, its picture; `workers` count each stop.
     pub fn of_study(
         model: &RobotStudy,
         findings: &Findings,
@@ -124,21 +124,21 @@ impl Page {
             }
             Findings::Map(map) => map.areas.iter().position(|area| *area.regime == *regime),
         };
-        let still = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| Still {
+        let state = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| PageState {
             region: region(index, &regime),
             keyframe,
             name: None,
         };
-        let stills: Vec<Still> = seen.into_iter().enumerate().map(still).collect();
+        let states: Vec<PageState> = seen.into_iter().enumerate().map(state).collect();
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let title = format!("{} against {}", model.robot.name, names.join(" and "));
-        let axis = |(name, values): (&&str, &Vec<f64>)| Axis { name: (*name).to_owned(), values: values.clone() };
+        let axis = |(name, values): (&&str, &Vec<f64>)| PageAxis { name: (*name).to_owned(), values: values.clone() };
         let axes = names.iter().zip(&stops.values).map(axis).collect();
-        Self::new(title, axes, regions, &stills, rendered, stops.note(parameters).into_iter().chain(notes).collect())
+        Self::new(title, axes, regions, &states, rendered, stops.note(parameters).into_iter().chain(notes).collect())
     }
 }
 
-/// The state at a point and what happens there, whatever the state's uncertainty is.
+/// The state at a point and its outcomes, without the state's uncertainty.
 fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Regime) {
     let seen = solver.at(point, |robot, state, pipeline| {
         let state = State { uncertainty: None, ..state };
@@ -154,14 +154,14 @@ fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Re
 }
 
 /// Regions along a parameter.
-fn along(sweep: &Sweep, survey: &Survey) -> (Vec<Region>, Vec<String>) {
+fn along(sweep: &Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
     let border = |at: usize, side: &str| {
         let border = &sweep.borders[at];
         let sides = [&sweep.regions[at].letter, &sweep.regions[at + 1].letter];
         [format!("{side}, at {:?}", border.at), border.transition.in_words(sides)]
     };
     let fills = fills_along(survey);
-    let region = |(at, region): (usize, &crate::write::sweep::RegionRecord)| Region {
+    let region = |(at, region): (usize, &crate::write::sweep::RegionRecord)| PageRegion {
         name: region.letter.clone(),
         fill: fills.get(survey.regions[at].kind).map_or("", |fill| fill.hex()),
         borders: [
@@ -176,7 +176,7 @@ fn along(sweep: &Sweep, survey: &Survey) -> (Vec<Region>, Vec<String>) {
 }
 
 /// Regions of two parameters.
-fn areas(sweep: &MapSweep, map: &Map) -> (Vec<Region>, Vec<String>) {
+fn areas(sweep: &MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
     let fills = fills_of_map(map);
     let region = |(at, region): (usize, &crate::write::sweep::MapRegion)| {
         let mut borders: Vec<[String; 2]> = Vec::new();
@@ -187,13 +187,13 @@ fn areas(sweep: &MapSweep, map: &Map) -> (Vec<Region>, Vec<String>) {
                 (_, true) => left,
                 _ => continue,
             };
-            let told = [format!("toward {beyond}"), border.transition.in_words([left, right])];
-            if !borders.contains(&told) {
-                borders.push(told);
+            let entry = [format!("toward {beyond}"), border.transition.in_words([left, right])];
+            if !borders.contains(&entry) {
+                borders.push(entry);
             }
         }
         let fill = fills.get(at).map_or("", |fill| fill.hex());
-        Region { name: region.letter.clone(), fill, borders }
+        PageRegion { name: region.letter.clone(), fill, borders }
     };
     (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes.clone())
 }

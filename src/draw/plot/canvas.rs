@@ -64,12 +64,12 @@ impl Stroke {
 pub(super) struct Canvas {
     /// Width and height.
     pub size: Pixel,
-    pub layer: Layer,
+    pub layer: PlotLayer,
 }
 
 /// What is drawn, the first element below the others.
 #[derive(Debug, Default)]
-pub(super) struct Layer(pub Vec<Element>);
+pub(super) struct PlotLayer(pub Vec<Element>);
 
 #[derive(Debug)]
 pub(super) enum Element {
@@ -86,18 +86,18 @@ pub(super) enum Element {
         fill: Option<Color>,
         stroke: Option<Stroke>,
     },
-    Text(Text),
+    Text(TextLine),
     /// A layer that is cut at a rectangle, whose upper left corner is the layer's origin.
     Window {
         corner: Pixel,
         size: Pixel,
-        layer: Layer,
+        layer: PlotLayer,
     },
 }
 
 /// A line of text.
 #[derive(Debug)]
-pub(super) struct Text {
+pub(super) struct TextLine {
     /// On its baseline.
     pub at: Pixel,
     pub content: String,
@@ -122,7 +122,7 @@ pub(super) enum Anchor {
 /// The width of a text's white rim on either side \[px\].
 pub(super) const RIM: f64 = 1.5;
 
-impl Text {
+impl TextLine {
     /// A black text without a rim; without what XML cannot hold.
     pub fn new(at: Pixel, content: &str, size: u32, anchor: Anchor) -> Self {
         let printable = |letter: &char| !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
@@ -136,7 +136,7 @@ impl Text {
     }
 }
 
-impl Layer {
+impl PlotLayer {
     pub fn line(&mut self, points: Vec<Pixel>, stroke: Stroke) {
         self.lines(vec![points], stroke);
     }
@@ -158,7 +158,7 @@ impl Layer {
         self.0.push(Element::Circle { center, radius, fill, stroke });
     }
 
-    pub fn text(&mut self, text: Text) {
+    pub fn text(&mut self, text: TextLine) {
         self.0.push(Element::Text(text));
     }
 
@@ -233,7 +233,7 @@ impl fmt::Display for Element {
     }
 }
 
-impl fmt::Display for Text {
+impl fmt::Display for TextLine {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = (Short(self.at.0), Short(self.at.1));
         write!(out, r#"<text x="{x}" y="{y}" font-size="{}" fill="{}""#, self.size, self.color.hex())?;
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn control_characters_and_markup_do_not_break_a_picture() {
-        let text = Text::new((0.0, 0.0), "a\u{1}<b> & \"c\" $d$\u{ffff}", 12, Anchor::Start);
+        let text = TextLine::new((0.0, 0.0), "a\u{1}<b> & \"c\" $d$\u{ffff}", 12, Anchor::Start);
         assert!(text.to_string().ends_with(">a&lt;b&gt; &amp; \"c\" $d$</text>"), "{text}");
     }
 }

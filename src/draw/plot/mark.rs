@@ -1,7 +1,7 @@
 //! Marks at points, and arrows.
 
 use super::Pixel;
-use super::canvas::{Dash, Layer, Stroke};
+use super::canvas::{Dash, PlotLayer, Stroke};
 use super::color::Color;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -38,7 +38,7 @@ const RIM: f64 = 0.8;
 
 impl Mark {
     /// Draws it about a point, half as wide as `size`.
-    pub(super) fn draw(self, (x, y): Pixel, color: Color, size: f64, out: &mut Layer) {
+    pub(super) fn draw(self, (x, y): Pixel, color: Color, size: f64, out: &mut PlotLayer) {
         let corners = |directions: &[(f64, f64)]| -> Vec<Pixel> {
             directions.iter().map(|&(right, up)| (x + size * right, y - size * up)).collect()
         };
@@ -74,7 +74,7 @@ impl Mark {
 }
 
 /// Draws an arrow from pixel to pixel.
-pub(super) fn arrow(from: Pixel, to: Pixel, stroke: Stroke, out: &mut Layer) {
+pub(super) fn arrow(from: Pixel, to: Pixel, stroke: Stroke, out: &mut PlotLayer) {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = libm::hypot(dx, dy);
     // Less than a pixel has no direction.

@@ -12,6 +12,7 @@
 
 mod color;
 mod font;
+mod text_box;
 mod canvas;
 mod png;
 mod axis;
@@ -25,21 +26,22 @@ mod legend;
 pub use axis::PlotAxis;
 pub use canvas::{Dash, Pixel, Stroke};
 pub use color::Color;
-pub use legend::{Arrangement, Legend, LegendEntry, LegendKey};
+pub use legend::{LegendEntry, LegendKey};
 pub use mark::{MARK, Mark};
 pub use panel::{Band, Panel};
-pub use shape::Shape;
+pub use shape::PlotShape;
+pub use text_box::TextBox;
 
 use crate::Result;
-use canvas::{Anchor, Canvas, Layer, Text};
-use legend::Panels;
+use canvas::{Anchor, Canvas, PlotLayer, TextLine};
+use legend::Legend;
 use panel::{Margins, PlacedPanel};
 use serde::Serialize;
 
 /// A point in the coordinates of a panel's axes.
 pub type PlotPoint = (f64, f64);
 
-/// Panels in rows, and a legend.
+/// Panels in rows, and a legend below them.
 #[derive(Debug, Clone, Default)]
 pub struct Picture {
     /// Above the picture.
@@ -47,7 +49,7 @@ pub struct Picture {
     /// From top to bottom; panels of a row stand side by side, those of a column below each other.
     pub rows: Vec<Vec<Panel>>,
     /// The meanings of the signs.
-    pub legend: Legend,
+    pub legend: Vec<LegendEntry>,
 }
 
 /// A picture as SVG, and where its data are in it.
@@ -79,11 +81,6 @@ const GAP: f64 = 12.0;
 /// Height of the title's font \[px\].
 const TITLE: u32 = 16;
 
-/// The width and height of a line of text \[px\].
-pub fn text_size(text: &str, size: u32) -> Pixel {
-    (font::width(text, size), font::CAPITAL * f64::from(size))
-}
-
 impl Picture {
     /// The picture as SVG; `None` if nothing in it can be drawn.
     pub fn svg(&self) -> Option<String> {
@@ -110,23 +107,19 @@ impl Picture {
         let rows: Vec<Vec<PlacedPanel>> = rows.into_iter().filter(|row| !row.is_empty()).collect();
         let scale = rows.first()?.first()?.area.scale();
         let columns = rows.iter().map(Vec::len).max().unwrap_or_default();
-        let columns: Vec<Cell> =
-            (0..columns).map(|column| Cell::of(rows.iter().filter_map(|row| row.get(column)))).collect();
-        let lines: Vec<Cell> = rows.iter().map(|row| Cell::of(row.iter())).collect();
-        let panels = (
-            columns.iter().map(Cell::width).sum::<f64>() + GAP * (columns.len() - 1) as f64,
-            lines.iter().map(Cell::height).sum::<f64>() + GAP * (lines.len() - 1) as f64,
-        );
+        let columns: Vec<Track> =
+            (0..columns).map(|column| Track::of(rows.iter().filter_map(|row| row.get(column)))).collect();
+        let lines: Vec<Track> = rows.iter().map(|row| Track::of(row.iter())).collect();
+        let width = columns.iter().map(Track::width).sum::<f64>() + GAP * (columns.len() - 1) as f64;
 
-        let mut layer = Layer::default();
-        let title = font::lines(&self.title, TITLE, panels.0);
-        let above = EDGE + title.len() as f64 * 1.4 * f64::from(TITLE);
+        let mut layer = PlotLayer::default();
+        let title = font::lines(&self.title, TITLE, width);
         for (line, content) in title.iter().enumerate() {
             let baseline = EDGE + f64::from(TITLE) * (0.9 + 1.4 * line as f64);
-            layer.text(Text::new((EDGE + 0.5 * panels.0, baseline), content, TITLE, Anchor::Middle));
+            layer.text(TextLine::new((EDGE + 0.5 * width, baseline), content, TITLE, Anchor::Middle));
         }
         let mut windows = Vec::new();
-        let mut top = above;
+        let mut top = EDGE + title.len() as f64 * 1.4 * f64::from(TITLE);
         for (row, line) in rows.iter().zip(&lines) {
             let mut left = EDGE;
             for (panel, column) in row.iter().zip(&columns) {
@@ -138,30 +131,23 @@ impl Picture {
             top += line.height() + GAP;
         }
 
-        let known = Panels { width: panels.0, scale };
-        let legend = self.legend.size(known);
-        let is_right = self.legend.arrangement == Arrangement::Right;
-        let (width, height) = match (self.legend.entries.is_empty(), is_right) {
-            (true, _) => panels,
-            (false, true) => (panels.0 + GAP + legend.0, panels.1.max(legend.1 + GAP)),
-            (false, false) => (panels.0.max(legend.0), panels.1 + GAP + legend.1),
-        };
+        let legend = Legend::new(&self.legend, width, scale);
+        let (legend_width, height) = if self.legend.is_empty() { (0.0, 0.0) } else { legend.size() };
         let indent = columns.first().map_or(0.0, |column| column.margins.left);
-        let indent = if legend.0 + indent <= panels.0 { indent } else { 0.0 };
-        let at = if is_right { (EDGE + panels.0 + GAP, above + GAP) } else { (EDGE + indent, above + panels.1 + GAP) };
-        self.legend.draw(at, known, &mut layer);
-        let size = ((width + 2.0 * EDGE).ceil(), (above + height + EDGE).ceil());
+        let indent = if legend_width + indent <= width { indent } else { 0.0 };
+        legend.draw((EDGE + indent, top), &mut layer);
+        let size = ((width.max(legend_width) + 2.0 * EDGE).ceil(), (top + height + EDGE).ceil());
         Some((Canvas { size, layer }, windows))
     }
 }
 
 /// A row or a column of panels: the most that they need around their axes and inside of them.
-struct Cell {
+struct Track {
     margins: Margins,
     size: Pixel,
 }
 
-impl Cell {
+impl Track {
     fn of<'p>(panels: impl Iterator<Item = &'p PlacedPanel<'p>>) -> Self {
         let empty = Self { margins: Margins::default(), size: (0.0, 0.0) };
         panels.fold(empty, |Self { margins: most, size }, panel| {
@@ -188,4 +174,34 @@ impl Cell {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    fn axis(label: &str, logarithmic: bool) -> PlotAxis {
+        PlotAxis { label: label.into(), logarithmic, ..PlotAxis::default() }
+    }
+
+    fn marks(points: Vec<PlotPoint>) -> Picture {
+        let shapes = vec![PlotShape::Marks { points, mark: Mark::Circle, color: Color::Blue, size: MARK }];
+        let panel = Panel { shapes, ..Panel::new(axis("time [s]", true), axis("error", true)) };
+        let entry = LegendEntry { name: "f64".into(), key: LegendKey::Mark(Mark::Circle, Color::Blue) };
+        Picture { title: "title".into(), rows: vec![vec![panel]], legend: vec![entry] }
+    }
+
+    #[test]
+    fn points_off_the_axes_are_left_out() {
+        assert_eq!(marks(vec![(0.0, 1.0), (1.0, f64::NAN)]).svg(), None);
+        let svg = marks(vec![(1e-6, 1e-15), (1e-3, 1e-7), (1.0, 0.0)]).svg().unwrap();
+        assert!(svg.starts_with("<svg"));
+        assert!(!svg.contains("NaN"));
+        assert_eq!(svg.matches("<circle").count(), 3, "two points and the key");
+    }
+
+    #[test]
+    fn a_png_has_the_same_bytes_each_time() {
+        let picture = marks(vec![(1e-6, 1e-15), (1e-3, 1e-7)]);
+        let png = picture.png().unwrap().unwrap();
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+        assert_eq!(picture.png().unwrap().unwrap(), png);
+    }
+}

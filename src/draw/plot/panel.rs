@@ -1,9 +1,9 @@
 //! A panel: its axes on the screen, and shapes within them.
 
 use super::axis::{PlotArea, PlotAxis, Span};
-use super::canvas::{Anchor, Layer, Stroke, Text};
+use super::canvas::{Anchor, PlotLayer, Stroke, TextLine};
 use super::color::Color;
-use super::shape::Shape;
+use super::shape::PlotShape;
 use super::{Pixel, PlotPoint, font};
 
 /// Shapes over two axes.
@@ -24,7 +24,7 @@ pub struct Panel {
     /// Shaded intervals in the background, in the order of x.
     pub bands: Vec<Band>,
     /// What is drawn, the first one below the others.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<PlotShape>,
 }
 
 /// An interval of x that is shaded; a narrow one is a line.
@@ -86,7 +86,7 @@ impl Panel {
     /// Whether anything in it has a place on its axes.
     fn is_drawn(&self) -> bool {
         let on = |value: f64, axis: &PlotAxis| value.is_finite() && (!axis.logarithmic || value > 0.0);
-        let mut points = self.shapes.iter().flat_map(Shape::extent);
+        let mut points = self.shapes.iter().flat_map(PlotShape::extent);
         points.any(|(x, y)| on(x, &self.x) && on(y, &self.y)) || !self.bands.is_empty()
     }
 
@@ -110,7 +110,7 @@ impl<'p> PlacedPanel<'p> {
     /// The panel; `None` if nothing in it has a place on its axes.
     pub fn new(panel: &'p Panel) -> Option<Self> {
         let (width, height) = panel.size;
-        let points: Vec<PlotPoint> = panel.shapes.iter().flat_map(Shape::extent).collect();
+        let points: Vec<PlotPoint> = panel.shapes.iter().flat_map(PlotShape::extent).collect();
         let along = points.iter().map(|point| point.0).chain(panel.bands.iter().flat_map(|band| [band.from, band.to]));
         let mut x = Span::new(&panel.x, along, width);
         let mut y = Span::new(&panel.y, points.iter().map(|point| point.1), height);
@@ -145,16 +145,16 @@ impl<'p> PlacedPanel<'p> {
     }
 
     /// Draws it with the upper left corner inside of its axes at `corner`; its label is so far to the `left` of them.
-    pub fn draw(&self, corner: Pixel, left: f64, out: &mut Layer) {
+    pub fn draw(&self, corner: Pixel, left: f64, out: &mut PlotLayer) {
         let panel = self.panel;
         let title = panel.title_lines();
         for (line, (content, is_first)) in title.iter().enumerate() {
             let (size, color) = if *is_first { (TITLE, Color::Black) } else { (NUMBER, Color::Gray) };
             let baseline = corner.1 - 8.0 - LINE * (title.len() - 1 - line) as f64;
             let at = (corner.0 + 0.5 * panel.size.0, baseline);
-            out.text(Text { color, ..Text::new(at, content, size, Anchor::Middle) });
+            out.text(TextLine { color, ..TextLine::new(at, content, size, Anchor::Middle) });
         }
-        let mut inside = Layer::default();
+        let mut inside = PlotLayer::default();
         if panel.bands.is_empty() {
             self.grid(&mut inside);
         }
@@ -169,7 +169,7 @@ impl<'p> PlacedPanel<'p> {
     }
 
     /// Lines at the ticks.
-    fn grid(&self, out: &mut Layer) {
+    fn grid(&self, out: &mut PlotLayer) {
         let (width, height) = self.area.size;
         if self.panel.framed && !self.panel.x.bare {
             let lines = self.area.x.ticks().into_iter().map(|tick| width * tick.share);
@@ -182,7 +182,7 @@ impl<'p> PlacedPanel<'p> {
     }
 
     /// Both axes with their ticks, numbers and labels.
-    fn axes(&self, (left, top): Pixel, room: f64, out: &mut Layer) {
+    fn axes(&self, (left, top): Pixel, room: f64, out: &mut PlotLayer) {
         let Panel { x, y, size: (width, height), .. } = self.panel;
         let (middle, bottom) = ((left + 0.5 * width, top + 0.5 * height), top + height);
         if !x.bare {
@@ -190,21 +190,21 @@ impl<'p> PlacedPanel<'p> {
             for tick in self.area.x.ticks() {
                 let at = left + width * tick.share;
                 out.line(vec![(at, bottom), (at, bottom + TICK)], AXIS);
-                out.text(Text::new((at, baseline), &tick.text, NUMBER, Anchor::Middle));
+                out.text(TextLine::new((at, baseline), &tick.text, NUMBER, Anchor::Middle));
             }
             let label = self.area.x.label(&x.label);
-            out.text(Text::new((middle.0, baseline + BELOW), &label, LABEL, Anchor::Middle));
+            out.text(TextLine::new((middle.0, baseline + BELOW), &label, LABEL, Anchor::Middle));
         }
         if !y.bare {
             for tick in self.area.y.ticks() {
                 let at = bottom - height * tick.share;
                 out.line(vec![(left - TICK, at), (left, at)], AXIS);
-                let baseline = (left - TICK - NEAR, Text::baseline(at, NUMBER));
-                out.text(Text::new(baseline, &tick.text, NUMBER, Anchor::End));
+                let baseline = (left - TICK - NEAR, TextLine::baseline(at, NUMBER));
+                out.text(TextLine::new(baseline, &tick.text, NUMBER, Anchor::End));
             }
             let at = (left - room + font::CAPITAL * f64::from(LABEL), middle.1);
             let label = self.area.y.label(&y.label);
-            out.text(Text { upward: true, ..Text::new(at, &label, LABEL, Anchor::Middle) });
+            out.text(TextLine { upward: true, ..TextLine::new(at, &label, LABEL, Anchor::Middle) });
         }
         out.rectangle((left, top), (*width, *height), None, Some(AXIS));
     }
@@ -216,7 +216,7 @@ impl<'p> PlacedPanel<'p> {
         Some((from.min(to), from.max(to)))
     }
 
-    fn band(&self, band: &Band, out: &mut Layer) {
+    fn band(&self, band: &Band, out: &mut PlotLayer) {
         let Some((from, to)) = self.sides(band) else { return };
         let height = self.area.size.1;
         let edge = |x: f64| vec![(x, 0.0), (x, height)];
@@ -260,10 +260,10 @@ struct BandLetter<'a> {
 }
 
 impl BandLetter<'_> {
-    fn draw(&self, out: &mut Layer) {
+    fn draw(&self, out: &mut PlotLayer) {
         let baseline = MARGIN + font::CAPITAL * f64::from(LETTER) + self.story as f64 * STORY;
-        let text = Text::new((self.middle, baseline), self.text, LETTER, Anchor::Middle);
-        out.text(Text { rim: self.is_wide, ..text });
+        let text = TextLine::new((self.middle, baseline), self.text, LETTER, Anchor::Middle);
+        out.text(TextLine { rim: self.is_wide, ..text });
     }
 }
 
@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn equal_axes_have_units_of_one_length() {
-        let corners = Shape::Line { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke: AXIS };
+        let corners = PlotShape::Line { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke: AXIS };
         let axes = || PlotAxis::default();
         let panel = Panel { equal: true, size: (300.0, 200.0), shapes: vec![corners], ..Panel::new(axes(), axes()) };
         let area = PlacedPanel::new(&panel).unwrap().area;

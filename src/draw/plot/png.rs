@@ -1,6 +1,6 @@
 //! A picture as pixels (the only user of tiny-skia).
 
-use super::canvas::{Anchor, Canvas, Element, Layer, RIM, Stroke, Text};
+use super::canvas::{Anchor, Canvas, Element, PlotLayer, RIM, Stroke, TextLine};
 use super::color::Color;
 use super::font;
 use crate::{Error, Reason, Result};
@@ -32,7 +32,7 @@ struct Brush<'p> {
 }
 
 impl Brush<'_> {
-    fn layer(&mut self, layer: &Layer) {
+    fn layer(&mut self, layer: &PlotLayer) {
         for element in &layer.0 {
             match element {
                 Element::Path { pieces, closed, fill, stroke } => {
@@ -57,7 +57,7 @@ impl Brush<'_> {
         }
     }
 
-    fn window(&mut self, corner: (f64, f64), size: (f64, f64), layer: &Layer) {
+    fn window(&mut self, corner: (f64, f64), size: (f64, f64), layer: &PlotLayer) {
         let place = self.place.pre_translate(corner.0 as f32, corner.1 as f32);
         let rectangle = Rect::from_xywh(0.0, 0.0, size.0 as f32, size.1 as f32);
         let mask = Mask::new(self.pixels.width(), self.pixels.height());
@@ -77,10 +77,10 @@ impl Brush<'_> {
         }
     }
 
-    fn text(&mut self, text: &Text) {
+    fn text(&mut self, text: &TextLine) {
         let Some(face) = font::face() else { return };
         let scale = text.size as f32 / f32::from(face.units_per_em());
-        let mut outline = Outline { path: PathBuilder::new(), left: 0.0, scale };
+        let mut outline = GlyphOutline { path: PathBuilder::new(), left: 0.0, scale };
         for (glyph, advance) in font::glyphs(&face, &text.content) {
             face.outline_glyph(glyph, &mut outline);
             outline.left += scale * advance as f32;
@@ -117,20 +117,20 @@ fn paint(color: Color) -> Paint<'static> {
 }
 
 /// The outline of a line of text; glyphs have their y axis upward.
-struct Outline {
+struct GlyphOutline {
     path: PathBuilder,
     /// Where the next glyph begins.
     left: f32,
     scale: f32,
 }
 
-impl Outline {
+impl GlyphOutline {
     fn at(&self, x: f32, y: f32) -> (f32, f32) {
         (self.left + self.scale * x, -self.scale * y)
     }
 }
 
-impl OutlineBuilder for Outline {
+impl OutlineBuilder for GlyphOutline {
     fn move_to(&mut self, x: f32, y: f32) {
         let (x, y) = self.at(x, y);
         self.path.move_to(x, y);

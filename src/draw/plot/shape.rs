@@ -1,16 +1,17 @@
 //! What is drawn in a panel, in the coordinates of its axes.
 
 use super::axis::PlotArea;
-use super::canvas::{Anchor, Layer, Stroke, Text};
+use super::canvas::{Anchor, PlotLayer, Stroke, TextLine};
 use super::color::Color;
 use super::mark::{Mark, arrow};
-use super::names::{self, Footprint};
+use super::names;
+use super::text_box::TextBox;
 use super::{Pixel, PlotPoint, curve};
 use std::collections::BTreeSet;
 
 /// Something that is drawn, in the coordinates of its panel's axes.
 #[derive(Debug, Clone)]
-pub enum Shape {
+pub enum PlotShape {
     /// A line through all points; a point that has no place on the axes interrupts it.
     Line {
         /// From one to the next.
@@ -76,7 +77,7 @@ pub enum Shape {
     },
 }
 
-impl Shape {
+impl PlotShape {
     /// The points that its panel's axes must span.
     pub(super) fn extent(&self) -> Vec<PlotPoint> {
         match self {
@@ -90,13 +91,13 @@ impl Shape {
     }
 
     /// Where it has marks, which no name may cover.
-    pub(super) fn marked(&self, area: &PlotArea) -> Vec<Footprint> {
+    pub(super) fn marked(&self, area: &PlotArea) -> Vec<TextBox> {
         let Self::Marks { points, size, .. } = self else { return Vec::new() };
-        points.iter().filter_map(|&point| Some(Footprint::about(area.place(point)?, *size))).collect()
+        points.iter().filter_map(|&point| Some(TextBox::around(area.place(point)?, *size))).collect()
     }
 
     /// Draws it into `out`; names keep clear of what is `taken`.
-    pub(super) fn draw(&self, area: &PlotArea, taken: &mut Vec<Footprint>, out: &mut Layer) {
+    pub(super) fn draw(&self, area: &PlotArea, taken: &mut Vec<TextBox>, out: &mut PlotLayer) {
         match self {
             Self::Line { points, stroke } => {
                 let placed: Vec<Option<Pixel>> = points.iter().map(|&point| area.place(point)).collect();
@@ -131,8 +132,8 @@ impl Shape {
             }
             Self::Text { at, text, size } => {
                 let Some((x, y)) = area.place(*at) else { return };
-                let at = (x, Text::baseline(y, *size));
-                out.text(Text { rim: true, ..Text::new(at, text, *size, Anchor::Middle) });
+                let at = (x, TextLine::baseline(y, *size));
+                out.text(TextLine { rim: true, ..TextLine::new(at, text, *size, Anchor::Middle) });
             }
             Self::Names { names, below } => names::draw(names, *below, area, taken, out),
         }

@@ -3,7 +3,7 @@
 use crate::planar::Vector;
 use crate::state::Ground;
 
-/// The least rectangle about some points \[m\].
+/// The smallest upright rectangle around some points \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     /// Its lower left corner.
@@ -12,11 +12,11 @@ pub struct Extent {
     pub high: Vector<f64>,
 }
 
-/// How far the ground goes beyond the robot on either side, as a part of its size.
-const BESIDE: f64 = 2.0;
+/// How far the ground reaches beyond the robot on either side, as a share of its size.
+const BEYOND: f64 = 2.0;
 
 impl Extent {
-    /// About these points; of none a point at the origin.
+    /// Around these points; without points the origin.
     pub fn of(points: impl Iterator<Item = Vector<f64>>) -> Self {
         let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
         let (low, high) =
@@ -39,9 +39,9 @@ impl Extent {
         Self { low: self.low.map(|entry| entry - room), high: self.high.map(|entry| entry + room) }
     }
 
-    /// The ground's surface below a robot of this size, and well beside it.
+    /// The ground's surface below a robot of this size, and well to both sides.
     pub(super) fn surface(self, ground: &Ground, size: f64) -> Vec<Vector<f64>> {
-        let (left, right) = (self.low.x - BESIDE * size, self.high.x + BESIDE * size);
+        let (left, right) = (self.low.x - BEYOND * size, self.high.x + BEYOND * size);
         match ground {
             Ground::Slope(slope) => [left, right].map(|x| Vector::new(x, libm::tan(*slope) * x)).to_vec(),
             Ground::Profile(profile) => {

@@ -1,11 +1,12 @@
 //! A robot in its pose as a picture: one panel per outcome, or the robot alone with its names.
 
-use super::{Body, Drawing, Effect, Extent, Outline};
+use super::{Drawing, DrawnBody, DrawnOutcome, DrawnShape, Extent};
 use crate::contact::Placement;
+use crate::draw::caption;
 use crate::draw::plot::{
-    Arrangement, Color, Dash, Legend, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, Shape, Stroke,
+    Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke,
 };
-use crate::impact::outcome::Outcome;
+use crate::impact::Outcome;
 use crate::pipeline::Impact;
 use crate::planar::Vector;
 use crate::robot::Robot;
@@ -22,66 +23,71 @@ const BONE: Stroke = Stroke::solid(Color::Gray, 4.0);
 const EDGE: Stroke = Stroke::solid(Color::Gray, 0.8);
 const SURFACE: Stroke = Stroke::solid(Color::Black, 1.6);
 const NORMAL: Stroke = Stroke { dash: Dash::Dotted, ..Stroke::solid(Color::Black, 1.0) };
-/// What nothing hangs on, feet and hands.
+/// The fill of bodies without children, feet and hands, and of others.
 const LAST: Color = Color::Tint(1);
-const SHAPE: Color = Color::Tint(0);
+const INNER: Color = Color::Tint(0);
 
 /// Panels side by side.
 const COLUMNS: usize = 4;
-/// Of the robot's size: about all that is drawn, the normal of a contact, the axes of the root.
+/// Shares of the robot's size: the room around all that is drawn, the normal of a contact, the axes of the root, the longest
+/// arrow, the longest arrow of the legend.
 const ROOM: f64 = 0.06;
 const SHORT: f64 = 0.08;
 const AXES: f64 = 0.18;
-/// The most that an arrow of the legend has of it.
+const LONGEST: f64 = 0.4;
 const KEY: f64 = 0.3;
 /// Half the width of a CoG's sign, of the lightest and the heaviest body \[px\].
 const LIGHT: f64 = 2.5;
 const HEAVY: f64 = 8.0;
-/// More bodies have no names.
+/// Names are drawn for at most so many bodies.
 const NAMED: usize = 60;
 
-/// A state with an arrow for each impulse and velocity, a panel for each outcome; `feet` are those beside the robot's own
-/// shapes. None where the outcomes were refused.
+/// A state with an arrow for each impulse and velocity, a panel for each outcome; `feet` are those in addition to the robot's
+/// own shapes. `None` if the outcomes were refused.
 pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Option<Picture> {
     let analysis = impact.analysis.as_ref().ok()?;
     let drawing = Drawing::of_impact(robot, feet, state, impact);
-    let view = drawing.view();
+    let scene = Scene::new(&drawing);
     let captions: Vec<String> = analysis.outcomes.iter().enumerate().map(|outcome| caption(impact, outcome)).collect();
-    let panel = |title: &String, effect: Option<&Effect>| Panel {
+    let panel = |title: &String, outcome: Option<&DrawnOutcome>| Panel {
         title: title.clone(),
-        shapes: [drawing.scene(), drawing.happening(effect)].concat(),
-        ..view.panel(captions.len())
+        shapes: [scene.robot(), scene.impact(outcome)].concat(),
+        ..scene.view.panel(captions.len())
     };
     let panels: Vec<Panel> = match &captions[..] {
         [] => vec![panel(&String::new(), None)],
-        captions => captions.iter().zip(&drawing.outcomes).map(|(title, effect)| panel(title, Some(effect))).collect(),
+        captions => {
+            captions.iter().zip(&drawing.outcomes).map(|(title, outcome)| panel(title, Some(outcome))).collect()
+        }
     };
     let sentence = words::verdict(analysis.verdict, analysis.outcomes.len());
     Some(Picture {
         title: format!("{}: {sentence}", words::titled(&robot.name, &state.id)),
         rows: panels.chunks(COLUMNS).map(<[Panel]>::to_vec).collect(),
-        legend: Legend { entries: drawing.legend(), arrangement: Arrangement::Rows },
+        legend: scene.legend(),
     })
 }
 
-/// The robot with its joints at zero, or where they are held, and its names; `feet` are those beside its own shapes.
+/// The robot with its joints at zero, or where they are held, and the names of its bodies; `feet` are those in addition to its
+/// own shapes.
 pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     let placement = Placement::of_robot(robot, &vec![0.0; robot.dofs()]);
     let drawing = Drawing::of_robot(robot, &placement, feet);
     let size = drawing.extent().size();
     let root = placement.world(0, Vector::zero());
     let tip = |axis: Vector<f64>| root + placement.turned(0, axis * (AXES * size));
-    let mut shapes = drawing.scene();
+    let mut shapes = Scene::new(&drawing).robot();
     let axes = Vector::axes().map(tip);
-    shapes.extend(axes.map(|tip| Shape::Arrow { from: point(root), to: point(tip), stroke: AFTER }));
+    shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root), to: point(tip), stroke: AFTER }));
     let mut names: Vec<(PlotPoint, String)> =
         axes.into_iter().map(point).zip(["x".to_owned(), "z".to_owned()]).collect();
     if robot.bodies.len() <= NAMED {
         // The root's name stands between its axes.
-        let places = [tip(Vector::new(0.2, 0.2))].into_iter().chain(drawing.bodies.iter().skip(1).map(Body::middle));
+        let places =
+            [tip(Vector::new(0.2, 0.2))].into_iter().chain(drawing.bodies.iter().skip(1).map(DrawnBody::middle));
         names.extend(places.map(point).zip(robot.bodies.iter().map(|body| body.name.clone())));
     }
-    shapes.push(Shape::Names { names, below: false });
+    shapes.push(PlotShape::Names { names, below: false });
     let axis = |label: &str, range| PlotAxis { label: label.into(), range, ..PlotAxis::default() };
     let Extent { low, high } = drawing.extent();
     let view = Extent::of([low, high].into_iter().chain(axes)).with_room().panel(1);
@@ -94,12 +100,12 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
         ..view
     };
     let joints = robot.joints.len() + robot.followers.len();
-    let shaped = |last: bool| drawing.bodies.iter().any(|body| body.last == last && !body.outlines.is_empty());
+    let shaped = |last: bool| drawing.bodies.iter().any(|body| body.is_last == last && !body.shapes.is_empty());
     let entries = [
         (joints > 0, LegendKey::Mark(Mark::Ring, Color::Black), "joint"),
         (true, LegendKey::Mark(Mark::Center, Color::Black), "CoG, its area by mass"),
         (shaped(true), LegendKey::Fill(LAST), "shape of an outermost body"),
-        (shaped(false), LegendKey::Fill(SHAPE), "shape of an inner body"),
+        (shaped(false), LegendKey::Fill(INNER), "shape of an inner body"),
         (true, LegendKey::Line(AFTER), "axes of the root link"),
     ];
     let entry =
@@ -107,40 +113,29 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     Picture {
         title: format!("{}: {} bodies, {joints} joints, {} kg", robot.name, robot.bodies.len(), number(robot.mass())),
         rows: vec![vec![panel]],
-        legend: Legend { entries: entries.into_iter().filter_map(entry).collect(), arrangement: Arrangement::Rows },
+        legend: entries.into_iter().filter_map(entry).collect(),
     }
 }
 
 /// What happens, and then how sure that is.
 fn caption(impact: &Impact, (at, outcome): (usize, &Outcome)) -> String {
-    let names = impact.contacts.iter().map(|contact| contact.name.as_str());
-    let modes = match outcome.modes[..] {
-        [] => "nothing changes".to_owned(),
-        _ => words::modes(names, &outcome.modes),
-    };
-    let marks = [
-        (outcome.border.is_some(), "on a border"),
-        (outcome.family, "the end of a family"),
-        (!outcome.decided, "not excluded"),
-        (outcome.decided && !outcome.proven, "not proven"),
-    ];
-    let grades = words::grades(outcome.margin, outcome.index);
-    let marks = marks.into_iter().filter_map(|(applies, name)| applies.then_some(name));
-    let below: Vec<&str> = Some(grades.as_str()).filter(|grades| !grades.is_empty()).into_iter().chain(marks).collect();
+    let modes = caption::modes(impact.contacts.iter().map(|contact| contact.name.as_str()), outcome);
+    let grades = Some(words::grades(outcome.margin, outcome.index)).filter(|grades| !grades.is_empty());
+    let below: Vec<String> = grades.into_iter().chain(caption::remarks(outcome)).collect();
     let number = if impact.velocity_after.len() > 1 { format!("{}: ", at + 1) } else { String::new() };
     format!("{number}{modes}\n{}", below.join(", "))
 }
 
 impl Extent {
-    /// With room about all that is drawn; about a point, too.
+    /// With room around all that is drawn, even around a single point.
     fn with_room(self) -> Self {
         self.widened(ROOM * Some(self.size()).filter(|&size| size > 0.0).unwrap_or(1.0))
     }
 
-    /// An empty panel of this extent, of so many.
+    /// An empty panel of this extent, one of so many.
     fn panel(self, panels: usize) -> Panel {
         let axis = |low: f64, high: f64| PlotAxis { range: Some((low, high)), ..PlotAxis::default() };
-        let [across, up] = [self.high.x - self.low.x, self.high.z - self.low.z];
+        let Vector { x: across, z: up } = self.high - self.low;
         let width = [460.0, 460.0, 380.0, 320.0, 280.0][panels.min(COLUMNS)];
         let height = width * (up / across).clamp(0.4, 1.5);
         Panel {
@@ -152,39 +147,60 @@ impl Extent {
     }
 }
 
-impl Body {
-    /// Where its name belongs.
+impl DrawnBody {
+    /// The place of its name.
     fn middle(&self) -> Vector<f64> {
         match self.bones.first() {
             Some(end) => (self.origin + *end) * 0.5,
-            None => self.com.unwrap_or(self.origin),
+            None => self.com.map_or(self.origin, |com| self.world(com)),
         }
     }
 }
 
-impl Drawing {
-    /// All that is drawn, with every arrow and the ground where it is near, and room about it.
-    fn view(&self) -> Extent {
-        let Extent { low, high } = self.extent();
-        let size = self.extent().size();
-        let near = self.below(0.5 * (low.x + high.x)).filter(|Vector { z, .. }| (low.z - size..low.z).contains(z));
-        let tips = self.contacts.iter().enumerate().flat_map(|(at, contact)| {
-            let tip = |scale: f64, vector: Vector<f64>| contact.point + vector * scale;
-            let effects = self.outcomes.iter().flat_map(move |outcome| {
-                let impulse = outcome.impulse.get(at).map(|&vector| tip(self.impulse_scale, vector));
-                let velocity = outcome.velocity_after.get(at).map(|&vector| tip(self.velocity_scale, vector));
-                impulse.into_iter().chain(velocity)
-            });
-            effects.chain([tip(self.velocity_scale, contact.velocity_before)])
-        });
-        let applied = self.applied.iter().map(|arrow| arrow.point + arrow.vector * self.impulse_scale);
-        let whole = Extent::of([low, high].into_iter().chain(tips).chain(applied).chain(near));
-        whole.with_room()
+/// A drawing as shapes of a panel.
+struct Scene<'d> {
+    drawing: &'d Drawing,
+    /// The robot's size \[m\].
+    size: f64,
+    /// The length of an arrow of 1 N s, the same for all outcomes \[m\].
+    impulse_scale: f64,
+    /// The length of an arrow of 1 m/s, the same for all outcomes \[m\].
+    velocity_scale: f64,
+    /// All that is drawn, with room around it.
+    view: Extent,
+}
+
+impl<'d> Scene<'d> {
+    fn new(drawing: &'d Drawing) -> Self {
+        let (size, view) = (drawing.size(), drawing.extent());
+        let scale = |most: f64| if most > 0.0 { LONGEST * size / most } else { 0.0 };
+        let (impulse_scale, velocity_scale) = (scale(drawing.greatest_impulse()), scale(drawing.greatest_velocity()));
+        let mut scene = Self { drawing, size, impulse_scale, velocity_scale, view };
+        scene.view = scene.whole_view();
+        scene
     }
 
-    /// The ground at a place; none beside its ends.
-    fn below(&self, x: f64) -> Option<Vector<f64>> {
-        self.ground.windows(2).find_map(|pair| match *pair {
+    /// All that is drawn, with every arrow and the ground if it is near.
+    fn whole_view(&self) -> Extent {
+        let Self { drawing, size, view: Extent { low, high }, .. } = *self;
+        let near = self.ground_at(0.5 * (low.x + high.x)).filter(|point| (low.z - size..low.z).contains(&point.z));
+        let tip = |point: Vector<f64>, scale: f64, vector: Vector<f64>| point + vector * scale;
+        let tips = drawing.contacts.iter().enumerate().flat_map(|(at, contact)| {
+            let outcomes = drawing.outcomes.iter().flat_map(move |outcome| {
+                let impulse = outcome.impulse.get(at).map(|&vector| tip(contact.point, self.impulse_scale, vector));
+                let after = outcome.velocity_after.get(at);
+                let velocity = after.map(|&vector| tip(contact.point, self.velocity_scale, vector));
+                impulse.into_iter().chain(velocity)
+            });
+            outcomes.chain([tip(contact.point, self.velocity_scale, contact.velocity_before)])
+        });
+        let applied = drawing.applied.iter().map(|arrow| tip(arrow.point, self.impulse_scale, arrow.vector));
+        Extent::of([low, high].into_iter().chain(tips).chain(applied).chain(near)).with_room()
+    }
+
+    /// The ground's surface at this x; `None` beyond its ends.
+    fn ground_at(&self, x: f64) -> Option<Vector<f64>> {
+        self.drawing.ground.windows(2).find_map(|pair| match *pair {
             [Vector { x: x0, z: z0 }, Vector { x: x1, z: z1 }] if (x0..=x1).contains(&x) && x0 < x1 => {
                 Some(Vector::new(x, z0 + (x - x0) / (x1 - x0) * (z1 - z0)))
             }
@@ -193,113 +209,115 @@ impl Drawing {
     }
 
     /// The ground, the robot's shapes, bones, joints and CoGs.
-    fn scene(&self) -> Vec<Shape> {
+    fn robot(&self) -> Vec<PlotShape> {
+        let Drawing { bodies, ground, joints, .. } = self.drawing;
         let mut shapes = Vec::new();
-        if let ([.., right], [left, ..]) = (&self.ground[..], &self.ground[..]) {
-            let depth = self.view().low.z.min(left.z).min(right.z) - 10.0 * self.extent().size();
+        if let ([.., right], [left, ..]) = (&ground[..], &ground[..]) {
+            let depth = self.view.low.z.min(left.z).min(right.z) - 10.0 * self.size;
             let below = [(right.x, depth), (left.x, depth)];
-            let surface: Vec<PlotPoint> = self.ground.iter().copied().map(point).collect();
+            let surface: Vec<PlotPoint> = ground.iter().copied().map(point).collect();
             let soil = surface.iter().copied().chain(below).collect();
-            shapes.push(Shape::Area { loops: vec![soil], fill: Some(Color::Pale), stroke: None });
-            shapes.push(Shape::Line { points: surface, stroke: SURFACE });
+            shapes.push(PlotShape::Area { loops: vec![soil], fill: Some(Color::Pale), stroke: None });
+            shapes.push(PlotShape::Line { points: surface, stroke: SURFACE });
         }
-        for body in &self.bodies {
-            let fill = Some(if body.last { LAST } else { SHAPE });
-            shapes.extend(body.outlines.iter().map(|outline| match outline {
-                Outline::Disc { center, radius: 0.0 } => Shape::Marks {
-                    points: vec![point(*center)],
+        for body in bodies {
+            let fill = Some(if body.is_last { LAST } else { INNER });
+            shapes.extend(body.shapes.iter().map(|shape| match shape {
+                DrawnShape::Disc { center, radius: 0.0 } => PlotShape::Marks {
+                    points: vec![point(body.world(*center))],
                     mark: Mark::Circle,
                     color: BONE.color,
                     size: BONE.width,
                 },
-                &Outline::Disc { center, radius } => {
-                    Shape::Circle { center: point(center), radius, fill, stroke: Some(EDGE) }
+                &DrawnShape::Disc { center, radius } => {
+                    PlotShape::Circle { center: point(body.world(center)), radius, fill, stroke: Some(EDGE) }
                 }
-                Outline::Polygon(corners) => {
-                    let corners = corners.iter().copied().map(point).collect();
-                    Shape::Area { loops: vec![corners], fill, stroke: Some(EDGE) }
+                DrawnShape::Polygon(corners) => {
+                    let corners = corners.iter().map(|&corner| point(body.world(corner))).collect();
+                    PlotShape::Area { loops: vec![corners], fill, stroke: Some(EDGE) }
                 }
             }));
         }
-        for body in &self.bodies {
+        for body in bodies {
             let bone = |end: &Vector<f64>| vec![point(body.origin), point(*end)];
-            shapes.extend(body.bones.iter().map(|end| Shape::Line { points: bone(end), stroke: BONE }));
+            shapes.extend(body.bones.iter().map(|end| PlotShape::Line { points: bone(end), stroke: BONE }));
         }
-        let heaviest = self.bodies.iter().map(|body| body.mass).fold(0.0, f64::max);
-        for body in &self.bodies {
+        let heaviest = bodies.iter().map(|body| body.mass).fold(0.0, f64::max);
+        for body in bodies {
             let Some(com) = body.com else { continue };
             let size = LIGHT + (HEAVY - LIGHT) * libm::sqrt(body.mass / heaviest);
-            shapes.push(Shape::Marks { points: vec![point(com)], mark: Mark::Center, color: Color::Black, size });
+            let points = vec![point(body.world(com))];
+            shapes.push(PlotShape::Marks { points, mark: Mark::Center, color: Color::Black, size });
         }
-        let joints = self.joints.iter().copied().map(point).collect();
-        shapes.push(Shape::Marks { points: joints, mark: Mark::Ring, color: Color::Black, size: 3.6 });
+        let joints = joints.iter().copied().map(point).collect();
+        shapes.push(PlotShape::Marks { points: joints, mark: Mark::Ring, color: Color::Black, size: 3.6 });
         shapes
     }
 
-    /// What the contacts do.
-    fn happening(&self, effect: Option<&Effect>) -> Vec<Shape> {
-        let size = self.extent().size();
-        let arrow = |at: Vector<f64>, scale: f64, vector: Vector<f64>, stroke: Stroke| Shape::Arrow {
+    /// Contacts, and the arrows of an outcome.
+    fn impact(&self, outcome: Option<&DrawnOutcome>) -> Vec<PlotShape> {
+        let Drawing { contacts, applied, .. } = self.drawing;
+        let arrow = |at: Vector<f64>, scale: f64, vector: Vector<f64>, stroke: Stroke| PlotShape::Arrow {
             from: point(at),
             to: point(at + vector * scale),
             stroke,
         };
         let mut shapes = Vec::new();
-        for contact in &self.contacts {
-            let ends = [contact.point, contact.point + contact.normal * (SHORT * size)];
-            shapes.push(Shape::Line { points: ends.map(point).to_vec(), stroke: NORMAL });
+        for contact in contacts {
+            let ends = [contact.point, contact.point + contact.normal * (SHORT * self.size)];
+            shapes.push(PlotShape::Line { points: ends.map(point).to_vec(), stroke: NORMAL });
         }
-        let points = self.contacts.iter().map(|contact| point(contact.point)).collect();
-        shapes.push(Shape::Marks { points, mark: Mark::Circle, color: Color::Black, size: 3.0 });
-        for applied in &self.applied {
+        let points = contacts.iter().map(|contact| point(contact.point)).collect();
+        shapes.push(PlotShape::Marks { points, mark: Mark::Circle, color: Color::Black, size: 3.0 });
+        for applied in applied {
             shapes.push(arrow(applied.point, self.impulse_scale, applied.vector, APPLIED));
         }
-        if let Some(effect) = effect {
-            for (contact, &impulse) in self.contacts.iter().zip(&effect.impulse) {
+        if let Some(outcome) = outcome {
+            for (contact, &impulse) in contacts.iter().zip(&outcome.impulse) {
                 shapes.push(arrow(contact.point, self.impulse_scale, impulse, IMPULSE));
             }
-            for (contact, &velocity) in self.contacts.iter().zip(&effect.velocity_after) {
+            for (contact, &velocity) in contacts.iter().zip(&outcome.velocity_after) {
                 shapes.push(arrow(contact.point, self.velocity_scale, velocity, AFTER));
             }
         }
         // On top, because it may be the velocity after, too.
-        for contact in &self.contacts {
+        for contact in contacts {
             shapes.push(arrow(contact.point, self.velocity_scale, contact.velocity_before, BEFORE));
         }
-        let names = self.contacts.iter().map(|contact| (point(contact.point), contact.name.clone())).collect();
-        shapes.push(Shape::Names { names, below: true });
+        let names = contacts.iter().map(|contact| (point(contact.point), contact.name.clone())).collect();
+        shapes.push(PlotShape::Names { names, below: true });
         shapes
     }
 
-    /// What the arrows are, with a round one for each scale.
+    /// What the arrows are, with one of a round length for each kind.
     fn legend(&self) -> Vec<LegendEntry> {
+        let Drawing { contacts, applied, outcomes, .. } = self.drawing;
         let key = |stroke: Stroke, scale: f64, unit: &str, what: &str| {
-            let round = round(KEY * self.extent().size() / scale)?;
+            let round = round(KEY * self.size / scale)?;
             let name = format!("{what}: {round} {unit}");
             Some(LegendEntry { name, key: LegendKey::Arrow { stroke, length: round * scale } })
         };
         let has = |vectors: &[Vector<f64>]| vectors.iter().any(|vector| *vector != Vector::zero());
-        let struck = self.outcomes.iter().any(|outcome| has(&outcome.impulse));
-        let moving = self.outcomes.iter().any(|outcome| has(&outcome.velocity_after));
-        let moved = self.contacts.iter().any(|contact| contact.velocity_before != Vector::zero());
+        let struck = outcomes.iter().any(|outcome| has(&outcome.impulse));
+        let moving = outcomes.iter().any(|outcome| has(&outcome.velocity_after));
+        let moved = contacts.iter().any(|contact| contact.velocity_before != Vector::zero());
         let arrows = [
             (struck, IMPULSE, self.impulse_scale, "N s", "impulse of the ground"),
-            (!self.applied.is_empty(), APPLIED, self.impulse_scale, "N s", "applied impulse"),
+            (!applied.is_empty(), APPLIED, self.impulse_scale, "N s", "applied impulse"),
             (moving, AFTER, self.velocity_scale, "m/s", "velocity after"),
             (moved, BEFORE, self.velocity_scale, "m/s", "velocity before"),
         ];
         let arrows = arrows.into_iter().filter(|(is_drawn, ..)| *is_drawn);
         let mut entries: Vec<LegendEntry> =
             arrows.filter_map(|(_, stroke, scale, unit, what)| key(stroke, scale, unit, what)).collect();
-        if self.contacts.is_empty() {
-            return entries;
+        if !contacts.is_empty() {
+            entries.push(LegendEntry { name: "contact".into(), key: LegendKey::Mark(Mark::Circle, Color::Black) });
         }
-        entries.push(LegendEntry { name: "contact".into(), key: LegendKey::Mark(Mark::Circle, Color::Black) });
         entries
     }
 }
 
-/// The greatest of 1, 2, 5, 10 ... that is not greater; none of what is not positive.
+/// The greatest of 1, 2, 5, 10 ... that is not greater; `None` if `most` is not positive.
 fn round(most: f64) -> Option<f64> {
     if !(most > 0.0 && most.is_finite()) {
         return None;

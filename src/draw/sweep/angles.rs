@@ -1,4 +1,4 @@
-//! beta and gamma of each contact against the parameter, and the paper's regions that they cut (its figure 10).
+//! beta and gamma of each contact against the parameter, and the paper's regions between them (its figure 10).
 //!
 //! ```text
 //!                beta < 0              beta > 0 (its mirror image)
@@ -8,8 +8,8 @@
 //!     E   beta    .. 0             -pi       .. beta - pi   all three
 //! ```
 
-use super::place::{Box, clear_of};
-use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, PlotAxis, PlotPoint, Shape, Stroke};
+use super::place::clear_of;
+use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox};
 use crate::impact::{Explanation, ImpulseRegion};
 use crate::sweep::{RegionCurves, Survey};
 use std::f64::consts::PI;
@@ -19,10 +19,10 @@ const GAMMA: Stroke = Stroke::solid(Color::Green, 2.4);
 
 /// Inside of the axes \[px\].
 const SIZE: (f64, f64) = (super::WIDTH, 220.0);
-/// Of a label's letters \[px\].
+/// Height of a label's letters \[px\].
 const LETTERS: u32 = 12;
 
-/// Within a sample's distance an angle turns by less than this, or it jumps.
+/// From one sample to the next an angle turns by less than this, or it jumps.
 const JUMP: f64 = 0.5;
 
 /// A panel for each contact that has angles somewhere.
@@ -40,7 +40,7 @@ pub fn panels(survey: &Survey, courses: &[RegionCurves]) -> Vec<Panel> {
     names.into_iter().map(|name| panel(name, &runs(name, survey, courses), (first.from, last.to), &borders)).collect()
 }
 
-/// What the lines of such panels mean.
+/// The meanings of the lines of such panels.
 pub fn legend() -> [LegendEntry; 2] {
     let entry = |name: &str, stroke| LegendEntry { name: name.into(), key: LegendKey::Line(stroke) };
     [entry("γ", GAMMA), entry("0, β and β ± π", BETA)]
@@ -54,7 +54,7 @@ struct Angles {
     gamma: f64,
 }
 
-/// Stretches of places in which a contact has angles.
+/// Stretches of the course in which a contact has angles.
 fn runs(name: &str, survey: &Survey, courses: &[RegionCurves]) -> Vec<Vec<Angles>> {
     let mut runs: Vec<Vec<Angles>> = vec![Vec::new()];
     for (region, course) in survey.regions.iter().zip(courses) {
@@ -85,29 +85,27 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
     let mut shapes = Vec::new();
     for run in runs {
         let line = |turn: f64| -> Vec<PlotPoint> { run.iter().map(|angles| (angles.at, angles.beta + turn)).collect() };
-        shapes.extend([-PI, 0.0, PI].map(|turn| Shape::Line { points: line(turn), stroke: BETA }));
+        shapes.extend([-PI, 0.0, PI].map(|turn| PlotShape::Line { points: line(turn), stroke: BETA }));
     }
-    shapes.push(Shape::Line { points: vec![(from, 0.0), (to, 0.0)], stroke: BETA });
+    shapes.push(PlotShape::Line { points: vec![(from, 0.0), (to, 0.0)], stroke: BETA });
     let gamma: Vec<Vec<PlotPoint>> = runs.iter().flat_map(|run| unbroken(run)).collect();
     let pixel = |(x, y): PlotPoint| (SIZE.0 * (x - from) / (to - from), SIZE.1 * (y + PI) / (2.0 * PI));
     let curve: Vec<Vec<PlotPoint>> =
         gamma.iter().map(|piece| piece.iter().map(|&point| pixel(point)).collect()).collect();
     let walls = borders.iter().map(|&at| vec![pixel((at, -PI)), pixel((at, PI))]);
     let all: Vec<Vec<PlotPoint>> = curve.iter().cloned().chain(walls).collect();
-    shapes.extend(gamma.into_iter().map(|points| Shape::Line { points, stroke: GAMMA }));
+    shapes.extend(gamma.into_iter().map(|points| PlotShape::Line { points, stroke: GAMMA }));
     for (region, words) in [
         (ImpulseRegion::A, "lifts off"),
         (ImpulseRegion::B, "slides"),
         (ImpulseRegion::C, "stays"),
         (ImpulseRegion::E, "all three"),
     ] {
-        let strips = |run: &Vec<Angles>| run.iter().map(|angles| strip(region, angles.beta, angles.at)).collect();
-        let strips: Vec<Vec<(PlotPoint, PlotPoint)>> = runs.iter().map(strips).collect();
-        let strips: Vec<Vec<(PlotPoint, PlotPoint)>> =
-            strips.iter().map(|run| run.iter().map(|&(low, high)| (pixel(low), pixel(high))).collect()).collect();
-        // Rather on a border than nowhere.
+        let ends = |angles: &Angles| strip(region, angles.beta).map(|angle| pixel((angles.at, angle)));
+        let strips: Vec<Vec<[PlotPoint; 2]>> = runs.iter().map(|run| run.iter().map(ends).collect()).collect();
+        // A place on a border is better than none.
         if let Some((x, y)) = room(&strips, &all, words).or_else(|| room(&strips, &curve, words)) {
-            shapes.push(Shape::Text {
+            shapes.push(PlotShape::Text {
                 at: (from + (to - from) * x / SIZE.0, 2.0 * PI * y / SIZE.1 - PI),
                 text: words.into(),
                 size: LETTERS,
@@ -120,18 +118,17 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
 }
 
 /// The lower and the upper end of a region of gamma.
-fn strip(region: ImpulseRegion, beta: f64, at: f64) -> (PlotPoint, PlotPoint) {
-    let (low, high) = match (region, beta <= 0.0) {
-        (ImpulseRegion::A, true) => (0.0, PI + beta),
-        (ImpulseRegion::A, false) => (beta, PI),
-        (ImpulseRegion::B, true) => (PI + beta, PI),
-        (ImpulseRegion::B, false) => (0.0, beta),
-        (ImpulseRegion::C, true) => (-PI, beta),
-        (ImpulseRegion::C, false) => (beta - PI, 0.0),
-        (ImpulseRegion::E, true) => (beta, 0.0),
-        (ImpulseRegion::E, false) => (-PI, beta - PI),
-    };
-    ((at, low), (at, high))
+fn strip(region: ImpulseRegion, beta: f64) -> [f64; 2] {
+    match (region, beta <= 0.0) {
+        (ImpulseRegion::A, true) => [0.0, PI + beta],
+        (ImpulseRegion::A, false) => [beta, PI],
+        (ImpulseRegion::B, true) => [PI + beta, PI],
+        (ImpulseRegion::B, false) => [0.0, beta],
+        (ImpulseRegion::C, true) => [-PI, beta],
+        (ImpulseRegion::C, false) => [beta - PI, 0.0],
+        (ImpulseRegion::E, true) => [beta, 0.0],
+        (ImpulseRegion::E, false) => [-PI, beta - PI],
+    }
 }
 
 /// gamma in pieces that neither wrap from pi to -pi nor jump.
@@ -159,20 +156,20 @@ fn unbroken(run: &[Angles]) -> Vec<Vec<PlotPoint>> {
     pieces
 }
 
-/// Where a text fits between the ends of `strips` and beside the curve \[px\]: the place with the most room about it.
-fn room(strips: &[Vec<(PlotPoint, PlotPoint)>], curve: &[Vec<PlotPoint>], text: &str) -> Option<PlotPoint> {
-    let half = Box::half_of(text, LETTERS);
+/// The place \[px\] with the most room for a text between the ends of `strips` and apart from the curve.
+fn room(strips: &[Vec<[PlotPoint; 2]>], curve: &[Vec<PlotPoint>], text: &str) -> Option<PlotPoint> {
+    let half = TextBox::half_of(text, LETTERS);
     let mut best: Option<(f64, PlotPoint)> = None;
     for run in strips {
-        for &((x, low), (_, high)) in run.iter() {
+        for &[(x, low), (_, high)] in run {
             for share in [0.5, 0.35, 0.65, 0.2, 0.8] {
                 let y = low + share * (high - low);
-                let text = Box { middle: (x, y), half };
+                let text = TextBox { middle: (x, y), half };
                 if !text.is_within(SIZE) {
                     continue;
                 }
-                let edges = run.iter().filter(|((at, _), _)| (at - x).abs() <= half.0);
-                let inside = edges.fold(f64::INFINITY, |least, ((_, low), (_, high))| least.min(y - low).min(high - y));
+                let edges = run.iter().filter(|[(at, _), _]| (at - x).abs() <= half.0);
+                let inside = edges.fold(f64::INFINITY, |least, [(_, low), (_, high)]| least.min(y - low).min(high - y));
                 let clear = (inside - half.1).min(clear_of(&text, curve));
                 if clear > 2.0 && best.is_none_or(|(most, _)| clear > most + 1.0) {
                     best = Some((clear, (x, y)));
@@ -192,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_that_wraps_leaves_at_the_edge_and_enters_at_the_other_one() {
+    fn an_angle_that_wraps_leaves_and_enters_at_the_edges() {
         let pieces = unbroken(&run(&[3.0, PI - 0.05, 0.15 - PI, -2.8]));
         assert_eq!(pieces.len(), 2);
         let ends = [pieces[0][2], pieces[1][0]];
@@ -209,16 +206,16 @@ mod tests {
     }
 
     #[test]
-    fn strips_share_out_the_whole_turn() {
+    fn strips_cover_the_whole_turn() {
         for beta in [-1.2, -0.3, 0.3, 1.2] {
             let strips = [ImpulseRegion::A, ImpulseRegion::B, ImpulseRegion::C, ImpulseRegion::E]
-                .map(|region| strip(region, beta, 0.0));
-            let widths: f64 = strips.iter().map(|((_, low), (_, high))| high - low).sum();
+                .map(|region| strip(region, beta));
+            let widths: f64 = strips.iter().map(|[low, high]| high - low).sum();
             assert!((widths - 2.0 * PI).abs() < 1e-12, "{beta}");
-            assert!(strips.iter().all(|((_, low), (_, high))| low < high && -PI <= *low && *high <= PI), "{beta}");
+            assert!(strips.iter().all(|[low, high]| low < high && -PI <= *low && *high <= PI), "{beta}");
         }
-        // Each the mirror image of the other: gamma against pi - gamma.
-        assert_eq!(strip(ImpulseRegion::B, -0.3, 0.0), ((0.0, PI - 0.3), (0.0, PI)));
-        assert_eq!(strip(ImpulseRegion::B, 0.3, 0.0), ((0.0, 0.0), (0.0, 0.3)));
+        // They are mirror images: gamma against pi - gamma.
+        assert_eq!(strip(ImpulseRegion::B, -0.3), [PI - 0.3, PI]);
+        assert_eq!(strip(ImpulseRegion::B, 0.3), [0.0, 0.3]);
     }
 }

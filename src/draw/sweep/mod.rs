@@ -1,25 +1,25 @@
 //! Studies as pictures.
 //!
 //! ```text
-//!     Survey --> Curves --[along, style]--> velocities after and impulses of each contact, regions shaded
-//!                        --[angles, place]-> beta and gamma, and what they cut
+//!     Survey --> Courses --[along, style]--> velocities after and impulses of each contact, regions shaded
+//!                        --[angles, place]-> beta and gamma, and the regions between them
 //!     Map    --[map, place]----------------> areas with letters in the plane of two parameters
 //! ```
 
-mod along;
-mod angles;
-mod map;
 mod place;
+mod angles;
 mod style;
+mod along;
+mod map;
 
 use crate::draw::plot::{Color, Picture, PlotAxis};
 use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers, letter};
 use crate::write::sweep::Happening;
 
-/// How wide panels along a parameter are inside of their axes \[px\].
+/// The width of panels along a parameter, inside of their axes \[px\].
 const WIDTH: f64 = 540.0;
 
-/// What the findings of `model` look like; tells `workers` of [`work`] pieces of work.
+/// The picture of the findings of `model`; `workers` count [`work`] pieces of work.
 pub fn of(model: &RobotStudy, findings: &Findings, workers: Workers) -> Picture {
     match findings {
         Findings::Along(survey) => along::picture(axis(model, 0), survey, &RegionCurves::of(model, survey, workers)),
@@ -27,7 +27,7 @@ pub fn of(model: &RobotStudy, findings: &Findings, workers: Workers) -> Picture 
     }
 }
 
-/// How many pieces of work a picture of the findings takes.
+/// The pieces of work for a picture of the findings.
 pub fn work(model: &RobotStudy, findings: &Findings) -> usize {
     match findings {
         Findings::Along(survey) => RegionCurves::work(model, survey),
@@ -46,47 +46,27 @@ fn axis(model: &RobotStudy, parameter: usize) -> PlotAxis {
     PlotAxis { label, range: Some((known.from, known.to)), ..PlotAxis::default() }
 }
 
-/// A name whose parts are letters of the Greek alphabet where they are called so: `delta_alpha` is δ_α.
+/// A name in which the names of Greek letters are replaced by these letters: `delta_alpha` becomes δ_α.
 fn with_greek_letters(name: &str) -> String {
-    const LETTERS: [(&str, &str); 24] = [
-        ("alpha", "α"),
-        ("beta", "β"),
-        ("gamma", "γ"),
-        ("delta", "δ"),
-        ("epsilon", "ε"),
-        ("zeta", "ζ"),
-        ("eta", "η"),
-        ("theta", "θ"),
-        ("iota", "ι"),
-        ("kappa", "κ"),
-        ("lambda", "λ"),
-        ("mu", "μ"),
-        ("nu", "ν"),
-        ("xi", "ξ"),
-        ("omicron", "ο"),
-        ("pi", "π"),
-        ("rho", "ρ"),
-        ("sigma", "σ"),
-        ("tau", "τ"),
-        ("upsilon", "υ"),
-        ("phi", "φ"),
-        ("chi", "χ"),
-        ("psi", "ψ"),
-        ("omega", "ω"),
+    const NAMES: [&str; 24] = [
+        "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu",
+        "xi", "omicron", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
     ];
-    let part =
-        |part: &str| LETTERS.iter().find(|(called, _)| *called == part).map_or(part.to_owned(), |(_, is)| (*is).into());
+    let letters = || NAMES.into_iter().zip("αβγδεζηθικλμνξοπρστυφχψω".chars());
+    let part = |part: &str| {
+        letters().find(|(name, _)| *name == part).map_or(part.to_owned(), |(_, letter)| letter.to_string())
+    };
     name.split('_').map(part).collect::<Vec<_>>().join("_")
 }
 
-/// What happens where a regime holds, by the letter of its kind.
-struct Kind<'a> {
+/// The letter and the color of a kind of region, and what happens there.
+struct KindLook<'a> {
     letter: String,
     color: Color,
     happening: Happening<'a>,
 }
 
-impl<'a> Kind<'a> {
+impl<'a> KindLook<'a> {
     fn new(kind: usize, happening: Happening<'a>, color: Color) -> Self {
         Self { letter: letter(kind), color, happening }
     }
@@ -117,15 +97,14 @@ pub(crate) fn fills_of_map(map: &Map) -> Vec<Color> {
     colors(&regimes, &borders)
 }
 
-/// A color for each of `regimes`, the kinds in their order: neighbours, which `borders` part, differ in hue, and where that
-/// can be in lightness.
+/// A color for each of `regimes`, the kinds in their order. Neighbors, which `borders` separate, differ in hue, and in
+/// lightness if possible.
 fn colors(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Color> {
     let mut tints: Vec<Option<usize>> = Vec::new();
     for (kind, regime) in regimes.iter().enumerate() {
-        let neighbour =
-            |&[a, b]: &[usize; 2]| if a == kind { tints.get(b) } else { tints.get(a).filter(|_| b == kind) };
-        let neighbours: Vec<usize> = borders.iter().filter_map(neighbour).copied().flatten().collect();
-        let count = |same: &dyn Fn(&usize) -> bool| neighbours.iter().filter(|&tint| same(tint)).count();
+        let neighbor = |&[a, b]: &[usize; 2]| if a == kind { tints.get(b) } else { tints.get(a).filter(|_| b == kind) };
+        let neighbors: Vec<usize> = borders.iter().filter_map(neighbor).copied().flatten().collect();
+        let count = |same: &dyn Fn(&usize) -> bool| neighbors.iter().filter(|&tint| same(tint)).count();
         let cost = |tint: &usize| {
             let used = tints.iter().flatten().filter(|&other| other == tint).count();
             (count(&|other| other == tint), count(&|other| other % 2 == tint % 2), used, *tint)
@@ -142,16 +121,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_greek_letters_become_letters_where_they_stand_alone() {
+    fn names_of_greek_letters_become_letters() {
         let names = ["alpha", "delta_alpha", "left_hip_angle", "alphabet", "mu", "l_1"].map(with_greek_letters);
         assert_eq!(names, ["α", "δ_α", "left_hip_angle", "alphabet", "μ", "l_1"]);
     }
 
     #[test]
-    fn neighbours_never_have_one_color() {
+    fn neighbors_differ_in_color() {
         let regime = Regime::Answered { contacts: Vec::new(), outcomes: Vec::new(), undecided: Vec::new() };
         let regimes = [&regime; 20];
-        // Each kind borders on the one before it, and on the one that would have its color, were they dealt out in turn.
+        // Each kind borders on the one before it, and on one that would have its color if colors were used in turn.
         let borders: Vec<[usize; 2]> =
             (1..20).map(|kind| [kind - 1, kind]).chain((8..20).map(|k| [k, k - 8])).collect();
         let colors = colors(&regimes, &borders);

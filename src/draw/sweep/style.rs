@@ -1,41 +1,41 @@
-//! How lines along a parameter are drawn, and the legend that tells it: colors for components, dashes for outcomes.
+//! How lines along a parameter are drawn, and their legend: colors for components, dashes for outcomes.
 
-use super::{Kind, angles, is_seen};
+use super::{KindLook, angles, is_seen};
 use crate::draw::plot::{Color, Dash, LegendEntry, LegendKey, Stroke};
 use crate::law::Mode;
 use crate::sweep::Survey;
 use crate::write::words;
 
-/// The components and their lines: where both are the same, the wider one is seen behind the other.
+/// The components and their lines: if both are equal, the wider one shows behind the other.
 pub(super) const COMPONENTS: [(&str, Stroke); 2] =
     [("tangential", Stroke::solid(Color::Blue, 2.8)), ("normal", Stroke::solid(Color::Vermilion, 1.6))];
 
 /// How the lines of each outcome are drawn.
-pub(super) struct Styles<'a>(Vec<Style<'a>>);
+pub(super) struct OutcomeStyles<'a>(Vec<OutcomeStyle<'a>>);
 
-struct Style<'a> {
+struct OutcomeStyle<'a> {
     contacts: &'a [String],
     modes: &'a [Mode],
-    /// Its own dashes; none where it needs none to be told from others, and is known by its region.
+    /// Its own dashes; `None` if its region identifies it.
     dash: Option<Dash>,
     /// Of the first region in which it is valid.
     color: Color,
     /// The letters of the regions in which it is valid.
     letters: Vec<String>,
-    /// Whether another outcome is valid beside it somewhere.
+    /// Whether another outcome is also valid somewhere.
     ambiguous: bool,
-    /// Whether its lines are seen anywhere.
+    /// Whether its lines are visible anywhere.
     seen: bool,
 }
 
-impl<'a> Styles<'a> {
-    /// Where some region is ambiguous, each outcome that is seen has its own dashes wherever it is valid; of more outcomes
-    /// than there are dashes only those of ambiguous regions have.
-    pub fn of(survey: &'a Survey, kinds: &[Kind]) -> Self {
-        let mut styles: Vec<Style> = Vec::new();
+impl<'a> OutcomeStyles<'a> {
+    /// If some region is ambiguous, each visible outcome has its own dashes wherever it is valid. If there are more outcomes
+    /// than dashes, only those of ambiguous regions have them.
+    pub fn of(survey: &'a Survey, kinds: &[KindLook]) -> Self {
+        let mut styles: Vec<OutcomeStyle> = Vec::new();
         for region in &survey.regions {
             let contacts = region.regime.contacts();
-            let Kind { letter, color, .. } = &kinds[region.kind];
+            let KindLook { letter, color, .. } = &kinds[region.kind];
             let outcomes = region.regime.outcomes().unwrap_or_default();
             for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
                 let ambiguous = outcomes.len() > 1 && is_seen(region, survey);
@@ -49,7 +49,7 @@ impl<'a> Styles<'a> {
                     }
                     None => {
                         let letters = vec![letter.clone()];
-                        styles.push(Style {
+                        styles.push(OutcomeStyle {
                             contacts,
                             modes,
                             dash: None,
@@ -74,8 +74,8 @@ impl<'a> Styles<'a> {
         own.and_then(|style| style.dash).unwrap_or(Dash::Solid)
     }
 
-    /// Components, what angles there are, outcomes with the letters of their regions, regions without any.
-    pub fn legend(&self, kinds: &[Kind], angles: bool) -> Vec<LegendEntry> {
+    /// Components, angles, outcomes with the letters of their regions, and regions without outcomes.
+    pub fn legend(&self, kinds: &[KindLook], angles: bool) -> Vec<LegendEntry> {
         let mut entries = Vec::new();
         if !self.0.is_empty() {
             entries.extend(
@@ -85,13 +85,13 @@ impl<'a> Styles<'a> {
         if angles {
             entries.extend(angles::legend());
         }
-        entries.extend(self.0.iter().map(|Style { contacts, modes, dash, color, letters, .. }| {
+        entries.extend(self.0.iter().map(|OutcomeStyle { contacts, modes, dash, color, letters, .. }| {
             let sentence = words::modes(contacts.iter().map(String::as_str), modes);
             let line = |dash| LegendKey::Line(Stroke { dash, ..Stroke::solid(Color::Black, 1.6) });
             let key = dash.map_or(LegendKey::Fill(*color), line);
             LegendEntry { name: format!("{}: {sentence}", letters.join(", ")), key }
         }));
-        for Kind { letter, color, happening } in kinds {
+        for KindLook { letter, color, happening } in kinds {
             let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
             let lines = if answered { happening.not_excluded() } else { happening.lines() };
             if !lines.is_empty() {

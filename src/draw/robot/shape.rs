@@ -1,14 +1,13 @@
-//! Collision shapes where they are.
+//! Collision shapes as they are drawn.
 
-use crate::contact::Placement;
 use crate::planar::Vector;
 use crate::robot::{FootShape, Rim};
 use serde::Serialize;
 
-/// A collision shape in the world.
-#[derive(Debug, Clone, Serialize)]
+/// A collision shape in the frame of its body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Outline {
+pub enum DrawnShape {
     /// A disc, or with radius 0 a point.
     Disc {
         /// Its center \[m\].
@@ -23,26 +22,12 @@ pub enum Outline {
 /// Directions in which a round shape is touched to draw it.
 const DIRECTIONS: u32 = 48;
 
-impl Outline {
-    /// The outline of a shape that is rigid in the frame of `body`.
-    pub(super) fn of_shape(shape: &FootShape, placement: &Placement, body: usize) -> Self {
+impl DrawnShape {
+    pub(super) fn new(shape: &FootShape) -> Self {
         match (shape.corners(), shape.rim()) {
-            (&[center], Rim::Circle { radius }) => Self::Disc { center: placement.world(body, center), radius },
-            (corners, rim) => {
-                let corners = if rim.bound() == 0.0 { corners.to_vec() } else { swept(corners, rim) };
-                let world: Vec<Vector<f64>> = corners.iter().map(|&corner| placement.world(body, corner)).collect();
-                Self::Polygon(world)
-            }
-        }
-    }
-
-    /// Points that it lies between.
-    pub(super) fn corners(&self) -> Vec<Vector<f64>> {
-        match self {
-            &Self::Disc { center, radius } => [(-radius, 0.0), (radius, 0.0), (0.0, -radius), (0.0, radius)]
-                .map(|(x, z)| center + Vector::new(x, z))
-                .to_vec(),
-            Self::Polygon(corners) => corners.clone(),
+            (&[center], Rim::Circle { radius }) => Self::Disc { center, radius },
+            (corners, rim) if rim.bound() == 0.0 => Self::Polygon(corners.to_vec()),
+            (corners, rim) => Self::Polygon(swept(corners, rim)),
         }
     }
 
@@ -54,14 +39,6 @@ impl Outline {
                 let share = 1.0 / corners.len().max(1) as f64;
                 corners.iter().fold(Vector::zero(), |middle, corner| middle + *corner * share)
             }
-        }
-    }
-
-    /// Changes every place.
-    pub(super) fn places(&mut self, change: impl FnMut(&mut Vector<f64>)) {
-        match self {
-            Self::Disc { center, .. } => std::slice::from_mut(center).iter_mut().for_each(change),
-            Self::Polygon(corners) => corners.iter_mut().for_each(change),
         }
     }
 }
