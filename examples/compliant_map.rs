@@ -1,7 +1,7 @@
 //! Where compliant, overdamped contact takes the paper's minimalistic biped, over the trailing foot's approach speed and
 //! d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
 
-use heelstrike::accuracy::compliant::{Biped, Map, NEAR};
+use heelstrike::accuracy::compliant::{Biped, LandingMap, NEAR};
 use heelstrike::draw::plot::{Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Stroke};
 use heelstrike::impact::{Friction, Mode};
 use std::error::Error;
@@ -41,15 +41,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// How the trailing foot ends, where that is near a rigid outcome.
-fn end(cell: &heelstrike::accuracy::compliant::Cell) -> Option<Mode> {
+fn end(cell: &heelstrike::accuracy::compliant::LandingCell) -> Option<Mode> {
     cell.modes.first().copied().filter(|_| cell.distance <= NEAR)
 }
 
-fn none(map: &Map) -> Vec<(f64, f64)> {
+fn none(map: &LandingMap) -> Vec<(f64, f64)> {
     map.runs().filter(|(_, _, cell)| end(cell).is_none()).map(|(speed, ratio, _)| (speed, ratio)).collect()
 }
 
-fn csv(map: &Map) -> Result<String, std::fmt::Error> {
+fn csv(map: &LandingMap) -> Result<String, std::fmt::Error> {
     let mut out = String::from("approach_speed,damping_ratio,mode_trailing,mode_leading,index,distance\n");
     for (speed, ratio, cell) in map.runs() {
         let modes: Vec<String> = cell.modes.iter().map(ToString::to_string).collect();
@@ -59,7 +59,7 @@ fn csv(map: &Map) -> Result<String, std::fmt::Error> {
     Ok(out)
 }
 
-fn picture(map: &Map) -> Picture {
+fn picture(map: &LandingMap) -> Picture {
     let ends = |mode| -> Vec<(f64, f64)> {
         let runs = map.runs().filter(|(_, _, cell)| end(cell) == Some(mode));
         runs.map(|(speed, ratio, _)| (speed, ratio)).collect()

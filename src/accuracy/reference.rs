@@ -1,4 +1,4 @@
-//! What M, G and c are, to 256 bits; and how far others are from it.
+//! M, G and c to 320 bits and more, and how far others are from them.
 //!
 //! Errors are free of units: of M and G relative to the geometric mean of both diagonal entries, of contact velocities and
 //! impulses by the scale of margins, S = max |c_i| / sqrt(G_ii).
@@ -10,10 +10,9 @@ use crate::planar::{Inertia, Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Interval, Ordered, Real};
 
-/// Bits of the reference beside those that a long chain of bodies needs. Its numbers are enclosures, so that what they do
-/// not know shows as an error of their own.
+/// Bits of the reference, and for each body: an articulated inertia is that much less sharp than its children's. The numbers
+/// are enclosures, so that their own uncertainty shows as an error.
 pub const PRECISION: usize = 320;
-/// Bits for each body: its articulated inertia is that much less sharp than its children's.
 const PRECISION_PER_BODY: usize = 4;
 
 /// Runs `work` on numbers with bits enough for `robot`.
@@ -69,21 +68,19 @@ impl Reference {
 
     /// How well G itself is known.
     pub fn own_error(&self) -> f64 {
-        let exact = self.delassus();
-        let rows = exact.len().isqrt();
-        let size = |row: usize| exact[row * rows + row].to_f64().sqrt();
-        worst((0..exact.len()).map(|at| relative(exact[at].radius(), size(at / rows) * size(at % rows))))
+        self.worst_of_delassus(|_, exact| exact.radius())
     }
 
     /// The largest error of a G; NaN where it holds no number.
     pub fn delassus_error<T: Number>(&self, delassus: &[T]) -> f64 {
+        self.worst_of_delassus(|at, exact| distance(delassus[at], exact))
+    }
+
+    fn worst_of_delassus(&self, error: impl Fn(usize, Interval) -> f64) -> f64 {
         let exact = self.delassus();
         let rows = exact.len().isqrt();
         let size = |row: usize| exact[row * rows + row].to_f64().sqrt();
-        worst((0..exact.len()).map(|at| {
-            let error = distance(delassus[at], exact[at]);
-            relative(error, size(at / rows) * size(at % rows))
-        }))
+        worst((0..exact.len()).map(|at| relative(error(at, exact[at]), size(at / rows) * size(at % rows))))
     }
 
     /// The largest error of an M (nv x nv, columns of the plan, of which the lower triangle is read); NaN where it holds no
@@ -162,12 +159,12 @@ pub fn distance<T: Number>(found: T, exact: Interval) -> f64 {
     difference.to_f64().abs() + difference.radius()
 }
 
-/// `error` as a part of `size`; no error of nothing is none.
+/// `error` in parts of `size`; zero if there is no error.
 pub fn relative(error: f64, size: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error / size }
 }
 
-/// The largest of the errors, or NaN if one is none.
+/// The largest of the errors, or NaN if one is NaN.
 pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
     errors
         .into_iter()

@@ -1,4 +1,4 @@
-//! What every method makes of a case: error against the reference, and run time.
+//! Runs every method on a case: error against the reference, and run time.
 
 use super::condition::mass_matrix_condition;
 use super::number::Number;
@@ -17,32 +17,32 @@ use crate::{Error, Reason};
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 
-/// Beyond so many coordinates the factorizations of M are left to f32 and f64.
+/// With more coordinates double-doubles do not factorize M.
 const LONGEST_FACTORIZED: usize = 300;
 /// Why.
 const TOO_LONG: &str = "with more than 300 coordinates it takes seconds";
 
-/// One case, looked at by every method.
+/// One case, computed by every method.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Study {
     /// What the case is called.
     pub name: String,
-    /// Coordinates of the robot; none of a problem given as matrices.
+    /// Coordinates of the robot; `None` for a problem given as matrices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coordinates: Option<usize>,
     /// Closed contacts.
     pub contacts: usize,
-    /// The answer; none where the case was refused.
+    /// The answer; `None` if the case was refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answer: Option<Answer>,
     /// Why the case was refused.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_text")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub refused: Option<Error>,
-    /// How large rounding grows.
+    /// How much rounding grows.
     pub condition: Condition,
-    /// What each method makes of it; nothing of a refused case.
+    /// The results of each method; empty for a refused case.
     pub methods: Vec<Method>,
 }
 
@@ -72,9 +72,9 @@ fn as_text<S: Serializer>(refused: &Option<Error>, serializer: S) -> Result<S::O
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Condition {
-    /// Of M; none without a robot.
+    /// Of M; `None` without a robot.
     pub mass_matrix: Option<f64>,
-    /// Of G; none where it is singular or not known.
+    /// Of G; `None` if it is singular or not known.
     pub delassus: Option<f64>,
 }
 
@@ -84,16 +84,16 @@ pub struct Condition {
 pub struct Method {
     /// The kind of number.
     pub number: &'static str,
-    /// How G is found; none for the whole answer.
+    /// How G is found; `None` for the whole answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub factorization: Option<Factorization>,
     /// What is timed.
     pub work: Work,
-    /// Run time; none where it was not measured.
+    /// Run time; `None` if it was not measured.
     pub time: Option<Spread>,
-    /// How far from the reference; none where the method failed.
+    /// The distance from the reference; `None` if the method failed.
     pub error: Option<Errors>,
-    /// Why the method was not tried, where it was not.
+    /// Why the method was not tried, if it was not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<&'static str>,
 }
@@ -115,15 +115,15 @@ pub enum Work {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Errors {
-    /// Of M; none where the method has none.
+    /// Of M; `None` if the method has none.
     pub mass_matrix: Option<f64>,
-    /// Of G; none where it was given.
+    /// Of G; `None` if it was given.
     pub delassus: Option<f64>,
-    /// Of the outcomes' impulses and velocities; none where there is none, or where they are not unique.
+    /// Of the outcomes' impulses and velocities; `None` if there is no outcome, or none that is unique.
     pub outcome: Option<f64>,
 }
 
-/// Looks at a case of the suite, or at whatever else `subject` is.
+/// Studies a case of the suite.
 pub fn study(name: &str, subject: &Subject, options: &Options, budget: Budget) -> Study {
     match subject {
         Subject::State(case) => of_state(name, &case.0, &case.1, options, budget),
@@ -131,12 +131,11 @@ pub fn study(name: &str, subject: &Subject, options: &Options, budget: Budget) -
     }
 }
 
-/// Looks at a robot's state.
+/// Studies a robot's state.
 pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> Study {
     let mut study = Study::of(name, Some(robot.dofs()));
     if !robot.followers.is_empty() || !state.scene.loops.is_empty() {
-        let reason =
-            Reason::Unsupported("the methods compared here know neither loops nor joints that follow others".into());
+        let reason = Reason::Unsupported("the methods compared here know neither loops nor mimic joints".into());
         return study.refuse(
             Error::new(reason).hint("leave the loops out; remove <mimic> to let a joint move freely, or make it fixed"),
         );
@@ -157,7 +156,8 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
     };
     with_precision(robot, || {
         let mut bench = Bench { pose: &pose, reference: Reference::new(&pose), analysis, budget, methods: Vec::new() };
-        study.condition.mass_matrix = Some(bench.condition());
+        let computation = pose.computed();
+        study.condition.mass_matrix = Some(mass_matrix_condition(computation.plan(), computation.workspace()));
         bench.every_method();
         study.methods = bench.methods;
     });
@@ -166,7 +166,7 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
         let whole = time(budget, || {
             std::hint::black_box(&pipeline.impact(state));
         });
-        study.methods.push(Method::answer(number, whole));
+        study.methods.push(Method::new(number, Work::Answer, Some(whole)));
     }
     study
 }
@@ -176,7 +176,7 @@ fn answers(prove: bool) -> impl Iterator<Item = (&'static str, bool)> {
     [("f64", false), ("f64 with proof", true)].into_iter().filter(move |(_, proves)| prove || !proves)
 }
 
-/// Looks at a contact problem given as matrices, which are taken as exact.
+/// Studies a contact problem given as matrices, which are taken as exact.
 pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Budget) -> Study {
     let mut study = Study::of(name, None);
     study.contacts = problem.contacts();
@@ -192,8 +192,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
         let exact = problem.map(Interval::from_f64);
         let mut row = |number, outcome| {
             let error = Some(Errors { mass_matrix: None, delassus: None, outcome });
-            let work = Work::Outcome;
-            study.methods.push(Method { number, factorization: None, work, time: None, error, left_out: None });
+            study.methods.push(Method { error, ..Method::new(number, Work::Outcome, None) });
         };
         row("f32", outcome_error(&analysis, &problem.map(f32::from_f64), &exact));
         row("f64", outcome_error(&analysis, problem, &exact));
@@ -203,7 +202,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
         let whole = time(budget, || {
             std::hint::black_box(&analyse(proves));
         });
-        study.methods.push(Method::answer(number, whole));
+        study.methods.push(Method::new(number, Work::Answer, Some(whole)));
     }
     study
 }
@@ -241,8 +240,12 @@ impl Study {
 }
 
 impl Method {
-    fn answer(number: &'static str, time: Spread) -> Self {
-        Self { number, factorization: None, work: Work::Answer, time: Some(time), error: None, left_out: None }
+    fn new(number: &'static str, work: Work, time: Option<Spread>) -> Self {
+        Self { number, factorization: None, work, time, error: None, left_out: None }
+    }
+
+    fn delassus(number: &'static str, factorization: Factorization, time: Option<Spread>) -> Self {
+        Self { factorization: Some(factorization), ..Self::new(number, Work::Delassus, time) }
     }
 }
 
@@ -256,11 +259,6 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    fn condition(&self) -> f64 {
-        let computation = self.pose.computed();
-        mass_matrix_condition(computation.plan(), computation.workspace())
-    }
-
     fn every_method(&mut self) {
         use Factorization::{ArticulatedBodies, SparseLtl};
         self.method::<f32>("f32", SparseLtl);
@@ -271,14 +269,8 @@ impl Bench<'_> {
         if self.pose.robot.dofs() <= LONGEST_FACTORIZED {
             self.method::<DoubleDouble>("double-double", SparseLtl);
         } else {
-            self.methods.push(Method {
-                number: "double-double",
-                factorization: Some(SparseLtl),
-                work: Work::Delassus,
-                time: None,
-                error: None,
-                left_out: Some(TOO_LONG),
-            });
+            let method = Method::delassus("double-double", SparseLtl, None);
+            self.methods.push(Method { left_out: Some(TOO_LONG), ..method });
         }
         self.method::<DoubleDouble>("double-double", ArticulatedBodies);
         let reference = time(Budget { samples: 5, ..self.budget }, || {
@@ -286,14 +278,9 @@ impl Bench<'_> {
                 std::hint::black_box(&Reference::new(self.pose));
             })
         });
-        self.methods.push(Method {
-            number: "reference",
-            factorization: Some(ArticulatedBodies),
-            work: Work::Delassus,
-            time: Some(reference),
-            error: Some(Errors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None }),
-            left_out: None,
-        });
+        let error = Errors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None };
+        let method = Method::delassus("reference", ArticulatedBodies, Some(reference));
+        self.methods.push(Method { error: Some(error), ..method });
     }
 
     fn method<T: Number>(&mut self, number: &'static str, factorization: Factorization) {
@@ -319,9 +306,7 @@ impl Bench<'_> {
         if succeeds {
             return self.take("f64", Factorization::DenseCholesky, spread, &mut computation);
         }
-        let (factorization, work) = (Some(Factorization::DenseCholesky), Work::Delassus);
-        let time = Some(spread);
-        self.methods.push(Method { number: "f64", factorization, work, time, error: None, left_out: None });
+        self.methods.push(Method::delassus("f64", Factorization::DenseCholesky, Some(spread)));
     }
 
     fn take<T: Number>(
@@ -342,17 +327,11 @@ impl Bench<'_> {
         };
         computation.velocities(self.pose);
         let outcome = self.outcome_error(computation);
-        self.methods.push(Method {
-            number,
-            factorization: Some(factorization),
-            work: Work::Delassus,
-            time: Some(time),
-            error: Some(Errors { mass_matrix, delassus: Some(delassus), outcome }),
-            left_out: None,
-        });
+        let error = Some(Errors { mass_matrix, delassus: Some(delassus), outcome });
+        self.methods.push(Method { error, ..Method::delassus(number, factorization, Some(time)) });
     }
 
-    /// The error of the outcomes; none with applied impulses, which need more than G, or with restitution.
+    /// The error of the outcomes; `None` with applied impulses, which need more than G, or with restitution.
     fn outcome_error<T: Number>(&self, computation: &Computation<T>) -> Option<f64> {
         let analysis = self.analysis.filter(|_| self.pose.state.scene.impulses.is_empty())?;
         let shape = self.pose.shape().filter(|shape| shape.restitution().iter().all(|&e| e == 0.0))?;
@@ -371,7 +350,7 @@ fn filled<T: Number>(shape: &ContactProblem, delassus: &[T], velocity: &[Pair<T>
     shape.map(|zero| numbers.borrow_mut().next().copied().unwrap_or(T::from_f64(zero)))
 }
 
-/// The largest error of the outcomes' impulses and velocities by their modes, free of units: of those that are unique.
+/// The largest error of the unique outcomes' impulses and velocities by their modes, free of units.
 fn outcome_error<T: Number>(
     analysis: &Analysis,
     problem: &ContactProblem<T>,

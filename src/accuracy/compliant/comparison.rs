@@ -1,4 +1,4 @@
-//! Compliant contact against the rigid outcomes: how near, to which, and what it hangs on.
+//! Compliant contact against the rigid outcomes: how near, to which, and depending on what.
 
 use super::frozen::{CompliantRun, TOLERANCE, run};
 use super::ground::SoftGround;
@@ -20,19 +20,19 @@ const TANGENTIAL_DAMPING: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
 const TOLERANCES: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
 const STIFFNESSES: [f64; 5] = [1e4, 1e6, 1e8, 1e10, 1e12];
 
-/// Compliant contact beside the outcomes of one state.
+/// Compliant contact next to the outcomes of one state.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// The rigid outcomes, in the order of the analysis.
     pub outcomes: Vec<Target>,
-    /// Runs that the integrator gave up, or that did not come to an end; they count nowhere else.
+    /// Runs that the integrator gave up, or that did not end; they are not counted elsewhere.
     pub unsettled: usize,
     /// All runs, then those of each value of each parameter.
     pub groups: Vec<Group>,
-    /// What the integrator's tolerance changes, on a ground of damping ratio 1 with equal springs and dampers.
+    /// The effect of the integrator's tolerance, on a ground of damping ratio 1 with equal springs and dampers.
     pub tolerances: Vec<ByTolerance>,
-    /// What stiffness changes while the robot moves, on the same ground.
+    /// The effect of stiffness while the robot moves, on the same ground.
     pub stiffnesses: Vec<ByStiffness>,
 }
 
@@ -54,9 +54,9 @@ pub struct Target {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Group {
-    /// The parameter; none for all runs.
+    /// The parameter; `None` for all runs.
     pub parameter: Option<&'static str>,
-    /// Its value; none where it is infinite, or of all runs.
+    /// Its value; `None` if it is infinite, or for all runs.
     pub value: Option<f64>,
     /// Number of runs.
     pub runs: usize,
@@ -90,7 +90,7 @@ pub struct ByTolerance {
 pub struct ByStiffness {
     /// k_n \[N/m\].
     pub stiffness: f64,
-    /// Distance from the run with the configuration frozen; none where the integrator gave up.
+    /// Distance from the run with the configuration frozen; `None` if the integrator gave up.
     pub change: Option<f64>,
     /// Distance to the nearest outcome.
     pub distance: Option<f64>,
@@ -98,14 +98,14 @@ pub struct ByStiffness {
 
 /// Where a run ends among the outcomes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Landing {
+pub struct NearestOutcome {
     /// The nearest outcome.
     pub outcome: usize,
     /// The distance to it.
     pub distance: f64,
 }
 
-/// Distance of two impulses' effects, in parts of the speed of kinetic energy `energy`.
+/// Distance of two impulses' effects, in parts of the speed before, of kinetic energy `energy`.
 pub fn distance(problem: &ContactProblem, energy: f64, a: &[Pair<f64>], b: &[Pair<f64>]) -> f64 {
     let gap: Vec<f64> = a.iter().zip(b).flat_map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
     let rows = gap.len();
@@ -115,11 +115,16 @@ pub fn distance(problem: &ContactProblem, energy: f64, a: &[Pair<f64>], b: &[Pai
     (0.5 * twice.max(0.0) / energy).sqrt()
 }
 
-/// The outcome that a run ends nearest to; none where there is none.
-pub fn landing(problem: &ContactProblem, outcomes: &[Outcome], energy: f64, run: &CompliantRun) -> Option<Landing> {
+/// The outcome that a run ends nearest to; `None` if there is no outcome.
+pub fn landing(
+    problem: &ContactProblem,
+    outcomes: &[Outcome],
+    energy: f64,
+    run: &CompliantRun,
+) -> Option<NearestOutcome> {
     let distances = outcomes.iter().map(|outcome| distance(problem, energy, &run.impulse, &outcome.impulse));
     let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-    nearest.map(|(outcome, distance)| Landing { outcome, distance })
+    nearest.map(|(outcome, distance)| NearestOutcome { outcome, distance })
 }
 
 /// Runs through every combination of the parameters.
@@ -143,18 +148,20 @@ pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energ
         }
     }
     let group = |parameter, value: Option<f64>, chosen: &dyn Fn(&SoftGround) -> bool| {
-        let chosen: Vec<Landing> =
+        let chosen: Vec<NearestOutcome> =
             landings.iter().filter(|(ground, _)| chosen(ground)).map(|&(_, landing)| landing).collect();
         gather(parameter, value.filter(|value| value.is_finite()), &chosen, outcomes.len())
     };
     let mut groups = vec![group(None, None, &|_| true)];
-    let by_damping = |&value: &f64| group(Some("damping ratio"), Some(value), &|ground| ground.damping_ratio == value);
-    groups.extend(DAMPING_RATIOS.iter().map(by_damping));
-    let by_stiffness = |&value: &f64| group(Some("k_t/k_n"), Some(value), &|ground| ground.stiffness_ratio == value);
-    groups.extend(STIFFNESS_RATIOS.iter().map(by_stiffness));
-    let by_tangent = |&value: &f64| group(Some("d_t/d_n"), Some(value), &|ground| ground.tangential_damping == value);
-    groups.extend(TANGENTIAL_DAMPING.iter().map(by_tangent));
-
+    type Pick = fn(&SoftGround) -> f64;
+    let parameters: [(&'static str, &[f64], Pick); 3] = [
+        ("damping ratio", &DAMPING_RATIOS, |ground| ground.damping_ratio),
+        ("k_t/k_n", &STIFFNESS_RATIOS, |ground| ground.stiffness_ratio),
+        ("d_t/d_n", &TANGENTIAL_DAMPING, |ground| ground.tangential_damping),
+    ];
+    for (name, values, pick) in parameters {
+        groups.extend(values.iter().map(|&value| group(Some(name), Some(value), &|ground| pick(ground) == value)));
+    }
     let all = groups.first();
     let targets = outcomes.iter().enumerate().map(|(at, outcome)| Target {
         modes: outcome.modes.clone(),
@@ -171,7 +178,7 @@ pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energ
     })
 }
 
-fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[Landing], outcomes: usize) -> Group {
+fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[NearestOutcome], outcomes: usize) -> Group {
     let mut distances: Vec<f64> = landings.iter().map(|landing| landing.distance).collect();
     distances.sort_by(f64::total_cmp);
     let runs = distances.len();
@@ -231,7 +238,7 @@ fn by_stiffness_of_moving(
         Moving { plan, position: &pose.state.position, velocity: before, contacts: &pose.points, friction: &friction };
     let mut rows = Vec::new();
     for stiffness in STIFFNESSES {
-        // Where the integrator gives up, the row ends and not the study.
+        // If the integrator gives up, the row is empty and the study goes on.
         let end = moving.run(PLAIN, stiffness, MOVING_TOLERANCE).ok();
         let nearest = |end: &Vec<f64>| outcomes.iter().map(|outcome| apart(end, outcome)).fold(f64::INFINITY, f64::min);
         let change = end.as_ref().map(|end| apart(end, &frozen));

@@ -1,10 +1,10 @@
-//! Where overdamped contact takes the paper's minimalistic biped at alpha = 1.4, which has three rigid outcomes.
+//! Where overdamped contact leads the paper's minimalistic biped at alpha = 1.4, which has three rigid outcomes.
 //!
 //! The leading foot strikes as in the paper; the trailing one, which rests there, strikes too: its approach speed and the
-//! ratio d_t / d_n span the map. Either the trailing foot lifts off or both stop, and a curve parts the two: the separatrix.
-//! It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near none.
+//! ratio d_t / d_n span the map. Either the trailing foot lifts off or both stop; the curve between them is the separatrix.
+//! It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near no outcome.
 
-use super::comparison::{Landing, NEAR, landing};
+use super::comparison::{NEAR, NearestOutcome, landing};
 use super::frozen::run;
 use super::ground::SoftGround;
 use crate::Result;
@@ -19,20 +19,20 @@ use serde::Serialize;
 
 /// The outcomes over approach speed and damping.
 #[derive(Debug, Clone, Serialize)]
-pub struct Map {
+pub struct LandingMap {
     /// Approach speeds of the trailing foot \[m/s\].
     pub speeds: Vec<f64>,
     /// Ratios d_t / d_n.
     pub ratios: Vec<f64>,
     /// One per ratio and speed, the speeds running fastest.
-    pub cells: Vec<Cell>,
-    /// For each ratio the speed beyond which both feet stop; none where they do not within the speeds.
+    pub cells: Vec<LandingCell>,
+    /// For each ratio the speed beyond which both feet stop; `None` if they do not within the speeds.
     pub separatrix: Vec<Option<f64>>,
 }
 
 /// One run of the map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Cell {
+pub struct LandingCell {
     /// Modes of the nearest rigid outcome, trailing foot first.
     pub modes: Vec<Mode>,
     /// Its index.
@@ -88,7 +88,7 @@ impl Biped {
         solved.map_or(f64::NAN, |momentum| 0.5 * momentum.dot(&before))
     }
 
-    fn land(&self, speed: f64, ratio: f64) -> Result<(Analysis, Option<Landing>)> {
+    fn land(&self, speed: f64, ratio: f64) -> Result<(Analysis, Option<NearestOutcome>)> {
         let problem = self.struck(speed)?;
         let analysis = analyse(&problem, false)?;
         let ground = SoftGround { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: ratio };
@@ -97,25 +97,25 @@ impl Biped {
         Ok((analysis, landing))
     }
 
-    /// The cell at a speed and a ratio; without modes where there is no rigid outcome to compare with.
+    /// The cell at a speed and a ratio; without modes if there is no rigid outcome to compare with.
     ///
     /// # Errors
-    /// Whatever the run refuses.
-    pub fn cell(&self, speed: f64, ratio: f64) -> Result<Cell> {
+    /// Those of [`run`].
+    pub fn cell(&self, speed: f64, ratio: f64) -> Result<LandingCell> {
         let (analysis, landing) = self.land(speed, ratio)?;
         Ok(landing.map_or(
-            Cell { modes: Vec::new(), index: None, distance: f64::NAN },
-            |Landing { outcome, distance }| {
+            LandingCell { modes: Vec::new(), index: None, distance: f64::NAN },
+            |NearestOutcome { outcome, distance }| {
                 let outcome = &analysis.outcomes[outcome];
-                Cell { modes: outcome.modes.clone(), index: outcome.index, distance }
+                LandingCell { modes: outcome.modes.clone(), index: outcome.index, distance }
             },
         ))
     }
 
-    /// The speed up to `greatest` beyond which both feet stop, to 1e-4 of it; none where they do not.
+    /// The speed up to `greatest` beyond which both feet stop, to 1e-4 of it; `None` if they do not.
     ///
     /// # Errors
-    /// Whatever the runs refuse.
+    /// Those of [`run`].
     pub fn separatrix(&self, ratio: f64, greatest: f64) -> Result<Option<f64>> {
         let stops = |speed: f64| {
             self.cell(speed, ratio).map(|cell| cell.modes.first() == Some(&Mode::Stick) && cell.distance <= NEAR)
@@ -134,21 +134,21 @@ impl Biped {
     /// The map over `columns` speeds from 0 to 1 m/s and `rows` ratios from 0.1 to 1000, evenly on a logarithmic scale.
     ///
     /// # Errors
-    /// Whatever the runs refuse.
-    pub fn map(&self, columns: usize, rows: usize) -> Result<Map> {
+    /// Those of [`run`].
+    pub fn map(&self, columns: usize, rows: usize) -> Result<LandingMap> {
         let even = |at: usize, count: usize| at as f64 / (count.max(2) - 1) as f64;
         let speeds: Vec<f64> = (0..columns).map(|at| even(at, columns)).collect();
         let ratios: Vec<f64> = (0..rows).map(|at| 0.1 * libm::pow(1e4, even(at, rows))).collect();
         let places = ratios.iter().flat_map(|&ratio| speeds.iter().map(move |&speed| (speed, ratio)));
         let cells = places.map(|(speed, ratio)| self.cell(speed, ratio)).collect::<Result<_>>()?;
         let separatrix = ratios.iter().map(|&ratio| self.separatrix(ratio, 1.0)).collect::<Result<_>>()?;
-        Ok(Map { speeds, ratios, cells, separatrix })
+        Ok(LandingMap { speeds, ratios, cells, separatrix })
     }
 }
 
-impl Map {
+impl LandingMap {
     /// Speed, ratio and cell of every run.
-    pub fn runs(&self) -> impl Iterator<Item = (f64, f64, &Cell)> {
+    pub fn runs(&self) -> impl Iterator<Item = (f64, f64, &LandingCell)> {
         let columns = self.speeds.len().max(1);
         let place = move |at: usize| (self.speeds[at % columns], self.ratios[at / columns]);
         self.cells.iter().enumerate().map(move |(at, cell)| {
@@ -158,7 +158,7 @@ impl Map {
     }
 
     /// Runs that end within `share` of an outcome of index -1.
-    pub fn near_negative_index(&self, share: f64) -> impl Iterator<Item = (f64, f64, &Cell)> {
+    pub fn near_negative_index(&self, share: f64) -> impl Iterator<Item = (f64, f64, &LandingCell)> {
         self.runs().filter(move |(_, _, cell)| cell.index == Some(-1) && cell.distance <= share)
     }
 }

@@ -1,8 +1,8 @@
-//! Compliant contact beside the rigid impact.
+//! Compliant contact next to the rigid impact.
 //!
-//! Most simulators press a robot's feet into a ground of springs and dampers and integrate through the impact. Where that
-//! ends is not one of the rigid outcomes in general: it hangs on the damping and the ratios of tangential to normal
-//! parameters, and, while the configuration stands still, not at all on the stiffness.
+//! Most simulators press a robot's feet into a ground of springs and dampers and integrate through the impact. In general that
+//! does not end at one of the rigid outcomes. The end depends on the damping and on the ratios of tangential to normal
+//! parameters, but, while the configuration is frozen, not on the stiffness.
 
 mod radau;
 mod ground;
@@ -11,10 +11,12 @@ mod moving;
 mod comparison;
 mod map;
 
-pub use comparison::{ByStiffness, ByTolerance, Comparison, Group, Landing, NEAR, Target, compare, distance, landing};
+pub use comparison::{
+    ByStiffness, ByTolerance, Comparison, Group, NEAR, NearestOutcome, Target, compare, distance, landing,
+};
 pub use frozen::{CompliantRun, TOLERANCE, run};
 pub use ground::{GREATEST_FRICTION, SoftGround};
-pub use map::{Biped, Cell, Map};
+pub use map::{Biped, LandingCell, LandingMap};
 pub use moving::Moving;
 
 #[cfg(test)]
