@@ -1,4 +1,4 @@
-//! Error against run time, stiff and extreme cases, and compliant contact beside the rigid impact.
+//! Error against run time, stiff and extreme cases, and compliant contact next to the rigid impact.
 //!
 //! ```text
 //!     state --[pose]--> M, G, c in f32, f64, double-double, by each factorization --┐
@@ -6,17 +6,17 @@
 //!     [suite]: stiff and extreme cases by name            [compliant]: springs and dampers in place of rigid contact
 //! ```
 //!
-//! Nothing of the product runs on what stands here; it is run beside it to be compared.
+//! The rest of the crate does not use this module; it only compares.
 
-pub mod compliant;
-mod condition;
 mod number;
 mod pose;
 mod reference;
-mod robots;
-mod study;
-mod suite;
+mod condition;
 mod timing;
+mod robots;
+mod suite;
+mod study;
+pub mod compliant;
 
 pub use condition::mass_matrix_condition;
 pub use number::Number;

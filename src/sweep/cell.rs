@@ -145,7 +145,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
     }
 
-    /// The point of the border beside a chord's middle, where it is farther from it than is seen and can be found.
+    /// The point of the border next to a chord's middle; `None` if the chord is straight enough, or the point is not found.
     fn off_chord(&mut self, chord: &Segment) -> Option<[f64; 2]> {
         let ranges = self.resolution.map(|resolution| resolution / RESOLUTION);
         let along = [0, 1].map(|axis| (chord.to[axis] - chord.from[axis]) / ranges[axis]);
@@ -207,8 +207,8 @@ impl<'s, 'm> Trace<'s, 'm> {
     }
 }
 
-/// Entries two by two, each with the one that has the same regimes the other way round and is `alike`; none where one has
-/// none or several such, or where pieces between them would cross.
+/// Pairs each entry with the one that has the same regimes the other way round and is `alike`; `None` if an entry has no
+/// such partner or several, or if pieces between them would cross.
 fn pairs(entries: &[BorderEntry], alike: impl Fn(&BorderEntry, &BorderEntry) -> bool) -> Option<Vec<[usize; 2]>> {
     let mut pairs = Vec::new();
     for (at, entry) in entries.iter().enumerate() {

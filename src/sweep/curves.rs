@@ -1,7 +1,7 @@
-//! What the outcomes of each region do along the parameter, at places so close that straight lines between them look smooth.
+//! The outcomes of each region along the parameter, at points so close that straight lines between them look smooth.
 //!
 //! ```text
-//!     Region --even places, its borders' inner sides included--> halved until the middle lies on the line --> RegionCurves
+//!     Region --even points, its borders' inner sides included--> halved until the middle lies on the line --> RegionCurves
 //! ```
 
 use super::line::RESOLUTION;
@@ -13,10 +13,10 @@ use crate::impact::{Analysis, Explanation, Motion, Outcome};
 use crate::law::Mode;
 use std::f64::consts::PI;
 
-/// The places of one region, ascending.
+/// The outcomes of one region, at ascending values of the parameter.
 #[derive(Debug, Clone)]
 pub struct RegionCurves {
-    /// Those at which the region's outcomes were found.
+    /// The points at which the region's outcomes were found.
     pub places: Vec<CurvePoint>,
 }
 
@@ -25,9 +25,9 @@ pub struct RegionCurves {
 pub struct CurvePoint {
     /// The parameter.
     pub at: f64,
-    /// Every outcome's modes and what it does, in the order of modes, which all places of a region share.
+    /// Every outcome's modes and motion, in the order of modes, which all points of a region share.
     pub outcomes: Vec<(Vec<Mode>, Motion)>,
-    /// The paper's section 4 for each contact, where it was asked for and G is regular.
+    /// The paper's section 4 for each contact, if it was asked for and G is regular.
     pub explanation: Option<Explanation>,
 }
 
@@ -45,7 +45,7 @@ const HALVINGS: usize = 7;
 type Scales = Vec<[f64; 2]>;
 
 impl RegionCurves {
-    /// The courses of all regions that were found in `model`; tells `workers` of [`RegionCurves::work`] pieces of work.
+    /// The courses of all regions that were found in `model`; reports [`RegionCurves::work`] pieces of work to `workers`.
     pub fn of(model: &RobotStudy, survey: &Survey, workers: Workers) -> Vec<Self> {
         let Some(parameter) = model.study.parameters().first() else { return Vec::new() };
         let range = parameter.range();
@@ -101,7 +101,7 @@ fn nothing(regime: &Regime) -> Scales {
     vec![[0.0; 2]; regime.contacts().len()]
 }
 
-/// The places that straight lines between two neighbours need in between.
+/// Adds the points that straight lines between two neighbors need in between.
 fn between(
     solver: &mut Solver,
     (a, b): (&CurvePoint, &CurvePoint),
@@ -123,7 +123,7 @@ fn between(
 }
 
 impl CurvePoint {
-    /// The outcomes at `at`; none where they are not those of the regime.
+    /// The outcomes at `at`; `None` if they are not those of the regime.
     fn of(solver: &mut Solver, at: f64, regime: &Regime) -> Option<Self> {
         let answer = solver.impact(&[at]);
         let same = Regime::of(&answer) == *regime;
@@ -151,7 +151,7 @@ impl CurvePoint {
         }
     }
 
-    /// Whether it lies on the straight line between its neighbours, as far as anybody sees.
+    /// Whether it lies on the straight line between its neighbors, as far as is visible.
     fn is_on_line(&self, a: &Self, b: &Self, scales: &Scales) -> bool {
         let ends = a.numbers().zip(b.numbers());
         let straight = self.numbers().zip(ends).all(|(own, (a, b))| {

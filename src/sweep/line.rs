@@ -1,7 +1,7 @@
 //! The regions of one parameter and the borders between them.
 //!
 //! ```text
-//!     samples --regimes differ: bisect; the same: hunt--> brackets of width 1e-12 --> regions, borders
+//!     samples --regimes differ: bisect; the same: search--> brackets of width 1e-12 --> regions, borders
 //! ```
 
 use super::border_search::suspects;
@@ -19,7 +19,7 @@ const SEARCHES: usize = 3;
 pub trait Landscape {
     /// What happens at a place.
     fn regime(&mut self, at: f64) -> Arc<Regime>;
-    /// What is followed from place to place; none where nothing can be.
+    /// The quantities that are followed from place to place; `None` if the place is refused.
     fn watched(&mut self, at: f64) -> Option<Watched>;
 }
 
@@ -49,7 +49,7 @@ pub struct Probe {
     pub regime: Arc<Regime>,
 }
 
-/// Two neighbouring places of different regimes.
+/// Two neighboring places of different regimes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bracket {
     /// The lower one.
@@ -78,17 +78,17 @@ pub struct Stretch {
 
 /// The brackets of all borders between two places, ascending, to the `resolution`.
 ///
-/// Where the regimes of two places differ, the border between them is bisected, and every other regime that is met on the
-/// way likewise; where they are the same, the stretch between them is searched for hidden ones (see `hunt`). So in the end
-/// every neighbouring pair of all places that were asked agrees, or brackets a border.
+/// If the regimes of two places differ, the border between them is bisected, and so is that of every other regime on the way.
+/// If they are the same, the stretch between them is searched for hidden ones (see `border_search`). So in the end every
+/// neighboring pair of places that were asked agrees, or brackets a border.
 pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     bisect(line, a, b, resolution, &mut found);
     search_between(line, a, b, found, resolution, SEARCHES)
 }
 
-/// The brackets `found` between two places, and those that the stretches between them hide. A stretch where some were hidden
-/// is searched anew between these, since other contacts may be closed there.
+/// The brackets `found` between two places, and those that the stretches between them hide. A stretch that hid some is
+/// searched again between these, since other contacts may be closed there.
 fn search_between(
     line: &mut impl Landscape,
     a: &Probe,
@@ -156,8 +156,8 @@ fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> V
     found
 }
 
-/// The stretches from `first` to `last` that the brackets part, and the border between each two of them. What is not wider
-/// than the `resolution` is no stretch but part of a border; stretches of one regime that only such a point parts are one.
+/// The stretches from `first` to `last` between the brackets, and the border between each two of them. What is not wider
+/// than the `resolution` is part of a border; stretches of one regime with only such a point between them are one.
 pub fn stretches(first: Probe, last: Probe, brackets: &[Bracket], resolution: f64) -> (Vec<Stretch>, Vec<Bracket>) {
     let (from, to) = (first.at, last.at);
     let begins = std::iter::once(first).chain(brackets.iter().map(|bracket| bracket.above.clone()));

@@ -1,7 +1,7 @@
 //! The regions of a study of two parameters, as areas between curves.
 //!
 //! ```text
-//!     grid of points --[line] along every edge--> crossings --cell by cell--> segments --chained--> curves, areas
+//!     grid of points --[line] along every edge--> crossings --cell by cell--> segments --joined--> curves, areas
 //! ```
 //!
 //! A curve that crosses an edge of a cell leaves it through another: crossings of the same two regions, at which the same
@@ -31,8 +31,7 @@ pub const CELLS: usize = 64;
 /// How far the outermost lines of the grid lie inside the ranges, as part of them: on their ends many studies are degenerate.
 const INSIDE: f64 = 1e-7;
 
-/// How far all other lines lie beside the places that divide the range evenly, as part of a cell: round numbers are where
-/// curves meet.
+/// How far all other lines lie from the places that divide the range evenly, as part of a cell: curves meet at round numbers.
 const BESIDE: f64 = 0.013_7;
 
 /// All areas of a study of two parameters.
@@ -53,11 +52,11 @@ pub struct Area {
     pub regime: Arc<Regime>,
     /// Closed loops of points (first parameter, second parameter) with the area on their left; the first point is not repeated.
     pub loops: Vec<Vec<[f64; 2]>>,
-    /// For each connected part a point well inside of it, and how far that is from its edge as part of the ranges.
+    /// For each connected part a point well inside it, and its distance from the edge as part of the ranges.
     pub middles: Vec<([f64; 2], f64)>,
-    /// The verdict at such a point; none where states are refused.
+    /// The verdict at such a point; `None` if states are refused.
     pub verdict: Option<Verdict>,
-    /// Where states are refused: why, as at such a point or beside a border.
+    /// Why states are refused, as at such a point or next to a border, if they are.
     pub refused: Option<Error>,
 }
 

@@ -1,10 +1,11 @@
-//! Outcomes against one or two parameters: the regions of equal outcomes, and what turns at the borders between them.
+//! Outcomes against one or two parameters: the regions of equal outcomes, and the transitions at the borders between them.
 //!
 //! ```text
-//!     JSON --[study]--> Study: parameters, expressions     point --[model, variation]--> Robot, State --[pipeline]--> Impact
-//!     Impact --[regime]--> which outcomes are valid        inequalities of all combinations --[hunt]--> where they may change
-//!     samples --[line]--> borders, bisected to 1e-12 of the range --[turn]--> which inequality of which contact is zero there
-//!     one parameter --[survey]--> Survey --[course]--> RegionCurves    two parameters --[map, cell, chain]--> Map
+//!     point of the parameters --[model]--> Robot, State --[pipeline]--> Impact --[regime]--> which outcomes are valid
+//!     inequalities of all combinations --[border_search]--> where they may change
+//!     samples --[line]--> borders, bisected to 1e-12 of the range --[transition]--> which inequality is zero there
+//!     one parameter --[survey]--> Survey --[curves]--> RegionCurves
+//!     two parameters --[edge, cell]--> pieces of borders --[polyline, interior, map]--> Map
 //! ```
 
 mod parallel;
@@ -35,7 +36,7 @@ pub use transition::{EndedOutcome, Side, Transition};
 use crate::Error;
 use std::sync::Arc;
 
-/// What a study shows.
+/// The regions and borders of a study.
 #[derive(Debug, Clone)]
 pub enum Findings {
     /// Of one parameter.
@@ -45,7 +46,7 @@ pub enum Findings {
 }
 
 impl Findings {
-    /// Those of `model`; tells `workers` of [`Findings::work`] pieces of work.
+    /// Those of `model`; reports [`Findings::work`] pieces of work to `workers`.
     pub fn of(model: &RobotStudy, workers: Workers) -> Self {
         match model.study.parameters().len() {
             2 => Self::Map(Map::of(model, workers)),

@@ -23,39 +23,39 @@ pub struct RobotStudy<'a> {
     pub reduction: &'a Reduction,
     /// The robot as the file has it.
     pub robot: &'a Robot,
-    /// How contacts are found and what is computed.
+    /// How contacts are found, and what is computed.
     pub options: Options,
-    /// What states take from elsewhere.
+    /// Defaults of the states.
     pub defaults: Defaults,
 }
 
-/// Answers points of one model, in memory that it keeps.
+/// Solves points of one study, in memory that it keeps.
 #[derive(Debug)]
 pub struct Solver<'a> {
     model: &'a RobotStudy<'a>,
-    /// For the robot as it is; none where the study varies it.
+    /// For the robot as it is; `None` if the study varies it.
     pipeline: Option<Pipeline<'a>>,
-    /// Regimes that were met, each kept once.
+    /// All regimes so far.
     known: Vec<Arc<Regime>>,
 }
 
-/// What is followed from point to point.
+/// The quantities that are followed from point to point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Watched {
     /// Names of the closed contacts.
     pub contacts: Vec<String>,
-    /// The inequalities of all combinations; of too many contacts none.
+    /// The inequalities of all combinations; empty for too many contacts.
     pub inequalities: Inequalities,
     /// How far each foot is above the contact tolerance \[m\].
     pub clearance: Vec<f64>,
 }
 
-/// What a point shows of the region that it lies in.
+/// Properties of a region, found at a point in it.
 #[derive(Debug, Clone)]
 pub(super) struct Inner {
     /// Whether its contacts depend on each other.
     pub dependent: bool,
-    /// The answer in one word; none where it is refused.
+    /// The answer in one word; `None` if it is refused.
     pub verdict: Option<Verdict>,
     /// Why it is refused, if it is.
     pub refused: Option<Error>,
@@ -65,10 +65,10 @@ pub(super) struct Inner {
 pub const WATCHED_CONTACTS: usize = 4;
 
 impl RobotStudy<'_> {
-    /// Whether states can be read at all.
+    /// Checks that states can be read somewhere in the ranges.
     ///
     /// # Errors
-    /// The first sample's refusal, where robot or state cannot be read there, nor in the middle, nor at the last one.
+    /// The first sample's refusal, if robot or state cannot be read there, nor in the middle, nor at the last one.
     pub fn readable(&self) -> Result<()> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
@@ -91,10 +91,10 @@ impl<'a> Solver<'a> {
         Self { model, pipeline, known: Vec::new() }
     }
 
-    /// Asks about the state at a point, as it is given there.
+    /// Asks about the state at a point.
     ///
     /// # Errors
-    /// Whatever refuses the robot or the state of that point.
+    /// Refusals of the robot or the state of that point.
     pub fn at<T>(
         &mut self,
         point: &[f64],
@@ -111,10 +111,10 @@ impl<'a> Solver<'a> {
         Ok(ask(&robot, state, &mut Pipeline::new(&robot, options.clone())))
     }
 
-    /// The impact at a point, whatever the state's uncertainty is.
+    /// The impact at a point, without regard to the state's uncertainty.
     ///
     /// # Errors
-    /// Whatever refuses the point.
+    /// Refusals of the point.
     pub fn impact(&mut self, point: &[f64]) -> Result<Impact> {
         self.at(point, |_, state, pipeline| pipeline.impact(&State { uncertainty: None, ..state }))?
     }
@@ -122,14 +122,14 @@ impl<'a> Solver<'a> {
     /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
     ///
     /// # Errors
-    /// Whatever refuses the point.
+    /// Refusals of the point.
     pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
         let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))??;
         let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
         Ok((names, impact.analysis?))
     }
 
-    /// What a point shows of the region that it lies in.
+    /// Properties of a region, found at a point in it.
     pub(super) fn inner(&mut self, point: &[f64]) -> Inner {
         match self.explained(point, &[]) {
             Ok((contacts, analysis)) => {
@@ -139,7 +139,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// What happens at a point.
+    /// The regime of a point.
     pub fn regime(&mut self, point: &[f64]) -> Arc<Regime> {
         let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, &[]));
         let regime = Regime::of(&impact.and_then(|impact| impact));
@@ -150,7 +150,7 @@ impl<'a> Solver<'a> {
         Arc::clone(&self.known[self.known.len() - 1])
     }
 
-    /// What is followed; none where the point is refused.
+    /// The quantities that are followed; `None` if the point is refused.
     pub fn watched(&mut self, point: &[f64]) -> Option<Watched> {
         let unsolved = self
             .at(point, |_, state, pipeline| pipeline.unsolved(&state).map(|unsolved| (unsolved, pipeline.tolerance())));

@@ -4,18 +4,18 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{self, Builder};
 
-/// How work is shared, and who is told of its progress.
+/// How work is shared, and how its progress is reported.
 #[derive(Clone, Copy)]
 pub struct Workers<'w> {
-    /// How many threads compute; with one none is started.
+    /// How many threads compute; with one no thread is started.
     pub threads: usize,
     /// Called after each piece of work.
     pub done: &'w (dyn Fn() + Sync),
 }
 
 impl Workers<'_> {
-    /// What `work` makes of each index below `count`; each thread has a state of its own, which `begin` makes. Where fewer
-    /// threads can be started, these do the work.
+    /// The results of `work` for each index below `count`, in order. Each thread has a state of its own, made by `begin`. If
+    /// fewer threads can be started, these do the work.
     pub fn map<S, T: Send>(
         &self,
         count: usize,
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_are_in_order_whatever_the_threads() {
+    fn results_are_in_order_for_any_threads() {
         for threads in [1, 2, 7, 200] {
             let counted = AtomicUsize::new(0);
             let done = || {

@@ -1,4 +1,4 @@
-//! Segments joined end to end: to curves, and to loops around areas.
+//! Joins segments end to end: to polylines, and to loops around areas.
 
 use super::edge::Segment;
 use super::regime::Regime;
@@ -22,7 +22,7 @@ fn key(point: [f64; 2]) -> Key {
     point.map(f64::to_bits)
 }
 
-/// The curves that segments of the same regimes and transition join to.
+/// The curves that segments of the same regimes and transitions join to.
 pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
     let mut starts: HashMap<Key, Vec<(usize, bool)>> = HashMap::new();
     for (index, segment) in segments.iter().enumerate() {

@@ -1,11 +1,11 @@
-//! What happens at a point: the whole set of valid outcomes, or why there is none to tell.
+//! The regime of a point: the set of valid outcomes, or the refusal.
 
 use crate::law::Mode;
 use crate::pipeline::Impact;
 use crate::{Error, Reason, Result};
 use std::mem::{Discriminant, discriminant};
 
-/// What happens at a point; two points of one region have the same.
+/// What happens at a point; all points of a region have the same.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Regime {
     /// The state is answered.
@@ -14,7 +14,7 @@ pub enum Regime {
         contacts: Vec<String>,
         /// The modes of every outcome, in the order in which combinations are tried.
         outcomes: Vec<Vec<Mode>>,
-        /// Combinations that are not excluded, although no precision shows them.
+        /// Combinations that no precision shows or excludes.
         undecided: Vec<Vec<Mode>>,
     },
     /// The state is refused.
@@ -54,7 +54,7 @@ impl Regime {
         }
     }
 
-    /// The modes of every outcome; none where the state is refused.
+    /// The modes of every outcome; `None` if the state is refused.
     pub fn outcomes(&self) -> Option<&[Vec<Mode>]> {
         match self {
             Self::Answered { outcomes, .. } => Some(outcomes),
@@ -62,7 +62,7 @@ impl Regime {
         }
     }
 
-    /// Names of the closed contacts; empty where the state is refused.
+    /// Names of the closed contacts; empty if the state is refused.
     pub fn contacts(&self) -> &[String] {
         match self {
             Self::Answered { contacts, .. } => contacts,

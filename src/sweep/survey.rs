@@ -30,11 +30,11 @@ pub struct Region {
     pub to: f64,
     /// What happens in it.
     pub regime: Arc<Regime>,
-    /// Which of all different regimes it has, counted from 0 in the order of their first region.
+    /// The number of its regime, from 0 in the order of first regions.
     pub kind: usize,
-    /// The verdict at its middle; none where it is refused.
+    /// The verdict at its middle; `None` if it is refused.
     pub verdict: Option<Verdict>,
-    /// Where it is refused: why, as at its middle.
+    /// Why it is refused, as at its middle, if it is.
     pub refused: Option<Error>,
 }
 
@@ -50,7 +50,7 @@ pub struct RegionBorder {
 }
 
 impl Survey {
-    /// The regions of `model`, whose study has one parameter; tells `workers` of [`Survey::work`] pieces of work.
+    /// The regions of `model`, whose study has one parameter; reports [`Survey::work`] pieces of work to `workers`.
     pub fn of(model: &RobotStudy, workers: Workers) -> Self {
         let Some(parameter) = model.study.parameters().first() else {
             return Self { regions: Vec::new(), borders: Vec::new(), dependent: false };

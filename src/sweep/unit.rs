@@ -1,7 +1,7 @@
-//! The unit of a parameter, where the study tells it.
+//! The unit of a parameter, if the study implies one.
 //!
 //! ```text
-//!     a number of the state or the robot = +- parameter + what does not hang on it   ->   the parameter has its unit
+//!     a number of the state or the robot = +- parameter + a constant   ->   the parameter has its unit
 //! ```
 
 use super::model::{RobotStudy, Solver};
@@ -14,22 +14,22 @@ use crate::state::State;
 /// A unit and a number that has it.
 type Measured = (&'static str, f64);
 
-/// Numbers are looked at at the ends of so many parts of the range, as far as the study can be read there.
+/// Numbers are compared at the ends of so many parts of the range, as far as the study can be read there.
 const PARTS: usize = 8;
 
 /// Differences of numbers that grow with a parameter agree to this part of its range.
 const SAME: f64 = 1e-9;
 
 impl RobotStudy<'_> {
-    /// The unit of a parameter; none where no number is the parameter but for its sign and what is added, or where such
-    /// numbers have several units.
+    /// The unit of a parameter; `None` if no number is the parameter up to its sign and a constant, or if such numbers have
+    /// several units.
     pub fn unit(&self, parameter: usize) -> Option<&'static str> {
         let range = self.study.parameters().get(parameter)?.range();
         let part = |k: usize| k as f64 / PARTS as f64;
         let found = (0..=PARTS).filter_map(|k| Some((part(k), self.measured(parameter, part(k))?)));
         let (parts, measured): (Vec<f64>, Vec<Vec<Measured>>) = found.unzip();
         let (first, others) = measured.split_first()?;
-        // Two places cannot tell a line from a curve; robots of other structure have other numbers.
+        // Two places do not distinguish a line from a curve; robots of other structure have other numbers.
         if others.len() < 2 || others.iter().any(|other| other.len() != first.len()) {
             return None;
         }

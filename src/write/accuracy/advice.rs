@@ -1,14 +1,14 @@
-//! What to use when, as the measured times and errors have it.
+//! Which method to use, by the measured times and errors.
 //!
 //! ```text
 //!     of each way to G:  time t = median over the cases,  digits d = the fewest of a case
-//!     f64: the quickest and the one that keeps the most; f32, double-double: the quickest; the proof: t with / t without
+//!     f64: the quickest and the one with most digits; f32, double-double: the quickest; the proof: t with / t without
 //! ```
 
 use super::in_words;
 use crate::accuracy::{Factorization, Method, Study, Work};
 
-/// Ways in f64 whose fewest digits differ by less keep the same: the last bits fall as they may.
+/// Ways in f64 whose digits differ by less count as equal: the last bits are chance.
 const SAME_DIGITS: f64 = 0.5;
 
 /// A way to G over all cases.
@@ -19,23 +19,23 @@ struct Way {
     digits: f64,
 }
 
-/// One sentence; none where no way to G in f64 was measured.
+/// One sentence; `None` if no way to G in f64 was measured.
 pub(super) fn advice(studies: &[Study]) -> Option<String> {
     let ways = ways(studies, "f64");
     let quickest = quickest(&ways)?;
-    let keenest = *ways.iter().max_by(|a, b| a.digits.total_cmp(&b.digits))?;
+    let most_exact = *ways.iter().max_by(|a, b| a.digits.total_cmp(&b.digits))?;
     let least = if studies.len() > 1 { "at least " } else { "" };
     let keeps = |way: Way| format!("{least}{:.1} digits", way.digits);
     let named = |way: Way| in_words(way.factorization);
-    let mut parts = vec![if keenest.digits - quickest.digits < SAME_DIGITS {
+    let mut parts = vec![if most_exact.digits - quickest.digits < SAME_DIGITS {
         let also = if ways.len() > 1 { ", the quickest way, and none keeps more" } else { "" };
         format!("for G take f64 by {} ({}){also}", named(quickest), keeps(quickest))
     } else {
-        let slower = times(keenest.time / quickest.time);
+        let slower = times(most_exact.time / quickest.time);
         format!(
             "for G take f64 by {}, which keeps {} at {slower} times the time of {}, the quickest way, which keeps {}",
-            named(keenest),
-            keeps(keenest),
+            named(most_exact),
+            keeps(most_exact),
             named(quickest),
             keeps(quickest),
         )
@@ -59,7 +59,7 @@ fn quickest(ways: &[Way]) -> Option<Way> {
     ways.iter().copied().min_by(|a, b| a.time.total_cmp(&b.time))
 }
 
-/// Every way to G in numbers of one kind, of those that came through all cases which they were tried on.
+/// Every way to G in numbers of one kind that failed in none of its cases.
 fn ways(studies: &[Study], number: &str) -> Vec<Way> {
     let all = [Factorization::SparseLtl, Factorization::DenseCholesky, Factorization::ArticulatedBodies];
     let way = |factorization| {
@@ -77,7 +77,7 @@ fn ways(studies: &[Study], number: &str) -> Vec<Way> {
     all.into_iter().filter_map(way).collect()
 }
 
-/// What the proof costs, and how often it succeeds.
+/// The cost of the proof, and how often it succeeds.
 fn of_the_proof(studies: &[Study]) -> Option<String> {
     let time = |study: &Study, number| {
         let mut methods = study.methods.iter();
@@ -140,7 +140,7 @@ mod tests {
     const BODIES: Option<Factorization> = Some(Factorization::ArticulatedBodies);
 
     #[test]
-    fn what_is_quickest_and_keeps_as_many_digits_as_any_is_recommended() {
+    fn quickest_with_as_many_digits_is_recommended() {
         let methods = |digits: i32| {
             vec![
                 method("f32", LTL, 1e-6, 1e-5),
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn digits_are_weighed_against_time_where_they_speak_against_each_other() {
+    fn digits_are_weighed_against_time() {
         let methods = vec![method("f64", LTL, 1e-6, 1e-9), method("f64", BODIES, 3e-6, 1e-14)];
         assert_eq!(
             advice(&[study(true, methods)]).unwrap(),
@@ -170,10 +170,10 @@ mod tests {
     }
 
     #[test]
-    fn a_way_that_failed_a_case_is_not_recommended_and_nothing_measured_gives_none() {
+    fn failed_ways_are_not_recommended() {
         let failing = Method { error: None, ..method("f64", LTL, 1e-9, 0.0) };
-        let told = advice(&[study(true, vec![failing, method("f64", BODIES, 1e-6, 1e-14)])]).unwrap();
-        assert_eq!(told, "For G take f64 by articulated bodies (14.0 digits).");
+        let found = advice(&[study(true, vec![failing, method("f64", BODIES, 1e-6, 1e-14)])]).unwrap();
+        assert_eq!(found, "For G take f64 by articulated bodies (14.0 digits).");
         assert_eq!(advice(&[study(true, Vec::new())]), None);
     }
 }

@@ -1,27 +1,25 @@
-//! Error against run time: what is written of it.
+//! The record of error against run time.
 //!
 //! ```text
 //!     Study, Comparison --> Accuracy --> JSON (its own fields), advice.rs, text.rs, picture.rs
 //! ```
 
 mod advice;
-#[cfg(feature = "plot")]
-
 mod text;
 
 use crate::accuracy::compliant::Comparison;
 use crate::accuracy::{Factorization, Method, Study};
 use serde::Serialize;
 
-/// What every method makes of some cases.
+/// The results of every method on some cases.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Accuracy {
     /// The cases.
     pub studies: Vec<Study>,
-    /// Compliant contact beside the rigid outcomes of one state.
+    /// Compliant contact next to the rigid outcomes of one state.
     pub compliant: Option<Compliant>,
-    /// What to use when, by the times and errors of these cases; none where none was measured.
+    /// Which method to use, by the times and errors of these cases; `None` if nothing was measured.
     pub advice: Option<String>,
 }
 
@@ -29,15 +27,15 @@ pub struct Accuracy {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Compliant {
-    /// What the state is called.
+    /// The name of the state.
     pub name: String,
-    /// What came of it.
+    /// The results.
     #[serde(flatten)]
     pub comparison: Comparison,
 }
 
 impl Accuracy {
-    /// The cases, and perhaps compliant contact.
+    /// A record of these cases, and of compliant contact if it was compared.
     pub fn new(studies: Vec<Study>, compliant: Option<Compliant>) -> Self {
         Self { advice: advice::advice(&studies), studies, compliant }
     }

@@ -42,7 +42,7 @@ fn one(out: &mut String, study: &Study, Palette { strong, plain, .. }: &Palette)
         .text("of the outcomes", error(|error| error.outcome))
         .write(out);
     out.push_str("  time: median [quartiles]; digits: -log10 of the largest error, free of units\n");
-    tell_left_out(out, std::slice::from_ref(study));
+    list_left_out(out, std::slice::from_ref(study));
 }
 
 fn work(work: Work) -> &'static str {
@@ -114,20 +114,20 @@ fn many(out: &mut String, studies: &[Study], Palette { strong, plain, .. }: &Pal
         .text("fewest", methods.iter().map(|method| errors(method, 2)))
         .write(out);
     out.push_str("  time: median [quartiles] of the cases; digits: -log10 of the largest error, free of units\n");
-    tell_left_out(out, studies);
+    list_left_out(out, studies);
 }
 
 /// Methods that were not tried, and why.
-fn tell_left_out(out: &mut String, studies: &[Study]) {
+fn list_left_out(out: &mut String, studies: &[Study]) {
     let every = || studies.iter().flat_map(|study| &study.methods);
-    let mut told: Vec<String> = Vec::new();
+    let mut listed: Vec<String> = Vec::new();
     for (method, why) in every().filter_map(|method| Some((method, method.left_out?))) {
         let name = name_of(method);
-        if !told.contains(&name) {
+        if !listed.contains(&name) {
             let cases = every().filter(|other| other.left_out == Some(why) && name_of(other) == name).count();
             let of = if studies.len() > 1 { format!(" of {cases} of these cases") } else { String::new() };
             let _ = writeln!(out, "  {name} is left out{of}: {why}");
-            told.push(name);
+            listed.push(name);
         }
     }
 }
@@ -154,19 +154,19 @@ fn brief_ending(study: &Study) -> String {
 
 fn conditions(study: &Study) -> String {
     let of = |what: &str, condition: Option<f64>| condition.map(|value| format!("{what} {}", number(value)));
-    let told: Vec<String> =
+    let known: Vec<String> =
         [of("mass matrix", study.condition.mass_matrix), of("Delassus matrix", study.condition.delassus)]
             .into_iter()
             .flatten()
             .collect();
-    if told.is_empty() { "not known".into() } else { told.join(", ") }
+    if known.is_empty() { "not known".into() } else { known.join(", ") }
 }
 
 fn power(condition: Option<f64>) -> String {
     condition.map_or("-".into(), |value| if value < 1e3 { format!("{value:.0}") } else { format!("{value:.0e}") })
 }
 
-/// Less than any number but the reference can err by: what is left is the reference's own doubt.
+/// Less than the error of any number except the reference: what is left is the reference's own uncertainty.
 const NO_ERROR: f64 = 1e-40;
 
 /// Digits that an error leaves.

@@ -6,7 +6,7 @@ use crate::write::Palette;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What is known of a study of two parameters, without its samples.
+/// The record of a study of two parameters, without its samples.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MapSweep<'a> {
@@ -16,7 +16,7 @@ pub struct MapSweep<'a> {
     pub regions: Vec<MapRegion<'a>>,
     /// The borders between them.
     pub borders: &'a [BorderCurve],
-    /// What a reader should know, in whole sentences.
+    /// Limits of the search, as sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
     #[serde(skip)]
@@ -29,10 +29,10 @@ pub struct MapSweep<'a> {
 pub struct MapRegion<'a> {
     /// Its letter.
     pub letter: String,
-    /// What happens in it.
+    /// Its outcomes.
     #[serde(flatten)]
     pub happening: Happening<'a>,
-    /// What part of the ranges it covers.
+    /// The part of the ranges that it covers.
     pub share: f64,
     /// Closed loops of points, in the order of the parameters, with the region on their left (the second parameter up); holes
     /// run the other way.
@@ -40,7 +40,7 @@ pub struct MapRegion<'a> {
 }
 
 impl<'a> MapSweep<'a> {
-    /// What the `map` of these parameters shows.
+    /// The record of the `map` of these parameters.
     pub fn new(parameters: &'a [Parameter], map: &'a Map) -> Self {
         let whole: f64 = parameters.iter().map(Parameter::range).product();
         let region = |(kind, area): (usize, &'a Area)| MapRegion {
@@ -66,7 +66,7 @@ impl<'a> MapSweep<'a> {
         }
     }
 
-    /// All regions and what turns between them, for people.
+    /// All regions and the transitions between them, for people.
     pub fn text(&self, robot: &str, palette: &Palette) -> String {
         let mut out = String::new();
         // Writing into a string cannot fail.
@@ -103,7 +103,7 @@ impl<'a> MapSweep<'a> {
     }
 }
 
-/// What a loop encloses; negative where it runs clockwise.
+/// The area of a loop; negative if it runs clockwise.
 fn surface(points: &[[f64; 2]]) -> f64 {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()

@@ -22,7 +22,7 @@ use crate::law::Mode;
 use crate::sweep::{Findings, Parameter, Regime, Region, RegionBorder, Survey, WATCHED_CONTACTS, letter};
 use serde::Serialize;
 
-/// What is known of a study of one parameter, without its samples.
+/// The record of a study of one parameter, without its samples.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sweep<'a> {
@@ -32,14 +32,14 @@ pub struct Sweep<'a> {
     pub regions: Vec<RegionRecord<'a>>,
     /// The border between each two of them.
     pub borders: &'a [RegionBorder],
-    /// What a reader should know, in whole sentences.
+    /// Limits of the search, as sentences.
     pub notes: Vec<String>,
     /// How many samples there are.
     #[serde(skip)]
     steps: usize,
 }
 
-/// What is known of a study, without its samples.
+/// The record of a study, without its samples.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
@@ -60,25 +60,25 @@ pub struct RegionRecord<'a> {
     pub from: f64,
     /// Where it ends.
     pub to: f64,
-    /// What happens in it.
+    /// Its outcomes.
     #[serde(flatten)]
     pub happening: Happening<'a>,
 }
 
-/// What happens in a region.
+/// The outcomes of a region.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Happening<'a> {
-    /// Names of the closed contacts; absent where states are refused.
+    /// Names of the closed contacts; absent if states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<&'a [String]>,
-    /// The answer in one word, as at its middle; absent where states are refused.
+    /// The answer in one word, as at its middle; absent if states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
-    /// The modes of every outcome; absent where states are refused.
+    /// The modes of every outcome; absent if states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<&'a [Vec<Mode>]>,
-    /// Combinations that no precision excludes; absent where everything is decided.
+    /// Combinations that no precision excludes; absent if everything is decided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub undecided: Option<&'a [Vec<Mode>]>,
     /// Why the states in it are refused, as at its middle.
@@ -87,7 +87,7 @@ pub struct Happening<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// What was found in a study of these parameters.
+    /// The record of a study of these parameters.
     pub fn new(parameters: &'a [Parameter], findings: &'a Findings) -> Self {
         match findings {
             Findings::Along(survey) => Self::Along(Sweep::new(&parameters[0], survey)),
@@ -105,7 +105,7 @@ impl<'a> Regions<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// What a survey of `parameter` has found.
+    /// The record of a survey of `parameter`.
     pub fn new(parameter: &'a Parameter, survey: &'a Survey) -> Self {
         let region = |region: &'a Region| RegionRecord {
             letter: letter(region.kind),
@@ -125,7 +125,7 @@ impl<'a> Sweep<'a> {
 }
 
 impl<'a> Happening<'a> {
-    /// That of a regime with the verdict inside of it, and why it is refused, if it is.
+    /// That of a regime, with the verdict in it, or why it is refused.
     pub(crate) fn of(regime: &'a Regime, verdict: Option<Verdict>, refused: Option<&'a Error>) -> Self {
         let undecided = match regime {
             Regime::Answered { undecided, .. } if !undecided.is_empty() => Some(&undecided[..]),
@@ -136,7 +136,7 @@ impl<'a> Happening<'a> {
     }
 }
 
-/// What a search of regions with so many contacts may have missed, and where contacts depend on each other.
+/// What a search of regions with so many contacts may have missed, also because contacts depend on each other.
 fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
     if contacts == 0 {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The samples of a study: an object or the rows of a table each.
+//! The samples of a study, each as an object or as rows of a table.
 
 use super::super::Columns;
 use super::super::{Detail, ErrorObject, Report, append_line};
@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 use serde_json::value::RawValue;
 
-/// A sample: the parameters' values and what is found there.
+/// A sample: the parameters' values and the result there.
 #[derive(Debug, Clone)]
 pub struct Sample<'a> {
     /// The parameters' names.
@@ -23,7 +23,7 @@ pub struct Sample<'a> {
     pub index: usize,
 }
 
-/// What is written of a refused sample.
+/// The record of a refused sample.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct RefusedSample<'a> {
@@ -49,7 +49,7 @@ impl<'a> Sample<'a> {
         model.study.parameters().iter().map(|parameter| parameter.steps).product()
     }
 
-    /// Appends `{"alpha": ..., "result": {...}}` without a line break; tells whether it was answered.
+    /// Appends `{"alpha": ..., "result": {...}}` without a line break; returns whether it was answered.
     pub fn append_json(&self, solver: &mut Solver, detail: Detail, out: &mut Vec<u8>) -> bool {
         let mut result = Vec::new();
         let answered = solver.at(&self.point, |robot, state, pipeline| {
@@ -62,13 +62,13 @@ impl<'a> Sample<'a> {
             append_line(&mut result, &RefusedSample { error: ErrorObject::new(error) });
         }
         let result = String::from_utf8(result).ok().and_then(|text| RawValue::from_string(text.trim_end().into()).ok());
-        append_line(out, &Whole { sample: self, result: result.as_deref() });
+        append_line(out, &SampleRecord { sample: self, result: result.as_deref() });
         // The line break is the list's.
         out.pop();
         refused.is_none()
     }
 
-    /// Appends the rows of the sample, with the letter that `letter` gives to its regime; tells whether it was answered.
+    /// Appends the rows of the sample, with the letter that `letter` gives to its regime; returns whether it was answered.
     pub fn append_rows(
         &self,
         solver: &mut Solver,
@@ -101,27 +101,27 @@ fn answer(
     state: &State,
     pipeline: &mut Pipeline<'_>,
     detail: Detail,
-    tell: impl FnOnce(&Report),
+    write: impl FnOnce(&Report),
 ) -> Result<()> {
     let impact = pipeline.impact(state)?;
-    tell(&Report::of_state(robot, state, &impact, detail)?);
+    write(&Report::of_state(robot, state, &impact, detail)?);
     impact.analysis.map(|_| ())
 }
 
-/// The columns of a table of samples: those of a batch, and behind them the parameters and the region's letter; `contacts`
-/// are those that occur.
+/// The columns of a table of samples: those of a batch, then the parameters and the region's letter; `contacts` are those
+/// that occur.
 pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
     Columns::with(model.robot, feet, contacts, parameters.chain(["region"]), false)
 }
 
-/// A sample beside its result.
-struct Whole<'a> {
+/// A sample with its result.
+struct SampleRecord<'a> {
     sample: &'a Sample<'a>,
     result: Option<&'a RawValue>,
 }
 
-impl Serialize for Whole<'_> {
+impl Serialize for SampleRecord<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for (name, value) in self.sample.names.iter().zip(&self.sample.point) {

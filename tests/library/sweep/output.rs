@@ -170,5 +170,5 @@ fn a_border_to_what_is_refused_says_so() {
     let Run { status, stdout, .. } = run("urdf/block.urdf", &study, &[]);
     assert_eq!(status, 1);
     assert!(stdout.contains(": from B on states are answered\n"), "{stdout}");
-    assert!(stdout.contains(": block touches the ground in B alone\n"), "{stdout}");
+    assert!(stdout.contains(": block touches the ground in B only\n"), "{stdout}");
 }
