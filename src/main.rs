@@ -8,6 +8,6 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     match cli::Cli::try_parse() {
         Ok(cli) => cli::run(cli),
-        Err(told) => cli::usage(&told),
+        Err(message) => cli::usage(&message),
     }
 }

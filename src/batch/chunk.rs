@@ -1,22 +1,21 @@
-//! Records of a stream, a few at a time.
+//! Cuts a stream into chunks of whole records.
 
-use super::foreign::foreign;
 use super::run::Source;
 use crate::read::table::Quotes;
 use crate::{Error, Reason, Result};
 use memchr::memchr;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 
-/// Bytes that are asked of the input at once.
+/// How many bytes are requested from the input at once.
 const READ: usize = 1 << 16;
 
 /// The most records of a chunk: few, so that the threads share short inputs, too.
 const RECORDS: usize = 16;
 
-/// A record longer than this is passed over and refused \[bytes\].
+/// Longer records are skipped and refused \[bytes\].
 pub const RECORD_LIMIT: usize = 1 << 24;
 
-/// A record behind the line on which it begins, from 1.
+/// A record and the line on which it begins, from 1.
 pub type Numbered = (usize, Vec<u8>);
 
 /// Some consecutive whole records.
@@ -25,11 +24,11 @@ pub struct Chunk {
     bytes: Vec<u8>,
     /// On which line each record begins and where it ends in the bytes.
     ends: Vec<(usize, usize)>,
-    /// The line of a record that follows and was passed over, because it is longer than [`RECORD_LIMIT`].
+    /// The line of a following record that was skipped because it is longer than [`RECORD_LIMIT`].
     pub too_long: Option<usize>,
 }
 
-/// Cuts an input into chunks, and never waits for more of it while a whole record is at hand.
+/// Cuts an input into chunks, and never waits for more input while it has a whole record.
 #[derive(Debug)]
 pub struct Chunks<R> {
     input: BufReader<R>,
@@ -56,18 +55,18 @@ impl<R: Read> Chunks<R> {
         self.quotes.is_some()
     }
 
-    /// Why the input as a whole is refused: its first bytes tell that it is packed, a spreadsheet or the like.
+    /// The refusal of an input whose first bytes show that it is compressed, a spreadsheet or the like.
     ///
     /// # Errors
-    /// Whatever keeps the input from being read.
+    /// Those of reading.
     pub fn foreign(&mut self) -> io::Result<Option<Error>> {
         Ok(foreign(self.fill()?))
     }
 
-    /// The first record that is not blank, or why it is refused; none where there is none.
+    /// The first record that is not blank, or its refusal; `None` if there is none.
     ///
     /// # Errors
-    /// Whatever keeps the input from being read.
+    /// Those of reading.
     pub fn first(&mut self) -> io::Result<Option<Result<Numbered>>> {
         while let Some(chunk) = self.record()? {
             if let Some(line) = chunk.too_long {
@@ -81,15 +80,15 @@ impl<R: Read> Chunks<R> {
         Ok(None)
     }
 
-    /// The next record alone; none at the end of the input.
+    /// The next record alone; `None` at the end of the input.
     ///
     /// # Errors
-    /// Whatever keeps the input from being read.
+    /// Those of reading.
     pub fn record(&mut self) -> io::Result<Option<Chunk>> {
         self.records(1)
     }
 
-    /// Up to `most` records, fewer where the input keeps us waiting.
+    /// Up to `most` records, fewer if the input would have to be waited for.
     fn records(&mut self, most: usize) -> io::Result<Option<Chunk>> {
         let mut chunk = Chunk::default();
         // Where the current record and its last line begin, the record's first line and its length so far.
@@ -126,7 +125,7 @@ impl<R: Read> Chunks<R> {
         }
     }
 
-    /// What is at hand, at least a byte unless the input has ended; without a byte order mark.
+    /// The buffered bytes, at least one unless the input has ended; without a byte order mark.
     fn fill(&mut self) -> io::Result<&[u8]> {
         loop {
             match self.input.fill_buf() {
@@ -141,7 +140,7 @@ impl<R: Read> Chunks<R> {
         Ok(self.input.buffer())
     }
 
-    /// Whether no whole line is at hand.
+    /// Whether no whole line is buffered.
     fn keeps_waiting(&self) -> bool {
         memchr(b'\n', self.input.buffer()).is_none()
     }
@@ -171,6 +170,26 @@ impl Chunk {
         let starts = std::iter::once(0).chain(self.ends.iter().map(|&(_, end)| end));
         starts.zip(&self.ends).map(|(start, &(line, end))| (line, &self.bytes[start..end]))
     }
+}
+
+const UTF_16: &str = "save it as UTF-8, or turn it by iconv -f UTF-16 -t UTF-8";
+
+/// First bytes of other formats, the reason and the hint.
+const FOREIGN: [(&[u8], &str, &str); 8] = [
+    (b"\xFF\xFE", "the text is UTF-16", UTF_16),
+    (b"\xFE\xFF", "the text is UTF-16", UTF_16),
+    (b"\x1F\x8B", "the input is packed by gzip", "unpack it: gunzip -c FILE | heelstrike batch ROBOT.urdf - ..."),
+    (b"\x28\xB5\x2F\xFD", "the input is packed by zstd", "unpack it: zstdcat FILE | heelstrike batch ROBOT.urdf - ..."),
+    (b"\xFD7zXZ\0", "the input is packed by xz", "unpack it: xzcat FILE | heelstrike batch ROBOT.urdf - ..."),
+    (b"BZh", "the input is packed by bzip2", "unpack it: bzcat FILE | heelstrike batch ROBOT.urdf - ..."),
+    (b"PK\x03\x04", "the input is a zip archive, as spreadsheets are", "unpack it, or save the sheet as CSV"),
+    (b"PAR1", "the input is a Parquet file", "write it as CSV or NDJSON"),
+];
+
+/// The refusal of an input that begins like another format.
+fn foreign(beginning: &[u8]) -> Option<Error> {
+    let (_, what, remedy) = FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic))?;
+    Some(Error::new(Reason::Unsupported((*what).into())).hint(*remedy))
 }
 
 #[cfg(test)]

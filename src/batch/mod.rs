@@ -8,7 +8,6 @@
 //! Nothing here opens a file, and threads are started by [`run`] alone, where it is told to.
 
 mod chunk;
-mod foreign;
 mod recording;
 mod run;
 mod summary;
@@ -16,7 +15,7 @@ mod summary;
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, Numbered, RECORD_LIMIT};
 pub use recording::{Landing, Origin, Recorded, Recording, samples};
-pub use run::{Block, Broken, Form, Refusal, Sink, Source, run};
+pub use run::{Block, Broken, Form, RefusedRecord, Sink, Source, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, Place, Summary, Verdicts};
 
 use crate::draw::{Keyframe, ListedKeyframe};
@@ -215,7 +214,7 @@ impl<'q> Batch<'q> {
     fn in_its_form(&self, error: Error) -> Error {
         match error.reason() {
             Reason::Missing(_) if self.question.header.is_some() && error.place() == Some("friction") => {
-                error.hint("add a column friction, or give --friction 0.8 (or infinite)")
+                error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
             }
             _ => error,
         }
@@ -279,7 +278,7 @@ fn with_remedy(error: Error, record: &[u8]) -> Error {
     // The names of a table's columns.
     let column = |name: &[u8]| [&b"q_"[..], b"v_"].iter().any(|prefix| name.starts_with(prefix));
     let header = record.split(|&byte| byte == b',').any(column);
-    if header { error.hint("is this a table? then say --input-format csv") } else { error }
+    if header { error.hint("is this a table? then say `input_format: csv`") } else { error }
 }
 
 impl Block {
@@ -289,7 +288,7 @@ impl Block {
         let place = error.location();
         let excerpt = place.and_then(|place| around.text.around(around.line, place));
         let error = if place.is_some() { error } else { error.on(around.line, 1) };
-        self.refused.push(Refusal { error, excerpt });
+        self.refused.push(RefusedRecord { error, excerpt });
     }
 }
 

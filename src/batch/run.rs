@@ -47,7 +47,7 @@ pub struct Block {
     /// What is written.
     pub out: Vec<u8>,
     /// Why records were refused.
-    pub refused: Vec<Refusal>,
+    pub refused: Vec<RefusedRecord>,
     /// What is to be said of these records at the end; see [`Summary::merge`].
     pub summary: Summary,
     /// The states as a page shows them, if that is asked for.
@@ -56,7 +56,7 @@ pub struct Block {
 
 /// A refused record.
 #[derive(Debug)]
-pub struct Refusal {
+pub struct RefusedRecord {
     /// Why, with line and column in the input.
     pub error: Error,
     /// The line, where a place in it is refused and it can be shown; it is short.

@@ -13,8 +13,7 @@ const NAMED: usize = 10;
 /// So many different lists of modes are counted one by one.
 const LISTS: usize = 1000;
 
-/// Counts over the states of a batch; a result line of `--summary`. Its size is bounded, and it does not depend on how the
-/// states are shared out.
+/// Counts over the states of a batch. Its size is bounded, and it does not depend on how threads share the states.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Summary {
     /// All states, refused ones too.

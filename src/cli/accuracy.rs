@@ -1,19 +1,18 @@
 //! `heelstrike accuracy`: error against run time, and the stiff and extreme cases.
 
+use super::input::InputFile;
 use super::options::{ContactOptions, SceneOptions};
-use super::output::{Format, OutputOptions};
+use super::output::OutputOptions;
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::stream::only_document;
-use super::{Answered, Failure, Outcome, input};
+use super::{Completion, Failure};
 use heelstrike::accuracy::compliant::compare;
 use heelstrike::accuracy::{Budget, Case, Pose, Study, Subject, cases, of_state, study};
-use heelstrike::error::excerpt::Excerpt;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::State;
-use heelstrike::write::{Accuracy, Compliant, append_line};
+use heelstrike::write::{Accuracy, Compliant};
 use heelstrike::{Error, Reason, Robot};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -31,13 +30,13 @@ pub struct Args {
     /// The state just before the impact; "-" reads standard input
     #[arg(value_name = "STATE.json")]
     state: Option<PathBuf>,
-    /// Of the suite only the cases whose name holds this text
+    /// Run only the cases of the suite whose name contains this text
     #[arg(long, value_name = "TEXT")]
     case: Option<String>,
-    /// How long each method is run for its time, in milliseconds
+    /// How long each method is timed, in milliseconds
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 20)]
     time: u64,
-    /// Leave out the proofs and what they cost
+    /// Leave out the proofs and their cost
     #[arg(long)]
     no_proof: bool,
     #[command(flatten)]
@@ -50,7 +49,7 @@ pub struct Args {
     output: OutputOptions,
 }
 
-pub(super) fn run(args: &Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Completion {
     let budget = Budget { time: Duration::from_millis(args.time), ..Budget::default() };
     args.plot.check()?;
     let inputs: Vec<&Path> = [&args.robot, &args.state].into_iter().flatten().map(PathBuf::as_path).collect();
@@ -61,36 +60,20 @@ pub(super) fn run(args: &Args) -> Outcome {
         _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, budget)?,
     };
     args.plot.draw(&accuracy.picture(), "no method has both a time and an error here")?;
-    let mut output = args.output.open()?;
-    match args.output.chosen().unwrap_or(Format::Text) {
-        Format::Text => {
-            let text = accuracy.text(output.palette());
-            output.write_all(text.as_bytes())?;
-        }
-        Format::Json => {
-            let mut line = Vec::new();
-            append_line(&mut line, &accuracy);
-            output.write_all(&line)?;
-        }
-    }
-    output.flush()?;
-    // The suite's refusals are what they must be; a user's state has one case, and its refusal is one.
+    let written = args.output.write(&accuracy, |palette| accuracy.text(palette))?;
+    // The suite contains refused cases on purpose; a user's own state does not.
     match accuracy.studies.as_slice() {
         [Study { refused: Some(error), .. }] if args.robot.is_some() => Err(Failure::Refused(error.clone())),
-        _ => Ok(Answered::All),
+        _ => Ok(written),
     }
 }
 
 fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accuracy, Failure> {
     let robot = RobotOptions::of_file(robot).load()?;
-    let name = input::name(state);
-    let bytes = input::bytes_up_to(state, LARGEST)?;
-    let document = only_document(&bytes, &name)?;
-    let state = State::from_json(document.text, &robot, &args.scene.defaults()).map_err(|error| {
-        let error = document.locate(error);
-        let excerpt = error.location().and_then(|place| Excerpt::around(&bytes, 1, place));
-        Failure::RefusedAt(error.in_file(&name), excerpt)
-    })?;
+    let input = InputFile::read(state, LARGEST)?;
+    let document = only_document(&input)?;
+    let state = State::from_json(document.text, &robot, &args.scene.defaults());
+    let state = state.map_err(|error| input.refuse(document.locate(error)))?;
     let options = Options {
         contact_tolerance: args.contacts.contact_tolerance,
         resting_speed: args.contacts.resting_speed,
@@ -132,7 +115,7 @@ fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure
     Ok(Accuracy::new(studies, compliant))
 }
 
-/// Compliant contact beside the outcomes of a state; none where there is nothing to compare with.
+/// Compliant contact compared with the outcomes of a state; `None` if there is nothing to compare.
 fn compliant(name: &str, robot: &Robot, state: &State, options: &Options) -> Result<Option<Compliant>, Failure> {
     let Ok(impact) = Pipeline::new(robot, options.clone()).impact(state) else { return Ok(None) };
     let pose = Pose::new(robot, state, &impact);

@@ -1,36 +1,34 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
-use super::complaint::note;
-use super::delivery::Delivery;
-use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, from_zero, pipeline_options};
+use super::diagnostic::note;
+use super::options::{
+    ContactOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, from_zero, pipeline_options,
+};
 use super::output::{apart, named, spare};
 use super::page::PageOptions;
 use super::progress::Progress;
 use super::robot::RobotOptions;
-use super::{Answered, Failure, Outcome, input};
+use super::sink::OutputSink;
+use super::{Answered, Completion, Failure, input};
 use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
 use heelstrike::draw::page::Gait;
 use heelstrike::error::Location;
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::gait::{self, At, Difference, Dropped, Thresholds, Touching};
-use heelstrike::state::Defaults;
-use heelstrike::state::NamedContact;
-use heelstrike::{Error, Reason, Robot, write};
-use heelstrike::{
-    read::table::{Header, Rates},
-    write::Columns,
-};
+use heelstrike::read::table::{Header, Rates};
+use heelstrike::state::{Defaults, NamedContact};
+use heelstrike::write::{self, Columns};
+use heelstrike::{Error, Reason, Robot};
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::thread::available_parallelism;
 
 /// Find every outcome of many states: one line of JSON or row of CSV each, answered in order
 ///
-/// A refused state is answered in its place by its `error`, and the rest goes on; blank lines are skipped. A summary goes to
-/// standard error.
+/// A refused state is answered by an `error` in its place, and the others go on; blank lines are skipped. A summary goes
+/// to standard error.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -43,9 +41,9 @@ pub struct Args {
     /// States, one JSON object per line or as CSV; "-" reads standard input
     #[arg(value_name = "KEYFRAMES")]
     states: PathBuf,
-    /// The form of the input [default: csv where its name ends in .csv, else ndjson]
+    /// The format of the input [default: csv if its name ends in .csv, else ndjson]
     #[arg(long, value_name = "FORMAT", value_enum)]
-    input_format: Option<Form>,
+    input_format: Option<RecordFormat>,
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
@@ -59,58 +57,56 @@ pub struct Args {
     /// Write to this file, which is replaced
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
-    /// The form of the results [default: csv where the output's name ends in .csv, else ndjson]
+    /// The format of the results [default: csv if the output's name ends in .csv, else ndjson]
     #[arg(long, alias = "format", value_name = "FORMAT", value_enum, help_heading = "Output")]
-    output_format: Option<Form>,
-    /// Write the summary to this file as JSON, too
+    output_format: Option<RecordFormat>,
+    /// Also write the summary to this file, as JSON
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     summary: Option<PathBuf>,
     #[command(flatten)]
     plot: PageOptions,
-    /// What refused states mean for the exit status: 1, or 0 with "ok"
-    #[arg(long, value_name = "HOW", value_enum, default_value_t = Refused::Fail, help_heading = "Output")]
-    refused: Refused,
-    /// How many threads compute; 0 takes one per core
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
-    threads: u16,
+    /// Whether refused states make the exit status 1
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = OnRefused::Fail, help_heading = "Output")]
+    refused: OnRefused,
+    #[command(flatten)]
+    threads: ThreadOptions,
 }
 
-/// How rows that follow each other in time are taken together.
+/// Options for rows that follow each other in time.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Recordings")]
 struct RecordingOptions {
-    /// Answer only the moments at which a foot that was above the ground reaches it
+    /// Answer only touchdowns: the moments at which a foot reaches the ground from above
     ///
-    /// A foot does so where it comes down far enough (--drop), faster than 0.05 m/s, and ends low enough (--ground-height); it
-    /// touches when it is 2 mm above the level on which it ends. Of robots smaller than 0.25 m all of these are in proportion;
-    /// the size is the greatest distance from the root's origin to a foot or centre of gravity with all joints at zero. The
-    /// base is then shifted so that the foot is at z = 0.
+    /// A foot touches down if it descends far enough (--drop), faster than 0.05 m/s, and stops low enough (--ground-height).
+    /// The moment of contact is when it is 2 mm above the level at which it stops. For robots smaller than 0.25 m these
+    /// thresholds shrink in proportion; the size is the greatest distance from the root's origin to a foot or center of
+    /// gravity with all joints at zero. The base is then shifted so that the foot is at z = 0.
     #[arg(long)]
     touchdowns: bool,
-    /// Which state of a touchdown is taken
+    /// Which state of a touchdown is analyzed
     #[arg(long, value_enum, default_value = "crossing", requires = "touchdowns")]
     at: AtRow,
-    /// Which feet take part beside the one that strikes: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
+    /// Which other feet touch the ground at a touchdown: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
     ///
-    /// With slow of every other body the lowest point, if it is slower than SPEED (m/s) and its height differs from the
-    /// striking point's by no more than HEIGHT (m): feet that stand. With near every point at such a height, however it
-    /// moves.
+    /// With slow, the lowest point of every other body, if it is slower than SPEED (m/s) and its height differs from the
+    /// striking point's by at most HEIGHT (m): standing feet. With near, every point at such a height, at any speed.
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     touching: Touching,
-    /// How far a foot must have come down, in metres [default: 0.012, less for robots below 0.25 m]
+    /// How far a foot must have descended, in metres [default: 0.012, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
     drop: Option<f64>,
-    /// How far above z = 0 a foot may come to rest, in metres; recorded feet float [default: 0.02, less for robots below 0.25 m]
+    /// How far above z = 0 a foot may stop, in metres [default: 0.02, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
     ground_height: Option<f64>,
-    /// Compute velocities from positions and the column time
+    /// Compute velocities from the positions and the column "time"
     #[arg(long, value_enum, value_name = "HOW")]
     velocity: Option<Velocity>,
 }
 
-/// The form of an input or output.
+/// The format of an input or output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Form {
+enum RecordFormat {
     /// One JSON object per line
     #[value(alias = "json", alias = "jsonl")]
     Ndjson,
@@ -119,7 +115,7 @@ enum Form {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Refused {
+enum OnRefused {
     /// The exit status is 1
     Fail,
     /// The exit status is 0
@@ -128,9 +124,9 @@ enum Refused {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum AtRow {
-    /// Positions and velocities at the moment of contact, carried there from the rows before the impact
+    /// The state at the moment of contact, extrapolated from the rows before the impact
     Crossing,
-    /// The last row before it, shifted in z
+    /// The last row before that moment, shifted in z
     Row,
 }
 
@@ -142,7 +138,7 @@ enum Velocity {
     Backward,
 }
 
-impl Form {
+impl RecordFormat {
     fn of(path: &Path) -> Self {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) { Self::Csv } else { Self::Ndjson }
     }
@@ -171,7 +167,7 @@ impl RecordingOptions {
     }
 }
 
-pub(super) fn run(args: &Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Completion {
     args.plot.check()?;
     let inputs = [Some(&args.robot.robot), Some(&args.states), args.loops.loops.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
@@ -193,16 +189,17 @@ pub(super) fn run(args: &Args) -> Outcome {
     let name = input::name(&args.states);
     let progress = Progress::over(&args.states, args.output.is_some());
     let states = progress.watch(input::stream(&args.states)?);
-    let mut chunks = match args.input_format.unwrap_or_else(|| Form::of(&args.states)) {
-        Form::Ndjson => Chunks::of_lines(states),
-        Form::Csv => Chunks::of_table(states),
+    let mut chunks = match args.input_format.unwrap_or_else(|| RecordFormat::of(&args.states)) {
+        RecordFormat::Ndjson => Chunks::of_lines(states),
+        RecordFormat::Csv => Chunks::of_table(states),
     };
     let foreign = chunks.foreign().map_err(|error| input::cannot_read(&args.states, &error))?;
     foreign.map_or(Ok(()), |error| Err(error.in_file(&name)))?;
     let header = args.header(&robot, &mut chunks)?;
-    let output_form = args.output_format.unwrap_or_else(|| args.output.as_deref().map_or(Form::Ndjson, Form::of));
+    let output_format =
+        args.output_format.unwrap_or_else(|| args.output.as_deref().map_or(RecordFormat::Ndjson, RecordFormat::of));
     let detail = args.detail.detail();
-    if output_form == Form::Csv && (detail.explain || detail.matrices || detail.brief) {
+    if output_format == RecordFormat::Csv && (detail.explain || detail.matrices || detail.brief) {
         let reason = "a table has a row per outcome and no room for --explain, --matrices or --brief".to_owned();
         let hint = "write JSON: --output-format ndjson, or -o with that ending";
         return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
@@ -216,7 +213,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     }
     let thresholds = args.recording.thresholds(&robot, &feet);
     let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns.is_some());
-    let columns = (output_form == Form::Csv).then(columns);
+    let columns = (output_format == RecordFormat::Csv).then(columns);
     let question = Question {
         robot: &robot,
         options: pipeline_options(&args.contacts, feet, args.detail, &args.robot.reductions),
@@ -227,37 +224,37 @@ pub(super) fn run(args: &Args) -> Outcome {
         touchdowns,
         keyframes: args.plot.is_asked(),
     };
-    // Created before the work, so that it is not in vain.
+    // Created before the work, which would otherwise be lost.
     let summary = args.summary.as_deref().map(|path| File::create(path).map_err(|error| named(path, error)));
     let summary = summary.transpose()?;
 
-    let mut delivery = Delivery::new(args.open()?, &name, &progress);
+    let mut sink = OutputSink::new(args.open()?, &name, &progress);
     if let Some(columns) = &columns {
         let mut line = Vec::new();
         columns.append_header(&mut line);
-        delivery.write(&line)?;
+        sink.write(&line)?;
     }
     let dropped = Mutex::new(Dropped::default());
-    args.answer(&question, chunks, thresholds, &dropped, &mut delivery)?;
-    let told = std::mem::take(&mut delivery.summary);
-    let gait = std::mem::take(&mut delivery.gait);
-    drop(delivery);
+    args.answer(&question, chunks, thresholds, &dropped, &mut sink)?;
+    let summary_of_all = std::mem::take(&mut sink.summary);
+    let gait = std::mem::take(&mut sink.gait);
+    drop(sink);
     drop(progress);
-    header.as_ref().inspect(|header| tell_of_columns(header, &dropped));
-    args.tell(&told, summary, thresholds)?;
+    header.as_ref().inspect(|header| note_columns(header, &dropped));
+    args.report(&summary_of_all, summary, thresholds)?;
     args.draw(&gait, &robot)?;
-    Ok(if told.refused == 0 || args.refused == Refused::Ok { Answered::All } else { Answered::NotAll })
+    Ok(if summary_of_all.refused == 0 || args.refused == OnRefused::Ok { Answered::All } else { Answered::NotAll })
 }
 
 type Input = Chunks<Box<dyn Read + Send>>;
 
 impl Args {
-    /// The columns of a table; none of lines and of an empty table.
+    /// The columns of a table; `None` for lines of JSON and for an empty table.
     fn header(&self, robot: &Robot, chunks: &mut Input) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.touchdowns || self.recording.velocity.is_some();
         if !chunks.is_table() {
             if in_order {
-                let reason = "touchdowns and velocities over time are sought in tables alone".to_owned();
+                let reason = "touchdowns and velocities over time need a table".to_owned();
                 let hint = "give CSV with a column time, or say --input-format csv";
                 return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
             }
@@ -277,7 +274,7 @@ impl Args {
         })?;
         if in_order && !header.has_time() {
             let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(line, 1);
-            return Err(missing.in_file(name).hint("touchdowns are sought over the time").into());
+            return Err(missing.in_file(name).hint("touchdowns need the time of each row").into());
         }
         Ok(Some(header))
     }
@@ -296,12 +293,9 @@ impl Args {
         chunks: Input,
         thresholds: Thresholds,
         dropped: &Mutex<Dropped>,
-        delivery: &mut Delivery<W>,
+        sink: &mut OutputSink<W>,
     ) -> Result<(), Failure> {
-        let threads = match self.threads {
-            0 => available_parallelism().map_or(1, usize::from),
-            threads => usize::from(threads),
-        };
+        let threads = self.threads.count();
         let form = || Batch::new(question);
         let ended = match (question.header, self.recording.difference(), question.touchdowns) {
             (Some(header), difference, touchdowns) if difference.is_some() || touchdowns.is_some() => {
@@ -323,9 +317,9 @@ impl Args {
                     }
                     None => Box::new(samples.map(Recorded::from)),
                 };
-                batch::run(Recording::new(states), threads, form, delivery)
+                batch::run(Recording::new(states), threads, form, sink)
             }
-            _ => batch::run(chunks, threads, form, delivery),
+            _ => batch::run(chunks, threads, form, sink),
         };
         ended.map_err(|broken| match broken {
             Broken::Input(error) => Failure::Refused(input::cannot_read(&self.states, &error)),
@@ -333,7 +327,7 @@ impl Args {
         })
     }
 
-    /// Draws the margins or writes the page, if that is asked for.
+    /// Draws the margins or writes the page, if requested.
     fn draw(&self, gait: &Gait, robot: &Robot) -> Result<(), Failure> {
         if !self.plot.is_asked() {
             return Ok(());
@@ -342,15 +336,15 @@ impl Args {
         self.plot.draw(&gait.picture(&robot.name), "the input holds no states", page)
     }
 
-    /// Writes the summary: for people where there is more than one state or it is asked for, and to its file.
-    fn tell(&self, summary: &Summary, file: Option<File>, thresholds: Thresholds) -> io::Result<()> {
+    /// Writes the summary to standard error, for more than one state or if a file is requested, and to that file.
+    fn report(&self, summary: &Summary, file: Option<File>, thresholds: Thresholds) -> io::Result<()> {
         if self.recording.touchdowns && summary.states == 0 {
             let Thresholds { drop, slow, ground, .. } = thresholds;
-            // Where nobody reads standard error there is nobody to tell that it cannot be written.
+            // A failure to write to standard error cannot be reported anywhere.
             let _ = writeln!(
                 io::stderr(),
-                "no touchdown found: one counts where a foot comes down {drop:.4} m or more, faster than {slow:.4} m/s, to at \
-                 most {ground:.4} m above the ground (see --drop, --ground-height)",
+                "no touchdown found: a foot must descend {drop:.4} m or more, faster than {slow:.4} m/s, to at most \
+                 {ground:.4} m above the ground (see --drop, --ground-height)",
             );
         } else if summary.states > 1 || file.is_some() {
             let _ = write!(io::stderr(), "{summary}");
@@ -364,13 +358,13 @@ impl Args {
     }
 }
 
-/// What of the table did not enter the analysis.
-fn tell_of_columns(header: &Header, dropped: &Mutex<Dropped>) {
+/// Notes which columns did not enter the analysis.
+fn note_columns(header: &Header, dropped: &Mutex<Dropped>) {
     let ignored: Vec<&str> = header.ignored().collect();
     if !ignored.is_empty() {
         let (count, names) = (ignored.len(), ignored.join(", "));
         note(&format!(
-            "{count} column{} not read, whose joints have no coordinate of their own (inspect tells why): {names}",
+            "{count} column{} not read, because their joints have no coordinate (see `heelstrike inspect`): {names}",
             if count == 1 { "" } else { "s" },
         ));
     }
@@ -379,7 +373,7 @@ fn tell_of_columns(header: &Header, dropped: &Mutex<Dropped>) {
     }
 }
 
-/// Standard output without the line buffer of std, which would take more than is written to a full disk.
+/// Standard output without the line buffer of std, which would hide how much reached a full disk.
 #[cfg(unix)]
 fn standard_output() -> io::Result<Box<dyn Write>> {
     use std::os::fd::AsFd;

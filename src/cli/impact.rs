@@ -1,16 +1,15 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
-use super::complaint::note;
+use super::diagnostic::note;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Format, OutputOptions};
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::stream::{Answers, SUMMED_UP, answer_all};
-use super::{Failure, Outcome, input};
+use super::{Completion, Failure, input};
 use heelstrike::draw::{Picture, robot as drawing};
 use heelstrike::pipeline::{Impact, Pipeline};
-use heelstrike::state::NamedContact;
-use heelstrike::state::{Defaults, State};
+use heelstrike::state::{Defaults, NamedContact, State};
 use heelstrike::write::{Detail, Palette, Report, Subject, text};
 use heelstrike::{Error, Reason, Result, Robot};
 use std::path::PathBuf;
@@ -43,7 +42,7 @@ pub struct Args {
     output: OutputOptions,
 }
 
-pub(super) fn run(args: &Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Completion {
     args.plot.check()?;
     let robot = args.robot.load()?;
     let feet = args.robot.feet(&robot)?;
@@ -51,7 +50,7 @@ pub(super) fn run(args: &Args) -> Outcome {
     let format = args.output.chosen().unwrap_or(by_input);
     let mut options = pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions);
     if format == Format::Text && !args.detail.brief {
-        // What is wrong with the other combinations is summed up for people also where they are not listed.
+        // The text sums up why the other combinations fail even if it does not list them.
         options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
     }
     let mut impacts = Impacts {
@@ -81,9 +80,9 @@ struct Impacts<'r> {
     pipeline: Pipeline<'r>,
     defaults: Defaults,
     detail: Detail,
-    /// Beside the robot's own.
+    /// Added to the robot's own.
     feet: Vec<NamedContact>,
-    /// Whether a picture is asked for, and the picture.
+    /// Whether a picture is requested, and the picture.
     plot: bool,
     picture: Option<Picture>,
 }

@@ -1,46 +1,61 @@
 //! Files and standard input.
 
+use super::Failure;
+use heelstrike::error::excerpt::Excerpt;
+use heelstrike::read::documents::utf8;
 use heelstrike::{Error, Reason, Result};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, Read};
 use std::path::Path;
 
-/// What standard input is called where a file is expected.
+/// The path that means standard input.
 const STANDARD_INPUT: &str = "-";
 
-/// What a file is called in messages.
+/// A file or standard input that was read whole.
+pub(super) struct InputFile {
+    /// Its name in messages.
+    pub name: String,
+    /// Its contents.
+    pub bytes: Vec<u8>,
+}
+
+impl InputFile {
+    /// Reads `path`, of at most `limit` bytes.
+    ///
+    /// # Errors
+    /// [`Reason::Io`], naming the file; [`Reason::Unsupported`] for a larger one, as an endless one is.
+    pub fn read(path: &Path, limit: u64) -> Result<Self> {
+        let name = name(path);
+        let mut bytes = Vec::new();
+        stream(path)?.take(limit + 1).read_to_end(&mut bytes).map_err(|error| cannot_read(path, &error))?;
+        if bytes.len() as u64 > limit {
+            let reason = format!("more than {} MiB are not accepted here", limit >> 20);
+            return Err(Error::new(Reason::Unsupported(reason)).in_file(name));
+        }
+        Ok(Self { name, bytes })
+    }
+
+    /// The contents as text; an error does not name the file yet.
+    ///
+    /// # Errors
+    /// Those of [`utf8`].
+    pub fn text(&self) -> Result<&str> {
+        utf8(&self.bytes)
+    }
+
+    /// `error` in this file, with the line in question.
+    pub fn refuse(&self, error: Error) -> Failure {
+        let excerpt = error.location().and_then(|place| Excerpt::around(&self.bytes, 1, place));
+        Failure::RefusedAt(error.in_file(&self.name), excerpt)
+    }
+}
+
+/// The name of a file in messages.
 pub(super) fn name(path: &Path) -> String {
     if is_standard_input(path) { "<stdin>".to_owned() } else { path.display().to_string() }
 }
 
-/// The bytes of a file, or of standard input for `-`; at most `most`.
-///
-/// # Errors
-/// [`Reason::Io`], naming the file; [`Reason::Unsupported`] for a larger one, as an endless one is.
-pub(super) fn bytes_up_to(path: &Path, most: u64) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let reader = open(path)?;
-    reader.take(most + 1).read_to_end(&mut bytes).map_err(|error| cannot_read(path, &error))?;
-    if bytes.len() as u64 > most {
-        let reason = format!("more than {} MiB are not accepted here", most >> 20);
-        return Err(Error::new(Reason::Unsupported(reason)).in_file(name(path)));
-    }
-    Ok(bytes)
-}
-
-/// A file line by line, or standard input for `-`.
-///
-/// # Errors
-/// [`Reason::Io`], naming the file.
-pub(super) fn open(path: &Path) -> Result<Box<dyn BufRead>> {
-    if is_standard_input(path) {
-        return Ok(Box::new(io::stdin().lock()));
-    }
-    let file = File::open(path).map_err(|error| cannot_read(path, &error))?;
-    Ok(Box::new(BufReader::with_capacity(1 << 16, file)))
-}
-
-/// The bytes of a file as they come, or of standard input for `-`.
+/// Opens a file, or standard input for `-`.
 ///
 /// # Errors
 /// [`Reason::Io`], naming the file.
@@ -60,7 +75,7 @@ fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == STANDARD_INPUT
 }
 
-/// Whether a file's ending says that it holds one JSON object per line.
+/// Whether the file's name says that it holds one JSON object per line.
 pub(super) fn is_ndjson(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "ndjson" || ending == "jsonl")
 }

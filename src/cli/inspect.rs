@@ -1,14 +1,14 @@
-//! `heelstrike inspect`: what was read of a robot.
+//! `heelstrike inspect`: the model of a robot.
 
-use super::output::{Format, OutputOptions};
+use super::Completion;
+use super::diagnostic::with_flags;
+use super::output::OutputOptions;
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
-use super::{Answered, Outcome};
 use heelstrike::draw::robot as drawing;
-use heelstrike::write::{self, Inspection};
-use std::io::Write;
+use heelstrike::write::Inspection;
 
-/// Tell what was read: plane, links, joints, masses, feet, what was left out
+/// Show the model: plane, links, joints, masses, feet, and what was left out
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -23,10 +23,11 @@ pub struct Args {
     output: OutputOptions,
 }
 
-pub(super) fn run(args: &Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Completion {
     args.plot.check()?;
-    // Its cautions are part of what is told.
-    let robot = args.robot.read()?;
+    // Its cautions are part of the output.
+    let mut robot = args.robot.read()?;
+    robot.reading.cautions.iter_mut().for_each(|caution| *caution = with_flags(caution));
     let feet = args.robot.feet(&robot)?;
     let inspection = Inspection::new(&robot, &feet);
     args.output.spare(&[&args.robot.robot])?;
@@ -34,15 +35,5 @@ pub(super) fn run(args: &Args) -> Outcome {
     if args.plot.is_asked() {
         args.plot.draw(&drawing::picture::robot(&robot, &feet), "the robot has no place in the plane")?;
     }
-    let mut output = args.output.open()?;
-    match args.output.chosen().unwrap_or(Format::Text) {
-        Format::Text => output.write_all(inspection.text(output.palette()).as_bytes())?,
-        Format::Json => {
-            let mut line = Vec::new();
-            write::append_line(&mut line, &inspection);
-            output.write_all(&line)?;
-        }
-    }
-    output.flush()?;
-    Ok(Answered::All)
+    args.output.write(&inspection, |palette| inspection.text(palette))
 }

@@ -10,11 +10,11 @@
 //!     path                   from the folder of the URDF file
 //! ```
 //!
-//! A folder is a package if it is named so, or if its package.xml does. `model://` (Gazebo) means the same as `package://`,
-//! backslashes the same as slashes, and `%20` a space where no file is named with the percent sign itself. Only regular
-//! files are opened. A path that leaves its package is refused.
+//! A folder is a package if its own name or its package.xml says so. `model://` (Gazebo) means the same as `package://`,
+//! backslashes the same as slashes, and `%20` a space unless a file has the percent sign in its name. Only regular files
+//! are opened. A path that leaves its package is refused.
 
-use super::input;
+use super::input::InputFile;
 use heelstrike::description::Fetched;
 use heelstrike::{Error, Reason, Result};
 use percent_encoding::percent_decode_str;
@@ -57,8 +57,8 @@ impl Meshes {
         }
         let found = [&as_written, &decoded].into_iter().find_map(|name| self.find(name));
         let Some(path) = found else { return Ok(Fetched::Nothing { why: self.missing(&decoded) }) };
-        Ok(match input::bytes_up_to(&path, LARGEST) {
-            Ok(bytes) => Fetched::Bytes(bytes),
+        Ok(match InputFile::read(&path, LARGEST) {
+            Ok(input) => Fetched::Bytes(input.bytes),
             Err(error) => Fetched::Nothing { why: error.reason().to_string() },
         })
     }
@@ -135,8 +135,8 @@ fn is_package(folder: &Path, name: &str) -> bool {
     if !manifest.is_file() {
         return false;
     }
-    let bytes = input::bytes_up_to(&manifest, LARGEST_MANIFEST).unwrap_or_default();
-    let text = String::from_utf8_lossy(&bytes);
+    let Ok(manifest) = InputFile::read(&manifest, LARGEST_MANIFEST) else { return false };
+    let text = String::from_utf8_lossy(&manifest.bytes);
     let own = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
     own.is_some_and(|(own, _)| own.trim() == name)
 }

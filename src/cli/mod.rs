@@ -1,36 +1,34 @@
-//! The commands, one file each; the only user of clap.
+//! The commands of the tool, one file each; the only user of clap.
 //!
-//! Standard output carries results alone, standard error what is wrong and how to mend it. Exit status: 0 all answered,
-//! 1 some input was refused, 2 wrong usage.
+//! Standard output carries results alone; standard error carries errors with hints, and notes. Exit status: 0 all
+//! inputs were answered, 1 some input was refused, 2 wrong usage.
 
-mod accuracy;
-mod batch;
-mod complaint;
-mod completions;
-mod delivery;
-mod impact;
+mod diagnostic;
+mod progress;
 mod input;
-mod inspect;
-mod man;
-mod meshes;
-mod options;
 mod output;
 mod picture;
 mod page;
-mod progress;
+mod options;
+mod meshes;
 mod robot;
-mod schema;
-mod solve;
 mod stream;
+mod sink;
+mod inspect;
+mod impact;
+mod batch;
+mod solve;
 mod sweep;
+mod accuracy;
+mod reference;
 
 use clap::{Parser, Subcommand};
-use complaint::{complain, complain_at};
+use diagnostic::{report, report_with};
 use heelstrike::error::excerpt::Excerpt;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The crate's version, and the commit where it is known.
+/// The crate's version, and the commit if it is known.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("HEELSTRIKE_COMMIT"));
 
 /// Every rigid frictional impact outcome of a planar legged robot: which contact sticks, slides or lifts off, and whether
@@ -51,19 +49,19 @@ enum Command {
     Solve(solve::Args),
     Sweep(sweep::Args),
     Accuracy(accuracy::Args),
-    Schema(schema::Args),
-    Completions(completions::Args),
+    Schema(reference::SchemaArgs),
+    Completions(reference::CompletionsArgs),
     #[command(hide = true)]
-    Man(man::Args),
+    Man(reference::ManArgs),
 }
 
 /// Why a command ended early.
 enum Failure {
-    /// Input that nothing can be done without, such as the robot's file.
+    /// An input that the command cannot do without was refused, such as the robot's file.
     Refused(heelstrike::Error),
-    /// The same, and the line that the place is in.
+    /// The same, with the line in question.
     RefusedAt(heelstrike::Error, Option<Excerpt>),
-    /// An option's value that does not fit the robot.
+    /// An option's value is wrong or does not fit the robot.
     Usage(heelstrike::Error),
     /// The output could not be written.
     Output(io::Error),
@@ -82,56 +80,56 @@ impl From<io::Error> for Failure {
 }
 
 /// Whether every input was answered, or why the command ended early.
-type Outcome = Result<Answered, Failure>;
+type Completion = Result<Answered, Failure>;
 
-/// How a command ended that went through all of its input.
+/// Whether a command that read all of its input answered all of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Answered {
     All,
     NotAll,
 }
 
-/// Runs the command and tells the exit status.
+/// Runs the command and returns the exit status.
 pub fn run(cli: Cli) -> ExitCode {
-    let outcome = match cli.command {
+    let completion = match cli.command {
         Command::Inspect(args) => inspect::run(&args),
         Command::Impact(args) => impact::run(&args),
         Command::Batch(args) => batch::run(&args),
         Command::Solve(args) => solve::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Accuracy(args) => accuracy::run(&args),
-        Command::Schema(args) => schema::run(&args),
-        Command::Completions(args) => completions::run(&args),
-        Command::Man(args) => man::run(&args),
+        Command::Schema(args) => reference::schema(&args),
+        Command::Completions(args) => reference::completions(&args),
+        Command::Man(args) => reference::man(&args),
     };
-    match outcome {
+    match completion {
         Ok(Answered::All) => ExitCode::SUCCESS,
         Ok(Answered::NotAll) => ExitCode::from(1),
         Err(failure) => ExitCode::from(status(failure)),
     }
 }
 
-/// Writes what clap has to say, such as the version or what is wrong with an option, and gives the exit status.
-pub fn usage(told: &clap::Error) -> ExitCode {
-    let written = told.print().and_then(|()| io::stdout().flush());
+/// Writes clap's message, such as the version or an error about an option, and returns the exit status.
+pub fn usage(message: &clap::Error) -> ExitCode {
+    let written = message.print().and_then(|()| io::stdout().flush());
     match written {
-        Err(error) if !told.use_stderr() => ExitCode::from(status(Failure::Output(error))),
-        _ => ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(2)),
+        Err(error) if !message.use_stderr() => ExitCode::from(status(Failure::Output(error))),
+        _ => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(2)),
     }
 }
 
-/// Tells why a command ended early; gives the exit status.
+/// Reports why a command ended early, and returns the exit status.
 fn status(failure: Failure) -> u8 {
     match failure {
-        // Whoever reads has seen enough, as with `| head`.
+        // The reader has seen enough, as with `| head`.
         Failure::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => return 0,
         Failure::Output(error) => {
-            complain(&heelstrike::Reason::Io(format!("the output cannot be written: {error}")).into());
+            report(&heelstrike::Reason::Io(format!("the output cannot be written: {error}")).into());
         }
-        Failure::Refused(error) => complain(&error),
-        Failure::RefusedAt(error, excerpt) => complain_at(&error, excerpt.as_ref()),
+        Failure::Refused(error) => report(&error),
+        Failure::RefusedAt(error, excerpt) => report_with(&error, excerpt.as_ref()),
         Failure::Usage(error) => {
-            complain(&error);
+            report(&error);
             return 2;
         }
     }

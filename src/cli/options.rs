@@ -1,20 +1,19 @@
 //! Options of the analysis.
 
-use super::{Failure, input};
+use super::Failure;
+use super::input::InputFile;
 use clap::ValueEnum;
 use heelstrike::Robot;
-use heelstrike::error::excerpt::Excerpt;
 use heelstrike::law::Friction;
 use heelstrike::pipeline;
-use heelstrike::read::documents::utf8;
 use heelstrike::read::loops_from_json;
 use heelstrike::reductions::Reductions;
-use heelstrike::state::Defaults;
-use heelstrike::state::{NamedContact, NamedLoop};
+use heelstrike::state::{Defaults, NamedContact, NamedLoop};
 use heelstrike::write::Detail;
 use std::path::PathBuf;
+use std::thread::available_parallelism;
 
-/// What a state may leave open.
+/// Values for what a state may omit.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Scene")]
 pub(super) struct SceneOptions {
@@ -29,11 +28,11 @@ impl SceneOptions {
     }
 }
 
-/// Points that are tied together.
+/// Closed loops of the robot.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Scene")]
 pub(super) struct LoopOptions {
-    /// Loops of the robot, which its URDF has to cut open: a JSON list like the states' "loops", for states without their own
+    /// Loops of the robot, which its URDF cuts open: a JSON list like "loops" in a state, for states without their own
     #[arg(long, value_name = "LOOPS.json")]
     pub loops: Option<PathBuf>,
 }
@@ -45,13 +44,8 @@ impl LoopOptions {
     /// Reads the loops of `robot`.
     pub fn load(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
         let Some(path) = &self.loops else { return Ok(Vec::new()) };
-        let name = input::name(path);
-        let bytes = input::bytes_up_to(path, Self::LARGEST)?;
-        let loops = utf8(&bytes).and_then(|text| loops_from_json(text, robot));
-        loops.map_err(|error| {
-            let excerpt = error.location().and_then(|place| Excerpt::around(&bytes, 1, place));
-            Failure::RefusedAt(error.in_file(name), excerpt)
-        })
+        let input = InputFile::read(path, Self::LARGEST)?;
+        input.text().and_then(|text| loops_from_json(text, robot)).map_err(|error| input.refuse(error))
     }
 }
 
@@ -59,28 +53,28 @@ impl LoopOptions {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Scene")]
 pub(super) struct ContactOptions {
-    /// How far from the ground a foot may be and still touch, in metres [default: 1e-6 of the robot's size]
+    /// How far from the ground a foot may be and still touch it, in metres [default: 1e-6 of the robot's size]
     #[arg(long, value_name = "DISTANCE", value_parser = from_zero, allow_hyphen_values = true)]
     pub contact_tolerance: Option<f64>,
-    /// Take contacts that are slower than this before the impact, in m/s, as exactly at rest
+    /// Treat contacts slower than this before the impact, in m/s, as exactly at rest
     #[arg(long, value_name = "SPEED", value_parser = from_zero, allow_hyphen_values = true, default_value_t = 0.0)]
     pub resting_speed: f64,
 }
 
-/// How much is told.
+/// How much of each result is shown.
 #[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct DetailOptions {
-    /// Tell why every other combination of modes fails; beta, gamma and region of each contact
+    /// Show why every other combination of modes fails, and beta, gamma and region of each contact
     #[arg(long)]
     pub explain: bool,
-    /// Add the matrices: mass matrix, contact Jacobian, Delassus matrix
+    /// Show the mass matrix, the contact Jacobian and the Delassus matrix
     #[arg(long)]
     pub matrices: bool,
-    /// Tell only the verdict and each outcome's modes, index and margin
+    /// Show only the verdict and each outcome's modes, index and margin
     #[arg(long, conflicts_with_all = ["explain", "matrices"])]
     pub brief: bool,
-    /// Do without error bounds: a little faster, and nothing is proven
+    /// Compute no error bounds: a little faster, but nothing is proven
     #[arg(long)]
     pub no_proof: bool,
 }
@@ -91,10 +85,10 @@ impl DetailOptions {
     }
 }
 
-/// What is left out where a scene does not need it.
+/// Which computations are skipped if the scene does not need them.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct ReductionOptions {
-    /// Compute what the scene does not need, too: everything, or these parts of it; the outcomes are the same
+    /// Skip no computation that the scene does not need, or only these not; the outcomes are the same
     #[arg(long, value_name = "WHICH", value_enum, num_args = 0.., require_equals = true, value_delimiter = ',')]
     no_reduction: Option<Vec<Part>>,
 }
@@ -102,7 +96,7 @@ pub(super) struct ReductionOptions {
 /// A reduction.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Part {
-    /// Links on fixed and held joints are welded into their parents
+    /// Links on fixed and held joints are merged into their parents
     Weld,
     /// Massless links without shapes on such joints vanish
     Massless,
@@ -135,6 +129,23 @@ impl ReductionOptions {
             } = false;
         }
         reductions
+    }
+}
+
+/// How many threads compute.
+#[derive(Debug, clap::Args)]
+pub(super) struct ThreadOptions {
+    /// How many threads compute; 0 means one per core
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
+    threads: u16,
+}
+
+impl ThreadOptions {
+    pub fn count(&self) -> usize {
+        match self.threads {
+            0 => available_parallelism().map_or(1, usize::from),
+            threads => threads.into(),
+        }
     }
 }
 

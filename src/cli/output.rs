@@ -1,13 +1,14 @@
 //! Standard output or a file, as text or JSON.
 
-use super::Failure;
-use heelstrike::write::Palette;
+use super::{Answered, Completion, Failure};
+use heelstrike::write::{self, Palette};
 use heelstrike::{Error, Reason};
+use serde::Serialize;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Where results go and in what form.
+/// The place and form of results.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub(super) struct OutputOptions {
@@ -29,7 +30,7 @@ pub(super) enum Format {
 }
 
 impl OutputOptions {
-    /// The form that is asked for by option or by the output's ending, if it is.
+    /// The form chosen by option or by the output's ending; `None` if neither says.
     pub fn chosen(&self) -> Option<Format> {
         let by_ending = |path: &PathBuf| match path.extension()?.to_str()? {
             "json" | "ndjson" | "jsonl" => Some(Format::Json),
@@ -47,6 +48,25 @@ impl OutputOptions {
         Output::open(self.output.as_deref())
     }
 
+    /// Writes the one result of a command, as text unless JSON is chosen.
+    ///
+    /// # Errors
+    /// [`Failure::Output`].
+    pub fn write(&self, result: &impl Serialize, text: impl FnOnce(&Palette) -> String) -> Completion {
+        let output = self.open()?;
+        match self.chosen().unwrap_or(Format::Text) {
+            Format::Text => {
+                let text = text(output.palette());
+                output.finish(text.as_bytes())
+            }
+            Format::Json => {
+                let mut line = Vec::new();
+                write::append_line(&mut line, result);
+                output.finish(&line)
+            }
+        }
+    }
+
     /// Refuses to write over what is being read.
     ///
     /// # Errors
@@ -56,7 +76,8 @@ impl OutputOptions {
     }
 }
 
-/// Refuses an `output` that is one of the `inputs`, under whatever name; `-` and none are standard input and output.
+/// Refuses an `output` that is one of the `inputs`, even under another name; `-` and `None` are standard input and
+/// output.
 ///
 /// # Errors
 /// [`Reason::Io`], naming the file.
@@ -71,7 +92,7 @@ pub(super) fn spare(output: Option<&Path>, inputs: &[&Path]) -> heelstrike::Resu
     Err(Error::new(reason).in_file(name).hint("write to another file"))
 }
 
-/// Refuses two outputs that are one file, under whatever names; `option` is that of the second, which none is no file.
+/// Refuses two outputs that are one file, even under different names; `option` names the second, which may be absent.
 ///
 /// # Errors
 /// [`Failure::Usage`], naming the option.
@@ -89,8 +110,7 @@ pub(super) fn apart(
     Err(Failure::Usage(Error::new(reason).at(option).hint("name two files")))
 }
 
-/// Tries whether a file can be written, before the work whose results it is for, and leaves it as it is; what is neither
-/// a file nor a directory is not tried.
+/// Checks before the work that a file can be written, and leaves it unchanged; pipes and devices are not tried.
 ///
 /// # Errors
 /// Whatever keeps it from being written.
@@ -108,7 +128,7 @@ pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
     }
 }
 
-/// Device and number of the file of that name, of `standard` for `-`; none of devices and pipes, which nothing replaces.
+/// Device and inode of the file, of `standard` for `-`; `None` for devices and pipes, which are never replaced.
 #[cfg(unix)]
 fn file_of(path: &Path, standard: impl std::os::fd::AsFd) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
@@ -125,7 +145,7 @@ fn file_of<S>(path: &Path, _standard: S) -> Option<PathBuf> {
     path.canonicalize().ok().filter(|path| path.is_file())
 }
 
-/// A buffered output; standard output takes colours if it is a terminal that wants them.
+/// A buffered output; standard output is colored if it is a terminal that wants colors.
 pub(super) struct Output {
     writer: BufWriter<Box<dyn Write>>,
     palette: Palette,
@@ -143,12 +163,22 @@ impl Output {
                 let stdout = io::stdout();
                 let palette = match anstream::AutoStream::choice(&stdout) {
                     anstream::ColorChoice::Never => Palette::default(),
-                    _ => COLOURS,
+                    _ => COLORS,
                 };
                 (Box::new(stdout.lock()), palette)
             }
         };
         Ok(Self { writer: BufWriter::with_capacity(1 << 16, writer), palette })
+    }
+
+    /// Writes `bytes` and closes the output.
+    ///
+    /// # Errors
+    /// [`Failure::Output`].
+    pub fn finish(mut self, bytes: &[u8]) -> Completion {
+        self.write_all(bytes)?;
+        self.flush()?;
+        Ok(Answered::All)
     }
 
     /// How text is marked here.
@@ -167,7 +197,7 @@ impl Write for Output {
 }
 
 /// Bold and faint; a test keeps the sequences equal to anstyle's.
-const COLOURS: Palette = Palette { strong: "\x1b[1m", faint: "\x1b[2m", plain: "\x1b[0m" };
+const COLORS: Palette = Palette { strong: "\x1b[1m", faint: "\x1b[2m", plain: "\x1b[0m" };
 
 /// The error, with the file's name.
 pub(super) fn named(path: &Path, error: io::Error) -> io::Error {
@@ -180,10 +210,10 @@ mod tests {
     use anstyle::Style;
 
     #[test]
-    fn colours_are_those_of_anstyle() {
+    fn colors_are_those_of_anstyle() {
         let strong = Style::new().bold();
-        assert_eq!(COLOURS.strong, strong.render().to_string());
-        assert_eq!(COLOURS.faint, Style::new().dimmed().render().to_string());
-        assert_eq!(COLOURS.plain, strong.render_reset().to_string());
+        assert_eq!(COLORS.strong, strong.render().to_string());
+        assert_eq!(COLORS.faint, Style::new().dimmed().render().to_string());
+        assert_eq!(COLORS.plain, strong.render_reset().to_string());
     }
 }

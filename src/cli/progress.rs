@@ -1,4 +1,4 @@
-//! How far a long input has been read, shown where a person waits for it.
+//! A progress bar for long inputs and sweeps, shown on a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Read};
@@ -8,35 +8,27 @@ use std::path::Path;
 pub(super) struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// A bar for the bytes of `input`, where that is a file, standard error a terminal, and the results, which go to standard
-    /// output unless `to_a_file`, do not appear there, too.
+    /// A bar for the bytes of `input`, if it is a file, standard error is a terminal, and the results go elsewhere: to
+    /// standard output unless `to_a_file`.
     pub fn over(input: &Path, to_a_file: bool) -> Self {
         let watched = io::stderr().is_terminal() && (to_a_file || !io::stdout().is_terminal());
         let file = if watched { std::fs::metadata(input).ok().filter(std::fs::Metadata::is_file) } else { None };
-        Self(file.map(|file| {
-            let bar = ProgressBar::with_draw_target(Some(file.len()), ProgressDrawTarget::stderr());
-            let parts = "{wide_bar} {percent}% of {total_bytes}, {eta} left";
-            bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))
-        }))
+        Self(file.map(|file| bar(file.len(), "{wide_bar} {percent}% of {total_bytes}, {eta} left")))
     }
 
-    /// A bar for so many pieces of work, where standard error is a terminal.
+    /// A bar for so many pieces of work, if standard error is a terminal.
     pub fn of(pieces: u64) -> Self {
-        Self(io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::with_draw_target(Some(pieces), ProgressDrawTarget::stderr());
-            let parts = "{wide_bar} {percent}%, {eta} left";
-            bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))
-        }))
+        Self(io::stderr().is_terminal().then(|| bar(pieces, "{wide_bar} {percent}%, {eta} left")))
     }
 
-    /// There are so many more pieces.
+    /// Adds so many pieces.
     pub fn expect(&self, pieces: u64) {
         if let Some(bar) = &self.0 {
             bar.inc_length(pieces);
         }
     }
 
-    /// One piece is done.
+    /// Counts one piece as done.
     pub fn step(&self) {
         if let Some(bar) = &self.0 {
             bar.inc(1);
@@ -59,12 +51,17 @@ impl Progress {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn clear(&self) {
         if let Some(bar) = &self.0 {
             bar.finish_and_clear();
         }
     }
+}
+
+fn bar(length: u64, parts: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
+    bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
 impl Drop for Progress {

@@ -1,13 +1,12 @@
 //! The robot and the options that shape it.
 
-use super::complaint::note;
+use super::Failure;
+use super::diagnostic::note;
+use super::input::InputFile;
 use super::meshes::Meshes;
 use super::options::ReductionOptions;
-use super::{Failure, input};
 use clap::ValueEnum;
 use heelstrike::description::Description;
-use heelstrike::error::excerpt::Excerpt;
-use heelstrike::read::documents::utf8;
 use heelstrike::robot::{self, Reduction};
 use heelstrike::state::NamedContact;
 use heelstrike::{Error, Reason, Robot};
@@ -26,10 +25,10 @@ pub(super) struct RobotOptions {
     /// The plane that the robot moves in, forward before up in its root link's axes
     #[arg(long, value_enum, default_value_t = Plane::Auto, help_heading = "Robot")]
     pub plane: Plane,
-    /// Weld a joint at this value (rad or m); axes are judged in this posture [repeatable]
+    /// Fix a joint at this value (rad or m); the plane is judged in this configuration [repeatable]
     #[arg(long, value_name = "JOINT=VALUE", allow_hyphen_values = true, help_heading = "Robot")]
     pub hold: Vec<Hold>,
-    /// Whether the root link moves freely or is bolted to the world [default: as the file's masses and joints say]
+    /// Whether the root link moves freely or is fixed to the world [default: as masses and joints suggest]
     #[arg(long, value_enum, help_heading = "Robot")]
     pub base: Option<Base>,
     /// A folder that holds packages, or is one, for meshes named by package:// [repeatable]
@@ -45,7 +44,7 @@ pub(super) struct RobotOptions {
 /// The plane that the robot moves in.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum Plane {
-    /// The one that all hinges turn in, else x-z
+    /// The one in which all revolute joints turn, else x-z
     Auto,
     /// x forward, z up
     Xz,
@@ -66,7 +65,7 @@ impl From<Plane> for Option<robot::Plane> {
     }
 }
 
-/// A joint that is welded at a value.
+/// A joint that is fixed at a value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hold {
     joint: String,
@@ -87,7 +86,7 @@ impl FromStr for Hold {
 /// How the root link is held.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum Base {
-    /// It is bolted to the world
+    /// It is fixed to the world
     Fixed,
     /// It moves freely
     Floating,
@@ -102,7 +101,7 @@ impl From<Base> for robot::Base {
     }
 }
 
-/// A foot that is given by `--contact`; it touches where its height says so, like a shape of the file.
+/// A foot given by `--contact`; its height decides whether it touches, as for a shape of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Foot {
     link: String,
@@ -138,7 +137,7 @@ fn finite(text: &str) -> Result<f64, String> {
 }
 
 impl RobotOptions {
-    /// The robot of this file, with nothing added.
+    /// The robot of this file, with all options at their defaults.
     pub fn of_file(robot: &Path) -> Self {
         Self {
             robot: robot.to_owned(),
@@ -151,7 +150,7 @@ impl RobotOptions {
         }
     }
 
-    /// Reads the robot, and tells what a user must know before trusting it.
+    /// Reads the robot and notes its cautions.
     pub fn load(&self) -> Result<Robot, Failure> {
         let robot = self.read()?;
         caution(&robot);
@@ -163,15 +162,11 @@ impl RobotOptions {
         self.described().map(|(_, _, robot)| robot)
     }
 
-    /// Reads the robot, and keeps what it was reduced from.
+    /// Reads the robot, with the description that it was reduced from.
     pub fn described(&self) -> Result<(Description, Reduction, Robot), Failure> {
-        let name = input::name(&self.robot);
-        let bytes = input::bytes_up_to(&self.robot, LARGEST)?;
-        let text = utf8(&bytes).map_err(|error| error.in_file(&name))?;
-        let refuse = |error: Error| {
-            let excerpt = error.location().and_then(|place| Excerpt::around(text.as_bytes(), 1, place));
-            Failure::RefusedAt(error.in_file(&name), excerpt)
-        };
+        let input = InputFile::read(&self.robot, LARGEST)?;
+        let text = input.text().map_err(|error| error.in_file(&input.name))?;
+        let refuse = |error: Error| input.refuse(error);
         let mut description = Description::from_urdf(text).map_err(refuse)?;
         let meshes = Meshes::of(&self.robot, &self.package_path);
         description.read_meshes(|name| meshes.fetch(name)).map_err(refuse)?;
@@ -185,7 +180,7 @@ impl RobotOptions {
         Ok((description, reduction, robot))
     }
 
-    /// The joints that are given by `--hold`.
+    /// The joints given by `--hold`.
     fn held(&self, description: &Description) -> Result<Vec<(usize, f64)>, Failure> {
         let held = |hold: &Hold| {
             let joint = description.joint(&hold.joint).ok_or_else(|| {
@@ -198,7 +193,7 @@ impl RobotOptions {
         self.hold.iter().map(held).collect()
     }
 
-    /// The feet that are given by `--contact`.
+    /// The feet given by `--contact`.
     pub fn feet(&self, robot: &Robot) -> Result<Vec<NamedContact>, Failure> {
         let foot = |foot: &Foot| {
             let link = robot.link(&foot.link).ok_or_else(|| {
@@ -212,7 +207,7 @@ impl RobotOptions {
     }
 }
 
-/// Tells what a user must know before trusting the robot.
+/// Notes what a user must know before trusting the model.
 pub(super) fn caution(robot: &Robot) {
     robot.reading.cautions.iter().for_each(|caution| note(caution));
 }
@@ -237,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_foot_is_refused() {
+    fn malformed_feet_are_refused() {
         for text in ["foot", "foot:1", "foot:1,2", "foot:1,2,3,4", "foot:1,2,nan", "foot:1,2,3:-1", "foot:1,2,3:inf"] {
             assert!(text.parse::<Foot>().is_err(), "{text}");
         }

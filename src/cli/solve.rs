@@ -3,7 +3,7 @@
 use super::options::{DetailOptions, ReductionOptions, SceneOptions};
 use super::output::{Format, OutputOptions};
 use super::stream::{Answers, SUMMED_UP, answer_all};
-use super::{Outcome, input};
+use super::{Completion, input};
 use heelstrike::impact::{Analysis, AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
 use heelstrike::reductions::Reductions;
@@ -32,7 +32,7 @@ pub struct Args {
     output: OutputOptions,
 }
 
-pub(super) fn run(args: &Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Completion {
     let to_a_file_or_lines = args.output.output.is_some() || input::is_ndjson(&args.problem);
     let otherwise = if to_a_file_or_lines { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(otherwise);

@@ -1,31 +1,33 @@
 //! One object after the other: answered or refused, as text or JSON, in order.
 
-use super::complaint::{complain, complain_within, note};
+use super::diagnostic::{note, report, report_with, with_flags};
+use super::input::InputFile;
 use super::output::{Format, OutputOptions};
-use super::{Answered, Failure, Outcome, input};
-use heelstrike::read::documents::{Document, documents, utf8};
+use super::{Answered, Completion, Failure};
+use heelstrike::error::excerpt::Excerpt;
+use heelstrike::read::documents::{Document, documents};
 use heelstrike::state::State;
 use heelstrike::write::{self, Palette, Refused};
 use heelstrike::{Error, Reason, Result};
 use std::io::Write;
 use std::path::Path;
 
-/// Up to so many contacts the rejected combinations are summed up for people, asked for or not: 4^6 are told at once.
+/// Up to so many contacts the text sums up the rejected combinations even without `--explain`: 4^6 take no time.
 pub(super) const SUMMED_UP: usize = 6;
 
 /// The largest file of states or problems that is read at once \[bytes\]; `batch` reads line by line.
 const LARGEST: u64 = 1 << 30;
 /// So many refusals are shown with their line.
 const SHOWN: usize = 10;
-/// So many refusals are told, those beyond the shown ones in short; the rest are counted.
-const TOLD: usize = 100;
+/// Of more refusals than this the rest is counted at the end.
+const REPORTED: usize = 100;
 
-/// What turns the text of an object into an answer.
+/// A command that answers one JSON object after the other.
 pub(super) trait Answers {
     /// What an object is, for messages.
     const WHAT: &'static str;
 
-    /// Refuses what cannot be done, before anything is answered; `_several` tells of more than one object.
+    /// Refuses impossible requests before anything is answered; `_several` is true for more than one object.
     ///
     /// # Errors
     /// [`Failure::Usage`], naming the option.
@@ -33,16 +35,17 @@ pub(super) trait Answers {
         Ok(())
     }
 
-    /// Appends the answer as one line of JSON; gives the error that stands in it beside the matrices, if any.
+    /// Appends the answer as one line of JSON; returns the error that it contains next to the matrices, if any.
     fn json(&mut self, object: &str, out: &mut Vec<u8>) -> Result<Option<Error>>;
 
-    /// The answer as text, and the error that stands in it, if any.
+    /// The answer as text, and the error that it contains, if any.
     fn text(&mut self, object: &str, palette: &Palette) -> Result<(String, Option<Error>)>;
 }
 
 /// The one object of a file.
-pub(super) fn only_document<'t>(bytes: &'t [u8], name: &str) -> Result<Document<'t>> {
-    let text = utf8(bytes).map_err(|error| error.in_file(name))?;
+pub(super) fn only_document(input: &InputFile) -> Result<Document<'_>> {
+    let name = &input.name;
+    let text = input.text().map_err(|error| error.in_file(name))?;
     let mut found = documents(text);
     match (found.next(), found.next()) {
         (Some(document), None) if !document.text.trim_ascii().is_empty() => Ok(document),
@@ -55,10 +58,15 @@ pub(super) fn only_document<'t>(bytes: &'t [u8], name: &str) -> Result<Document<
 }
 
 /// Answers every object of a file.
-pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Format, options: &OutputOptions) -> Outcome {
-    let name = input::name(path);
-    let bytes = input::bytes_up_to(path, LARGEST)?;
-    let whole = utf8(&bytes).map_err(|error| error.in_file(&name))?;
+pub(super) fn answer_all<A: Answers>(
+    answers: &mut A,
+    path: &Path,
+    format: Format,
+    options: &OutputOptions,
+) -> Completion {
+    let input = InputFile::read(path, LARGEST)?;
+    let name = &input.name;
+    let whole = input.text().map_err(|error| error.in_file(name))?;
     if whole.trim_ascii().is_empty() {
         let missing = Reason::Missing(format!("a {}", A::WHAT));
         return Err(Error::new(missing).in_file(name).hint("the input is empty").into());
@@ -75,7 +83,7 @@ pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Forma
                 if at > 0 {
                     out.push(b'\n');
                 }
-                out.extend_from_slice(text.as_bytes());
+                out.extend_from_slice(with_flags(&text).as_bytes());
                 beside
             }),
         };
@@ -84,20 +92,21 @@ pub(super) fn answer_all<A: Answers>(answers: &mut A, path: &Path, format: Forma
         }
         output.write_all(&out)?;
         if let Err(error) | Ok(Some(error)) = answer {
-            // What is already answered stands before the complaint also where both go to one terminal.
+            // On a terminal the answers so far come before the error.
             output.flush()?;
-            let error = document.locate(error).in_file(&name);
+            let error = document.locate(error).in_file(name);
             if refused < SHOWN {
-                complain_within(&error, whole)
+                let excerpt = error.location().and_then(|place| Excerpt::around(whole.as_bytes(), 1, place));
+                report_with(&error, excerpt.as_ref());
             } else {
-                complain(&error)
+                report(&error);
             }
             refused += 1;
         }
     }
     output.flush()?;
-    if refused > TOLD {
-        note(&format!("{} more were refused", refused - TOLD));
+    if refused > REPORTED {
+        note(&format!("{} more were refused", refused - REPORTED));
     }
     Ok(if refused == 0 { Answered::All } else { Answered::NotAll })
 }

@@ -1,17 +1,16 @@
 //! `heelstrike sweep`: outcomes against one or two parameters.
 
-use super::complaint::{complain, note};
-use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
+use super::diagnostic::{note, report};
+use super::input::InputFile;
+use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, pipeline_options};
 use super::output::{Output, spare, writable};
 use super::page::PageOptions;
 use super::progress::Progress;
 use super::robot::{RobotOptions, caution};
-use super::{Answered, Failure, Outcome, input};
+use super::{Answered, Completion, Failure};
 use clap::ValueEnum;
 use heelstrike::draw::page::{Page, Stops};
 use heelstrike::draw::sweep as picture;
-use heelstrike::error::excerpt::Excerpt;
-use heelstrike::read::documents::utf8;
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
 use heelstrike::write::sweep::{Regions, Sample, columns};
@@ -19,12 +18,11 @@ use heelstrike::write::{Detail, append_line};
 use heelstrike::{Error, Reason};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::thread::available_parallelism;
 
 /// Find all regions of equal outcomes against one or two parameters, and the borders between them
 ///
-/// Numbers of the study's state and robot may be expressions of its parameters and constants, as "alpha + pi/2". Borders are
-/// bisected to 1e-12 of the range; thin regions between samples are searched for.
+/// Numbers in the study's state and robot may be expressions of its parameters and constants, as "alpha + pi/2". Borders
+/// are bisected to 1e-12 of the range, and thin regions between samples are searched for.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -50,17 +48,16 @@ pub struct Args {
     output: Option<PathBuf>,
     #[command(flatten)]
     plot: PageOptions,
-    /// Regions for people, regions and samples as JSON, or samples as CSV [default: by the output's ending, else text]
+    /// Text lists regions, JSON regions and samples, CSV samples [default: by the output's ending, else text]
     #[arg(long, value_enum, help_heading = "Output")]
-    format: Option<Format>,
-    /// How many threads compute; 0 takes one per core
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
-    threads: u16,
+    format: Option<SweepFormat>,
+    #[command(flatten)]
+    threads: ThreadOptions,
 }
 
 /// The form of what is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum SweepFormat {
     /// Regions and borders for people
     Text,
     /// One object: regions, borders, samples
@@ -70,8 +67,8 @@ enum Format {
     Csv,
 }
 
-impl Format {
-    /// What is asked for by option or by the output's ending.
+impl SweepFormat {
+    /// The form chosen by option or by the output's ending.
     ///
     /// # Errors
     /// [`Failure::Usage`] for an ending that means something else.
@@ -94,21 +91,17 @@ impl Format {
 /// The largest study that is read \[bytes\].
 const LARGEST: u64 = 64 << 20;
 
-/// Samples that are answered together before they are written.
+/// How many samples are answered before they are written.
 const TOGETHER: usize = 4096;
 
-pub(super) fn run(args: &Args) -> Outcome {
+pub(super) fn run(args: &Args) -> Completion {
     args.plot.check()?;
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;
-    let name = input::name(&args.study);
-    let bytes = input::bytes_up_to(&args.study, LARGEST)?;
-    let refuse = |error: Error| {
-        let excerpt = error.location().and_then(|place| Excerpt::around(&bytes, 1, place));
-        Failure::RefusedAt(error.in_file(&name), excerpt)
-    };
-    let study = utf8(&bytes).and_then(Study::from_json).map_err(refuse)?;
+    let input = InputFile::read(&args.study, LARGEST)?;
+    let refuse = |error: Error| input.refuse(error);
+    let study = input.text().and_then(Study::from_json).map_err(refuse)?;
     let model = RobotStudy {
         study: &study,
         description: &description,
@@ -127,15 +120,11 @@ pub(super) fn run(args: &Args) -> Outcome {
     args.plot.claim(&inputs, args.output.as_deref())?;
     writable(args.output.as_deref())?;
 
-    let threads = match args.threads {
-        0 => available_parallelism().map_or(1, usize::from),
-        threads => threads.into(),
-    };
-    let format = Format::of(args)?;
-    let pieces = Findings::work(&model) + if format == Format::Text { 0 } else { Sample::count(&model) };
+    let format = SweepFormat::of(args)?;
+    let pieces = Findings::work(&model) + if format == SweepFormat::Text { 0 } else { Sample::count(&model) };
     let progress = Progress::of(pieces as u64);
     let done = || progress.step();
-    let workers = Workers { threads, done: &done };
+    let workers = Workers { threads: args.threads.count(), done: &done };
     let findings = Findings::of(&model, workers);
     let regions = Regions::new(study.parameters(), &findings);
     let regimes = findings.regimes();
@@ -149,16 +138,16 @@ pub(super) fn run(args: &Args) -> Outcome {
     }
     let mut output = Output::open(args.output.as_deref())?;
     let refused = match format {
-        Format::Text => {
+        SweepFormat::Text => {
             output.write_all(regions.text(&robot.name, output.palette()).as_bytes())?;
             0
         }
-        Format::Json => {
+        SweepFormat::Json => {
             let mut head = Vec::new();
             append_line(&mut head, &regions);
             json(&head, &mut output, &model, workers, args.detail.detail())?
         }
-        Format::Csv => {
+        SweepFormat::Csv => {
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
             let columns = columns(&model, &feet, contacts);
             let mut head = Vec::new();
@@ -174,11 +163,11 @@ pub(super) fn run(args: &Args) -> Outcome {
     output.flush()?;
     progress.clear();
     let refusals: Vec<&Error> = regimes.iter().filter_map(|(_, _, refused)| *refused).collect();
-    refusals.iter().for_each(|error| complain(error));
+    refusals.iter().for_each(|error| report(error));
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }
 
-/// Writes the object of `head`, a line, with the list of all samples as its last field; tells how many were refused.
+/// Writes the object of `head`, a line, with the list of all samples as its last field; returns how many were refused.
 fn json(
     head: &[u8],
     output: &mut Output,
@@ -198,7 +187,7 @@ fn json(
     Ok(refused)
 }
 
-/// Writes all samples in order; tells how many were refused.
+/// Writes all samples in order; returns how many were refused.
 fn samples(
     output: &mut Output,
     model: &RobotStudy,

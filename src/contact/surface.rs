@@ -96,7 +96,7 @@ impl Surface {
                 let deep = touches.iter().map(|touch| -touch.gap).find(|&depth| depth > tolerance);
                 Ok(deep.map_or(Ok(touches), |depth| {
                     let remedy = format!(
-                        "raise the base by {depth:?} m, correct the pose, or accept it by a greater --contact-tolerance"
+                        "raise the base by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`"
                     );
                     Err(Sunk { depth, remedy })
                 }))
@@ -106,7 +106,7 @@ impl Surface {
                 Ok(found.map_err(|TooDeep(depth)| {
                     let remedy = format!(
                         "move the base or the profile by {depth:?} m, correct the pose, or accept it by a greater \
-                         --contact-tolerance"
+                         `contact_tolerance`"
                     );
                     Sunk { depth, remedy }
                 }))

@@ -27,7 +27,7 @@ pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
     if points.is_empty() {
         let reason =
             Reason::Missing("a foot of the robot, which has no collision shape that could touch the ground,".into());
-        return Err(Error::new(reason).hint("name the feet, as in --contact left_shin:0,0,0.4"));
+        return Err(Error::new(reason).hint("name the feet, as in `feet: left_shin:0,0,0.4`"));
     }
     Ok(Touchdowns {
         samples,

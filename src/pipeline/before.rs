@@ -246,7 +246,7 @@ impl Pipeline<'_> {
                     format!("nothing touches the ground: the nearest foot, {link}, is {distance:?} m away from it")
                 }
                 (None, _) => {
-                    "the robot has no feet: name contact points by `contacts` in the state or by --contact".into()
+                    "the robot has no feet: name contact points by `contacts` in the state or by `feet`".into()
                 }
             });
         }
@@ -305,7 +305,7 @@ impl Pipeline<'_> {
             if bound > 0.0 && slow <= bound {
                 notes.push(format!(
                     "{} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, say so by \
-                     `stance` or --resting-speed",
+                     `stance` or `resting_speed`",
                     contact.name
                 ));
             }
@@ -331,7 +331,7 @@ impl Pipeline<'_> {
                 let name = &self.robot.links[contact.link].name;
                 Error::new(Reason::Missing(format!("the friction of link \"{name}\", which touches the ground,")))
                     .at("friction")
-                    .hint("add \"friction\": 0.8 to the state, or --friction 0.8 (or infinite)")
+                    .hint("add \"friction\": 0.8 to the state, or `friction: 0.8` (or infinite)")
             })?);
         }
         let restitution = contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect();

@@ -1,4 +1,4 @@
-//! Reading a contact problem that is given as matrices.
+//! Reads a contact problem given as matrices.
 
 use super::state as read;
 use crate::impact::problem::check_matrix_size;
@@ -7,9 +7,8 @@ use crate::law::Friction;
 use crate::read::json::{Node, Value};
 use crate::state::Defaults;
 use crate::{Error, Reason, Result};
-use std::borrow::Cow;
 
-/// A contact problem and what the user calls it and its contacts.
+/// A contact problem with its id and the names of its contacts.
 #[derive(Debug, Clone)]
 pub struct Problem {
     /// A JSON string or number.
@@ -51,7 +50,7 @@ impl Problem {
             (Some(field), _) => per_contact(&field, contacts, read::friction)?,
             (None, Some(friction)) => vec![friction; contacts],
             (None, None) => {
-                return Err(missing(&root, "friction").hint("add \"friction\" to the problem, or give --friction"));
+                return Err(missing(&root, "friction").hint("add \"friction\" to the problem, or give `friction`"));
             }
         };
         let restitution = match fields.restitution {
@@ -66,34 +65,9 @@ impl Problem {
         let contact = matrices.problem(friction, restitution).map_err(|error| fields.locate(error))?;
         Ok(Self { id, names, contact })
     }
-
-    /// What a reader of its analysis should know, in whole sentences.
-    pub(crate) fn notes(&self, analysis: &Analysis) -> Cow<'static, [String]> {
-        let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
-        let mended = || {
-            let rank = analysis.rank;
-            format!(
-                "the Delassus matrix is indefinite by its rounding: the nearest of rank {rank} that is not was taken; {keep}"
-            )
-        };
-        let vague = |condition: f64| {
-            format!(
-                "the Delassus matrix has condition {condition:.1e} and may be singular but for its rounding: {keep}"
-            )
-        };
-        let vague_from = |condition: &f64| *condition > VAGUE && self.contact.is_given();
-        let notes = self.contact.is_repaired().then(mended).into_iter();
-        notes.chain(analysis.condition.filter(vague_from).map(vague)).chain(analysis.energy_note()).collect()
-    }
-
-    /// G, two rows and columns per contact.
-    pub fn delassus(&self) -> Vec<Vec<f64>> {
-        let rows = 0..2 * self.contact.contacts();
-        rows.clone().map(|row| rows.clone().map(|column| self.contact.delassus(row, column)).collect()).collect()
-    }
 }
 
-/// The fields that are read, where they are given.
+/// The fields of a problem, as far as they are given.
 #[derive(Default)]
 struct Fields<'n> {
     id: Option<Node<'n>>,
@@ -142,9 +116,6 @@ impl Fields<'_> {
         }
     }
 }
-
-/// Beyond this condition a matrix is regular by its last digits alone.
-const VAGUE: f64 = 1e14;
 
 /// The two ways of giving a problem.
 enum Matrices {

@@ -111,7 +111,7 @@ pub(super) fn coordinates(
             "base" if robot.base == Base::Fixed => {
                 let reason =
                     Reason::Inconsistent("the robot is bolted to the world, its base has no coordinates".into());
-                return Err(part.refuse(reason).hint("leave it out, or give --base floating"));
+                return Err(part.refuse(reason).hint("leave it out, or give `base: floating`"));
             }
             "base" => {
                 for entry in part.fields("base entry")? {
@@ -154,7 +154,7 @@ fn stance(field: Node, robot: &Robot) -> Result<usize> {
         Base::Floating => Ok(link),
         Base::Fixed => {
             let reason = Reason::Inconsistent("the robot is bolted to the world, a stance cannot place it".into());
-            Err(field.refuse(reason).hint("leave it out, or give --base floating"))
+            Err(field.refuse(reason).hint("leave it out, or give `base: floating`"))
         }
     }
 }

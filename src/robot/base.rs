@@ -60,7 +60,7 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
         let lost: f64 = chain[1..].iter().map(|&joint| welded.mass(description.joints[joint].parent)).sum();
         let caution = (lost > 0.0).then(|| {
             format!(
-                "the links of the base's own chain ({names}) weigh {lost} kg, which is left out: give --base fixed to keep \
+                "the links of the base's own chain ({names}) weigh {lost} kg, which is left out: give `base: fixed` to keep \
                  the chain and its mass"
             )
         });
@@ -85,7 +85,7 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
         let names = chain.map(|joint| format!("\"{}\"", description.joints[joint].name)).join(", ");
         format!(
             "the root floats because it has mass, over a chain of its own ({names}) whose links weigh next to nothing: set \
-             their mass to 0 to take the chain as the base, or give --base fixed"
+             their mass to 0 to take the chain as the base, or give `base: fixed`"
         )
     });
     Judgement { caution, ..at_root(Base::Floating, "the root has mass".into()) }

@@ -33,8 +33,8 @@ pub(super) fn about_held(seen: &Seen, held: &[HeldJoint], kept: usize) -> Vec<St
         cautions.push(about_tilted(seen, &nearly, movable.len() + kept));
     } else if kept == 0 && movable.len() > hidden.len() {
         cautions.push(format!(
-            "no joint moves in this plane, so the robot is one rigid body ({} held): choose another plane (--plane), or hold \
-             joints where the axes of others are in line (--hold NAME=VALUE)",
+            "no joint moves in this plane, so the robot is one rigid body ({} held): choose another plane (`plane`), or hold \
+             joints where the axes of others are in line (`hold: NAME=VALUE`)",
             names(&movable.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>())
         ));
     }
@@ -59,7 +59,7 @@ pub(super) fn about_outside(description: &Description, outside: &[String]) -> Op
     (!touching.is_empty()).then(|| {
         format!(
             "{} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on another link \
-             (--contact LINK:X,Y,Z)",
+             (`feet: LINK:X,Y,Z`)",
             names(&touching)
         )
     })
@@ -105,7 +105,7 @@ fn remedy(seen: &Seen, joint: usize) -> Option<String> {
     });
     let mut turned = turned.filter_map(|before| Some((before, angle_into_line(axis, posture.axes[before], *plane)?)));
     if let Some((hinge, angle)) = turned.next() {
-        return Some(format!("--hold {}={angle:.6}", description.joints[hinge].name));
+        return Some(format!("`hold: {}={angle:.6}`", description.joints[hinge].name));
     }
     let in_line = |axes: &Matrix| {
         let columns = [0, 1, 2].map(|column| axes.map(|row| row[column]));

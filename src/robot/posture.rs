@@ -82,7 +82,7 @@ fn refuse_no_coordinate(joint: &Joint, joints: &[Joint]) -> Result<()> {
         }
         (JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic, None) => Ok(()),
         (kind, None) => {
-            Err(refuse(format!("it cannot be held at a value: it is {}", kind.name())).hint("leave it out of --hold"))
+            Err(refuse(format!("it cannot be held at a value: it is {}", kind.name())).hint("leave it out of `hold`"))
         }
     }
 }

@@ -85,7 +85,7 @@ impl Reading {
             PlaneReason::Usual => "the usual one, as the file's hinges have no common direction",
         };
         match self.better_plane {
-            Some((plane, joints)) => format!("{because}; --plane {} would keep {joints} joints", plane.name()),
+            Some((plane, joints)) => format!("{because}; plane {} would keep {joints} joints", plane.name()),
             None => because.to_owned(),
         }
     }

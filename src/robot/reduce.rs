@@ -106,7 +106,7 @@ impl Robot {
         if robot.mass() == 0.0 {
             let error = Error::new(Reason::Inconsistent("nothing that moves has mass".into())).at("robot");
             return Err(match robot.bodies.iter().any(|body| body.mass > 0.0) {
-                true => error.hint("its root is bolted to the world; give --base floating to set it free"),
+                true => error.hint("its root is bolted to the world; give `base: floating` to set it free"),
                 false => error.hint("give the links <inertial> elements with a mass"),
             });
         }

@@ -1,4 +1,4 @@
-//! Results as rows: one per outcome.
+//! Results as CSV: one row per outcome.
 
 use crate::contact::Feet;
 use crate::read::table::{Carried, Header, prefixed};
@@ -25,6 +25,14 @@ const TOUCHDOWN: [&str; 6] = [
 const LAST: [&str; 3] = ["border", "family", "error"];
 
 /// The columns of a table of results, fixed before its first row.
+///
+/// They are `id, verdict, outcome, margin, proven`, then `mode_<contact>, p_<contact>_t, p_<contact>_n` for every contact
+/// that the robot's feet can make, `v_<coordinate>` after the impact, the `touchdown_...` columns if touchdowns were
+/// requested, the columns copied from the input, and `border`, `family`, `error`. Outcomes are counted from 1; a state
+/// without outcome has a row with these cells empty. A contact is named after its link if it is the only one there, so a
+/// link that can touch at several points has columns of its own name and of link/0, link/1, ... A refused state has a row
+/// with the verdict `refused`, its id and copied columns if they can be read, and its line and reason in `error`. A copied
+/// column whose name the output already has gets the prefix `in_`.
 #[derive(Debug, Clone)]
 pub struct Columns {
     names: Vec<String>,
@@ -213,7 +221,7 @@ impl Columns {
     fn place(&self, contact: &str) -> Result<usize> {
         self.contacts.get(contact).map(|at| FIRST.len() + 3 * at).ok_or_else(|| {
             let reason = Reason::Unsupported(format!("the table of results has no columns for contact \"{contact}\""));
-            Error::new(reason).hint("write NDJSON instead, or add the foot by --contact")
+            Error::new(reason).hint("write NDJSON instead, or add the foot by `feet`")
         })
     }
 }

@@ -18,6 +18,7 @@ pub mod accuracy;
 mod inspection;
 mod list;
 mod outcome;
+mod problem;
 mod result;
 pub mod sweep;
 #[cfg(feature = "schema")]

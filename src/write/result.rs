@@ -305,8 +305,8 @@ impl<'a> Report<'a> {
         let contacts = contacts.map(|(name, velocity)| Contact::of_problem(name, *velocity)).collect();
         Self {
             id: problem.id.as_ref(),
-            delassus: detail.matrices.then(|| Cow::Owned(problem.delassus())),
-            notes: problem.notes(analysis),
+            delassus: detail.matrices.then(|| Cow::Owned(super::problem::delassus(problem))),
+            notes: super::problem::notes(problem, analysis),
             ..Self::of_analysis(contacts, Ok(analysis), detail)
         }
     }

@@ -180,13 +180,13 @@ impl Header {
         match (rates, velocity) {
             (Rates::Columns, None) if self.is_spatial() && self.has_time() => {
                 let hint =
-                    "give --velocity central or backward: those of a base in three dimensions are taken from the time";
+                    "give `velocity: central` or backward: those of a base in three dimensions are taken from the time";
                 Err(Error::new(Reason::Missing("a source of velocities".into())).on(1, 1).hint(hint))
             }
             (Rates::Columns, None) if self.has_time() => missing(
                 "velocities",
                 "v_",
-                "add the columns, or --velocity central or backward to take them from the time",
+                "add the columns, or give `velocity: central` or backward to take them from the time",
             ),
             (Rates::Columns, None) => {
                 missing("velocities", "v_", "add the columns; with a column time they can be computed")
@@ -194,7 +194,7 @@ impl Header {
             (Rates::Time, Some(at)) => {
                 let reason = "the table has velocities, and they were to be computed from the time".to_owned();
                 let error = in_column(Error::new(Reason::Inconsistent(reason)), record, at);
-                Err(error.hint("leave out --velocity, or the columns v_..."))
+                Err(error.hint("leave out `velocity`, or the columns v_..."))
             }
             (Rates::Time, None) if !self.has_time() => {
                 let error = Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
@@ -245,7 +245,7 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
         }
         [first, ..] if first.starts_with('{') => {
             let reason = Reason::Syntax("expected the names of the columns, found JSON".into());
-            Err(Error::new(reason).on(1, 1).hint("are these lines of JSON? then say --input-format ndjson"))
+            Err(Error::new(reason).on(1, 1).hint("are these lines of JSON? then say `input_format: ndjson`"))
         }
         _ => Ok(names),
     }
@@ -283,7 +283,7 @@ fn spatial_velocity() -> Reason {
 }
 
 const SPATIAL_VELOCITY: &str =
-    "leave out the columns v_..., and give --velocity central to take velocities from the time";
+    "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
 
 /// What the column of a coordinate holds: `moving` where it is one of the robot's, by its index in q.
 fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Column) -> Result<Column> {
@@ -298,7 +298,7 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
     let spatial = in_space.map(Column::Quaternion).or((name == SIDEWAYS).then_some(Column::Sideways));
     if robot.base == Base::Fixed && (in_base.is_some() || spatial.is_some()) {
         let reason = "the robot is bolted to the world, its base has no coordinates".to_owned();
-        return Err(Error::new(Reason::Inconsistent(reason)).hint("leave the column out, or give --base floating"));
+        return Err(Error::new(Reason::Inconsistent(reason)).hint("leave the column out, or give `base: floating`"));
     }
     match spatial {
         Some(column) if prefix == "q_" => return Ok(column),

@@ -220,7 +220,7 @@ impl Row<'_> {
         if robot.base == Base::Fixed {
             let reason = "the robot is bolted to the world, a stance cannot place it".to_owned();
             let error = self.refuse(at, Reason::Inconsistent(reason));
-            return Err(error.hint("leave it out, or give --base floating"));
+            return Err(error.hint("leave it out, or give `base: floating`"));
         }
         let unknown = || {
             let known = robot.links.iter().map(|link| link.name.as_str());

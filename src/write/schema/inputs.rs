@@ -91,7 +91,7 @@ pub(super) struct State {
     rotor_inertia: Option<BTreeMap<String, NotNegative>>,
     /// Contacts named by hand instead of detected.
     contacts: Option<Vec<Contact>>,
-    /// Points that stay together, in place of those of --loops.
+    /// Points that stay together, in place of the defaults.
     loops: Option<Vec<Loop>>,
     /// How far the numbers may be off: the result then tells whether the verdict holds.
     uncertainty: Option<Uncertainty>,

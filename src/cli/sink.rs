@@ -1,40 +1,40 @@
-//! Where the answers of a batch go: results to the output, refusals to standard error, counts to the summary.
+//! The sink of a batch: results go to the output, refusals to standard error, counts to the summary.
 
-use super::complaint::complain_at;
+use super::diagnostic::report_with;
 use super::progress::Progress;
 use super::{Failure, status};
-use heelstrike::batch::{Block, Refusal, Sink, Summary};
+use heelstrike::batch::{Block, RefusedRecord, Sink, Summary};
 use heelstrike::draw::page::Gait;
 use std::io::{self, ErrorKind, Write};
 
-/// So many refusals are told on standard error; all stand in the output.
-const TOLD: u64 = 20;
+/// How many refusals are reported on standard error; the output has all of them.
+const REPORTED: u64 = 20;
 
-/// Takes the answers in their order.
-pub(super) struct Delivery<'a, W> {
+/// Writes the answers in their order.
+pub(super) struct OutputSink<'a, W> {
     output: W,
-    /// What the input is called.
+    /// The name of the input in messages.
     input: &'a str,
     progress: &'a Progress,
-    /// What is known of all states so far.
+    /// The summary of all states so far.
     pub summary: Summary,
-    /// The states that a page shows, if that is asked for.
+    /// The states for a page, if one is requested.
     pub gait: Gait,
     refused: u64,
-    /// Lines that the output has taken.
+    /// Lines written so far.
     lines: usize,
 }
 
-impl<'a, W: Write> Delivery<'a, W> {
-    /// Answers to `input` go to `output`, which does not buffer: so it is known what was written.
+impl<'a, W: Write> OutputSink<'a, W> {
+    /// Answers to `input` go to `output`, which must not buffer, so that the number of written lines is known.
     pub fn new(output: W, input: &'a str, progress: &'a Progress) -> Self {
         Self { output, input, progress, summary: Summary::default(), gait: Gait::default(), refused: 0, lines: 0 }
     }
 
-    /// Writes the line that names the columns.
+    /// Writes all bytes.
     ///
     /// # Errors
-    /// Whatever keeps it from being written, with the number of lines that were.
+    /// Those of the output, with the number of lines that were written.
     pub fn write(&mut self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
             match self.output.write(bytes) {
@@ -58,32 +58,32 @@ impl<'a, W: Write> Delivery<'a, W> {
         )
     }
 
-    fn complain(&mut self, Refusal { error, excerpt }: Refusal) {
+    fn report(&mut self, RefusedRecord { error, excerpt }: RefusedRecord) {
         self.refused += 1;
-        if self.refused <= TOLD {
-            self.progress.beside(|| complain_at(&error.in_file(self.input), excerpt.as_ref()));
-        } else if self.refused == TOLD + 1 {
+        if self.refused <= REPORTED {
+            self.progress.beside(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
+        } else if self.refused == REPORTED + 1 {
             self.progress.beside(|| {
-                // Where nobody reads standard error there is nobody to tell that it cannot be written.
+                // A failure to write to standard error cannot be reported anywhere.
                 let _ = writeln!(io::stderr(), "note: further refusals stand in the output alone");
             });
         }
     }
 }
 
-impl<W: Write> Delivery<'_, W> {
-    /// Ends the process: whoever gives the input may stay silent for ever, and waiting for more of it is of no use.
+impl<W: Write> OutputSink<'_, W> {
+    /// Ends the process: the input may stay silent for ever, and waiting for more of it is of no use.
     fn end(&self, error: io::Error) -> ! {
         self.progress.clear();
         std::process::exit(status(Failure::Output(error)).into())
     }
 }
 
-impl<W: Write> Sink for Delivery<'_, W> {
+impl<W: Write> Sink for OutputSink<'_, W> {
     fn block(&mut self, block: Block) -> io::Result<()> {
         self.write(&block.out).unwrap_or_else(|error| self.end(error));
-        // What is answered stands before the complaint also where both go to one terminal.
-        block.refused.into_iter().for_each(|refusal| self.complain(refusal));
+        // On a terminal the answers come before the errors.
+        block.refused.into_iter().for_each(|refused| self.report(refused));
         self.summary.merge(block.summary);
         block.keyframes.into_iter().for_each(|keyframe| self.gait.push(keyframe));
         Ok(())

@@ -1,0 +1,97 @@
+//! Errors and notes on standard error, colored on a terminal, with hints in terms of the command line.
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, normalize_untrusted_str};
+use heelstrike::Error;
+use heelstrike::error::Location;
+use heelstrike::error::excerpt::Excerpt;
+use std::io::Write;
+
+/// The library's settings, as its hints name them, and their options.
+const FLAGS: [(&str, &str); 9] = [
+    ("base", "--base"),
+    ("plane", "--plane"),
+    ("hold", "--hold"),
+    ("feet", "--contact"),
+    ("contact_tolerance", "--contact-tolerance"),
+    ("resting_speed", "--resting-speed"),
+    ("friction", "--friction"),
+    ("velocity", "--velocity"),
+    ("input_format", "--input-format"),
+];
+
+/// The text with settings such as `base: floating` in backticks written as options: --base floating.
+pub(super) fn with_flags(text: &str) -> String {
+    let pieces: Vec<&str> = text.split('`').collect();
+    let mut out = String::new();
+    for (at, piece) in pieces.iter().enumerate() {
+        // Every second piece stands between two backticks, except a last one that nothing closes.
+        let quoted = at % 2 == 1 && at + 1 < pieces.len();
+        let (name, value) = piece.split_once(": ").unwrap_or((piece, ""));
+        match FLAGS.iter().find(|(setting, _)| quoted && *setting == name) {
+            Some((_, flag)) if value.is_empty() => out.push_str(flag),
+            Some((_, flag)) => out.extend([flag, " ", value]),
+            None if at % 2 == 1 => out.extend(["`", piece, if quoted { "`" } else { "" }]),
+            None => out.push_str(piece),
+        }
+    }
+    out
+}
+
+/// Writes `error: file:line:column: place: reason` and, if there is a remedy, `hint: remedy`.
+pub(super) fn report(error: &Error) {
+    write(&[Group::with_title(Level::ERROR.primary_title(error.to_string()))]);
+    if let Some(hint) = hint(error) {
+        write(&[hint]);
+    }
+}
+
+/// Writes the reason, the line in which the place is marked, and the remedy; without a line this is [`report`].
+pub(super) fn report_with(error: &Error, excerpt: Option<&Excerpt>) {
+    let (Some(Location { line, .. }), Some(excerpt)) = (error.location(), excerpt) else {
+        return report(error);
+    };
+    let mut mark = AnnotationKind::Primary.span(excerpt.mark());
+    if let Some(place) = error.place() {
+        mark = mark.label(normalize_untrusted_str(place));
+    }
+    let snippet = Snippet::source(excerpt.text()).line_start(line).annotation(mark);
+    let title = |text: String| Level::ERROR.primary_title(text);
+    let mut groups = vec![if excerpt.starts_later() {
+        // The renderer would count the columns from the cut.
+        title(error.to_string()).element(snippet)
+    } else {
+        let file = error.file().map(normalize_untrusted_str);
+        title(error.reason().to_string()).element(snippet.path(file))
+    }];
+    groups.extend(hint(error));
+    write(&groups);
+}
+
+/// Writes `note: ` and the text.
+pub(super) fn note(text: &str) {
+    write(&[Group::with_title(Level::NOTE.primary_title(with_flags(text)))]);
+}
+
+fn hint(error: &Error) -> Option<Group<'_>> {
+    let hint = normalize_untrusted_str(&with_flags(error.remedy()?));
+    Some(Group::with_title(Level::HELP.with_name("hint").secondary_title(hint)))
+}
+
+fn write(groups: &[Group<'_>]) {
+    let text = Renderer::styled().render(groups);
+    // A failure to write to standard error cannot be reported anywhere.
+    let _ = writeln!(anstream::stderr().lock(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_flags;
+
+    #[test]
+    fn settings_become_options() {
+        assert_eq!(with_flags("give `base: floating`, or `hold`"), "give --base floating, or --hold");
+        for other in ["as in `impact`, or `stance`", "link a`base", "`", "plain"] {
+            assert_eq!(with_flags(other), other);
+        }
+    }
+}
