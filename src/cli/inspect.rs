@@ -35,5 +35,5 @@ pub(super) fn run(args: &Args) -> Completion {
     if args.plot.is_asked() {
         args.plot.draw(&drawing::picture::robot(&robot, &feet), "the robot has no place in the plane")?;
     }
-    args.output.write(&inspection, |palette| inspection.text(palette))
+    args.output.write(&inspection, |palette| with_flags(&inspection.text(palette)))
 }

@@ -2,7 +2,7 @@
 
 use super::state as read;
 use crate::impact::problem::check_matrix_size;
-use crate::impact::{Analysis, ContactProblem};
+use crate::impact::ContactProblem;
 use crate::law::Friction;
 use crate::read::json::{Node, Value};
 use crate::state::Defaults;

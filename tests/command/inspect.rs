@@ -39,7 +39,7 @@ fn plane_hold_and_base_shape_the_robot() {
     let yz = inspect(&["--plane", "yz"]).line();
     assert_eq!(
         (&yz["plane"], &yz["plane_because"]),
-        (&"yz".into(), &"as asked; --plane xz would keep 8 joints".into())
+        (&"yz".into(), &"as asked; plane xz would keep 8 joints".into())
     );
     let names: Vec<_> = yz["joints"].as_array().expect("joints").iter().map(|joint| &joint["name"]).collect();
     assert_eq!(names, ["FR_hip_joint", "FL_hip_joint", "RR_hip_joint", "RL_hip_joint"]);

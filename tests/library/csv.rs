@@ -330,7 +330,7 @@ fn a_contact_without_columns_is_refused_and_nothing_is_written() {
     let error = columns.append_result(&report, None, &mut out).unwrap_err();
     assert_eq!(
         told(&error),
-        "the table of results has no columns for contact \"shin/0\" | write NDJSON instead, or add the foot by --contact"
+        "the table of results has no columns for contact \"shin/0\" | write NDJSON instead, or add the foot by `feet`"
     );
     assert!(out.is_empty());
 }

@@ -198,7 +198,7 @@ fn a_speed_that_is_all_rounding_is_taken_at_its_word_and_told() {
     // Of exactly these f64 rates the foot leaves the ground, by less than f64 resolves.
     let analysis = found.analysis.expect("one contact");
     assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true));
-    assert!(found.notes.iter().any(|note| note.contains("--resting-speed")), "{:?}", found.notes);
+    assert!(found.notes.iter().any(|note| note.contains("`resting_speed`")), "{:?}", found.notes);
     let options = Options { resting_speed: 1e-12, ..Options::default() };
     let resting = impact_with(&ramone, options, &nulled).expect("an answer");
     assert_eq!(resting.analysis.expect("one contact").verdict, Verdict::NoImpact);

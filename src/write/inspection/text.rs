@@ -131,7 +131,7 @@ impl Inspection<'_> {
     /// The feet of one shape together, in the order of the first.
     fn feet_in_words(&self) -> String {
         if self.feet.is_empty() {
-            return "none: name contact points for the robot, or in each state by \"contacts\"".to_owned();
+            return "none: name them by `feet`, or in each state by \"contacts\"".to_owned();
         }
         let feet = self.feet.iter().map(|foot| (foot.in_words(), foot.link));
         let groups = grouped(feet).into_iter().map(|(shape, links)| format!("{} ({shape})", list(&links, FEET)));

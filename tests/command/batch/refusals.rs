@@ -115,7 +115,7 @@ fn lines_that_are_no_states_of_their_own_get_a_remedy() {
     let list = "each line must hold one state; `jq -c '.[]'` takes a list apart";
     assert_eq!((hint("[\n{\"friction\": 1}]\n"), hint("[{\"friction\": 1}, {}]\n")), (list.into(), list.into()));
     assert_eq!(hint("{\"friction\": 1},\n"), "a line holds one state and nothing after it");
-    assert_eq!(hint("id,q_base_z,v_base_z\n1,0.5,-1\n"), "is this a table? then say --input-format csv");
+    assert_eq!(hint("id,q_base_z,v_base_z\n1,0.5,-1\n"), "is this a table? then say `input_format: csv`");
 }
 
 #[test]
@@ -123,9 +123,9 @@ fn missing_friction_is_told_in_the_words_of_the_form() {
     let hint = |arguments: &[&str], input: String| {
         batch(&[&["-"], arguments].concat(), input).lines()[0]["error"]["hint"].clone()
     };
-    assert_eq!(hint(&[], strike(1, 0.0)), "add \"friction\": 0.8 to the state, or --friction 0.8 (or infinite)");
+    assert_eq!(hint(&[], strike(1, 0.0)), "add \"friction\": 0.8 to the state, or `friction: 0.8` (or infinite)");
     let table = "q_base_z,v_base_z\n0.5,-1\n".to_owned();
-    assert_eq!(hint(&["--input-format", "csv"], table), "add a column friction, or give --friction 0.8 (or infinite)");
+    assert_eq!(hint(&["--input-format", "csv"], table), "add a column friction, or give `friction: 0.8` (or infinite)");
 }
 
 #[test]

@@ -226,6 +226,6 @@ fn a_bolted_robot_of_which_nothing_moves_is_refused_with_the_remedy() {
     let still = Description::from_urdf(&two_links("fixed", "").replace("\"a\"", "\"world\"")).expect("a description");
     let refused = Robot::reduce(&still, &Reduction::default()).expect_err("nothing moves");
     assert_eq!(refused.to_string(), "robot: nothing that moves has mass");
-    let remedy = "its root is bolted to the world; give --base floating to set it free";
+    let remedy = "its root is bolted to the world; give `base: floating` to set it free";
     assert_eq!(refused.remedy(), Some(remedy));
 }

@@ -172,7 +172,7 @@ fn a_robot_without_feet_is_refused() {
     let none = std::iter::empty::<Sampled<()>>();
     let error = find(none, &robot, &[], At::Row, Touching::Strike).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("foot"), "{error}");
-    assert!(error.remedy().is_some_and(|hint| hint.contains("--contact")));
+    assert!(error.remedy().is_some_and(|hint| hint.contains("`feet: ")));
 }
 
 #[test]
