@@ -253,13 +253,13 @@ mod tests {
             let long = std::iter::repeat_n(part, RECORD_LIMIT / part.len() + 1);
             Parts(std::iter::once(first).chain(long).chain([&b"\nend"[..]]).collect())
         };
-        let told = |mut chunks: Chunks<Parts>| {
+        let chunks_of = |mut chunks: Chunks<Parts>| {
             let chunks = std::iter::from_fn(move || chunks.records(RECORDS).unwrap());
             chunks.map(|chunk| (chunk.bytes.len(), chunk.too_long)).collect::<Vec<_>>()
         };
-        let line = told(Chunks::of_lines(parts(b"a\n", &[b'x'; 1 << 12])));
+        let line = chunks_of(Chunks::of_lines(parts(b"a\n", &[b'x'; 1 << 12])));
         assert_eq!(line, [(2, None), (0, Some(2)), (3, None)]);
-        let line = told(Chunks::of_table(parts(b"a\n\"", &[b'x'; 1 << 12])));
+        let line = chunks_of(Chunks::of_table(parts(b"a\n\"", &[b'x'; 1 << 12])));
         assert_eq!(line, [(2, None), (0, Some(2)), (3, None)]);
     }
 }

@@ -1,11 +1,11 @@
-//! Many states: one line or row each.
+//! Answers many states: one line or row each.
 //!
 //! ```text
 //!     lines, CSV --[chunk]--> chunks of records --[run]--> Batch, one per thread --> blocks of answers, in order
 //!                                                            └──[summary]--> Summary of all
 //! ```
 //!
-//! Nothing here opens a file, and threads are started by [`run`] alone, where it is told to.
+//! Nothing here opens a file; only [`run`] starts threads, if asked to.
 
 mod chunk;
 mod recording;
@@ -15,8 +15,8 @@ mod summary;
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, Numbered, RECORD_LIMIT};
 pub use recording::{Landing, Origin, Recorded, Recording, samples};
-pub use run::{Block, Broken, Form, RefusedRecord, Sink, Source, run};
-pub use summary::{ModeCount, MoreFriction, Nearest, Needed, Place, Summary, Verdicts};
+pub use run::{Block, Broken, Answerer, RefusedRecord, Sink, Source, run};
+pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
 
 use crate::draw::{Keyframe, ListedKeyframe};
 use crate::error::Location;
@@ -27,42 +27,41 @@ use crate::law::{Friction, Mode};
 use crate::pipeline::{Options, Pipeline};
 use crate::read::documents::utf8;
 use crate::read::table::{Carried, Header, Rows};
-use crate::state::ByLink;
-use crate::state::{Defaults, State};
+use crate::state::{ByLink, Defaults, State};
 use crate::write::Columns;
 use crate::write::{self, CarriedFields, Detail, Refused, Report, short_id};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 
-/// What is asked of every state of a batch.
+/// What is computed for every state of a batch, and in which form it is written.
 #[derive(Debug, Clone)]
 pub struct Question<'r> {
     /// The robot.
     pub robot: &'r Robot,
     /// How contacts are found and what is computed.
     pub options: Options,
-    /// What states take from elsewhere.
+    /// Values for what a state omits.
     pub defaults: Defaults,
     /// How much of a result is written.
     pub detail: Detail,
-    /// The columns of the table that states come from; none where they are lines of JSON.
+    /// The columns of the input table; `None` for lines of JSON.
     pub header: Option<&'r Header>,
-    /// The columns of the table that results go to; none where they are lines of JSON.
+    /// The columns of the output table; `None` for lines of JSON.
     pub columns: Option<&'r Columns>,
-    /// How touchdowns are found, where they alone are answered.
+    /// How touchdowns are found, if only these are answered.
     pub touchdowns: Option<(At, Touching)>,
-    /// Whether states are kept as a page shows them.
+    /// Whether keyframes of the states are kept for a page.
     pub keyframes: bool,
 }
 
-/// Answers records in memory that it keeps.
+/// Answers records, with memory that it reuses.
 pub struct Batch<'q> {
     question: &'q Question<'q>,
     pipeline: Pipeline<'q>,
     rows: Option<Rows<'q>>,
 }
 
-/// What stands around a state in its input.
+/// The context of a state in its input.
 #[derive(Debug, Clone, Copy)]
 struct Around<'a> {
     line: usize,
@@ -71,17 +70,17 @@ struct Around<'a> {
     touchdown: Option<&'a Landing>,
 }
 
-/// What can be shown of the input where a state is refused.
+/// The part of the input that can be shown if a state is refused.
 #[derive(Debug, Clone, Copy)]
 enum Text<'a> {
     /// The record, which begins on the state's line.
     Record(&'a [u8]),
-    /// What was kept of it.
+    /// An excerpt that was kept of it.
     Kept(Option<&'a Excerpt>),
 }
 
 impl Around<'_> {
-    /// The time of the state, where its input tells it \[s\].
+    /// The time of the state, if its input gives one \[s\].
     fn time(&self, header: Option<&Header>) -> Option<f64> {
         let column = || {
             let (_, text) = self.carried?.by_name(header?).find(|(name, _)| *name == "time")?;
@@ -101,7 +100,7 @@ impl Text<'_> {
 }
 
 impl<'q> Batch<'q> {
-    /// A batch that asks `question`.
+    /// A batch that answers `question`.
     pub fn new(question: &'q Question<'q>) -> Self {
         let pipeline = Pipeline::new(question.robot, question.options.clone());
         Self { question, pipeline, rows: question.header.map(Header::rows) }
@@ -109,7 +108,7 @@ impl<'q> Batch<'q> {
 
     /// Answers a line of JSON; a blank one has no answer.
     fn line(&mut self, line: usize, record: &[u8], block: &mut Block) {
-        // Without its end: a line that is cut off would seem to end on the next one.
+        // Without its line break: an error at the end of a truncated line would be on the next line.
         let record = record.trim_ascii_end();
         if record.is_empty() {
             return;
@@ -144,7 +143,7 @@ impl<'q> Batch<'q> {
         }
     }
 
-    /// Answers a state, or what should have been one and is called what `unread` finds.
+    /// Answers a state, or refuses it under the id that `unread` finds.
     fn answer(
         &mut self,
         state: Result<State>,
@@ -165,9 +164,9 @@ impl<'q> Batch<'q> {
     /// Appends the result of a state.
     fn result(&mut self, state: &mut State, around: Around<'_>, block: &mut Block) -> Result<()> {
         let Question { robot, detail, header, columns, .. } = *self.question;
-        let impact = self.pipeline.impact(state).map_err(|error| self.in_its_form(error))?;
+        let impact = self.pipeline.impact(state).map_err(|error| self.with_hint_for_tables(error))?;
         let mut report = Report::of_state(robot, state, &impact, detail)?;
-        report.touchdown = around.touchdown.zip(self.question.touchdowns).map(|(landing, choice)| landing.told(choice));
+        report.touchdown = around.touchdown.zip(self.question.touchdowns).map(|(landing, choice)| landing.record(choice));
         if let Some(columns) = columns {
             columns.append_result(&report, around.carried, &mut block.out)?;
         } else {
@@ -181,10 +180,10 @@ impl<'q> Batch<'q> {
         match &impact.analysis {
             Ok(analysis) => {
                 let needed = self.friction_needed(state, analysis);
-                let place = || Place { id: state.id.clone().map(short_id), line: around.line };
+                let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
                 block.summary.count(place, &impact, analysis, needed);
             }
-            // It stands in the result, beside the matrices.
+            // The result contains it next to the matrices.
             Err(error) => block.refuse(error.clone(), around),
         }
         Ok(())
@@ -201,7 +200,7 @@ impl<'q> Batch<'q> {
         block.refuse(error, around);
     }
 
-    /// Keeps a state as a page shows it, if that is asked for.
+    /// Keeps a keyframe of the state, if requested.
     fn keep(&self, id: Option<&Value>, around: Around<'_>, block: &mut Block, keyframe: impl FnOnce() -> Keyframe) {
         if self.question.keyframes {
             let id = id.cloned().map(short_id);
@@ -210,8 +209,8 @@ impl<'q> Batch<'q> {
         }
     }
 
-    /// The error with the remedy for the form of the input.
-    fn in_its_form(&self, error: Error) -> Error {
+    /// The error with a hint that fits the format of the input.
+    fn with_hint_for_tables(&self, error: Error) -> Error {
         match error.reason() {
             Reason::Missing(_) if self.question.header.is_some() && error.place() == Some("friction") => {
                 error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
@@ -220,7 +219,7 @@ impl<'q> Batch<'q> {
         }
     }
 
-    /// The friction with which no contact would have to slide, where one has to; see [`MoreFriction`].
+    /// The friction with which no contact would have to slide, if one has to; see [`MoreFriction`].
     fn friction_needed(&mut self, state: &mut State, analysis: &Analysis) -> Option<f64> {
         if analysis.no_slip_consistent != Some(false)
             || !matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous)
@@ -236,7 +235,7 @@ impl<'q> Batch<'q> {
     }
 }
 
-impl Form<Chunk> for Batch<'_> {
+impl Answerer<Chunk> for Batch<'_> {
     fn answer(&mut self, chunk: Chunk, block: &mut Block) {
         let mut rows = self.rows.take();
         for (line, record) in chunk.records() {
@@ -253,7 +252,7 @@ impl Form<Chunk> for Batch<'_> {
     }
 }
 
-impl Form<Vec<Recorded>> for Batch<'_> {
+impl Answerer<Vec<Recorded>> for Batch<'_> {
     fn answer(&mut self, found: Vec<Recorded>, block: &mut Block) {
         for Recorded { origin: Origin { line, id, carried, excerpt }, state, touchdown } in found {
             let text = Text::Kept(excerpt.as_ref());
@@ -263,7 +262,7 @@ impl Form<Vec<Recorded>> for Batch<'_> {
     }
 }
 
-/// The error with a remedy for a line that is not of this form: a table's, or one of JSON that holds no state or many.
+/// The error with a hint for a line of a table, or a line of JSON that holds no state or several.
 fn with_remedy(error: Error, record: &[u8]) -> Error {
     if record.trim_ascii_start().starts_with(b"[") {
         return error.hint("each line must hold one state; `jq -c '.[]'` takes a list apart");

@@ -1,5 +1,4 @@
-//! Tables whose rows are not independent of each other: they are read one after the other, and what comes of it is answered
-//! like any other state.
+//! Tables whose rows depend on each other: they are read in order, and the resulting states are answered like any other.
 
 use super::chunk::{Chunks, too_long};
 use super::run::Source;
@@ -12,7 +11,7 @@ use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::io::{self, Read};
 
-/// So many states make a task.
+/// How many states make a task.
 const STATES: usize = 16;
 
 /// The row that a state comes from.
@@ -20,28 +19,28 @@ const STATES: usize = 16;
 pub struct Origin {
     /// Its line, from 1.
     pub line: usize,
-    /// What the user calls it.
+    /// Its id.
     pub id: Option<Value>,
-    /// What is carried through.
+    /// The fields to copy to the result.
     pub carried: Carried,
-    /// The line that is refused, where it is.
+    /// The line, if it is refused.
     pub excerpt: Option<Excerpt>,
 }
 
-/// A state of a recording, or why there is none.
+/// A state of a recording, or its refusal.
 #[derive(Debug, Clone)]
 pub struct Recorded {
-    /// The row, of a touchdown the last one before it.
+    /// The row; for a touchdown the last one before it.
     pub origin: Origin,
     /// The state.
     pub state: Result<State>,
-    /// How it was found, of a touchdown.
+    /// How a touchdown was found.
     pub touchdown: Option<Landing>,
 }
 
 /// How a touchdown was found; the fields are those of [`Touchdown`].
 #[derive(Debug, Clone)]
-#[allow(missing_docs, reason = "told where they come from")]
+#[allow(missing_docs, reason = "documented at their origin")]
 pub struct Landing {
     pub row: usize,
     pub time: f64,
@@ -51,7 +50,7 @@ pub struct Landing {
 
 impl Landing {
     /// As it stands in a result.
-    pub(super) fn told(&self, (at, touching): (At, Touching)) -> write::Touchdown<'_> {
+    pub(super) fn record(&self, (at, touching): (At, Touching)) -> write::Touchdown<'_> {
         let Self { row, time, striking, shift_z } = self;
         let (at, touching) = (at.name(), touching.to_string());
         write::Touchdown { row: *row, time: *time, striking, shift_z: *shift_z, at, touching }
@@ -80,7 +79,7 @@ impl From<std::result::Result<Touchdown<Origin>, (Origin, Error)>> for Recorded 
     }
 }
 
-/// The rows of a table with their times. An input that cannot be read on ends with a sample that [`Reason::Io`] refuses.
+/// The rows of a table with their times. If reading fails, the last sample is refused with [`Reason::Io`].
 pub fn samples<'h, R: Read>(
     mut chunks: Chunks<R>,
     header: &'h Header,
@@ -124,7 +123,7 @@ fn excerpt(record: &[u8], first: usize, error: &Error) -> Option<Excerpt> {
 #[derive(Debug)]
 pub struct Recording<I> {
     states: I,
-    /// Why the input ended early; told after what came before.
+    /// Why the input ended early; reported after what came before.
     broken: Option<String>,
 }
 

@@ -1,12 +1,12 @@
-//! All tasks of a source, answered by several threads and handed on in order.
+//! Answers the tasks of a source in several threads, and passes the answers on in order.
 //!
 //! ```text
-//!     Source --tasks--> threads, each with its own Form --blocks--┐
+//!     Source --tasks--> threads, each with its own Answerer --blocks--┐
 //!        └─────────────────── places of the blocks ───────────────┴──> Sink, on the caller's thread
 //! ```
 //!
-//! The source's thread sends on two ways: tasks to whoever is free, and to the sink the places where their blocks will
-//! appear. The second way is bounded, and with it the memory. No answer depends on another: the bytes are those of one thread.
+//! The source's thread sends tasks to any free thread, and to the sink the places where their blocks will appear. The
+//! second channel is bounded, and so is the memory. No answer depends on another: the bytes are those of one thread.
 
 use super::Summary;
 use crate::Error;
@@ -20,23 +20,23 @@ use std::thread::{self, Builder};
 /// Tasks in flight per thread.
 const AHEAD: usize = 4;
 
-/// Where tasks come from, one after the other.
+/// Gives tasks, one after the other.
 pub trait Source: Send {
     /// Some records.
     type Task: Send;
 
-    /// The next records; none at the end.
+    /// The next records; `None` at the end.
     ///
     /// # Errors
-    /// Whatever keeps the input from being read; nothing more is asked for then.
+    /// Those of reading; this is not called again then.
     fn next(&mut self) -> io::Result<Option<Self::Task>>;
 
-    /// Whether the next records may be long in coming.
+    /// Whether the next records may take long to arrive.
     fn keeps_waiting(&self) -> bool;
 }
 
 /// Answers tasks; each thread has its own.
-pub trait Form<T> {
+pub trait Answerer<T> {
     /// Answers the records of a task.
     fn answer(&mut self, task: T, block: &mut Block);
 }
@@ -44,13 +44,13 @@ pub trait Form<T> {
 /// The answers to a task.
 #[derive(Debug, Default)]
 pub struct Block {
-    /// What is written.
+    /// The bytes to write.
     pub out: Vec<u8>,
     /// Why records were refused.
     pub refused: Vec<RefusedRecord>,
-    /// What is to be said of these records at the end; see [`Summary::merge`].
+    /// The summary of these records; see [`Summary::merge`].
     pub summary: Summary,
-    /// The states as a page shows them, if that is asked for.
+    /// Keyframes of the states, if requested.
     pub keyframes: Vec<ListedKeyframe>,
 }
 
@@ -59,7 +59,7 @@ pub struct Block {
 pub struct RefusedRecord {
     /// Why, with line and column in the input.
     pub error: Error,
-    /// The line, where a place in it is refused and it can be shown; it is short.
+    /// The line, shortened, if a place in it is refused.
     pub excerpt: Option<Excerpt>,
 }
 
@@ -68,10 +68,10 @@ pub trait Sink {
     /// Takes the next answers.
     ///
     /// # Errors
-    /// Whatever keeps them from being written; nothing more is handed on then.
+    /// Those of writing; this is not called again then.
     fn block(&mut self, block: Block) -> io::Result<()>;
 
-    /// All that was read is answered, and the input keeps us waiting or is at its end: what is buffered goes out now.
+    /// Writes what is buffered: everything read so far is answered, and the input pauses or has ended.
     ///
     /// # Errors
     /// As above.
@@ -81,30 +81,30 @@ pub trait Sink {
 /// Why not all records were answered.
 #[derive(Debug)]
 pub enum Broken {
-    /// The input could not be read on; what came before is answered.
+    /// The input could not be read further; what came before is answered.
     Input(io::Error),
     /// The sink could not take an answer.
     Output(io::Error),
 }
 
-/// Answers all tasks of `source` in `threads` threads, each with what `form` makes; with one thread none is started.
+/// Answers all tasks of `source` in `threads` threads, each with an answerer that `answerer` makes; with one thread none is started.
 ///
-/// Where fewer threads can be started, these do the work. Where the sink takes no more, this returns when the source has
-/// given the tasks that it is asked for at that moment; a sink whose source may keep it waiting ends the process itself.
+/// If fewer threads can be started, these do the work. If the sink fails, this returns after the source's current call of
+/// `next`; with a source that may wait for ever, the sink must end the process itself.
 ///
 /// # Errors
-/// Where the input cannot be read or the sink takes no more.
-pub fn run<S, F>(source: S, threads: usize, form: impl Fn() -> F + Sync, sink: &mut impl Sink) -> Result<(), Broken>
+/// Those of the source and the sink.
+pub fn run<S, F>(source: S, threads: usize, answerer: impl Fn() -> F + Sync, sink: &mut impl Sink) -> Result<(), Broken>
 where
     S: Source,
-    F: Form<S::Task>,
+    F: Answerer<S::Task>,
 {
-    if threads > 1 { in_threads(source, threads, form, sink, |_| Builder::new()) } else { alone(source, form(), sink) }
+    if threads > 1 { in_threads(source, threads, answerer, sink, |_| Builder::new()) } else { alone(source, answerer(), sink) }
 }
 
-fn alone<S: Source>(mut source: S, mut form: impl Form<S::Task>, sink: &mut impl Sink) -> Result<(), Broken> {
+fn alone<S: Source>(mut source: S, mut answerer: impl Answerer<S::Task>, sink: &mut impl Sink) -> Result<(), Broken> {
     while let Some(task) = source.next().map_err(Broken::Input)? {
-        sink.block(answer(&mut form, task)).map_err(Broken::Output)?;
+        sink.block(answer(&mut answerer, task)).map_err(Broken::Output)?;
         if source.keeps_waiting() {
             sink.idle().map_err(Broken::Output)?;
         }
@@ -112,26 +112,26 @@ fn alone<S: Source>(mut source: S, mut form: impl Form<S::Task>, sink: &mut impl
     sink.idle().map_err(Broken::Output)
 }
 
-/// A task, and where its answer goes.
+/// A task, and the channel for its answer.
 type Job<T> = (T, SyncSender<Block>);
 
 /// Starts thread `k` by `builder(k)`, of which 0 reads.
 fn in_threads<S, F>(
     source: S,
     threads: usize,
-    form: impl Fn() -> F + Sync,
+    answerer: impl Fn() -> F + Sync,
     sink: &mut impl Sink,
     builder: impl Fn(usize) -> Builder,
 ) -> Result<(), Broken>
 where
     S: Source,
-    F: Form<S::Task>,
+    F: Answerer<S::Task>,
 {
     let (jobs, queue) = channel::<Job<S::Task>>();
     let (places, ordered) = sync_channel(AHEAD * threads);
     let queue = Mutex::new(queue);
     thread::scope(|scope| {
-        // The source is handed over when all stand: whatever cannot be started, it is not lost.
+        // The source is handed over once all threads run, so that it is not lost if one cannot be started.
         let (hand_over, given) = sync_channel::<S>(1);
         let read = move || {
             let Ok(mut source) = given.recv() else { return };
@@ -139,16 +139,16 @@ where
                 let (block, place) = sync_channel(1);
                 let task = task.map(|task| jobs.send((task, block)));
                 let ended = task.is_err();
-                // A send fails where nobody listens any more: the sink has failed.
+                // A send fails if the sink has failed.
                 if places.send(task.map(|_| place)).is_err() || ended {
                     break;
                 }
             }
         };
         let work = || {
-            let mut form = form();
+            let mut answerer = answerer();
             while let Some((task, block)) = next_job(&queue) {
-                if block.send(answer(&mut form, task)).is_err() {
+                if block.send(answer(&mut answerer, task)).is_err() {
                     break;
                 }
             }
@@ -158,16 +158,16 @@ where
         if reads && work.count() > 0 {
             return match hand_over.send(source) {
                 Ok(()) => hand_on(ordered, sink),
-                // The thread that reads is there as long as it waits for the source.
-                Err(refused) => alone(refused.0, form(), sink),
+                // Unreachable: the reading thread waits for the source.
+                Err(refused) => alone(refused.0, answerer(), sink),
             };
         }
         drop(hand_over);
-        alone(source, form(), sink)
+        alone(source, answerer(), sink)
     })
 }
 
-/// The next job; none when the source has ended.
+/// The next job; `None` when the source has ended.
 fn next_job<T>(queue: &Mutex<Receiver<Job<T>>>) -> Option<Job<T>> {
     queue.lock().ok()?.recv().ok()
 }
@@ -193,9 +193,9 @@ fn hand_on(ordered: Receiver<io::Result<Receiver<Block>>>, sink: &mut impl Sink)
     }
 }
 
-fn answer<T>(form: &mut impl Form<T>, task: T) -> Block {
+fn answer<T>(answerer: &mut impl Answerer<T>, task: T) -> Block {
     let mut block = Block::default();
-    form.answer(task, &mut block);
+    answerer.answer(task, &mut block);
     block
 }
 
@@ -221,7 +221,7 @@ mod tests {
 
     struct Lines;
 
-    impl Form<u32> for Lines {
+    impl Answerer<u32> for Lines {
         fn answer(&mut self, task: u32, block: &mut Block) {
             block.out.extend(format!("{task}\n").bytes());
         }

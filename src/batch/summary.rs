@@ -1,4 +1,4 @@
-//! What is said of a whole batch at its end.
+//! The summary of a whole batch.
 
 use crate::impact::{Analysis, Outcome, Verdict};
 use crate::law::Mode;
@@ -7,10 +7,10 @@ use serde::{Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
 
-/// So many of the states with the smallest margins are named.
+/// How many states with the smallest margins are listed.
 const NAMED: usize = 10;
 
-/// So many different lists of modes are counted one by one.
+/// How many different lists of modes are counted separately.
 const LISTS: usize = 1000;
 
 /// Counts over the states of a batch. Its size is bounded, and it does not depend on how threads share the states.
@@ -22,19 +22,19 @@ pub struct Summary {
     pub refused: u64,
     /// How many of the others have which verdict.
     pub verdicts: Verdicts,
-    /// The states that are nearest to another answer, the nearest first; outcomes without impulse are not asked.
+    /// The states nearest to another answer, the nearest first; outcomes without impulse are skipped.
     pub smallest_margins: Vec<Nearest>,
-    /// Where feet slide for want of friction.
+    /// States in which feet slide because friction is too small.
     pub more_friction: MoreFriction,
-    /// Which contacts ended how, in the order of their first appearance, 1,000 different lists at most.
+    /// The modes of the contacts, in the order of their first appearance, at most 1,000 different lists.
     pub modes: Vec<ModeCount>,
-    /// Outcomes with still other lists of modes.
+    /// Outcomes with further lists of modes.
     pub other_modes: u64,
 }
 
 /// How many states have which verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[allow(missing_docs, reason = "the verdicts are told where they are defined")]
+#[allow(missing_docs, reason = "documented at their definition")]
 pub struct Verdicts {
     pub unique: u64,
     pub ambiguous: u64,
@@ -49,31 +49,31 @@ pub struct Verdicts {
 pub struct Nearest {
     /// Which state.
     #[serde(flatten)]
-    pub state: Place,
+    pub state: StateRef,
     /// The margin of its outcomes that is nearest to zero, free of units.
     pub margin: f64,
 }
 
 /// Which state of the input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Place {
-    /// What the user calls it; of a long name the beginning.
+pub struct StateRef {
+    /// Its id, shortened if it is long.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub id: Option<Value>,
     /// Its line, from 1.
     pub line: usize,
 }
 
-/// States in which a foot slides for want of friction: they are unique or ambiguous, every outcome has a sliding contact,
-/// and with infinite friction there is an outcome without.
+/// States in which a foot slides because friction is too small: they are unique or ambiguous, every outcome has a sliding
+/// contact, and with infinite friction there is an outcome without one.
 ///
-/// The friction that a state needs is the greatest |L_t| / L_n of the contacts that stick then; of several such outcomes
-/// the one that needs least counts.
+/// The friction that a state needs is the greatest |L_t| / L_n of the contacts that stick in that outcome; of several such
+/// outcomes, the one that needs least.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MoreFriction {
     /// How many.
     pub states: u64,
-    /// The one that needs most, the first of equal ones.
+    /// The one that needs most; of equal ones the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub greatest: Option<Needed>,
 }
@@ -83,8 +83,8 @@ pub struct MoreFriction {
 pub struct Needed {
     /// Which state.
     #[serde(flatten)]
-    pub state: Place,
-    /// The coefficient, or "infinite" where a contact sticks that nothing presses on the ground.
+    pub state: StateRef,
+    /// The coefficient, or "infinite" if a contact sticks without a normal impulse.
     #[serde(serialize_with = "coefficient")]
     pub friction: f64,
 }
@@ -101,10 +101,10 @@ pub struct ModeCount {
 }
 
 impl Summary {
-    /// Counts a state that has outcomes; `friction_needed` where it is one of [`MoreFriction`].
+    /// Counts a state that has outcomes; `friction_needed` if it is one of [`MoreFriction`].
     pub fn count(
         &mut self,
-        state: impl Fn() -> Place,
+        state: impl Fn() -> StateRef,
         impact: &Impact,
         analysis: &Analysis,
         friction_needed: Option<f64>,
@@ -138,7 +138,7 @@ impl Summary {
         self.refused += 1;
     }
 
-    /// Adds what is known of the states that follow.
+    /// Adds the summary of the states that follow.
     pub fn merge(&mut self, following: Self) {
         self.states += following.states;
         self.refused += following.refused;
@@ -153,7 +153,7 @@ impl Summary {
         }
         for list in following.modes {
             let known = |known: &&mut ModeCount| known.modes == list.modes && known.contacts == list.contacts;
-            // The limit holds here alone: applied to parts, it would let the parts be seen.
+            // The limit holds only here: applied to parts, the result would depend on them.
             let room = self.modes.len() < LISTS;
             match self.modes.iter_mut().find(known) {
                 Some(known) => known.outcomes += list.outcomes,
@@ -164,8 +164,8 @@ impl Summary {
         self.other_modes += following.other_modes;
     }
 
-    fn near(&mut self, state: impl Fn() -> Place, outcomes: &[Outcome]) {
-        // Where nothing presses on anything, every slack of an impulse is zero, and that says nothing.
+    fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {
+        // Without any impulse all of its slacks are zero, which says nothing.
         let pressed = |outcome: &&Outcome| outcome.impulse.iter().flatten().any(|&entry| entry != 0.0);
         let margins =
             outcomes.iter().filter(|outcome| outcome.decided).filter(pressed).filter_map(|outcome| outcome.margin);
@@ -176,7 +176,7 @@ impl Summary {
         }
     }
 
-    /// Inserts behind those that are as near: they came earlier.
+    /// Inserts after those that are equally near, which came earlier.
     fn insert(&mut self, near: Nearest) {
         let at = self.smallest_margins.partition_point(|other| other.margin.abs() <= near.margin.abs());
         if at < NAMED {
@@ -221,7 +221,7 @@ fn coefficient<S: Serializer>(friction: &f64, serializer: S) -> Result<S::Ok, S:
     if friction.is_finite() { serializer.serialize_f64(*friction) } else { serializer.serialize_str("infinite") }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for StateRef {
     /// `k17 (line 17)`, or `line 17`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.id {
@@ -233,16 +233,16 @@ impl fmt::Display for Place {
 }
 
 /// A margin with two digits.
-struct Told(f64);
+struct TwoDigits(f64);
 
-impl fmt::Display for Told {
+impl fmt::Display for TwoDigits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if (0.01..10.0).contains(&self.0.abs()) { write!(f, "{:.2}", self.0) } else { write!(f, "{:.1e}", self.0) }
     }
 }
 
-/// So many of each kind are told to people.
-const TOLD: usize = 5;
+/// How many of each kind the text shows.
+const SHOWN: usize = 5;
 
 impl fmt::Display for Summary {
     /// A few lines for people.
@@ -261,22 +261,22 @@ impl fmt::Display for Summary {
         let plural = if self.states == 1 { "" } else { "s" };
         writeln!(f, "{} state{plural}: {}", self.states, counts.collect::<Vec<_>>().join(", "))?;
         if !self.smallest_margins.is_empty() {
-            let near = self.smallest_margins.iter().take(TOLD);
-            let near = near.map(|Nearest { state, margin }| format!("{} {state}", Told(*margin)));
+            let near = self.smallest_margins.iter().take(SHOWN);
+            let near = near.map(|Nearest { state, margin }| format!("{} {state}", TwoDigits(*margin)));
             writeln!(f, "smallest margins: {}", near.collect::<Vec<_>>().join(", "))?;
         }
         if let Some(Needed { state, friction }) = &self.more_friction.greatest {
             let states = self.more_friction.states;
             let friction = if friction.is_finite() { format!("{friction:.3}") } else { "infinite".to_owned() };
-            writeln!(f, "all outcomes slide for want of friction: {states}; most is needed by {state}: {friction}")?;
+            writeln!(f, "all outcomes slide because friction is too small: {states}; most is needed by {state}: {friction}")?;
         }
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));
-        for list in lists.iter().take(TOLD) {
+        for list in lists.iter().take(SHOWN) {
             let ends = list.contacts.iter().zip(&list.modes).map(|(contact, mode)| format!("{contact} {mode}"));
             writeln!(f, "{:>8} x {}", list.outcomes, ends.collect::<Vec<_>>().join(", "))?;
         }
-        let rest: u64 = lists.iter().skip(TOLD).map(|list| list.outcomes).sum::<u64>() + self.other_modes;
+        let rest: u64 = lists.iter().skip(SHOWN).map(|list| list.outcomes).sum::<u64>() + self.other_modes;
         if rest > 0 {
             writeln!(f, "{rest:>8} x other modes")?;
         }

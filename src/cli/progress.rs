@@ -44,7 +44,7 @@ impl Progress {
     }
 
     /// Writes to standard error without touching the bar.
-    pub fn beside<T>(&self, write: impl FnOnce() -> T) -> T {
+    pub fn suspended<T>(&self, write: impl FnOnce() -> T) -> T {
         match &self.0 {
             Some(bar) => bar.suspend(write),
             None => write(),

@@ -61,9 +61,9 @@ impl<'a, W: Write> OutputSink<'a, W> {
     fn report(&mut self, RefusedRecord { error, excerpt }: RefusedRecord) {
         self.refused += 1;
         if self.refused <= REPORTED {
-            self.progress.beside(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
+            self.progress.suspended(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
         } else if self.refused == REPORTED + 1 {
-            self.progress.beside(|| {
+            self.progress.suspended(|| {
                 // A failure to write to standard error cannot be reported anywhere.
                 let _ = writeln!(io::stderr(), "note: further refusals stand in the output alone");
             });

@@ -79,12 +79,12 @@ pub(super) fn answer_all<A: Answers>(
         let mut out = Vec::new();
         let answer = match format {
             Format::Json => answers.json(document.text, &mut out),
-            Format::Text => answers.text(document.text, output.palette()).map(|(text, beside)| {
+            Format::Text => answers.text(document.text, output.palette()).map(|(text, error)| {
                 if at > 0 {
                     out.push(b'\n');
                 }
                 out.extend_from_slice(with_flags(&text).as_bytes());
-                beside
+                error
             }),
         };
         if let (Err(error), Format::Json) = (&answer, format) {

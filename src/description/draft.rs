@@ -4,10 +4,9 @@
 //! urdf-rs wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
 //! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
 
-use super::named::{EXPAND, Named, WORLD, undefined_world};
+use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, undefined_world};
 use super::repair::Repaired;
 use super::strict::{Range, copy, copy_axis, copy_origin, copy_required, write_attribute};
-use super::tally::Tally;
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
 use super::{Ignored, JointKind, joint_place, link_place};
 use crate::error::{Location, Reason, Result};
@@ -97,8 +96,8 @@ fn read_document(document: &Document<'_>) -> Result<Draft> {
     refuse_xacro(robot)?;
 
     let mut cursor = Cursor::new(text);
-    let (mut links, mut joints) = (Named::new("link"), Named::new("joint"));
-    let mut ignored = Tally::default();
+    let (mut links, mut joints) = (ByName::new("link"), ByName::new("joint"));
+    let mut ignored = IgnoredCount::default();
     for element in robot.children().filter(Node::is_element) {
         let location = cursor.locate(element.range().start);
         match tag(robot, element) {
@@ -154,7 +153,7 @@ fn read_document(document: &Document<'_>) -> Result<Draft> {
 }
 
 /// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
-fn refuse_many_joints(joints: &Named) -> Result<()> {
+fn refuse_many_joints(joints: &ByName) -> Result<()> {
     let mut all = joints.elements.iter().map(|&(_, element, _)| element);
     let mut moving = all.clone().filter(|element| element.attribute("type") != Some("fixed"));
     for (what, limit, too_many) in
@@ -233,7 +232,7 @@ fn read_link(
     name: &str,
     element: Node<'_, '_>,
     location: Location,
-    ignored: &mut Tally,
+    ignored: &mut IgnoredCount,
     strict: &mut String,
 ) -> Result<Link> {
     strict.push_str("<link name=\"\">");
@@ -325,7 +324,7 @@ struct JointElement<'a, 'input> {
 }
 
 impl JointElement<'_, '_> {
-    fn read(self, links: &Named, joints: &Named, ignored: &mut Tally, strict: &mut String) -> Result<Joint> {
+    fn read(self, links: &ByName, joints: &ByName, ignored: &mut IgnoredCount, strict: &mut String) -> Result<Joint> {
         let Self { name, element, location } = self;
         let kind = joint_kind(element)?;
         let parent = links.find(xml::required_child(element, "parent")?, "link")?;

@@ -16,7 +16,7 @@ pub(super) fn connect(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
                 "link \"{}\" would have two parents: it is the child of joint \"{}\" too",
                 links[joint.child].name, joints[first].name
             );
-            return Err(joint.refuse(Reason::NotATree(reason)).hint("cut the loop open: a link hangs on one joint"));
+            return Err(joint.refuse(Reason::NotATree(reason)).hint("cut the loop open: a link has one parent joint"));
         }
         links[joint.child].joint = Some(index);
     }
@@ -74,7 +74,7 @@ fn first_in_cycle(links: &[Link], joints: &[Joint]) -> Option<usize> {
 /// The refusal of the cycle through `link`.
 fn cycle(links: &[Link], joints: &[Joint], link: usize) -> crate::error::Error {
     let name = &links[link].name;
-    let reason = Reason::NotATree(format!("link \"{name}\" hangs on itself: the joints form a cycle"));
+    let reason = Reason::NotATree(format!("link \"{name}\" is its own ancestor: the joints form a cycle"));
     match links[link].joint {
         Some(joint) => joints[joint].refuse(reason).hint("cut the cycle open: one link must be no joint's child"),
         None => links[link].refuse(reason),

@@ -87,7 +87,7 @@ impl<'t> Iterator for Documents<'t> {
             self.at += 1;
             self.skip_blanks();
         } else if self.within == Within::List {
-            // Neither a comma nor the list's end: what follows cannot be told apart.
+            // Neither a comma nor the list's end: the rest cannot be split.
             self.within = Within::Stream;
             return Some(self.take(self.text.len()));
         }

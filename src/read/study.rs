@@ -60,7 +60,7 @@ impl<'t> Study<'t> {
     ///
     /// # Errors
     /// Broken JSON, unknown or doubled fields, no parameter or more than two, a range that is empty, fewer than two samples
-    /// or more than ten million, names that expressions cannot use. The error tells place, line and column in `text`.
+    /// or more than ten million, names that expressions cannot use. The error gives place, line and column in `text`.
     pub fn from_json(text: &'t str) -> Result<Self> {
         let tree = Value::parse(text)?;
         let root = Node::root(&tree, text);
@@ -263,10 +263,6 @@ fn missing(node: Node, what: &str, hint: &str) -> Error {
 mod tests {
     use super::*;
 
-    fn refused(text: &str) -> String {
-        Study::from_json(text).expect_err(text).to_string()
-    }
-
     #[test]
     fn a_parameter_that_nothing_names_is_told() {
         let text = r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 2}, "b": {"from": 0, "to": 1, "steps": 2}},
@@ -281,37 +277,5 @@ mod tests {
         let [parameter] = study.parameters() else { panic!("one") };
         assert_eq!((parameter.from, parameter.to, parameter.steps), (-0.5, std::f64::consts::PI, 3));
         assert_eq!((parameter.sample(0), parameter.sample(2)), (-0.5, std::f64::consts::PI));
-    }
-
-    #[test]
-    fn constants_that_need_each_other_are_refused() {
-        let of = |constants: &str| refused(&format!("{{\"constants\": {constants}, \"state\": {{}}}}"));
-        let circle = "1:2: constants: each of these constants needs another one, or itself";
-        assert_eq!(of(r#"{"a": "b", "c": 1, "b": "2*a + c"}"#), format!("{circle}: a, b"));
-        assert_eq!(of(r#"{"a": "sin(a)"}"#), format!("{circle}: a"));
-    }
-
-    #[test]
-    fn what_is_no_study_is_refused_with_its_place() {
-        let of = |parameters: &str| format!("{{\"parameters\": {parameters}, \"state\": {{}}}}");
-        assert_eq!(refused("{\"state\": {}}"), "1:1: \"parameters\" is missing");
-        assert_eq!(refused(&of("{}")), "1:2: parameters: a study varies one or two parameters, not 0");
-        assert_eq!(
-            refused(&of("{\"a\": {\"from\": 1, \"to\": 1, \"steps\": 5}}")),
-            "1:17: parameters.a: the range from 1.0 to 1.0 is empty or endless"
-        );
-        assert_eq!(
-            refused(&of("{\"a\": {\"from\": 0, \"to\": 1, \"steps\": 1}}")),
-            "1:43: parameters.a.steps: the number of samples must be a whole number from 2 to 10000000, not 1"
-        );
-        assert_eq!(
-            refused(&of("{\"a b\": {\"from\": 0, \"to\": 1, \"steps\": 2}}")),
-            "1:17: parameters.a b: \"a b\" is no name that an expression can use"
-        );
-        assert_eq!(
-            refused(&of("{\"a\": {\"from\": 0, \"to\": \"1/b\", \"steps\": 2}}")),
-            "1:43: parameters.a.to: the expression has no value: unknown variable: b"
-        );
-        assert_eq!(refused("{\"stat\": {}}"), "1:2: stat: unknown field \"stat\"");
     }
 }

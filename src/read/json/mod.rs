@@ -5,8 +5,8 @@
 //! ```
 //!
 //! A [`Value`] keeps objects as lists, so that a key given twice is seen, and borrows keys and strings, so that their
-//! place in the text is known without being stored. A [`Node`] lives on the stack of whoever reads it; its way back to the
-//! root costs nothing until an [`Error`] has to be told.
+//! place in the text is known without being stored. A [`Node`] lives on its reader's stack; its path to the root costs
+//! nothing until an [`Error`] needs it.
 
 mod read;
 mod syntax;
@@ -51,7 +51,7 @@ impl<'t> Value<'t> {
     }
 }
 
-/// How a node hangs on its parent.
+/// The step from a parent to a node.
 #[derive(Debug, Clone, Copy)]
 enum Step<'n> {
     Root { text: &'n str, names: Option<&'n Names> },
@@ -226,7 +226,7 @@ impl<'n> Node<'n> {
                 nearest.hint("only pi, e and functions such as sin and atan2 are known here")
             }
             (None, known) => nearest
-                .hint(format!("known here are {}, beside pi, e and functions such as sin and atan2", known.join(", "))),
+                .hint(format!("known here are {}, pi, e and functions such as sin and atan2", known.join(", "))),
         }
     }
 

@@ -7,7 +7,7 @@ use serde_json::Number;
 use std::borrow::Cow;
 use std::fmt;
 
-/// The `id` of an object that may be broken further on; none where none can be read.
+/// The `id` of an object that may be malformed after it; `None` if none can be read.
 pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
     let mut id = None;
     // Whether the rest can be read does not matter here.

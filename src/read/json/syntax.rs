@@ -1,4 +1,4 @@
-//! What serde_json refuses, told with its place and remedy.
+//! Errors of serde_json, with place and hint.
 
 use super::{Value, line_and_column};
 use crate::{Error, Reason};
@@ -11,8 +11,8 @@ pub(super) fn refusal(text: &str, error: &serde_json::Error) -> Error {
     let offset = start + byte.saturating_sub(1);
     let (_, column) = line_and_column(text, offset);
 
-    let told = error.to_string();
-    let message = match told.split(" at line ").next().unwrap_or_default() {
+    let whole = error.to_string();
+    let message = match whole.split(" at line ").next().unwrap_or_default() {
         "recursion limit exceeded" => {
             return Error::new(Reason::Syntax("brackets are nested too deep".to_owned())).on(line, column);
         }

@@ -71,8 +71,8 @@ impl Header {
     ///
     /// # Errors
     /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
-    /// robot does not have, a base in three dimensions that is half given or given beside a pitch, velocities that are missing
-    /// or one too many (see [`Rates`]). The error tells the column's place in `record`, on line 1.
+    /// robot does not have, a base in three dimensions that is incomplete or has a pitch as well, velocities that are missing
+    /// or superfluous (see [`Rates`]). The error gives the column's place in `record`, on line 1.
     pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
         let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let names = names(record)?;
@@ -279,7 +279,7 @@ fn column(name: &str, robot: &Robot) -> Result<Column> {
 /// Why velocities of a base in three dimensions are refused, and the remedy: engines give them in the world's axes, the
 /// body's, or both.
 fn spatial_velocity() -> Reason {
-    Reason::Unsupported("velocities beside a base in three dimensions are not read".into())
+    Reason::Unsupported("velocities of a robot whose base is in three dimensions are not read".into())
 }
 
 const SPATIAL_VELOCITY: &str =

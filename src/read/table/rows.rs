@@ -58,7 +58,7 @@ impl Carried {
         Self(fields.collect::<Vec<_>>().into())
     }
 
-    /// The fields in the order of [`Header::carried`]; none where the row could not be read.
+    /// The fields in the order of [`Header::carried`]; empty if the row could not be read.
     pub fn fields(&self) -> impl Iterator<Item = &[u8]> {
         self.0.iter()
     }
@@ -74,7 +74,7 @@ impl<'h> Rows<'h> {
         Self { header, reader: reader(), record: ByteRecord::new() }
     }
 
-    /// The row in `record`, which begins on `line` of the table and may end with a line break; none where it is blank.
+    /// The row in `record`, which begins on `line` of the table and may end with a line break; `None` if it is blank.
     ///
     /// # Errors
     /// [`Reason::Syntax`] for a quote that is not closed and for a line break outside of quotes.
@@ -144,7 +144,7 @@ impl Row<'_> {
     ///
     /// # Errors
     /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that is
-    /// both placed by a stance and given, a quaternion that is none. The error tells column, line and place.
+    /// both placed by a stance and given, an invalid quaternion. The error gives column, line and place.
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
         let (fields, columns) = (self.record.len(), self.header.columns.len());
         if fields != columns {
@@ -229,7 +229,7 @@ impl Row<'_> {
         robot.link(name).map(Some).ok_or_else(unknown)
     }
 
-    /// Refuses a base's coordinate beside a stance.
+    /// Refuses a coordinate of the base that the stance already gives.
     fn placed_base(&self, at: usize, coordinate: &str) -> Result<()> {
         if self.given(at)?.is_none() {
             return Ok(());

@@ -50,7 +50,7 @@ fn the_summary_counts_and_names() {
     let for_people = "\
 6 states: 3 unique, 1 without impact, 1 without contact, 1 refused
 smallest margins: 0.31 1 (line 1), 0.41 3 (line 3), 0.50 2 (line 2)
-all outcomes slide for want of friction: 2; most is needed by 3 (line 3): 2.000
+all outcomes slide because friction is too small: 2; most is needed by 3 (line 3): 2.000
        2 x disc stick
        1 x disc slide+
        1 x disc slide-

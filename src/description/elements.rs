@@ -1,6 +1,6 @@
-//! Elements of a file by their names.
+//! Elements of a file by name, and the count of those that are ignored.
 
-use super::xml;
+use super::{Ignored, xml};
 use crate::error::{Location, Reason, Result};
 use roxmltree::Node;
 use std::collections::HashMap;
@@ -11,13 +11,13 @@ pub(super) const WORLD: &str = "world";
 pub(super) const EXPAND: &str = "expand the file first: xacro FILE > robot.urdf";
 
 /// Elements of one kind by name.
-pub(super) struct Named<'a, 'input> {
+pub(super) struct ByName<'a, 'input> {
     what: &'static str,
     pub(super) elements: Vec<(&'a str, Node<'a, 'input>, Location)>,
     pub(super) by_name: HashMap<&'a str, usize>,
 }
 
-impl<'a, 'input> Named<'a, 'input> {
+impl<'a, 'input> ByName<'a, 'input> {
     pub(super) fn new(what: &'static str) -> Self {
         Self { what, elements: Vec::new(), by_name: HashMap::new() }
     }
@@ -42,7 +42,7 @@ impl<'a, 'input> Named<'a, 'input> {
 }
 
 /// The joint whose parent link `world` no element defines, as in many files: the world needs no description.
-pub(super) fn undefined_world(links: &Named, joints: &Named) -> Option<Location> {
+pub(super) fn undefined_world(links: &ByName, joints: &ByName) -> Option<Location> {
     if links.by_name.contains_key(WORLD) {
         return None;
     }
@@ -51,4 +51,31 @@ pub(super) fn undefined_world(links: &Named, joints: &Named) -> Option<Location>
         parents.any(|parent| parent.attribute("link") == Some(WORLD))
     };
     joints.elements.iter().find(|(_, element, _)| is_its_child(*element)).map(|&(_, _, location)| location)
+}
+
+/// The most kinds of ignored elements.
+const MOST_IGNORED: usize = 1000;
+
+/// Counts of ignored elements.
+#[derive(Default)]
+pub(super) struct IgnoredCount {
+    pub(super) kinds: Vec<Ignored>,
+    by_tag: HashMap<(&'static str, String), usize>,
+}
+
+impl IgnoredCount {
+    /// Counts `element`, a child of a `parent`.
+    pub(super) fn count(&mut self, parent: &'static str, element: Node<'_, '_>) -> Result<()> {
+        let tag = element.tag_name().name();
+        let kind = *self.by_tag.entry((parent, tag.into())).or_insert(self.kinds.len());
+        if kind == MOST_IGNORED {
+            let reason = Reason::TooMany { what: "kinds of unknown elements", limit: MOST_IGNORED };
+            return Err(xml::refuse(element, reason));
+        }
+        match self.kinds.get_mut(kind) {
+            Some(known) => known.count += 1,
+            None => self.kinds.push(Ignored { parent, tag: tag.into(), count: 1 }),
+        }
+        Ok(())
+    }
 }
