@@ -15,7 +15,7 @@ mod summary;
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, Numbered, RECORD_LIMIT};
 pub use recording::{Landing, Origin, Recorded, Recording, samples};
-pub use run::{Block, Broken, Answerer, RefusedRecord, Sink, Source, run};
+pub use run::{Answerer, Block, Broken, RefusedRecord, Sink, Source, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
 
 use crate::draw::{Keyframe, ListedKeyframe};
@@ -166,7 +166,8 @@ impl<'q> Batch<'q> {
         let Question { robot, detail, header, columns, .. } = *self.question;
         let impact = self.pipeline.impact(state).map_err(|error| self.with_hint_for_tables(error))?;
         let mut report = Report::of_state(robot, state, &impact, detail)?;
-        report.touchdown = around.touchdown.zip(self.question.touchdowns).map(|(landing, choice)| landing.record(choice));
+        report.touchdown =
+            around.touchdown.zip(self.question.touchdowns).map(|(landing, choice)| landing.record(choice));
         if let Some(columns) = columns {
             columns.append_result(&report, around.carried, &mut block.out)?;
         } else {

@@ -99,7 +99,11 @@ where
     S: Source,
     F: Answerer<S::Task>,
 {
-    if threads > 1 { in_threads(source, threads, answerer, sink, |_| Builder::new()) } else { alone(source, answerer(), sink) }
+    if threads > 1 {
+        in_threads(source, threads, answerer, sink, |_| Builder::new())
+    } else {
+        alone(source, answerer(), sink)
+    }
 }
 
 fn alone<S: Source>(mut source: S, mut answerer: impl Answerer<S::Task>, sink: &mut impl Sink) -> Result<(), Broken> {

@@ -268,7 +268,10 @@ impl fmt::Display for Summary {
         if let Some(Needed { state, friction }) = &self.more_friction.greatest {
             let states = self.more_friction.states;
             let friction = if friction.is_finite() { format!("{friction:.3}") } else { "infinite".to_owned() };
-            writeln!(f, "all outcomes slide because friction is too small: {states}; most is needed by {state}: {friction}")?;
+            writeln!(
+                f,
+                "all outcomes slide because friction is too small: {states}; most is needed by {state}: {friction}"
+            )?;
         }
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));

@@ -1,8 +1,8 @@
 //! Reads a contact problem given as matrices.
 
 use super::state as read;
-use crate::impact::problem::check_matrix_size;
 use crate::impact::ContactProblem;
+use crate::impact::problem::check_matrix_size;
 use crate::law::Friction;
 use crate::read::json::{Node, Value};
 use crate::state::Defaults;

@@ -37,10 +37,7 @@ fn plane_hold_and_base_shape_the_robot() {
     const A1: &str = "tests/data/robots/a1/a1.urdf";
     let inspect = |options: &[&str]| heelstrike(&[&["inspect", A1, "--format", "json"], options].concat());
     let yz = inspect(&["--plane", "yz"]).line();
-    assert_eq!(
-        (&yz["plane"], &yz["plane_because"]),
-        (&"yz".into(), &"as asked; plane xz would keep 8 joints".into())
-    );
+    assert_eq!((&yz["plane"], &yz["plane_because"]), (&"yz".into(), &"as asked; plane xz would keep 8 joints".into()));
     let names: Vec<_> = yz["joints"].as_array().expect("joints").iter().map(|joint| &joint["name"]).collect();
     assert_eq!(names, ["FR_hip_joint", "FL_hip_joint", "RR_hip_joint", "RL_hip_joint"]);
     // Their axis is +x, the plane's normal -x.

@@ -225,8 +225,9 @@ impl<'n> Node<'n> {
             (None, known) if known.is_empty() => {
                 nearest.hint("only pi, e and functions such as sin and atan2 are known here")
             }
-            (None, known) => nearest
-                .hint(format!("known here are {}, pi, e and functions such as sin and atan2", known.join(", "))),
+            (None, known) => {
+                nearest.hint(format!("known here are {}, pi, e and functions such as sin and atan2", known.join(", ")))
+            }
         }
     }
 
