@@ -7,10 +7,10 @@
 //!
 //! Nothing here opens a file; only [`run`] starts threads, if asked to.
 
+mod summary;
+mod run;
 mod chunk;
 mod recording;
-mod run;
-mod summary;
 
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, Numbered, RECORD_LIMIT};

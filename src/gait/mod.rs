@@ -52,16 +52,15 @@
 
 mod carry;
 mod clip;
-mod find;
 mod points;
+mod find;
 mod rates;
+pub mod spatial;
 mod sagittal;
 
 pub use find::{Touchdowns, find};
 pub use rates::{Difference, Differentiated, rates};
 pub use sagittal::{Dropped, Sagittal, sagittal};
-
-pub mod spatial;
 
 use crate::contact::Feet;
 use crate::gait::spatial::Spatial;

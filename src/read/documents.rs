@@ -1,4 +1,4 @@
-//! The objects of a text: one, several after each other, or a list of them.
+//! Splits a text into JSON objects: one, several after each other, or a list of them.
 
 use crate::error::Location;
 use crate::read::json::line_and_column;
@@ -8,7 +8,7 @@ use serde::de::IgnoredAny;
 /// One object of a text that may hold several.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Document<'t> {
-    /// Its own text, or what is left of a broken one.
+    /// Its text, even if it is malformed.
     pub text: &'t str,
     /// The line on which it begins, from 1.
     pub line: usize,
@@ -17,7 +17,7 @@ pub struct Document<'t> {
 }
 
 impl Document<'_> {
-    /// Puts an error of this document where it stands in the whole text.
+    /// Moves an error of this document to its place in the whole text.
     pub fn locate(&self, error: Error) -> Error {
         match error.location() {
             Some(Location { line: 1, column }) => error.on(self.line, self.column + column - 1),
@@ -27,9 +27,9 @@ impl Document<'_> {
     }
 }
 
-/// The objects of `text` in their order: one, several with or without line breaks between, or a list of them.
+/// The objects of `text` in order: one, several with or without line breaks between them, or a list.
 ///
-/// A broken object is given as far as the next line that begins with `{`, which is taken for the next object.
+/// A malformed object extends to the next line that begins with `{`, where the next object is assumed to begin.
 pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
     let start = text.len() - text.trim_start().len();
     let within = if text[start..].starts_with('[') { Within::FreshList } else { Within::Stream };
@@ -54,11 +54,11 @@ pub fn utf8(bytes: &[u8]) -> Result<&str> {
     }
 }
 
-/// What surrounds the next object.
+/// The surroundings of the next object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Within {
     Stream,
-    /// A list of which no entry was read yet.
+    /// A list before its first entry.
     FreshList,
     List,
 }
@@ -117,7 +117,7 @@ impl<'t> Documents<'t> {
     }
 
     fn take(&mut self, end: usize) -> Document<'t> {
-        // The place counts on from the last document's, so that many in one line cost no more than in many lines.
+        // Counting goes on from the last document, so that many in one line take linear time.
         let (lines, column) = line_and_column(&self.text[self.counted..], self.at - self.counted);
         self.line += lines - 1;
         self.column = if lines == 1 { self.column + column - 1 } else { column };

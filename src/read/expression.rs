@@ -1,26 +1,26 @@
-//! Numbers that are written as expressions of names (the only user of nanoexpr).
+//! Evaluates numbers written as expressions of names (the only user of nanoexpr).
 //!
 //! ```text
 //!     "-(alpha + off)^2 / 2"  --names, pi, e, sin, cos, tan, atan2, sqrt, ...-->  f64
 //! ```
 //!
-//! `^` and `**` are powers and bind stronger than a sign: -a^2 = -(a^2). Functions are those of libm, so that an expression
-//! has the same value on every machine.
+//! `^` and `**` are powers and bind stronger than a sign: -a^2 = -(a^2). The functions are libm's, so that an expression has
+//! the same value on every machine.
 
 use nanoexpr::{Context, ErrorKind, Math, Variables};
 
-/// Names and their values; they stand before pi, e and the functions.
+/// Names and their values; they hide pi, e and functions of the same name.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Names(Vec<(String, f64)>);
 
-/// What is wrong with an expression, and where.
+/// Why an expression has no value, and where.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fault {
-    /// In words.
+    /// The reason.
     pub what: String,
-    /// How many characters of the expression come before it.
+    /// How many characters of the expression precede it.
     pub before: usize,
-    /// The name that is not known, if that is it.
+    /// The unknown name, if there is one.
     pub unknown: Option<String>,
 }
 
@@ -60,14 +60,14 @@ impl Names {
     }
 }
 
-/// The functions that an expression can call. A `log` is none of them: it is natural to some and decimal to others.
+/// The functions that an expression can call. `log` is not among them: it is natural to some and decimal to others.
 pub(crate) const FUNCTIONS: [&str; 31] = [
     "sqrt", "cbrt", "abs", "sign", "exp", "ln", "log2", "log10", "sin", "cos", "tan", "asin", "acos", "atan", "atan2",
     "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "floor", "ceil", "round", "trunc", "pow", "hypot", "min", "max",
     "clamp", "fact",
 ];
 
-/// Of nanoexpr's constants all, of its functions those that are offered.
+/// All constants of nanoexpr, and its functions as far as they are offered.
 struct Offered;
 
 impl Context<f64> for Offered {
@@ -80,13 +80,13 @@ impl Context<f64> for Offered {
     }
 }
 
-/// Whether an expression can use it: letters, digits and underscores, no digit first.
+/// Whether an expression can use the name: letters, digits and underscores, no digit first.
 pub(crate) fn is_name(text: &str) -> bool {
     let letter = |c: char| c.is_ascii_alphabetic() || c == '_';
     text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
 }
 
-/// The names that an expression is made of, those of functions as well.
+/// The names in an expression, including functions.
 pub(crate) fn names_in(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|piece| is_name(piece))
 }

@@ -1,4 +1,4 @@
-//! From text to states, problems and studies: JSON, its expressions, and CSV.
+//! Reads states, problems and studies from JSON, with expressions, and from CSV.
 
 pub mod expression;
 pub(crate) mod json;

@@ -1,4 +1,4 @@
-//! What is varied: parameters, and a state and a robot whose numbers are expressions of them.
+//! Reads studies: parameters, and a state and a robot whose numbers are expressions of them.
 
 use super::state as read;
 use super::variation;
@@ -27,7 +27,7 @@ pub struct Study<'t> {
     constants: Names,
 }
 
-/// A number that is varied.
+/// A parameter of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
     /// Its name in expressions.
@@ -56,10 +56,10 @@ impl Parameter {
 }
 
 impl<'t> Study<'t> {
-    /// Reads a study from one JSON object. Its state and robot are read for each point anew, and refused there.
+    /// Reads a study from one JSON object. Its state and robot are read, and refused, at each point.
     ///
     /// # Errors
-    /// Broken JSON, unknown or doubled fields, no parameter or more than two, a range that is empty, fewer than two samples
+    /// Broken JSON, unknown or duplicate fields, no parameter or more than two, a range that is empty, fewer than two samples
     /// or more than ten million, names that expressions cannot use. The error gives place, line and column in `text`.
     pub fn from_json(text: &'t str) -> Result<Self> {
         let tree = Value::parse(text)?;
@@ -98,7 +98,7 @@ impl<'t> Study<'t> {
         &self.parameters
     }
 
-    /// Parameters that no expression of the state or the robot names: nothing changes with them.
+    /// Parameters that no expression of the state or the robot uses.
     pub fn unused(&self) -> Vec<&str> {
         let mut texts = Vec::new();
         if let Value::Object(fields) = &self.tree {
@@ -115,7 +115,7 @@ impl<'t> Study<'t> {
         root.fields("field").is_ok_and(|mut fields| fields.any(|field| field.key() == "robot"))
     }
 
-    /// The names that expressions are made of, at a point of the parameters.
+    /// The values of parameters and constants at a point.
     pub(crate) fn names(&self, point: &[f64]) -> Names {
         let mut names = self.constants.clone();
         for (parameter, &value) in self.parameters.iter().zip(point) {
@@ -148,7 +148,7 @@ impl<'t> Study<'t> {
     }
 }
 
-/// Each constant may be an expression of the others, in whatever order they stand: many writers of JSON sort names.
+/// Each constant may be an expression of the others, in any order, because many JSON writers sort names.
 fn read_constants(tree: &Value, text: &str, constants: &mut Names) -> Result<()> {
     let plain = Node::root(tree, text);
     let Some(field) = plain.fields("field")?.find(|field| field.key() == "constants") else { return Ok(()) };
@@ -181,7 +181,7 @@ fn read_constants(tree: &Value, text: &str, constants: &mut Names) -> Result<()>
     Ok(())
 }
 
-/// The refusal of a constant, which may be that it needs a parameter.
+/// The refusal of a constant, with a hint if it uses a parameter.
 fn beside_parameters(root: Node, entry: Node, error: Error) -> Error {
     let parameters = root.fields("field").ok().and_then(|mut fields| fields.find(|field| field.key() == "parameters"));
     let Some(field) = parameters else { return error };

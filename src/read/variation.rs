@@ -1,10 +1,10 @@
-//! A robot with other numbers than its file's.
+//! Reads the numbers of a robot that a study varies.
 
 use crate::description::{Collision, Description, Geometry, Inertial, Pose};
 use crate::read::json::Node;
 use crate::{Error, Reason, Result};
 
-/// The fields of a link and of a joint that can be varied, for hints.
+/// The fields of links and joints that can be varied, for hints.
 const OF_LINK: [&str; 4] = ["mass", "com", "inertia", "radius"];
 const OF_JOINT: [&str; 1] = ["origin"];
 

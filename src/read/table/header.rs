@@ -1,7 +1,6 @@
-//! What each column of a table is, resolved once against the robot.
+//! Reads the header of a table: the meaning of each column, resolved once against the robot.
 
 use super::records::place_of;
-use super::rows::Rows;
 use crate::robot::{Base, Plane, Still};
 use crate::{Error, Reason, Result, Robot};
 use std::collections::HashSet;
@@ -9,10 +8,10 @@ use std::collections::HashSet;
 /// The entries of a floating base in the order of q.
 const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
 
-/// What recordings of three-dimensional robots have instead of the pitch.
+/// The orientation of a base in three dimensions, instead of the pitch.
 const QUATERNION: [&str; 4] = ["base_qw", "base_qx", "base_qy", "base_qz"];
 
-/// What they have besides.
+/// Its lateral position.
 const SIDEWAYS: &str = "base_y";
 
 /// Where the velocities of a table come from.
@@ -30,7 +29,7 @@ pub enum Rates {
 pub struct Header {
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<Column>,
-    /// The columns that are carried through.
+    /// The columns that are copied to the results.
     pub(crate) carried: Vec<usize>,
     pub(crate) id: Option<usize>,
     pub(crate) time: Option<usize>,
@@ -48,7 +47,7 @@ pub(crate) struct SpatialColumns {
     pub plane: Plane,
 }
 
-/// What a column holds; coordinates are indices into q.
+/// The meaning of a column; coordinates are indices into q.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Column {
     Id,
@@ -106,11 +105,6 @@ impl Header {
         Ok(header)
     }
 
-    /// What reads the rows of the table.
-    pub fn rows(&self) -> Rows<'_> {
-        Rows::new(self)
-    }
-
     /// Whether there is a column `time`.
     pub fn has_time(&self) -> bool {
         self.time.is_some()
@@ -122,19 +116,19 @@ impl Header {
         self.spatial.is_some()
     }
 
-    /// Names of the columns that are not read, because their joints have no coordinate of their own: they are held, welded or
-    /// follow another joint.
+    /// Names of the columns that are not read, because their joints have no coordinate: they are frozen, fixed or mimic
+    /// joints.
     pub fn ignored(&self) -> impl Iterator<Item = &str> {
         let ignored = self.columns.iter().zip(&self.names).filter(|(column, _)| **column == Column::Ignored);
         ignored.map(|(_, name)| name.as_str())
     }
 
-    /// Names of the columns that are carried through.
+    /// Names of the columns that are copied to the results.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
         self.carried.iter().map(|&at| self.names[at].as_str())
     }
 
-    /// Where the first column of a kind is.
+    /// The first column of a kind.
     fn place(&self, wanted: Column) -> Option<usize> {
         self.columns.iter().position(|column| *column == wanted)
     }
@@ -160,7 +154,7 @@ impl Header {
         Ok(Some(SpatialColumns { origin, quaternion, plane: robot.reading.plane }))
     }
 
-    /// Refuses a table without what a state needs.
+    /// Refuses a table that lacks what a state needs.
     fn check(&self, record: &[u8], robot: &Robot, rates: Rates) -> Result<()> {
         let first = |wanted: fn(&Column) -> bool| self.columns.iter().position(wanted);
         let velocity = first(|column| matches!(column, Column::Velocity(_)));
@@ -259,7 +253,7 @@ fn line_and_column_after(record: &[u8], offset: u64) -> (usize, usize) {
     (lines + 1, before.len() - start + 1)
 }
 
-/// What the column called `name` holds.
+/// The meaning of the column `name`.
 fn column(name: &str, robot: &Robot) -> Result<Column> {
     if let Some(coordinate) = name.strip_prefix("q_") {
         return self::coordinate("q_", coordinate, robot, Column::Position);
@@ -285,7 +279,7 @@ fn spatial_velocity() -> Reason {
 const SPATIAL_VELOCITY: &str =
     "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
 
-/// What the column of a coordinate holds: `moving` where it is one of the robot's, by its index in q.
+/// The meaning of a coordinate's column: `moving` of its index in q if the robot has it.
 fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Column) -> Result<Column> {
     if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
         return Ok(moving(robot.base_dofs() + joint));
@@ -320,7 +314,7 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
     Err(Error::new(reason).did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
 }
 
-/// A coordinate's name as columns have it behind `q_` and `v_`.
+/// A coordinate's name in columns, after `q_` and `v_`.
 pub(crate) fn prefixed(robot: &Robot, name: &str) -> String {
     if robot.joint(name).is_some() { name.to_owned() } else { format!("base_{name}") }
 }

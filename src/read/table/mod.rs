@@ -17,8 +17,8 @@
 //!
 //! Nothing here opens a file or starts a thread.
 
-mod header;
 mod records;
+mod header;
 mod rows;
 
 pub(crate) use header::prefixed;

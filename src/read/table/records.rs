@@ -1,11 +1,11 @@
-//! Where fields and records end in the bytes of a table, by the rules of the csv crate.
+//! Finds the ends of fields and records in the bytes of a table, by the rules of the csv crate.
 //!
 //! ```text
 //!     Start --"--> Quoted --"--> Closing --"--> Quoted (two quotes are one)
 //!       └--any other--> Plain      └--any other--> Plain
 //! ```
 
-/// Follows quotes through the bytes of a table, so that a line break inside of them is no end of a record.
+/// Tracks quotes through the bytes of a table, because a line break inside them does not end a record.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Quotes(Inside);
 
@@ -40,7 +40,7 @@ impl Quotes {
         closed
     }
 
-    /// Goes past one byte; true where it parts two fields.
+    /// Consumes one byte; true if it separates two fields.
     fn step(&mut self, byte: u8) -> bool {
         let open = self.0 != Inside::Quoted;
         self.0 = match (self.0, byte) {

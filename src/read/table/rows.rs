@@ -1,12 +1,11 @@
-//! Rows of a table and their states.
+//! Reads the rows of a table as states.
 
 use super::header::{Column, Header, SpatialColumns, short};
 use super::records::place_of;
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
 use crate::robot::Base;
-use crate::state::{ByLink, Scene};
-use crate::state::{Defaults, State};
+use crate::state::{ByLink, Defaults, Scene, State};
 use crate::{Error, Reason, Result, Robot};
 use csv::ByteRecord;
 use serde_json::Value;
@@ -26,7 +25,7 @@ pub struct Rows<'h> {
 struct Feed {
     bytes: Vec<u8>,
     at: usize,
-    /// More was wanted than there is: the reader takes that for the end of everything.
+    /// The reader asked for more than one record, which it takes for the end of the file.
     ended: bool,
 }
 
@@ -39,7 +38,7 @@ impl Read for Feed {
     }
 }
 
-/// One record and the columns that it belongs to.
+/// One record and its header.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'r> {
     header: &'r Header,
@@ -48,7 +47,7 @@ pub struct Row<'r> {
     line: usize,
 }
 
-/// The fields of a row that are carried through, kept beyond their chunk.
+/// The fields of a row to copy to the result, kept longer than their chunk.
 #[derive(Debug, Clone, Default)]
 pub struct Carried(ByteRecord);
 
@@ -69,11 +68,14 @@ impl Carried {
     }
 }
 
-impl<'h> Rows<'h> {
-    pub(super) fn new(header: &'h Header) -> Self {
-        Self { header, reader: reader(), record: ByteRecord::new() }
+impl Header {
+    /// A reader of the table's rows.
+    pub fn rows(&self) -> Rows<'_> {
+        Rows { header: self, reader: reader(), record: ByteRecord::new() }
     }
+}
 
+impl<'h> Rows<'h> {
     /// The row in `record`, which begins on `line` of the table and may end with a line break; `None` if it is blank.
     ///
     /// # Errors
@@ -116,13 +118,13 @@ impl Row<'_> {
         self.line
     }
 
-    /// What the user calls it, where that can be read.
+    /// Its id, if it can be read.
     pub fn id(&self) -> Option<Value> {
         let text = std::str::from_utf8(self.record.get(self.header.id?)?).ok()?;
         (!text.is_empty()).then(|| Value::String(text.to_owned()))
     }
 
-    /// The fields that are carried through, where the row has as many as the header.
+    /// The fields to copy to the result, if the row has as many as the header.
     pub fn carried(&self) -> Carried {
         if self.record.len() != self.header.columns.len() {
             return Carried::default();
@@ -187,7 +189,7 @@ impl Row<'_> {
         Ok(state)
     }
 
-    /// What the plane does not hold of a base that is given in three dimensions.
+    /// The part of a base in three dimensions that is not in the plane.
     ///
     /// # Errors
     /// Those of [`Row::state`] about it.
