@@ -1,4 +1,5 @@
-//! Tables whose rows depend on each other: they are read in order, and the resulting states are answered like any other.
+//! Tables whose rows depend on each other: they are read in order, and the resulting states are answered like any
+//! other.
 
 use super::chunk::{Chunks, too_long};
 use super::run::Source;

@@ -87,10 +87,11 @@ pub enum Broken {
     Output(io::Error),
 }
 
-/// Answers all tasks of `source` in `threads` threads, each with an answerer that `answerer` makes; with one thread none is started.
+/// Answers all tasks of `source` in `threads` threads, each with an answerer that `answerer` makes; with one thread
+/// none is started.
 ///
-/// If fewer threads can be started, these do the work. If the sink fails, this returns after the source's current call of
-/// `next`; with a source that may wait for ever, the sink must end the process itself.
+/// If fewer threads can be started, these do the work. If the sink fails, this returns after the source's current call
+/// of `next`; with a source that may wait for ever, the sink must end the process itself.
 ///
 /// # Errors
 /// Those of the source and the sink.

@@ -64,11 +64,11 @@ pub struct StateRef {
     pub line: usize,
 }
 
-/// States in which a foot slides because friction is too small: they are unique or ambiguous, every outcome has a sliding
-/// contact, and with infinite friction there is an outcome without one.
+/// States in which a foot slides because friction is too small: they are unique or ambiguous, every outcome has a
+/// sliding contact, and with infinite friction there is an outcome without one.
 ///
-/// The friction that a state needs is the greatest |L_t| / L_n of the contacts that stick in that outcome; of several such
-/// outcomes, the one that needs least.
+/// The friction that a state needs is the greatest |L_t| / L_n of the contacts that stick in that outcome; of several
+/// such outcomes, the one that needs least.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MoreFriction {
     /// How many.

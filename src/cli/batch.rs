@@ -27,8 +27,8 @@ use std::sync::Mutex;
 
 /// Find every outcome of many states: one line of JSON or row of CSV each, answered in order
 ///
-/// A refused state is answered by an `error` in its place, and the others go on; blank lines are skipped. A summary goes
-/// to standard error.
+/// A refused state is answered by an `error` in its place, and the others go on; blank lines are skipped. A summary
+/// goes to standard error.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -78,10 +78,11 @@ pub struct Args {
 struct RecordingOptions {
     /// Answer only touchdowns: the moments at which a foot reaches the ground from above
     ///
-    /// A foot touches down if it descends far enough (--drop), faster than 0.05 m/s, and stops low enough (--ground-height).
-    /// The moment of contact is when it is 2 mm above the level at which it stops. For robots smaller than 0.25 m these
-    /// thresholds shrink in proportion; the size is the greatest distance from the root's origin to a foot or center of
-    /// gravity with all joints at zero. The base is then shifted so that the foot is at z = 0.
+    /// A foot touches down if it descends far enough (--drop), faster than 0.05 m/s, and stops low enough
+    /// (--ground-height). The moment of contact is when it is 2 mm above the level at which it stops. For robots
+    /// smaller than 0.25 m these thresholds shrink in proportion; the size is the greatest distance from the root's
+    /// origin to a foot or center of gravity with all joints at zero. The base is then shifted so that the foot is at z
+    /// = 0.
     #[arg(long)]
     touchdowns: bool,
     /// Which state of a touchdown is analyzed
@@ -89,8 +90,9 @@ struct RecordingOptions {
     at: AtRow,
     /// Which other feet touch the ground at a touchdown: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
     ///
-    /// With slow, the lowest point of every other body, if it is slower than SPEED (m/s) and its height differs from the
-    /// striking point's by at most HEIGHT (m): standing feet. With near, every point at such a height, at any speed.
+    /// With slow, the lowest point of every other body, if it is slower than SPEED (m/s) and its height differs from
+    /// the striking point's by at most HEIGHT (m): standing feet. With near, every point at such a height, at any
+    /// speed.
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     touching: Touching,
     /// How far a foot must have descended, in metres [default: 0.012, less for robots below 0.25 m]

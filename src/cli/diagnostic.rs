@@ -7,7 +7,7 @@ use heelstrike::error::excerpt::Excerpt;
 use std::io::Write;
 
 /// The library's settings, as its hints name them, and their options.
-const FLAGS: [(&str, &str); 9] = [
+const FLAGS: [(&str, &str); 10] = [
     ("base", "--base"),
     ("plane", "--plane"),
     ("hold", "--hold"),
@@ -17,6 +17,7 @@ const FLAGS: [(&str, &str); 9] = [
     ("friction", "--friction"),
     ("velocity", "--velocity"),
     ("input_format", "--input-format"),
+    ("format", "--format"),
 ];
 
 /// The text with settings such as `base: floating` in backticks written as options: --base floating.

@@ -10,9 +10,9 @@
 //!     path                   from the folder of the URDF file
 //! ```
 //!
-//! A folder is a package if its own name or its package.xml says so. `model://` (Gazebo) means the same as `package://`,
-//! backslashes the same as slashes, and `%20` a space unless a file has the percent sign in its name. Only regular files
-//! are opened. A path that leaves its package is refused.
+//! A folder is a package if its own name or its package.xml says so. `model://` (Gazebo) means the same as
+//! `package://`, backslashes the same as slashes, and `%20` a space unless a file has the percent sign in its name.
+//! Only regular files are opened. A path that leaves its package is refused.
 
 use super::input::InputFile;
 use heelstrike::description::Fetched;

@@ -31,8 +31,8 @@ use std::process::ExitCode;
 /// The crate's version, and the commit if it is known.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("HEELSTRIKE_COMMIT"));
 
-/// Every rigid frictional impact outcome of a planar legged robot: which contact sticks, slides or lifts off, and whether
-/// that is the only possibility.
+/// Every rigid frictional impact outcome of a planar legged robot: which contact sticks, slides or lifts off, and
+/// whether that is the only possibility.
 #[derive(Debug, Parser)]
 #[command(name = "heelstrike", version = VERSION, propagate_version = true, arg_required_else_help = true)]
 #[command(after_help = "Example:\n  heelstrike impact urdf/ramone.urdf examples/ramone.json")]

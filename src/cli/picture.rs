@@ -31,8 +31,8 @@ impl PlotOptions {
         Err(unknown_ending("a picture is written as .svg or .png", hint))
     }
 
-    /// Refuses, before any work is done, a file that is being read, one that the `results` go to, and one that cannot be
-    /// written.
+    /// Refuses, before any work is done, a file that is being read, one that the `results` go to, and one that cannot
+    /// be written.
     ///
     /// # Errors
     /// [`Failure::Refused`], [`Failure::Usage`] and [`Failure::Output`].

@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 
 /// Find all regions of equal outcomes against one or two parameters, and the borders between them
 ///
-/// Numbers in the study's state and robot may be expressions of its parameters and constants, as "alpha + pi/2". Borders
-/// are bisected to 1e-12 of the range, and thin regions between samples are searched for.
+/// Numbers in the study's state and robot may be expressions of its parameters and constants, as "alpha + pi/2".
+/// Borders are bisected to 1e-12 of the range, and thin regions between samples are searched for.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -4,8 +4,8 @@
 //!     "-(alpha + off)^2 / 2"  --names, pi, e, sin, cos, tan, atan2, sqrt, ...-->  f64
 //! ```
 //!
-//! `^` and `**` are powers and bind stronger than a sign: -a^2 = -(a^2). The functions are libm's, so that an expression has
-//! the same value on every machine.
+//! `^` and `**` are powers and bind stronger than a sign: -a^2 = -(a^2). The functions are libm's, so that an
+//! expression has the same value on every machine.
 
 use nanoexpr::{Context, ErrorKind, Math, Variables};
 

@@ -47,8 +47,9 @@ impl State {
     /// Whether every contact ends up with a friction is not known before the contacts are.
     ///
     /// # Errors
-    /// Whatever is not a state of this robot: broken JSON, unknown or doubled fields and names, values of the wrong kind or
-    /// outside their range, a base that is both placed and given. The error tells place, line and column in `text`.
+    /// Whatever is not a state of this robot: broken JSON, unknown or doubled fields and names, values of the wrong
+    /// kind or outside their range, a base that is both placed and given. The error tells place, line and column in
+    /// `text`.
     pub fn from_json(text: &str, robot: &Robot, defaults: &Defaults) -> Result<Self> {
         let tree = Value::parse(text)?;
         read(Node::root(&tree, text), robot, defaults)

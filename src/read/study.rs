@@ -59,8 +59,9 @@ impl<'t> Study<'t> {
     /// Reads a study from one JSON object. Its state and robot are read, and refused, at each point.
     ///
     /// # Errors
-    /// Broken JSON, unknown or duplicate fields, no parameter or more than two, a range that is empty, fewer than two samples
-    /// or more than ten million, names that expressions cannot use. The error gives place, line and column in `text`.
+    /// Broken JSON, unknown or duplicate fields, no parameter or more than two, a range that is empty, fewer than two
+    /// samples or more than ten million, names that expressions cannot use. The error gives place, line and column in
+    /// `text`.
     pub fn from_json(text: &'t str) -> Result<Self> {
         let tree = Value::parse(text)?;
         let root = Node::root(&tree, text);

@@ -8,11 +8,12 @@ use crate::{Error, Reason, Result};
 const OF_LINK: [&str; 4] = ["mass", "com", "inertia", "radius"];
 const OF_JOINT: [&str; 1] = ["origin"];
 
-/// `description` with the numbers of `{"links": {name: {"mass", "com", "inertia", "radius"}}, "joints": {name: {"origin"}}}`.
+/// `description` with the numbers of `{"links": {name: {"mass", "com", "inertia", "radius"}}, "joints": {name:
+/// {"origin"}}}`.
 ///
-/// The mass \[kg\]; the CoG in the link's frame \[m\]; the moment of inertia about the CoG and the plane's normal \[kg m^2\],
-/// taken for every axis; the radius of the link's round collision shapes \[m\]; the place of the joint's frame in its
-/// parent's \[m\].
+/// The mass \[kg\]; the CoG in the link's frame \[m\]; the moment of inertia about the CoG and the plane's normal \[kg
+/// m^2\], taken for every axis; the radius of the link's round collision shapes \[m\]; the place of the joint's frame
+/// in its parent's \[m\].
 ///
 /// # Errors
 /// Unknown links, joints and fields; negative masses, moments and radii; a radius for a link without round shapes.

@@ -26,13 +26,13 @@ const LAST: [&str; 3] = ["border", "family", "error"];
 
 /// The columns of a table of results, fixed before its first row.
 ///
-/// They are `id, verdict, outcome, margin, proven`, then `mode_<contact>, p_<contact>_t, p_<contact>_n` for every contact
-/// that the robot's feet can make, `v_<coordinate>` after the impact, the `touchdown_...` columns if touchdowns were
-/// requested, the columns copied from the input, and `border`, `family`, `error`. Outcomes are counted from 1; a state
-/// without outcome has a row with these cells empty. A contact is named after its link if it is the only one there, so a
-/// link that can touch at several points has columns of its own name and of link/0, link/1, ... A refused state has a row
-/// with the verdict `refused`, its id and copied columns if they can be read, and its line and reason in `error`. A copied
-/// column whose name the output already has gets the prefix `in_`.
+/// They are `id, verdict, outcome, margin, proven`, then `mode_<contact>, p_<contact>_t, p_<contact>_n` for every
+/// contact that the robot's feet can make, `v_<coordinate>` after the impact, the `touchdown_...` columns if touchdowns
+/// were requested, the columns copied from the input, and `border`, `family`, `error`. Outcomes are counted from 1; a
+/// state without outcome has a row with these cells empty. A contact is named after its link if it is the only one
+/// there, so a link that can touch at several points has columns of its own name and of link/0, link/1, ... A refused
+/// state has a row with the verdict `refused`, its id and copied columns if they can be read, and its line and reason
+/// in `error`. A copied column whose name the output already has gets the prefix `in_`.
 #[derive(Debug, Clone)]
 pub struct Columns {
     names: Vec<String>,
@@ -58,8 +58,8 @@ impl Cells {
 }
 
 impl Columns {
-    /// The columns for states of `robot` with the `feet` that were added to it; `input` is the table that the states come
-    /// from, if they come from one; `touchdowns` where they are touchdowns found in it.
+    /// The columns for states of `robot` with the `feet` that were added to it; `input` is the table that the states
+    /// come from, if they come from one; `touchdowns` where they are touchdowns found in it.
     pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, touchdowns: bool) -> Self {
         Self::with(robot, feet, std::iter::empty(), input.into_iter().flat_map(Header::carried), touchdowns)
     }
@@ -111,7 +111,8 @@ impl Columns {
     /// Appends the rows of a result, one per outcome.
     ///
     /// # Errors
-    /// A contact that has no column, because the state names it and the robot has no such foot; nothing is appended then.
+    /// A contact that has no column, because the state names it and the robot has no such foot; nothing is appended
+    /// then.
     pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut Vec<u8>) -> Result<()> {
         let mut cells = self.cells(report.id, carried);
         cells.text(1, report.verdict.map_or(String::new(), |verdict| verdict.to_string()));

@@ -258,7 +258,7 @@ fn what_a_motion_in_three_dimensions_loses_is_told_once() {
     assert_eq!(
         notes,
         [
-            "note: 4 columns not read, whose joints have no coordinate of their own (inspect tells why): q_FR_hip_joint, \
+            "note: 4 columns not read, because their joints have no coordinate (see `heelstrike inspect`): q_FR_hip_joint, \
              q_FL_hip_joint, q_RR_hip_joint, q_RL_hip_joint",
             "note: the base is projected into its plane along the mean heading of each clip; left out: roll up to 0.069 rad, \
              yaw up to 0.002 rad, 0.008 m to the side",

@@ -70,8 +70,8 @@ impl Header {
     ///
     /// # Errors
     /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
-    /// robot does not have, a base in three dimensions that is incomplete or has a pitch as well, velocities that are missing
-    /// or superfluous (see [`Rates`]). The error gives the column's place in `record`, on line 1.
+    /// robot does not have, a base in three dimensions that is incomplete or has a pitch as well, velocities that are
+    /// missing or superfluous (see [`Rates`]). The error gives the column's place in `record`, on line 1.
     pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
         let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let names = names(record)?;

@@ -141,12 +141,13 @@ impl Row<'_> {
         self.number(self.header.time.ok_or_else(missing)?)
     }
 
-    /// The state of `robot`; what the row and `defaults` leave open is 0, of the friction unknown. Its x is that of the table
-    /// also where the base is given in three dimensions; along the heading it is put by [`crate::gait::sagittal`].
+    /// The state of `robot`; what the row and `defaults` leave open is 0, of the friction unknown. Its x is that of the
+    /// table also where the base is given in three dimensions; along the heading it is put by
+    /// [`crate::gait::sagittal`].
     ///
     /// # Errors
-    /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that is
-    /// both placed by a stance and given, an invalid quaternion. The error gives column, line and place.
+    /// A row with more or fewer fields than the header, a cell that does not hold what its column is for, a base that
+    /// is both placed by a stance and given, an invalid quaternion. The error gives column, line and place.
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
         let (fields, columns) = (self.record.len(), self.header.columns.len());
         if fields != columns {

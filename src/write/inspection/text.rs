@@ -1,4 +1,5 @@
-//! What was read of a robot, as text that fits a screen: first what a user needs to trust the model, long lists cut short.
+//! What was read of a robot, as text that fits a screen: first what a user needs to trust the model, long lists cut
+//! short.
 
 use super::{Inspection, Joint};
 use crate::planar::Vector;

@@ -190,7 +190,7 @@ impl<'w> Writer<'w> {
             (Holds::Yes, _) => self.out.push_str("yes.\n"),
             (Holds::No, Some(other)) => {
                 let outcomes: Vec<String> = other.outcomes.iter().map(|modes| self.in_words(modes)).collect();
-                writeln!(self.out, "no; a state in it, listed in the JSON, has: {}.", outcomes.join("; or "))?;
+                writeln!(self.out, "no; a state in it (`format: json`) has: {}.", outcomes.join("; or "))?;
             }
             (Holds::No, None) => self.out.push_str("no.\n"),
             (Holds::Unknown, _) => self.out.push_str("unknown.\n"),

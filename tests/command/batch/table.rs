@@ -90,8 +90,8 @@ fn a_recording_without_a_touchdown_says_what_would_count() {
         assert_eq!((run.status, run.stdout.len()), (0, 0));
         run.stderr
     };
-    let told = "no touchdown found: one counts where a foot comes down 0.0120 m or more, faster than 0.0500 m/s, to at most \
-                0.0200 m above the ground (see --drop, --ground-height)\n";
+    let told = "no touchdown found: a foot must descend 0.0120 m or more, faster than 0.0500 m/s, to at most 0.0200 m above \
+                the ground (see --drop, --ground-height)\n";
     assert_eq!(run(&[]), told);
     let told = told.replace("0.0200", "0.0300").replace("0.0120", "0.0250");
     assert_eq!(run(&["--drop", "0.025", "--ground-height", "0.03"]), told);
