@@ -4,8 +4,8 @@
 //!     K = S M S,  S = diag(M_ii^-1/2),  condition = |K| |K^-1|
 //! ```
 //!
-//! Both norms are found by power iteration, by the sparse factor where it is inverted: an estimate from below, at O(nv depth)
-//! a step also for chains of a thousand links. Source: Golub and Van Loan, *Matrix Computations*, section 8.2.
+//! Both norms are found by power iteration, by the sparse factor where it is inverted: an estimate from below, at O(nv
+//! depth) a step also for chains of a thousand links. Source: Golub and Van Loan, *Matrix Computations*, section 8.2.
 
 use crate::dynamics::Workspace;
 use crate::dynamics::plan::Plan;

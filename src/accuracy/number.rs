@@ -1,18 +1,18 @@
-//! The numbers that are compared, and what each needs beside [`Real`]: its angles, and itself as f64s.
+//! The numbers that are compared, and what each needs in addition to [`Real`]: its angles, and itself as f64s.
 
 use crate::planar::Rotation;
 use crate::scalar::{Ball, DoubleDouble, Interval, Ordered, Real, Trigonometry};
 
 /// A number that a state can be computed in, from its f64s on.
 pub trait Number: Real {
-    /// Cosine and sine of an f64 angle \[rad\], as well as this number knows them.
+    /// Cosine and sine of an f64 angle \[rad\], as exactly as this number holds them.
     fn rotation(angle: f64) -> Rotation<Self>;
 
     /// f64s whose sum is the number, the larger one first.
     fn parts(self) -> [f64; 2];
 }
 
-/// Half the digits of f64. It stands here to be compared; nothing outside of this module runs on it.
+/// Half the digits of f64, for comparison only.
 impl Real for f32 {
     fn from_f64(value: f64) -> Self {
         value as f32

@@ -1,7 +1,7 @@
 //! M, G and c to 320 bits and more, and how far others are from them.
 //!
-//! Errors are free of units: of M and G relative to the geometric mean of both diagonal entries, of contact velocities and
-//! impulses by the scale of margins, S = max |c_i| / sqrt(G_ii).
+//! Errors are free of units: of M and G relative to the geometric mean of both diagonal entries, of contact velocities
+//! and impulses by the scale of margins, S = max |c_i| / sqrt(G_ii).
 
 use super::number::Number;
 use super::pose::{Computation, Pose};
@@ -10,8 +10,8 @@ use crate::planar::{Inertia, Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Interval, Ordered, Real};
 
-/// Bits of the reference, and for each body: an articulated inertia is that much less sharp than its children's. The numbers
-/// are enclosures, so that their own uncertainty shows as an error.
+/// Bits of the reference, and for each body: an articulated inertia is that much less sharp than its children's. The
+/// numbers are enclosures, so that their own uncertainty shows as an error.
 pub const PRECISION: usize = 320;
 const PRECISION_PER_BODY: usize = 4;
 
@@ -83,8 +83,8 @@ impl Reference {
         worst((0..exact.len()).map(|at| relative(error(at, exact[at]), size(at / rows) * size(at % rows))))
     }
 
-    /// The largest error of an M (nv x nv, columns of the plan, of which the lower triangle is read); NaN where it holds no
-    /// number.
+    /// The largest error of an M (nv x nv, columns of the plan, of which the lower triangle is read); NaN where it
+    /// holds no number.
     pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
         let nv = self.columns.len();
         let parents = &self.computation.plan().parents;

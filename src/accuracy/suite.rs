@@ -90,7 +90,7 @@ impl Suite {
             let state = ramone(&robot, 0.5);
             self.state(format!("{name} inertias"), robot, state);
         }
-        // A needle whose CoG lies 1 nm beside its hinge turns at a touch.
+        // A needle whose CoG lies 1 nm off its hinge turns at a touch.
         for (name, com, end) in [("1 nm off", -1e-9, End::Answered), ("at", 0.0, End::Singular)] {
             let mut robot = robots::minimalistic()?;
             robot.bodies[1].com = Vector::new(0.0, com);
@@ -154,8 +154,8 @@ impl Suite {
             let robot = robots::walker(0.04)?;
             let state = walker(&robot, alpha);
             self.state(name, robot, state);
-            // Point masses on flat legs let the hip rise freely. 1e-9 rad before that 1e-18 of the mass resists it, which is
-            // exactly zero in f64: M has a condition of 1e18, and no answer by f64 would have a digit.
+            // Point masses on flat legs let the hip rise freely. 1e-9 rad before that 1e-18 of the mass resists it,
+            // which is exactly zero in f64: M has a condition of 1e18, and no answer by f64 would have a digit.
             let robot = robots::minimalistic()?;
             let state = walker(&robot, alpha);
             self.ending(format!("{name}, point masses"), robot, state, End::Singular);

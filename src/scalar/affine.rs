@@ -6,10 +6,11 @@ use super::{Ordered, Real, Sign, Trigonometry};
 
 /// A number as `centre + sum_i slopes[i] e_i +- error`, where each e_i is somewhere in -1..1.
 ///
-/// Numbers share their e_i, so that effects of a common cause cancel, which they do not between [`Ball`](super::Ball)s: an
-/// enclosure over intervals of half-width r is too wide by O(r^2) only (affine arithmetic: de Figueiredo and Stolfi,
-/// Numerical Algorithms 2004). Every operation encloses its exact result; all that is not linear, and all rounding, goes
-/// into `error`. As with the ball, exact zeros stay exact, and after a division by what may be zero nothing is known.
+/// Numbers share their e_i, so that effects of a common cause cancel, which they do not between [`Ball`](super::Ball)s:
+/// an enclosure over intervals of half-width r is too wide by O(r^2) only (affine arithmetic: de Figueiredo and Stolfi,
+/// Numerical Algorithms 2004). Every operation encloses its exact result; all that is not linear, and all rounding,
+/// goes into `error`. As with the ball, exact zeros stay exact, and after a division by what may be zero nothing is
+/// known.
 ///
 /// Cost: O(N) per operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,8 +40,8 @@ impl<const N: usize> Affine<N> {
         if centre.is_finite() && error.is_finite() { Self { centre, slopes, error } } else { Self::unknown() }
     }
 
-    /// Any number at most `radius` from `centre`. Its place there is the cause number `symbol`; from number N on a cause is not
-    /// followed, and its effects do not cancel.
+    /// Any number at most `radius` from `centre`. Its place there is the cause number `symbol`; from number N on a
+    /// cause is not followed, and its effects do not cancel.
     pub fn varying(centre: f64, radius: f64, symbol: usize) -> Self {
         let mut slopes = [0.0; N];
         let own = match slopes.get_mut(symbol) {
@@ -197,7 +198,8 @@ impl<const N: usize> Affine<N> {
         if self.is_exact_zero() {
             return self;
         }
-        // x / y = q + w / y with w = x - q y, of which little is left at the centre; w / y = w / c - (w / c) (y - c) / y.
+        // x / y = q + w / y with w = x - q y, of which little is left at the centre; w / y = w / c - (w / c) (y - c) /
+        // y.
         let quotient = self.centre / divisor;
         let rest: [f64; N] = std::array::from_fn(|i| self.slopes[i] - quotient * other.slopes[i]);
         let reach: f64 = rest.iter().map(|slope| slope.abs()).sum();

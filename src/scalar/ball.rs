@@ -7,8 +7,8 @@ use super::{Enclosure, Ordered, Real, Sign, Trigonometry, series};
 ///
 /// Every operation encloses its exact result: the radius takes the operands' radii and the rounding of the midpoint.
 /// Radii are rounded to nearest and then enlarged by a relative 2^-50, which covers the few roundings of each formula
-/// (Rump, Acta Numerica 2010, section 9); an operation that is exact because an operand is an exact zero adds nothing, so
-/// that structural zeros stay zeros. A quotient by a ball that contains zero has an infinite radius.
+/// (Rump, Acta Numerica 2010, section 9); an operation that is exact because an operand is an exact zero adds nothing,
+/// so that structural zeros stay zeros. A quotient by a ball that contains zero has an infinite radius.
 ///
 /// Cost: about 5 operations of the midpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,8 @@ use super::{Ordered, Real, Residue, Sign, Trigonometry};
 /// An enclosure together with the [`Residue`] of the same number.
 ///
 /// The enclosure proves the signs except zero. The residue proves that a number is not zero, and finds that it is (how
-/// surely is said there). If the residue finds a number zero, the enclosure becomes exactly zero as well. So more digits
-/// decide every sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds.
+/// surely is said there). If the residue finds a number zero, the enclosure becomes exactly zero as well. So more
+/// digits decide every sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds.
 ///
 /// Cost: that of both numbers.
 #[derive(Debug, Clone, Copy)]

@@ -4,11 +4,11 @@ use super::{Midpoint, Real, Sign};
 
 /// The unevaluated sum `hi + lo` of two f64 with `|lo| <= ulp(hi) / 2`: about 106 bits, in the range of f64.
 ///
-/// With u = 2^-53 and away from underflow the relative errors are, after Joldes, Muller and Popescu, "Tight and rigorous
-/// error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44 (2017): sums 3 u^2 / (1 - 4 u) (their
-/// algorithm 6), products 7 u^2 (algorithm 10), quotients 15 u^2 + 56 u^3 (algorithm 17). Products split their factors
-/// (Dekker, Veltkamp) and need no fused multiply-add. Beyond 2^996, where a split overflows, a result is not a number; it
-/// is never silently wrong. Below 2^-969 a product loses digits, by less than 2^-1022 in all.
+/// With u = 2^-53 and away from underflow the relative errors are, after Joldes, Muller and Popescu, "Tight and
+/// rigorous error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44 (2017): sums 3 u^2 / (1 - 4
+/// u) (their algorithm 6), products 7 u^2 (algorithm 10), quotients 15 u^2 + 56 u^3 (algorithm 17). Products split
+/// their factors (Dekker, Veltkamp) and need no fused multiply-add. Beyond 2^996, where a split overflows, a result is
+/// not a number; it is never silently wrong. Below 2^-969 a product loses digits, by less than 2^-1022 in all.
 ///
 /// It encloses nothing by itself; [`Ball`](super::Ball) adds the bound. Cost: about 20 f64 operations.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -31,8 +31,8 @@ struct Enclosed {
 
 /// A real number enclosed with as many bits as its scope has; unknown after a division by what may be zero.
 ///
-/// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; a handle must not leave its scope. So
-/// it is a [`Real`] like the others, and the hot path over `f64` passes values, not references.
+/// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; a handle must not leave its
+/// scope. So it is a [`Real`] like the others, and the hot path over `f64` passes values, not references.
 ///
 /// Cost: an operation of `dashu-float` and a new entry of the storage, some 100 f64 operations at 256 bits.
 #[derive(Debug, Clone, Copy)]
@@ -104,7 +104,8 @@ impl Store {
     }
 }
 
-/// A rounded result and the greatest error of its rounding: a unit in the last place, twice what rounding to nearest needs.
+/// A rounded result and the greatest error of its rounding: a unit in the last place, twice what rounding to nearest
+/// needs.
 fn rounded(result: Result<dashu_float::round::Rounded<FBig<HalfEven, 2>>, FpError>, bits: usize) -> Option<Enclosed> {
     let result = result.ok()?;
     let exact = matches!(result, dashu_float::round::Rounded::Exact(_));

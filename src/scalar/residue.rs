@@ -4,14 +4,14 @@ use super::{Real, Trigonometry};
 
 /// A number modulo two primes just below 2^61, with the angles' cosines and sines replaced by a point of the circle.
 ///
-/// It finds whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these angles
-/// are multiples of one 2^-k, so such a number is a rational function R, with rational coefficients, of w = e^(i 2^-k). By
-/// the theorem of Lindemann and Weierstrass w is transcendental, so R(w) vanishes only if R does identically. Here R is
-/// evaluated at a point of the circle x^2 + y^2 = 1 over a finite field instead of w. A residue other than zero therefore
-/// proves that the number is not zero. Zero modulo both primes proves that it is, except for chance: an R other than zero
-/// would have to vanish at both points, which are fixed but unrelated to any robot; of a random point that has the probability
-/// (degree of R / 2^59)^2, about 2^-100 at a degree of a few hundred. (Or its coefficients would have to be divisible by
-/// both primes, as likely.)
+/// It finds whether a number that was computed from f64 and from cosines and sines of f64 angles is zero. All these
+/// angles are multiples of one 2^-k, so such a number is a rational function R, with rational coefficients, of w = e^(i
+/// 2^-k). By the theorem of Lindemann and Weierstrass w is transcendental, so R(w) vanishes only if R does identically.
+/// Here R is evaluated at a point of the circle x^2 + y^2 = 1 over a finite field instead of w. A residue other than
+/// zero therefore proves that the number is not zero. Zero modulo both primes proves that it is, except for chance: an
+/// R other than zero would have to vanish at both points, which are fixed but unrelated to any robot; of a random point
+/// that has the probability (degree of R / 2^59)^2, about 2^-100 at a degree of a few hundred. (Or its coefficients
+/// would have to be divisible by both primes, as likely.)
 ///
 /// After a division by a residue of zero nothing is known modulo that prime.
 ///
@@ -225,7 +225,8 @@ impl Real for Residue {
 }
 
 impl Trigonometry for Residue {
-    /// The point of an angle: a homomorphism from the f64 angles to the circle, so that all relations between angles hold.
+    /// The point of an angle: a homomorphism from the f64 angles to the circle, so that all relations between angles
+    /// hold.
     fn cos_sin(angle: f64) -> [Self; 2] {
         if !angle.is_finite() {
             return [Self::UNDEFINED; 2];

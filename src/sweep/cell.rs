@@ -145,7 +145,8 @@ impl<'s, 'm> Trace<'s, 'm> {
         }
     }
 
-    /// The point of the border next to a chord's middle; `None` if the chord is straight enough, or the point is not found.
+    /// The point of the border next to a chord's middle; `None` if the chord is straight enough, or the point is not
+    /// found.
     fn off_chord(&mut self, chord: &Segment) -> Option<[f64; 2]> {
         let ranges = self.resolution.map(|resolution| resolution / RESOLUTION);
         let along = [0, 1].map(|axis| (chord.to[axis] - chord.from[axis]) / ranges[axis]);
@@ -154,12 +155,12 @@ impl<'s, 'm> Trace<'s, 'm> {
             return None;
         }
         // To the chord's left, in units of the ranges.
-        let beside = |off: f64| {
+        let off_middle = |off: f64| {
             let left = [-along[1] / length, along[0] / length];
             [0, 1].map(|axis| 0.5 * (chord.from[axis] + chord.to[axis]) + off * left[axis] * ranges[axis])
         };
         let solver = &mut *self.solver;
-        let mut regime = |off: f64| solver.regime(&beside(off));
+        let mut regime = |off: f64| solver.regime(&off_middle(off));
         let mut reach = STRAIGHT;
         if regime(reach) == chord.left && regime(-reach) == chord.right {
             return None;
@@ -177,7 +178,7 @@ impl<'s, 'm> Trace<'s, 'm> {
                         _ => return None,
                     }
                 }
-                return Some(beside(0.5 * (left + right)));
+                return Some(off_middle(0.5 * (left + right)));
             }
         }
         None
@@ -207,8 +208,8 @@ impl<'s, 'm> Trace<'s, 'm> {
     }
 }
 
-/// Pairs each entry with the one that has the same regimes the other way round and is `alike`; `None` if an entry has no
-/// such partner or several, or if pieces between them would cross.
+/// Pairs each entry with the one that has the same regimes the other way round and is `alike`; `None` if an entry has
+/// no such partner or several, or if pieces between them would cross.
 fn pairs(entries: &[BorderEntry], alike: impl Fn(&BorderEntry, &BorderEntry) -> bool) -> Option<Vec<[usize; 2]>> {
     let mut pairs = Vec::new();
     for (at, entry) in entries.iter().enumerate() {

@@ -45,7 +45,8 @@ const HALVINGS: usize = 7;
 type Scales = Vec<[f64; 2]>;
 
 impl RegionCurves {
-    /// The courses of all regions that were found in `model`; reports [`RegionCurves::work`] pieces of work to `workers`.
+    /// The curves of all regions that were found in `model`; reports [`RegionCurves::work`] pieces of work to
+    /// `workers`.
     pub fn of(model: &RobotStudy, survey: &Survey, workers: Workers) -> Vec<Self> {
         let Some(parameter) = model.study.parameters().first() else { return Vec::new() };
         let range = parameter.range();

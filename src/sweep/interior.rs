@@ -3,8 +3,8 @@
 use crate::planar::Vector;
 use std::collections::VecDeque;
 
-/// For each connected part of a grid's nodes of one kind: the kind, and the nodes that are most steps away from others. The
-/// nodes are given row by row, `columns` in each.
+/// For each connected part of a grid's nodes of one kind: the kind, and the nodes that are most steps away from others.
+/// The nodes are given row by row, `columns` in each.
 pub fn deepest_nodes(kinds: &[Option<usize>], columns: usize) -> Vec<(usize, Vec<usize>)> {
     let neighbours = |k: usize| {
         let column = k % columns;

@@ -78,9 +78,9 @@ pub struct Stretch {
 
 /// The brackets of all borders between two places, ascending, to the `resolution`.
 ///
-/// If the regimes of two places differ, the border between them is bisected, and so is that of every other regime on the way.
-/// If they are the same, the stretch between them is searched for hidden ones (see `border_search`). So in the end every
-/// neighboring pair of places that were asked agrees, or brackets a border.
+/// If the regimes of two places differ, the border between them is bisected, and so is that of every other regime on
+/// the way. If they are the same, the stretch between them is searched for hidden ones (see `border_search`). So in the
+/// end every neighboring pair of places that were asked agrees, or brackets a border.
 pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     bisect(line, a, b, resolution, &mut found);
@@ -156,8 +156,9 @@ fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> V
     found
 }
 
-/// The stretches from `first` to `last` between the brackets, and the border between each two of them. What is not wider
-/// than the `resolution` is part of a border; stretches of one regime with only such a point between them are one.
+/// The stretches from `first` to `last` between the brackets, and the border between each two of them. What is not
+/// wider than the `resolution` is part of a border; stretches of one regime with only such a point between them are
+/// one.
 pub fn stretches(first: Probe, last: Probe, brackets: &[Bracket], resolution: f64) -> (Vec<Stretch>, Vec<Bracket>) {
     let (from, to) = (first.at, last.at);
     let begins = std::iter::once(first).chain(brackets.iter().map(|bracket| bracket.above.clone()));
@@ -193,20 +194,20 @@ mod tests {
         Arc::new(Regime::Answered { contacts: vec!["foot".into()], outcomes, undecided: Vec::new() })
     }
 
+    /// One combination with these inequalities, det A = 1.
+    fn watched(contacts: Vec<String>, numerators: Vec<f64>, clearance: Vec<f64>) -> Watched {
+        let ends = vec![numerators.len()];
+        let inequalities = Inequalities { determinants: vec![1.0], ends, numerators, ..Inequalities::default() };
+        Watched { contacts, inequalities, clearance }
+    }
+
     impl<F: Fn(f64) -> Vec<f64>> Landscape for Made<F> {
         fn regime(&mut self, at: f64) -> Arc<Regime> {
             regime(if (self.0)(at).iter().all(|&number| number > 0.0) { Mode::Stick } else { Mode::SlidePlus })
         }
 
         fn watched(&mut self, at: f64) -> Option<Watched> {
-            let numerators = (self.0)(at);
-            let inequalities = Inequalities {
-                determinants: vec![1.0],
-                ends: vec![numerators.len()],
-                numerators,
-                ..Inequalities::default()
-            };
-            Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
+            Some(watched(Vec::new(), (self.0)(at), Vec::new()))
         }
     }
 
@@ -256,7 +257,7 @@ mod tests {
         near(&borders(numbers), &[0.41, 0.410_01, 0.48]);
     }
 
-    /// The foot is down between two samples; while it is, it sticks, but for a thin stretch.
+    /// The foot is down between two samples; while it is, it sticks, except on a thin stretch.
     struct Stepping;
 
     const THIN: [f64; 2] = [0.4512, 0.451_201];
@@ -276,13 +277,7 @@ mod tests {
                 true => (vec!["foot".to_owned()], vec![at - THIN[0], THIN[1] - at]),
                 false => (Vec::new(), Vec::new()),
             };
-            let inequalities = Inequalities {
-                determinants: vec![1.0],
-                ends: vec![numerators.len()],
-                numerators,
-                ..Inequalities::default()
-            };
-            Some(Watched { contacts, inequalities, clearance: vec![(at - 0.41) * (at - 0.49)] })
+            Some(watched(contacts, numerators, vec![(at - 0.41) * (at - 0.49)]))
         }
     }
 

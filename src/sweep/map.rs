@@ -4,10 +4,10 @@
 //!     grid of points --[line] along every edge--> crossings --cell by cell--> segments --joined--> curves, areas
 //! ```
 //!
-//! A curve that crosses an edge of a cell leaves it through another: crossings of the same two regions, at which the same
-//! inequalities turn, are two ends of one piece. A cell whose crossings do not pair so is quartered, and where three regions
-//! meet, at the last, its crossings meet in its middle. Every crossing is bisected, and points between two of them until a
-//! curve is straight to 5e-5 of the ranges.
+//! A curve that crosses an edge of a cell leaves it through another: crossings of the same two regions, at which the
+//! same inequalities turn, are two ends of one piece. A cell whose crossings do not pair so is quartered, and where
+//! three regions meet, at the last, its crossings meet in its middle. Every crossing is bisected, and points between
+//! two of them until a curve is straight to 5e-5 of the ranges.
 
 use super::cell::{GridCell, Trace};
 use super::edge::{Direction, Edge, GridLine, Segment};
@@ -28,10 +28,12 @@ use std::sync::Arc;
 /// Curves are traced through at least so many cells along each parameter.
 pub const CELLS: usize = 64;
 
-/// How far the outermost lines of the grid lie inside the ranges, as part of them: on their ends many studies are degenerate.
+/// How far the outermost lines of the grid lie inside the ranges, as part of them: on their ends many studies are
+/// degenerate.
 const INSIDE: f64 = 1e-7;
 
-/// How far all other lines lie from the places that divide the range evenly, as part of a cell: curves meet at round numbers.
+/// How far all other lines lie from the places that divide the range evenly, as part of a cell: curves meet at round
+/// numbers.
 const BESIDE: f64 = 0.013_7;
 
 /// All areas of a study of two parameters.
@@ -50,7 +52,8 @@ pub struct Map {
 pub struct Area {
     /// What happens there.
     pub regime: Arc<Regime>,
-    /// Closed loops of points (first parameter, second parameter) with the area on their left; the first point is not repeated.
+    /// Closed loops of points (first parameter, second parameter) with the area on their left; the first point is not
+    /// repeated.
     pub loops: Vec<Vec<[f64; 2]>>,
     /// For each connected part a point well inside it, and its distance from the edge as part of the ranges.
     pub middles: Vec<([f64; 2], f64)>,
@@ -162,8 +165,8 @@ impl<'p> Grid<'p> {
         [snapped(x, &self.xs, self.parameters[0]), snapped(y, &self.ys, self.parameters[1])]
     }
 
-    /// For each connected part of each area, as the nodes show it, the node that is farthest from its borders, and how far
-    /// that is.
+    /// For each connected part of each area, as the nodes show it, the node that is farthest from its borders, and how
+    /// far that is.
     fn find_middles(&self, areas: &mut [Area]) {
         let (xs, ys) = (&self.xs, &self.ys);
         let nx = xs.len();

@@ -1,4 +1,5 @@
-//! Outcomes against one or two parameters: the regions of equal outcomes, and the transitions at the borders between them.
+//! Outcomes against one or two parameters: the regions of equal outcomes, and the transitions at the borders between
+//! them.
 //!
 //! ```text
 //!     point of the parameters --[model]--> Robot, State --[pipeline]--> Impact --[regime]--> which outcomes are valid

@@ -14,8 +14,8 @@ pub struct Workers<'w> {
 }
 
 impl Workers<'_> {
-    /// The results of `work` for each index below `count`, in order. Each thread has a state of its own, made by `begin`. If
-    /// fewer threads can be started, these do the work.
+    /// The results of `work` for each index below `count`, in order. Each thread has a state of its own, made by
+    /// `begin`. If fewer threads can be started, these do the work.
     pub fn map<S, T: Send>(
         &self,
         count: usize,

@@ -21,8 +21,8 @@ const PARTS: usize = 8;
 const SAME: f64 = 1e-9;
 
 impl RobotStudy<'_> {
-    /// The unit of a parameter; `None` if no number is the parameter up to its sign and a constant, or if such numbers have
-    /// several units.
+    /// The unit of a parameter; `None` if no number is the parameter up to its sign and a constant, or if such numbers
+    /// have several units.
     pub fn unit(&self, parameter: usize) -> Option<&'static str> {
         let range = self.study.parameters().get(parameter)?.range();
         let part = |k: usize| k as f64 / PARTS as f64;
@@ -47,7 +47,8 @@ impl RobotStudy<'_> {
         units.all(|other| other == unit).then_some(unit)
     }
 
-    /// All numbers of robot and state where the parameter is at this part of its range, all others in the middle of theirs.
+    /// All numbers of robot and state where the parameter is at this part of its range, all others in the middle of
+    /// theirs.
     fn measured(&self, parameter: usize, part: f64) -> Option<Vec<Measured>> {
         let place = |(index, other): (usize, &super::Parameter)| {
             other.from + if index == parameter { part } else { 0.5 } * other.range()

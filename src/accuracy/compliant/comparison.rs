@@ -130,7 +130,7 @@ pub fn landing(
 /// Runs through every combination of the parameters.
 ///
 /// # Errors
-/// More contacts than a run takes, and whatever the runs of the finest tolerance refuse.
+/// More contacts than a run takes, and refusals of the runs of the finest tolerance.
 pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energy: f64) -> Result<Comparison> {
     let outcomes = &analysis.outcomes;
     let (mut landings, mut unsettled) = (Vec::new(), 0);

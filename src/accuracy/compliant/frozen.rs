@@ -4,8 +4,8 @@
 //!     L' = lambda     delta' = -c_n     s' by the ground     c = c- + G L
 //! ```
 //!
-//! With times and lengths in units of 1/sqrt(k_n) nothing of the result depends on k_n: stiffness alone changes nothing,
-//! damping and ratios do.
+//! With times and lengths in units of 1/sqrt(k_n) nothing of the result depends on k_n: stiffness alone changes
+//! nothing, damping and ratios do.
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::radau::{Equations, Limits, integrate};

@@ -1,8 +1,8 @@
 //! Springs, dampers and friction between a contact and the ground.
 //!
 //! ```text
-//!     lambda_n = max(0, k_n delta - d_n c_n) where delta >= 0, else 0           Kelvin-Voigt without tension
-//!     lambda_t = -k_t s - d_t c_t, kept within -+mu lambda_n                    spring and damper in a row with friction
+//!     lambda_n = max(0, k_n delta - d_n c_n) where delta >= 0, else 0         Kelvin-Voigt without tension
+//!     lambda_t = -k_t s - d_t c_t, kept within -+mu lambda_n                  spring and damper in a row with friction
 //!     delta' = -c_n     s' = -(lambda_t + k_t s) / d_t
 //! ```
 //!
@@ -62,7 +62,8 @@ impl Suspension {
         ([tangential, normal], -(tangential + spring) / self.damping[0])
     }
 
-    /// The derivatives of [`Self::force`]'s tangential and normal force by depth, stretch, and tangential and normal velocity.
+    /// The derivatives of [`Self::force`]'s tangential and normal force by depth, stretch, and tangential and normal
+    /// velocity.
     pub fn force_derivatives(&self, contact: usize, depth: f64, stretch: f64, velocity: Pair<f64>) -> [[f64; 4]; 2] {
         let ([tangential, normal], _) = self.force(contact, depth, stretch, velocity);
         if normal <= 0.0 {

@@ -1,8 +1,9 @@
 //! Where overdamped contact leads the paper's minimalistic biped at alpha = 1.4, which has three rigid outcomes.
 //!
-//! The leading foot strikes as in the paper; the trailing one, which rests there, strikes too: its approach speed and the
-//! ratio d_t / d_n span the map. Either the trailing foot lifts off or both stop; the curve between them is the separatrix.
-//! It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near no outcome.
+//! The leading foot strikes as in the paper; the trailing one, which rests there, strikes too: its approach speed and
+//! the ratio d_t / d_n span the map. Either the trailing foot lifts off or both stop; the curve between them is the
+//! separatrix. It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near
+//! no outcome.
 
 use super::comparison::{NEAR, NearestOutcome, landing};
 use super::frozen::run;

@@ -1,8 +1,8 @@
 //! Compliant contact next to the rigid impact.
 //!
-//! Most simulators press a robot's feet into a ground of springs and dampers and integrate through the impact. In general that
-//! does not end at one of the rigid outcomes. The end depends on the damping and on the ratios of tangential to normal
-//! parameters, but, while the configuration is frozen, not on the stiffness.
+//! Most simulators press a robot's feet into a ground of springs and dampers and integrate through the impact. In
+//! general that does not end at one of the rigid outcomes. The end depends on the damping and on the ratios of
+//! tangential to normal parameters, but, while the configuration is frozen, not on the stiffness.
 
 mod radau;
 mod ground;

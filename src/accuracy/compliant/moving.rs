@@ -1,11 +1,11 @@
 //! Compliant contact through an impact while the robot moves: what of the frozen limit is left at a finite stiffness.
 //!
 //! ```text
-//!     M(q) v' + h(q, v) = J(q)^T lambda,     delta = depth of the contact point,     lambda and s as in the frozen model
+//!     M(q) v' + h(q, v) = J(q)^T lambda,   delta = depth of the contact point,   lambda and s as in the frozen model
 //! ```
 //!
-//! h holds gravity, Coriolis and centrifugal forces. The impact lasts some multiple of sqrt(m / k_n), so that the difference
-//! from the frozen model falls with 1 / sqrt(k_n).
+//! h holds gravity, Coriolis and centrifugal forces. The impact lasts some multiple of sqrt(m / k_n), so that the
+//! difference from the frozen model falls with 1 / sqrt(k_n).
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::radau::{Equations, Limits, integrate};

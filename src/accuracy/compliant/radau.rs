@@ -4,9 +4,10 @@
 //!     y' = f(y):   z_i = h sum_j A_ij f(y + z_j),  i = 1..3,   y(t + h) = y + z_3          Radau IIA, order 5
 //! ```
 //!
-//! The stages follow from a simplified Newton iteration, split by W = Z T^-T into one real and one complex system. Source:
-//! Hairer and Wanner, *Solving ODEs II* (1996), section IV.8; constants and step control are those of their code RADAU5.
-//! Cost: O(N^3) for a Jacobian and its factors, which steps of one size share, and O(N^2) for an iteration.
+//! The stages follow from a simplified Newton iteration, split by W = Z T^-T into one real and one complex system.
+//! Source: Hairer and Wanner, *Solving ODEs II* (1996), section IV.8; constants and step control are those of their
+//! code RADAU5. Cost: O(N^3) for a Jacobian and its factors, which steps of one size share, and O(N^2) for an
+//! iteration.
 
 use crate::{Error, Reason, Result};
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, Matrix3, MatrixXx3, Vector3};

@@ -34,8 +34,8 @@ pub struct MapRegion<'a> {
     pub happening: Happening<'a>,
     /// The part of the ranges that it covers.
     pub share: f64,
-    /// Closed loops of points, in the order of the parameters, with the region on their left (the second parameter up); holes
-    /// run the other way.
+    /// Closed loops of points, in the order of the parameters, with the region on their left (the second parameter up);
+    /// holes run the other way.
     pub loops: &'a [Vec<[f64; 2]>],
 }
 

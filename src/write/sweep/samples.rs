@@ -68,7 +68,8 @@ impl<'a> Sample<'a> {
         refused.is_none()
     }
 
-    /// Appends the rows of the sample, with the letter that `letter` gives to its regime; returns whether it was answered.
+    /// Appends the rows of the sample, with the letter that `letter` gives to its regime; returns whether it was
+    /// answered.
     pub fn append_rows(
         &self,
         solver: &mut Solver,
@@ -108,8 +109,8 @@ fn answer(
     impact.analysis.map(|_| ())
 }
 
-/// The columns of a table of samples: those of a batch, then the parameters and the region's letter; `contacts` are those
-/// that occur.
+/// The columns of a table of samples: those of a batch, then the parameters and the region's letter; `contacts` are
+/// those that occur.
 pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
     Columns::with(model.robot, feet, contacts, parameters.chain(["region"]), false)
