@@ -4,7 +4,7 @@
 
 use divan::{Bencher, black_box};
 use heelstrike::Robot;
-use heelstrike::dynamics::plan::{Plan, Posture};
+use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{
     ContactPoint, Workspace, add_articulated_impulse, articulated_inertias, contact_jacobian, delassus, factorize,
     kinematics, mass_matrix,
@@ -48,7 +48,7 @@ fn points(robot: &Robot, state: &State) -> Vec<ContactPoint> {
 fn problem(robot: &Robot, state: &State) -> ContactProblem {
     let (friction, restitution) = (vec![Friction::Finite(0.8); 2], vec![0.0; 2]);
     let contacts = state.scene.contacts.as_deref().expect("named contacts");
-    let mut posture = Posture::default();
+    let mut posture = Configuration::default();
     posture.set(&Plan::new(robot, &[], &[]), &state.position);
     Pipeline::new(robot, Options::default())
         .contact_problem(&posture, &state.velocity, contacts, friction, restitution)
@@ -61,7 +61,8 @@ fn dynamics(bencher: Bencher) {
     let robot = ramone();
     let state = state(&robot);
     let points = points(&robot, &state);
-    let (plan, mut posture, mut workspace) = (Plan::new(&robot, &[], &[]), Posture::default(), Workspace::default());
+    let (plan, mut posture, mut workspace) =
+        (Plan::new(&robot, &[], &[]), Configuration::default(), Workspace::default());
     bencher.bench_local(move || {
         posture.set(&plan, black_box(&state.position));
         kinematics(&plan, &posture, &mut workspace);
@@ -79,7 +80,8 @@ fn velocity_after(bencher: Bencher) {
     let robot = ramone();
     let state = state(&robot);
     let points = points(&robot, &state);
-    let (plan, mut posture, mut workspace) = (Plan::new(&robot, &[], &[]), Posture::default(), Workspace::default());
+    let (plan, mut posture, mut workspace) =
+        (Plan::new(&robot, &[], &[]), Configuration::default(), Workspace::default());
     posture.set(&plan, &state.position);
     kinematics(&plan, &posture, &mut workspace);
     let (mut rates, mut motions) = (Vec::new(), Vec::new());

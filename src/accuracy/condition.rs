@@ -32,17 +32,7 @@ pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
     };
     let solved = |x: &[f64]| -> Vec<f64> {
         let mut y: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x * size).collect();
-        for i in (0..nv).rev() {
-            for j in ancestors(i) {
-                y[j] -= factor[i * nv + j] * y[i];
-            }
-        }
-        for i in 0..nv {
-            y[i] /= factor[i * nv + i];
-            for j in ancestors(i) {
-                y[i] -= factor[i * nv + j] * y[j];
-            }
-        }
+        factor.solve(plan, &mut y);
         y.iter().zip(&size).map(|(y, size)| y * size).collect()
     };
     growth(nv, multiplied) * growth(nv, solved)

@@ -7,7 +7,7 @@
 
 use super::number::Number;
 use crate::contact::Contact;
-use crate::dynamics::plan::{Plan, Posture};
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
     ContactPoint, Workspace, articulated_delassus, articulated_inertias, contact_jacobian, delassus, factorize,
     kinematics, mass_matrix, point_velocity,
@@ -96,7 +96,7 @@ impl<'a> Pose<'a> {
 #[derive(Debug, Clone)]
 pub struct Computation<T> {
     plan: Plan<T>,
-    posture: Posture<T>,
+    posture: Configuration<T>,
     points: Vec<ContactPoint<T>>,
     velocity: Vec<T>,
     workspace: Workspace<T>,
@@ -108,7 +108,7 @@ impl<T: Number> Computation<T> {
         let scene = &pose.state.scene;
         Self {
             plan: Plan::new(pose.robot, &scene.held, &scene.rotor_inertia),
-            posture: Posture::default(),
+            posture: Configuration::default(),
             points: Vec::new(),
             velocity: Vec::new(),
             workspace: Workspace::default(),

@@ -41,8 +41,8 @@ struct Column {
 
 #[derive(Debug, Clone, Copy)]
 enum Axis {
-    Turn(Interval),
-    Slide(Vector<Interval>),
+    Revolute(Interval),
+    Prismatic(Vector<Interval>),
 }
 
 impl Reference {
@@ -107,12 +107,12 @@ impl Reference {
         let (beyond, below) = (&self.columns[upper], &self.columns[lower]);
         let Inertia { mass, first, second } = beyond.moved;
         let (linear, angular) = match beyond.axis {
-            Axis::Turn(sign) => (first.perpendicular() * sign, sign * second),
-            Axis::Slide(along) => (along * mass, first.perpendicular().dot(along)),
+            Axis::Revolute(sign) => (first.perpendicular() * sign, sign * second),
+            Axis::Prismatic(along) => (along * mass, first.perpendicular().dot(along)),
         };
         let entry = match below.axis {
-            Axis::Turn(sign) => sign * (angular + (beyond.origin - below.origin).perpendicular().dot(linear)),
-            Axis::Slide(along) => along.dot(linear),
+            Axis::Revolute(sign) => sign * (angular + (beyond.origin - below.origin).perpendicular().dot(linear)),
+            Axis::Prismatic(along) => along.dot(linear),
         };
         if upper == lower { entry + beyond.rotor } else { entry }
     }
@@ -141,12 +141,12 @@ fn columns(computation: &Computation<Interval>) -> Vec<Column> {
     for (index, body) in plan.bodies.iter().enumerate().filter(|(_, body)| body.column.is_some()) {
         match body.motion {
             Motion::Root => {
-                columns.extend(Vector::axes().map(|axis| column(Axis::Slide(axis), index)));
-                columns.push(column(Axis::Turn(Interval::one()), index));
+                columns.extend(Vector::axes().map(|axis| column(Axis::Prismatic(axis), index)));
+                columns.push(column(Axis::Revolute(Interval::one()), index));
             }
-            Motion::Turn { sign, .. } => columns.push(column(Axis::Turn(sign), index)),
-            Motion::Slide { .. } => columns.push(column(Axis::Slide(workspace.direction[index]), index)),
-            Motion::Weld => {}
+            Motion::Revolute { sign, .. } => columns.push(column(Axis::Revolute(sign), index)),
+            Motion::Prismatic { .. } => columns.push(column(Axis::Prismatic(workspace.direction[index]), index)),
+            Motion::Fixed => {}
         }
     }
     columns

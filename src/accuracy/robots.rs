@@ -3,7 +3,7 @@
 use crate::Result;
 
 use crate::planar::Vector;
-use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, Mover, Robot};
+use crate::robot::{Axis, Base, Body, FootShape, Joint, Link, ParentJoint, Robot};
 
 /// The paper's minimalistic biped: two point masses on hinged legs.
 pub fn minimalistic() -> Result<Robot> {
@@ -39,7 +39,7 @@ pub fn with_massless_feet() -> Result<Robot> {
         robot.joints.push(hinge(format!("{name} ankle"), robot.links[leg].body, body, Vector::new(0.0, -1.0)));
         robot.bodies.push(Body {
             name: name.clone(),
-            joint: Some(Mover::Joint(joint)),
+            joint: Some(ParentJoint::Joint(joint)),
             mass: 0.0,
             com: Vector::zero(),
             moment: 0.0,
@@ -53,7 +53,7 @@ pub fn with_massless_feet() -> Result<Robot> {
 pub fn chain(links: usize) -> Robot {
     let rod = |index: usize| Body {
         name: format!("rod {index}"),
-        joint: index.checked_sub(1).map(Mover::Joint),
+        joint: index.checked_sub(1).map(ParentJoint::Joint),
         mass: 1.0,
         com: Vector::new(0.0, -0.5),
         moment: 1.0 / 12.0,
@@ -70,7 +70,7 @@ pub fn chain(links: usize) -> Robot {
             point_foot("near end".into(), 0, Vector::zero()),
             point_foot("far end".into(), tip, Vector::new(0.0, -1.0)),
         ],
-        followers: Vec::new(),
+        mimic_joints: Vec::new(),
         left_out: Vec::new(),
         reading: Default::default(),
     }
@@ -87,7 +87,7 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
     for joint in &mut robot.joints {
         joint.origin = joint.origin * length;
     }
-    for follower in &mut robot.followers {
+    for follower in &mut robot.mimic_joints {
         follower.origin = follower.origin * length;
     }
     for link in &mut robot.links {
@@ -121,7 +121,7 @@ pub fn with_moments(mut robot: Robot, factor: f64) -> Robot {
 }
 
 fn hinge(name: String, parent: usize, child: usize, origin: Vector<f64>) -> Joint {
-    Joint { name, parent, child, origin, axis: Axis::Turn { sign: -1.0 } }
+    Joint { name, parent, child, origin, axis: Axis::Revolute { sign: -1.0 } }
 }
 
 /// A link that is its body and touches the ground with a point.

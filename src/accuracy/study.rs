@@ -134,7 +134,7 @@ pub fn study(name: &str, subject: &Subject, options: &Options, budget: Budget) -
 /// Studies a robot's state.
 pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> Study {
     let mut study = Study::of(name, Some(robot.dofs()));
-    if !robot.followers.is_empty() || !state.scene.loops.is_empty() {
+    if !robot.mimic_joints.is_empty() || !state.scene.loops.is_empty() {
         let reason = Reason::Unsupported("the methods compared here know neither loops nor mimic joints".into());
         return study.refuse(
             Error::new(reason).hint("leave the loops out; remove <mimic> to let a joint move freely, or make it fixed"),

@@ -1,7 +1,7 @@
 //! Where the bodies are in the world.
 
 use super::point::{Circle, Point};
-use crate::dynamics::plan::{Plan, Posture};
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{Workspace, kinematics};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Rim, Robot};
@@ -29,7 +29,7 @@ impl Placement {
     /// The bodies of `robot` at `position` (q).
     pub fn of_robot(robot: &Robot, position: &[f64]) -> Self {
         let plan = Plan::new(robot, &[], &[]);
-        let (mut posture, mut workspace) = (Posture::default(), Workspace::default());
+        let (mut posture, mut workspace) = (Configuration::default(), Workspace::default());
         posture.set(&plan, position);
         kinematics(&plan, &posture, &mut workspace);
         let base = match (robot.base, position) {

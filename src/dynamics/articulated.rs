@@ -10,23 +10,12 @@
 //! those of M = L^T D L, found without M: a second, independent way to the same numbers, and the only quick one for long
 //! chains. It knows no joints that follow others: a column here moves one joint. Source: Featherstone 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
-use super::jacobian::ContactPoint;
+use super::articulated_inertia::ArticulatedInertia;
+use super::contact_point::ContactPoint;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan, PlanBody};
 use crate::planar::{Inertia, Vector};
 use crate::scalar::Real;
-
-/// The symmetric inertia [[moment, coupling^T], [coupling, linear]] that a body shows at its origin, in world axes, while
-/// all joints beyond it give way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Articulated<T> {
-    /// Moment for a unit angular acceleration \[kg m^2\].
-    pub moment: T,
-    /// Force for a unit angular acceleration, moment for a unit linear one \[kg m\].
-    pub coupling: Vector<T>,
-    /// Force for a unit linear acceleration: entries xx, xz, zz \[kg\].
-    pub linear: [T; 3],
-}
 
 /// A moment about a body's origin and a force, in world axes \[N m, N\]; of impulses \[N m s, N s\].
 #[derive(Clone, Copy)]
@@ -41,12 +30,9 @@ struct Force<T> {
 pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, articulated, pivots, .. } = workspace;
     articulated.clear();
-    articulated.extend(
-        plan.bodies
-            .iter()
-            .zip(rotation.iter())
-            .map(|(body, turn)| Articulated::rigid(Inertia { first: turn.apply(body.inertia.first), ..body.inertia })),
-    );
+    articulated.extend(plan.bodies.iter().zip(rotation.iter()).map(|(body, turn)| {
+        ArticulatedInertia::rigid(Inertia { first: turn.apply(body.inertia.first), ..body.inertia })
+    }));
     pivots.clear();
     pivots.resize(plan.columns(), T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
@@ -59,12 +45,12 @@ pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T
                 pivots[0] = xx - xz * (xz / zz);
                 continue;
             }
-            (Motion::Weld, _) | (_, None) => own,
-            (Motion::Turn { .. }, Some(column)) => {
+            (Motion::Fixed, _) | (_, None) => own,
+            (Motion::Revolute { .. }, Some(column)) => {
                 pivots[column] = own.moment + body.rotor;
                 own.without_turn(body.rotor, pivots[column])
             }
-            (Motion::Slide { .. }, Some(column)) => {
+            (Motion::Prismatic { .. }, Some(column)) => {
                 let along = direction[index];
                 pivots[column] = along.dot(own.stretch(along)) + body.rotor;
                 own.without_slide(along, body.rotor, pivots[column])
@@ -150,13 +136,13 @@ pub fn add_articulated_impulse<T: Real>(
         };
         let pivot = workspace.pivots[column];
         motions.push(match body.motion {
-            Motion::Root | Motion::Weld => (spin, carried),
-            Motion::Turn { sign, .. } => {
+            Motion::Root | Motion::Fixed => (spin, carried),
+            Motion::Revolute { sign, .. } => {
                 let moment = own.moment * spin + own.coupling.dot(carried);
                 rates[column] = rates[column] - sign * (moment / pivot);
                 (spin + sign * rates[column], carried)
             }
-            Motion::Slide { .. } => {
+            Motion::Prismatic { .. } => {
                 let along = workspace.direction[index];
                 let force = along.dot(own.coupling) * spin + own.stretch(along).dot(carried);
                 rates[column] = rates[column] - force / pivot;
@@ -202,15 +188,15 @@ fn to_root<T: Real>(
                 let rest = x - xz * up;
                 tell(0, rest, rest / workspace.pivots[0]);
             }
-            (Motion::Weld, _) | (_, None) => {}
-            (Motion::Turn { sign, .. }, Some(column)) => {
+            (Motion::Fixed, _) | (_, None) => {}
+            (Motion::Revolute { sign, .. }, Some(column)) => {
                 let rate = force.moment / workspace.pivots[column];
                 tell(column, sign * force.moment, sign * rate);
                 // n - A_nn n / D without the cancellation: nothing at all is passed on where there is no rotor.
                 force.moment = rotor * rate;
                 force.linear = force.linear - own.coupling * rate;
             }
-            (Motion::Slide { .. }, Some(column)) => {
+            (Motion::Prismatic { .. }, Some(column)) => {
                 let along = workspace.direction[at];
                 let push = along.dot(force.linear);
                 let rate = push / workspace.pivots[column];
@@ -244,90 +230,19 @@ impl<T: Real> Force<T> {
     }
 }
 
-impl<T: Real> Articulated<T> {
-    fn rigid(body: Inertia<T>) -> Self {
-        Self { moment: body.second, coupling: body.first.perpendicular(), linear: [body.mass, T::zero(), body.mass] }
-    }
-
-    /// Force for the linear acceleration `along`.
-    fn stretch(&self, along: Vector<T>) -> Vector<T> {
-        let [xx, xz, zz] = self.linear;
-        Vector { x: Vector::new(xx, xz).dot(along), z: Vector::new(xz, zz).dot(along) }
-    }
-
-    /// What is left to the parent by a hinge of pivot D = moment + rotor. Always u (u / D), never u u (1 / D): the latter
-    /// underflows for small masses.
-    fn without_turn(&self, rotor: T, pivot: T) -> Self {
-        let kept = rotor / pivot;
-        let [xx, xz, zz] = self.linear;
-        let Vector { x, z } = self.coupling;
-        let [by_x, by_z] = [x / pivot, z / pivot];
-        Self {
-            moment: self.moment * kept,
-            coupling: self.coupling * kept,
-            linear: [xx - x * by_x, xz - x * by_z, zz - z * by_z],
-        }
-    }
-
-    /// What is left to the parent by a slide along `along` of pivot D.
-    ///
-    /// It is taken apart along and across the slide, so that what the slide does not pass on cancels before it is rounded.
-    fn without_slide(&self, along: Vector<T>, rotor: T, pivot: T) -> Self {
-        let across = along.perpendicular();
-        let (pulled, pushed) = (self.stretch(along), self.stretch(across));
-        let (same, mixed, other) = (along.dot(pulled), across.dot(pulled), across.dot(pushed));
-        let (lever, side) = (along.dot(self.coupling), across.dot(self.coupling));
-        let (kept, by_lever) = (rotor / pivot, lever / pivot);
-        let (same, other, mixed) = (same * kept, other - mixed * (mixed / pivot), mixed * kept);
-        let (lever, side, spent) = (lever * kept, side - across.dot(pulled) * by_lever, lever * by_lever);
-        // `along` has length one but for rounding; dividing by its square makes the formula right for any length.
-        let square = along.dot(along);
-        let [same, other, mixed] = [same, other, mixed].map(|entry| entry / square / square);
-        let [Vector { x, z }, Vector { x: p, z: q }] = [along, across];
-        let two = T::one() + T::one();
-        Self {
-            moment: self.moment - spent,
-            coupling: along * (lever / square) + across * (side / square),
-            linear: [
-                same * x * x + two * (mixed * x * p) + other * p * p,
-                same * x * z + mixed * (x * q + z * p) + other * p * q,
-                same * z * z + two * (mixed * z * q) + other * q * q,
-            ],
-        }
-    }
-
-    /// The same inertia about a point from which the old one is seen at `arm`.
-    fn seen_from(self, arm: Vector<T>) -> Self {
-        let lever = arm.perpendicular();
-        let shifted = self.coupling + self.stretch(lever);
-        // A + 2 h.l + l.M l, with the new coupling h + M l in place of one h.
-        Self { moment: self.moment + (self.coupling + shifted).dot(lever), coupling: shifted, linear: self.linear }
-    }
-
-    /// Both inertias as one; they must be given about the same point.
-    fn with(self, other: Self) -> Self {
-        let [[a, b, c], [d, e, f]] = [self.linear, other.linear];
-        Self {
-            moment: self.moment + other.moment,
-            coupling: self.coupling + other.coupling,
-            linear: [a + d, b + e, c + f],
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::plan::Posture;
+    use crate::dynamics::plan::Configuration;
     use crate::dynamics::{contact_jacobian, delassus, factorize, kinematics, mass_matrix};
     use crate::planar::Rotation;
-    use crate::robot::{Axis, Base, Body, Joint, Mover, Robot};
+    use crate::robot::{Axis, Base, Body, Joint, ParentJoint, Robot};
 
     /// Equal rods of 1 m, one hanging on the other; those whose number the divisor divides weigh nothing.
     fn chain(links: usize, massless: usize) -> Robot {
         let body = |index: usize| Body {
             name: String::new(),
-            joint: index.checked_sub(1).map(Mover::Joint),
+            joint: index.checked_sub(1).map(ParentJoint::Joint),
             mass: if index % massless == massless - 1 && index + 1 < links { 0.0 } else { 1.0 },
             com: Vector::new(0.0, -0.5),
             moment: if index % massless == massless - 1 && index + 1 < links { 0.0 } else { 1.0 / 12.0 },
@@ -337,7 +252,7 @@ mod tests {
             parent: index,
             child: index + 1,
             origin: Vector::new(0.0, -1.0),
-            axis: Axis::Turn { sign: 1.0 },
+            axis: Axis::Revolute { sign: 1.0 },
         };
         Robot {
             name: "chain".into(),
@@ -345,14 +260,15 @@ mod tests {
             bodies: (0..links).map(body).collect(),
             joints: (0..links - 1).map(joint).collect(),
             links: Vec::new(),
-            followers: Vec::new(),
+            mimic_joints: Vec::new(),
             left_out: Vec::new(),
             reading: Default::default(),
         }
     }
 
     fn both_ways(robot: &Robot) -> (Vec<f64>, Vec<f64>) {
-        let (plan, mut posture, mut workspace) = (Plan::new(robot, &[], &[]), Posture::default(), Workspace::default());
+        let (plan, mut posture, mut workspace) =
+            (Plan::new(robot, &[], &[]), Configuration::default(), Workspace::default());
         let q: Vec<f64> = (0..robot.dofs()).map(|index| 0.7 * f64::from(index as u32 % 7) - 2.0).collect();
         posture.set(&plan, &q);
         let tip = robot.bodies.len() - 1;

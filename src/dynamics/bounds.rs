@@ -13,7 +13,7 @@
 //!    bounds |S M^-1 S| for S = diag(sqrt K_i). So |dG_rs| <= eps / (1 - eps) sqrt(G_rr G_ss).
 //! 4. *J* adds eta a_r with a_r = sum A_ri sqrt((M^-1)_ii) to the length sqrt(G_rr) of its row in the energy norm, and the
 //!    triangular solves add gamma sqrt(nv tau) of it (Higham 2002, theorem 8.5).
-//! 5. A *follower* turns by up to three angles instead of one and brings further roundings to its slide: it counts for three
+//! 5. A *mimic* turns by up to three angles instead of one and brings further roundings to its slide: it counts for three
 //!    levels. Its motion is multiplied by its rate, and where a column moves several joints b, the triangle inequality of the
 //!    energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum likewise.
 //! 6. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
@@ -22,7 +22,7 @@
 //! tenth. The constants are generous: a sign that falls within them is settled by balls.
 
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Motion, Plan, Posture};
+use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::planar::{Pair, Vector};
 
 /// Half the distance from 1 to the next f64.
@@ -72,21 +72,23 @@ struct Stretched {
 
 impl Bounds {
     /// Takes the lengths of a posture and of its contacts; the others read them.
-    pub fn stretch(&mut self, plan: &Plan, posture: &Posture, contacts: impl Iterator<Item = Arm>) {
+    pub fn stretch(&mut self, plan: &Plan, posture: &Configuration, contacts: impl Iterator<Item = Arm>) {
         self.contacts.clear();
         self.contacts.extend(contacts);
         let length = |Vector { x, z }: Vector<f64>| x.abs() + z.abs();
         self.bodies.clear();
         for body in &plan.bodies {
-            let shift = match (body.motion, body.tie) {
-                (Motion::Slide { direction, .. }, None) => posture.displacement[body.place].abs() * length(direction),
-                (Motion::Slide { direction, .. }, Some(tie)) => {
+            let shift = match (body.motion, body.mimic) {
+                (Motion::Prismatic { direction, .. }, None) => {
+                    posture.displacement[body.place].abs() * length(direction)
+                }
+                (Motion::Prismatic { direction, .. }, Some(tie)) => {
                     let terms = (tie.multiplier * posture.displacement[body.coordinate]).abs() + tie.offset.abs();
                     terms * length(direction)
                 }
-                (Motion::Root | Motion::Turn { .. } | Motion::Weld, _) => 0.0,
+                (Motion::Root | Motion::Revolute { .. } | Motion::Fixed, _) => 0.0,
             };
-            let levels = if body.tie.is_some() { 3 } else { 1 };
+            let levels = if body.mimic.is_some() { 3 } else { 1 };
             self.bodies.push(Stretched {
                 arm: length(body.origin) + shift,
                 mass: body.inertia.mass,
@@ -110,7 +112,7 @@ impl Bounds {
     fn entry_error(&self, plan: &Plan) -> f64 {
         let depth = self.bodies.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
         // Where columns are shared, an entry may have a term for every body and every level.
-        let terms = if plan.tied { (depth + 1) * (self.bodies.len() + 1) } else { depth + self.bodies.len() };
+        let terms = if plan.has_mimics { (depth + 1) * (self.bodies.len() + 1) } else { depth + self.bodies.len() };
         ENTRY * terms as f64 * UNIT_ROUNDOFF
     }
 
@@ -157,9 +159,9 @@ impl Bounds {
                     self.roots[..2].fill(stretched.mass.sqrt());
                     stretched.second
                 }
-                Motion::Turn { rate, .. } => stretched.second * (rate * rate) + body.rotor,
-                Motion::Slide { rate, .. } => stretched.mass * rate.dot(rate) + body.rotor,
-                Motion::Weld => continue,
+                Motion::Revolute { rate, .. } => stretched.second * (rate * rate) + body.rotor,
+                Motion::Prismatic { rate, .. } => stretched.mass * rate.dot(rate) + body.rotor,
+                Motion::Fixed => continue,
             };
             self.roots[column] += moment.sqrt();
         }
@@ -200,12 +202,12 @@ impl Bounds {
             let body = &plan.bodies[at];
             match body.motion {
                 Motion::Root => break,
-                Motion::Turn { rate, .. } => tell(body.column, body.coordinate, arm * rate.abs()),
-                Motion::Slide { .. } => {
-                    let rate = body.tie.map_or(1.0, |tie| tie.multiplier.abs());
+                Motion::Revolute { rate, .. } => tell(body.column, body.coordinate, arm * rate.abs()),
+                Motion::Prismatic { .. } => {
+                    let rate = body.mimic.map_or(1.0, |tie| tie.multiplier.abs());
                     tell(body.column, body.coordinate, rate);
                 }
-                Motion::Weld => {}
+                Motion::Fixed => {}
             }
             arm += self.bodies[at].arm;
             match body.parent {
@@ -234,10 +236,10 @@ fn squared_ease(plan: &Plan, workspace: &Workspace, column: usize, y: &mut Vec<f
         // Entries off the branch of the column stay zero.
         let mut below = plan.parents[i];
         while let Some(j) = below {
-            y[j] -= factor[i * nv + j] * y[i];
+            y[j] -= factor.entry(i, j) * y[i];
             below = plan.parents[j];
         }
-        sum += y[i] * y[i] / factor[i * nv + i];
+        sum += y[i] * y[i] / factor.pivot(i);
         at = plan.parents[i];
     }
     sum

@@ -1,4 +1,4 @@
-//! The joint-space inertia matrix M by composite rigid bodies.
+//! The joint-space inertia matrix M by composite rigid bodies, and its factor.
 //!
 //! ```text
 //!     I^c_i = I_i + sum of children's I^c        M_ij = S_i^T I^c_j S_j  for i on the way from j to the root
@@ -43,20 +43,20 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
                 mass_matrix[column * nv + column] = pitch.angular;
                 continue;
             }
-            Motion::Turn { rate, .. } => {
+            Motion::Revolute { rate, .. } => {
                 Momentum { linear: own.first.perpendicular() * rate, angular: rate * own.second }
             }
-            Motion::Slide { .. } => Momentum {
+            Motion::Prismatic { .. } => Momentum {
                 linear: direction[index] * own.mass,
                 angular: own.first.perpendicular().dot(direction[index]),
             },
-            Motion::Weld => continue,
+            Motion::Fixed => continue,
         };
         // `momentum` is that of a unit rate of this joint; the walk to the root projects it on every joint below.
         let along = |at: usize, momentum: Momentum<T>| match plan.bodies[at].motion {
-            Motion::Root | Motion::Weld => momentum.angular,
-            Motion::Turn { rate, .. } => rate * momentum.angular,
-            Motion::Slide { .. } => direction[at].dot(momentum.linear),
+            Motion::Root | Motion::Fixed => momentum.angular,
+            Motion::Revolute { rate, .. } => rate * momentum.angular,
+            Motion::Prismatic { .. } => direction[at].dot(momentum.linear),
         };
         plan.bring(&mut mass_matrix[column * nv + column], along(index, momentum) + body.rotor);
         let (mut at, mut momentum) = (index, momentum);
@@ -77,6 +77,11 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
             plan.bring(&mut mass_matrix[column * nv + 1], momentum.linear.z);
         }
     }
+}
+
+/// Factorizes the mass matrix. Callers check for a vanishing pivot.
+pub fn factorize<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
+    workspace.factor.factorize(plan, &workspace.mass_matrix);
 }
 
 /// Linear momentum and angular momentum about a body's origin, of a unit rate of one joint.

@@ -8,6 +8,7 @@
 //! `delassus` for the split. Cost: O(n depth^2 + n^2 nv).
 
 use super::jacobian::walk;
+use super::ltl::LtlFactor;
 use super::workspace::Workspace;
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
@@ -20,7 +21,7 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     half.clear();
     half.extend_from_slice(contact_jacobian);
     for y in half.chunks_exact_mut(nv.max(1)) {
-        half_solve(plan, factor, y);
+        factor.half_solve(plan, y);
     }
     // Not from the Jacobian's length: where every joint is held it has no columns.
     from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
@@ -30,13 +31,13 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
 pub(super) fn from_half<T: Real>(
     nv: usize,
     rows: usize,
-    factor: &[T],
+    factor: &LtlFactor<T>,
     (half, half_by_d): (&[T], &mut Vec<T>),
     delassus: &mut Vec<T>,
 ) {
     half_by_d.clear();
     for y in half.chunks_exact(nv.max(1)) {
-        half_by_d.extend(y.iter().enumerate().map(|(i, &entry)| entry / factor[i * nv + i]));
+        half_by_d.extend(factor.divided(y));
     }
     delassus.clear();
     delassus.resize(rows * rows, T::zero());
@@ -55,30 +56,6 @@ pub(super) fn products<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
 }
 
-/// y := L^-T y.
-pub(super) fn half_solve<T: Real>(plan: &Plan<T>, factor: &[T], y: &mut [T]) {
-    let nv = plan.columns();
-    for i in (0..nv).rev() {
-        let mut ancestor = plan.parents[i];
-        while let Some(j) = ancestor {
-            y[j] = y[j] - factor[i * nv + j] * y[i];
-            ancestor = plan.parents[j];
-        }
-    }
-}
-
-/// x := L^-1 x.
-pub(super) fn other_half_solve<T: Real>(plan: &Plan<T>, factor: &[T], x: &mut [T]) {
-    let nv = plan.columns();
-    for i in 0..nv {
-        let mut ancestor = plan.parents[i];
-        while let Some(j) = ancestor {
-            x[i] = x[i] - factor[i * nv + j] * x[j];
-            ancestor = plan.parents[j];
-        }
-    }
-}
-
 /// Adds to `velocity` (dq/dt by coordinate) what `impulse` \[N s\] at a point does to it: M^-1 J^T p. The point lies at
 /// `arm` from the origin of `body`, both vectors in the world's axes; `column` is scratch.
 pub fn add_impulse<T: Real>(
@@ -92,12 +69,7 @@ pub fn add_impulse<T: Real>(
     column.clear();
     column.resize(plan.columns(), T::zero());
     walk(plan, body, arm, velocity, workspace, |index, unit| plan.bring(&mut column[index], unit.dot(impulse)));
-    half_solve(plan, &workspace.factor, column);
-    let nv = plan.columns();
-    for (i, entry) in column.iter_mut().enumerate() {
-        *entry = *entry / workspace.factor[i * nv + i];
-    }
-    other_half_solve(plan, &workspace.factor, column);
+    workspace.factor.solve(plan, column);
     for (&coordinate, &change) in plan.coordinates.iter().zip(column.iter()) {
         velocity[coordinate] = velocity[coordinate] + change;
     }

@@ -22,7 +22,7 @@ pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Works
         let first = workspace.rotation[index].apply(body.inertia.first);
         let cross = rate * origin.dot(first.perpendicular());
         twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * rate * rate;
-        if !matches!(body.motion, Motion::Root | Motion::Weld) {
+        if !matches!(body.motion, Motion::Root | Motion::Fixed) {
             let own = velocity[body.coordinate];
             twice = twice + body.rotor * own * own;
         }

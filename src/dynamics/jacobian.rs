@@ -4,36 +4,11 @@
 //! the direction of a prismatic one. r is summed from the contact inward, so that no large positions are subtracted.
 //! Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
 
+use super::contact_point::ContactPoint;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan};
-use crate::planar::{Rotation, Vector};
+use crate::planar::Vector;
 use crate::scalar::Real;
-
-/// A material point in touch with the ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactPoint<T = f64> {
-    /// The body, an index into the plan's bodies (those of [`Robot::bodies`](crate::Robot)).
-    pub body: usize,
-    /// The point, or the centre of the circle, in the body's frame \[m\].
-    pub centre: Vector<T>,
-    /// Radius of the circle \[m\]: the point is at centre - radius * normal.
-    pub radius: T,
-    /// Turn from the world's axes to the ground's (tangent, normal) at the contact.
-    pub ground: Rotation<T>,
-}
-
-impl<T: Real> ContactPoint<T> {
-    /// The ground's unit tangent and normal in the world's axes.
-    pub fn axes(&self) -> [Vector<T>; 2] {
-        Vector::axes().map(|axis| self.ground.apply(axis))
-    }
-
-    /// The point from its body's origin, in the world's axes \[m\].
-    pub fn arm(&self, workspace: &Workspace<T>) -> Vector<T> {
-        let [_, normal] = self.axes();
-        workspace.rotation[self.body].apply(self.centre) - normal * self.radius
-    }
-}
 
 /// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity` (dq/dt by coordinate).
 ///
@@ -103,9 +78,9 @@ pub(super) fn walk<T: Real>(
         let body = &plan.bodies[at];
         let unit = match body.motion {
             Motion::Root => break,
-            Motion::Turn { rate, .. } => Some(arm.perpendicular() * rate),
-            Motion::Slide { .. } => Some(workspace.direction[at]),
-            Motion::Weld => None,
+            Motion::Revolute { rate, .. } => Some(arm.perpendicular() * rate),
+            Motion::Prismatic { .. } => Some(workspace.direction[at]),
+            Motion::Fixed => None,
         };
         if let Some(unit) = unit {
             if let Some(column) = body.column {
@@ -136,7 +111,7 @@ pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     let mut at = Some(body);
     while let Some(index) = at {
         let body = &plan.bodies[index];
-        if let Motion::Turn { rate: own, .. } = body.motion {
+        if let Motion::Revolute { rate: own, .. } = body.motion {
             rate = rate + own * velocity[body.coordinate];
         }
         at = body.parent;

@@ -3,14 +3,14 @@
 //! Source: Featherstone 2008, section 4.1, in world axes. Cost: O(nb).
 
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Motion, Plan, Posture};
+use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
-/// Computes every body's rotation and arm for a posture (cos, sin and displacement per coordinate and follower).
+/// Computes every body's rotation and arm for a posture (cos, sin and displacement per coordinate and mimic).
 ///
 /// Only differences of position enter the dynamics, so the base's x and z are not read.
-pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut Workspace<T>) {
+pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Configuration<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, .. } = workspace;
     rotation.clear();
     arm.clear();
@@ -25,19 +25,19 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Posture<T>, workspace: &mut
         let base = rotation[parent];
         match body.motion {
             Motion::Root => {}
-            Motion::Turn { sign, .. } => {
+            Motion::Revolute { sign, .. } => {
                 let Rotation { cos, sin } = posture.turn(body.place);
                 rotation.push(base.then(Rotation { cos, sin: sign * sin }));
                 arm.push(base.apply(body.origin));
                 direction.push(Vector::zero());
             }
-            Motion::Slide { direction: along, rate } => {
+            Motion::Prismatic { direction: along, rate } => {
                 let displaced = body.origin + along * posture.displacement[body.place];
                 rotation.push(base);
                 arm.push(base.apply(displaced));
                 direction.push(base.apply(rate));
             }
-            Motion::Weld => {
+            Motion::Fixed => {
                 rotation.push(base);
                 arm.push(base.apply(body.origin));
                 direction.push(Vector::zero());

@@ -13,9 +13,10 @@
 //! [`Reductions::held`](crate::reductions::Reductions)) brings a row of the identity, before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT
 //! form). Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
 
-use super::delassus::{half_solve, other_half_solve, products};
-use super::jacobian::{ContactPoint, point_velocity, walk};
-use super::workspace::Workspace;
+use super::contact_point::ContactPoint;
+use super::delassus::{from_half, products};
+use super::jacobian::{point_velocity, walk};
+use super::workspace::{LoopRows, Workspace};
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
 use crate::scalar::Real;
@@ -27,37 +28,6 @@ pub struct Loop<T = f64> {
     pub bodies: [usize; 2],
     /// The points in their bodies' frames \[m\].
     pub points: [Vector<T>; 2],
-}
-
-/// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's axes) per
-/// loop, as `orthogonalize` leaves them.
-#[derive(Debug, Clone)]
-pub struct LoopRows<T = f64> {
-    /// Coordinates that keep their rates; their rows come first.
-    kept: Vec<usize>,
-    /// Rows of K in the order of their elimination: 2 loop + axis; none that follows from others.
-    rows: Vec<usize>,
-    /// Z by columns, those of a foot at rest behind those of the loops. nv each
-    basis: Vec<T>,
-    /// D^-1 Z by columns.
-    basis_by_d: Vec<T>,
-    /// Z^T D^-1 Z, which is diagonal.
-    squares: Vec<T>,
-    /// C below its unit diagonal, by rows of the full square.
-    coupling: Vec<T>,
-}
-
-impl<T> Default for LoopRows<T> {
-    fn default() -> Self {
-        Self {
-            kept: Vec::new(),
-            rows: Vec::new(),
-            basis: Vec::new(),
-            basis_by_d: Vec::new(),
-            squares: Vec::new(),
-            coupling: Vec::new(),
-        }
-    }
 }
 
 /// What impulses keep as it is.
@@ -208,13 +178,13 @@ pub fn orthogonalize<T: Real>(
     coupling.clear();
     coupling.resize(count * count, T::zero());
     for (i, mut y) in all.into_iter().enumerate() {
-        half_solve(plan, &workspace.factor, &mut y);
+        workspace.factor.half_solve(plan, &mut y);
         for k in 0..i {
             let along = products(&y, &basis_by_d[k * nv..(k + 1) * nv]) / squares[k];
             subtract(&mut y, &basis[k * nv..(k + 1) * nv], along);
             coupling[i * count + k] = along;
         }
-        let y_by_d = by_d(plan, workspace, &y);
+        let y_by_d: Vec<T> = workspace.factor.divided(&y).collect();
         squares.push(products(&y, &y_by_d));
         basis.extend(y);
         basis_by_d.extend(y_by_d);
@@ -232,7 +202,7 @@ pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
             subtract(y, &loops.basis[k * nv..(k + 1) * nv], along);
         }
     }
-    super::delassus::from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
+    from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
 }
 
 /// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. Gives the
@@ -268,7 +238,7 @@ pub fn close<T: Real>(
     for (k, &amplitude) in amplitudes.iter().enumerate() {
         subtract(&mut change, &basis_by_d[k * nv..(k + 1) * nv], amplitude);
     }
-    other_half_solve(plan, &workspace.factor, &mut change);
+    workspace.factor.other_half_solve(plan, &mut change);
     for (&coordinate, &change) in plan.coordinates.iter().zip(&change) {
         velocity[coordinate] = match (kept.contains(&coordinate), closed) {
             (false, _) => velocity[coordinate] + change,
@@ -311,12 +281,6 @@ fn unit_row<T: Real>(plan: &Plan<T>, coordinate: usize) -> Vec<T> {
 /// No velocity at all, where a walk tells motions alone.
 fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
     vec![T::zero(); plan.places]
-}
-
-/// D^-1 y.
-fn by_d<T: Real>(plan: &Plan<T>, workspace: &Workspace<T>, y: &[T]) -> Vec<T> {
-    let nv = plan.columns();
-    y.iter().enumerate().map(|(i, &entry)| entry / workspace.factor[i * nv + i]).collect()
 }
 
 /// y := y - factor z.

@@ -1,30 +1,91 @@
-//! M = L^T D L along the branches of the tree, without fill-in.
+//! The factor of M = L^T D L along the branches of the tree, without fill-in.
 //!
-//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda the parent columns of the plan's elimination tree. It needs no root, so any
-//! [`Real`] will do. Cost: O(nv depth^2).
+//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda the parent columns of the plan's elimination tree. It needs no
+//! root, so any [`Real`] works. Cost: O(nv depth^2), and O(nv depth) per solve.
 
-use super::workspace::Workspace;
-use crate::dynamics::plan::Plan;
+use super::plan::Plan;
 use crate::scalar::Real;
 
-/// Factorizes the mass matrix: L below the diagonal, D on it. A vanishing entry of D is the caller's to notice.
-pub fn factorize<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
-    let nv = plan.columns();
-    let Workspace { mass_matrix, factor: h, .. } = workspace;
-    h.clear();
-    h.extend_from_slice(mass_matrix);
-    for k in (0..nv).rev() {
-        let mut ancestor = plan.parents[k];
-        while let Some(i) = ancestor {
-            // u (u / D), never u u (1 / D): the latter underflows for small masses.
-            let a = h[k * nv + i] / h[k * nv + k];
-            let mut below = Some(i);
-            while let Some(j) = below {
-                h[i * nv + j] = h[i * nv + j] - a * h[k * nv + j];
-                below = plan.parents[j];
+/// L below the diagonal (its own diagonal is one) and D on it, by rows. nv x nv
+#[derive(Debug, Clone)]
+pub struct LtlFactor<T = f64> {
+    entries: Vec<T>,
+    columns: usize,
+}
+
+impl<T> Default for LtlFactor<T> {
+    fn default() -> Self {
+        Self { entries: Vec::new(), columns: 0 }
+    }
+}
+
+impl<T: Real> LtlFactor<T> {
+    /// Factorizes M (nv x nv by rows, its lower triangle). Callers check for a vanishing [`pivot`](Self::pivot).
+    pub fn factorize(&mut self, plan: &Plan<T>, mass_matrix: &[T]) {
+        let nv = plan.columns();
+        self.columns = nv;
+        let h = &mut self.entries;
+        h.clear();
+        h.extend_from_slice(mass_matrix);
+        for k in (0..nv).rev() {
+            let mut ancestor = plan.parents[k];
+            while let Some(i) = ancestor {
+                // u (u / D), never u u (1 / D): the latter underflows for small masses.
+                let a = h[k * nv + i] / h[k * nv + k];
+                let mut below = Some(i);
+                while let Some(j) = below {
+                    h[i * nv + j] = h[i * nv + j] - a * h[k * nv + j];
+                    below = plan.parents[j];
+                }
+                h[k * nv + i] = a;
+                ancestor = plan.parents[i];
             }
-            h[k * nv + i] = a;
-            ancestor = plan.parents[i];
         }
+    }
+
+    /// The entry of L below its diagonal.
+    pub fn entry(&self, row: usize, column: usize) -> T {
+        self.entries[row * self.columns + column]
+    }
+
+    /// The entry of D.
+    pub fn pivot(&self, column: usize) -> T {
+        self.entries[column * self.columns + column]
+    }
+
+    /// D^-1 y.
+    pub fn divided<'a>(&'a self, y: &'a [T]) -> impl Iterator<Item = T> + use<'a, T> {
+        y.iter().enumerate().map(|(i, &entry)| entry / self.pivot(i))
+    }
+
+    /// y := L^-T y.
+    pub fn half_solve(&self, plan: &Plan<T>, y: &mut [T]) {
+        for i in (0..self.columns).rev() {
+            let mut ancestor = plan.parents[i];
+            while let Some(j) = ancestor {
+                y[j] = y[j] - self.entry(i, j) * y[i];
+                ancestor = plan.parents[j];
+            }
+        }
+    }
+
+    /// x := L^-1 x.
+    pub fn other_half_solve(&self, plan: &Plan<T>, x: &mut [T]) {
+        for i in 0..self.columns {
+            let mut ancestor = plan.parents[i];
+            while let Some(j) = ancestor {
+                x[i] = x[i] - self.entry(i, j) * x[j];
+                ancestor = plan.parents[j];
+            }
+        }
+    }
+
+    /// x := M^-1 x.
+    pub fn solve(&self, plan: &Plan<T>, x: &mut [T]) {
+        self.half_solve(plan, x);
+        for (i, entry) in x.iter_mut().enumerate() {
+            *entry = *entry / self.pivot(i);
+        }
+        self.other_half_solve(plan, x);
     }
 }

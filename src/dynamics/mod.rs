@@ -10,44 +10,47 @@
 //! Every function reads a [`Plan`](crate::dynamics::plan::Plan) and writes into a [`Workspace`].
 
 pub mod plan;
+mod ltl;
+mod articulated_inertia;
+mod workspace;
+mod contact_point;
+mod kinematics;
+mod crba;
+mod jacobian;
+mod energy;
+mod delassus;
+mod loops;
 mod articulated;
 mod bounds;
-mod crba;
-mod delassus;
-mod energy;
-mod jacobian;
-mod kinematics;
-mod loops;
-mod ltl;
-mod workspace;
 
-pub use articulated::{Articulated, add_articulated_impulse, articulated_delassus, articulated_inertias};
+pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
+pub use articulated_inertia::ArticulatedInertia;
 pub use bounds::{Arm, Bounds};
-pub use crba::mass_matrix;
+pub use contact_point::ContactPoint;
+pub use crba::{factorize, mass_matrix};
 pub use delassus::{add_impulse, delassus};
 pub use energy::kinetic_energy;
-pub use jacobian::{ContactPoint, contact_jacobian, point_velocity};
+pub use jacobian::{contact_jacobian, point_velocity};
 pub use kinematics::kinematics;
 pub use loops::{
-    Closed, Constraints, Loop, LoopRows, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize,
-    spent_energy,
+    Closed, Constraints, Loop, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize, spent_energy,
 };
-pub use ltl::factorize;
-pub use workspace::Workspace;
+pub use ltl::LtlFactor;
+pub use workspace::{LoopRows, Workspace};
 
 #[cfg(test)]
 mod tests {
     //! Each algorithm against an independent one, on random branching trees with revolute and prismatic joints.
 
     use super::*;
-    use crate::dynamics::plan::{Plan, Posture};
+    use crate::dynamics::plan::{Configuration, Plan};
     use crate::planar::{Rotation, Vector};
-    use crate::robot::{Axis, Base, Body, Follower, Joint, Mover, Robot};
+    use crate::robot::{Axis, Base, Body, Joint, MimicJoint, ParentJoint, Robot};
     use crate::scalar::{Ball, DoubleDouble, Ordered, Real};
     use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
-    fn body(joint: Option<Mover>, mass: f64, com: Vector<f64>, moment: f64) -> Body {
+    fn body(joint: Option<ParentJoint>, mass: f64, com: Vector<f64>, moment: f64) -> Body {
         Body { name: String::new(), joint, mass, com, moment }
     }
 
@@ -62,9 +65,9 @@ mod tests {
             moment in 0.0..0.1f64,
         ) -> (prop::sample::Index, Vector<f64>, Axis, f64, Vector<f64>, f64) {
             let axis = if slides {
-                Axis::Slide { direction: Vector::new(angle.cos(), angle.sin()) }
+                Axis::Prismatic { direction: Vector::new(angle.cos(), angle.sin()) }
             } else {
-                Axis::Turn { sign: angle.signum() }
+                Axis::Revolute { sign: angle.signum() }
             };
             (parent, origin.into(), axis, mass, com.into(), moment)
         }
@@ -78,13 +81,13 @@ mod tests {
                 bodies: vec![body(None, 1.0, Vector::new(0.1, -0.2), 0.05)],
                 joints: Vec::new(),
                 links: Vec::new(),
-                followers: Vec::new(),
+                mimic_joints: Vec::new(),
                 left_out: Vec::new(),
                 reading: Default::default(),
             };
             for (parent, origin, axis, mass, com, moment) in parts {
                 let parent = parent.index(robot.bodies.len());
-                robot.bodies.push(body(Some(Mover::Joint(robot.joints.len())), mass, com, moment));
+                robot.bodies.push(body(Some(ParentJoint::Joint(robot.joints.len())), mass, com, moment));
                 robot.joints.push(Joint { name: String::new(), parent, child: robot.bodies.len() - 1, origin, axis });
             }
             robot
@@ -101,11 +104,20 @@ mod tests {
             let Joint { name, parent, child, origin, axis } = own;
             robot.bodies[child].joint = Some(if let Some((leader, multiplier, offset)) = follows(joint) {
                 let leader = leader.index(leaders);
-                robot.followers.push(Follower { name, leader, multiplier, offset, parent, child, origin, axis });
-                Mover::Follower(robot.followers.len() - 1)
+                robot.mimic_joints.push(MimicJoint {
+                    name,
+                    mimicked: leader,
+                    multiplier,
+                    offset,
+                    parent,
+                    child,
+                    origin,
+                    axis,
+                });
+                ParentJoint::Mimic(robot.mimic_joints.len() - 1)
             } else {
                 robot.joints.push(Joint { name, parent, child, origin, axis });
-                Mover::Joint(robot.joints.len() - 1)
+                ParentJoint::Joint(robot.joints.len() - 1)
             });
         }
         robot
@@ -129,7 +141,7 @@ mod tests {
 
     fn computed(robot: &Robot, q: &[f64], held: &[usize], rotors: &[f64]) -> (Plan, Workspace) {
         let (plan, mut posture, mut workspace) =
-            (Plan::new(robot, held, rotors), Posture::default(), Workspace::default());
+            (Plan::new(robot, held, rotors), Configuration::default(), Workspace::default());
         posture.set(&plan, q);
         kinematics(&plan, &posture, &mut workspace);
         mass_matrix(&plan, &mut workspace);
@@ -163,9 +175,9 @@ mod tests {
         fn factor_multiplies_back_to_the_mass_matrix((robot, q, _) in case()) {
             let (plan, workspace) = computed(&robot, &q, &[], &[]);
             let nv = plan.columns();
-            let entry = |i: usize, j: usize| workspace.factor[i * nv + j];
+            let entry = |i: usize, j: usize| workspace.factor.entry(i, j);
             let lower = DMatrix::from_fn(nv, nv, |i, j| if i == j { 1.0 } else if j < i { entry(i, j) } else { 0.0 });
-            let diagonal = DMatrix::from_fn(nv, nv, |i, j| if i == j { entry(i, i) } else { 0.0 });
+            let diagonal = DMatrix::from_fn(nv, nv, |i, j| if i == j { workspace.factor.pivot(i) } else { 0.0 });
             let mass = dense(&plan, &workspace.mass_matrix);
             let back = lower.transpose() * diagonal * lower;
             // Backward error of the factorization: a few eps of the largest entry per column.
@@ -241,7 +253,7 @@ mod tests {
             articulated_delassus(&plan, &contacts, &mut workspace);
             let nv = plan.columns();
             let condition = (0..nv)
-                .map(|i| by_mass.mass_matrix[i * nv + i] / by_mass.factor[i * nv + i])
+                .map(|i| by_mass.mass_matrix[i * nv + i] / by_mass.factor.pivot(i))
                 .fold(1.0, f64::max);
             // Either way loses a few hundred roundings, magnified by what cancels in the pivots.
             let near = |a: &[f64], b: &[f64]| {
@@ -251,7 +263,7 @@ mod tests {
             };
             prop_assert!(near(&by_mass.delassus, &workspace.delassus), "{:?} {:?}", by_mass.delassus, workspace.delassus);
             prop_assert!(near(&by_mass.half, &workspace.half));
-            let diagonal: Vec<f64> = (0..nv).map(|i| by_mass.factor[i * nv + i]).collect();
+            let diagonal: Vec<f64> = (0..nv).map(|i| by_mass.factor.pivot(i)).collect();
             prop_assert!(near(&diagonal, &workspace.pivots), "{diagonal:?} {:?}", workspace.pivots);
 
             let point = (contacts[0].body, contacts[0].arm(&workspace));
@@ -277,7 +289,7 @@ mod tests {
                 .collect();
             contact_jacobian(&plan, &contacts, &v, None, &mut workspace);
             delassus(&plan, &mut workspace);
-            let (mut bounds, mut posture) = (Bounds::default(), Posture::default());
+            let (mut bounds, mut posture) = (Bounds::default(), Configuration::default());
             posture.set(&plan, &q);
             let arm = |(body, [x, z]): &(prop::sample::Index, [f64; 2])| Arm { body: place(body), length: x.abs() + z.abs() };
             bounds.stretch(&plan, &posture, centres.iter().map(arm));
@@ -286,7 +298,7 @@ mod tests {
             prop_assume!(bounds.delassus.is_finite());
 
             let plan = Plan::<Exact>::new(&robot, &[], &[]);
-            let (mut posture, mut exact) = (Posture::default(), Workspace::default());
+            let (mut posture, mut exact) = (Configuration::default(), Workspace::default());
             posture.set(&plan, &q);
             kinematics(&plan, &posture, &mut exact);
             mass_matrix(&plan, &mut exact);

@@ -18,7 +18,7 @@
 //! its parent is that of the elimination tree, so that the factorization fills in nothing beyond its ancestors.
 
 use crate::planar::{Inertia, Rotation, Vector};
-use crate::robot::{Axis, Base, Follower, Mover, Robot};
+use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
 use crate::scalar::{Real, Trigonometry};
 
 /// A robot compiled in numbers of kind `T`.
@@ -30,11 +30,11 @@ pub struct Plan<T = f64> {
     pub(crate) parents: Vec<Option<usize>>,
     /// Coordinate (index into q) of each column.
     pub(crate) coordinates: Vec<usize>,
-    /// Entries of a [`Posture`]: coordinates and followers.
+    /// Entries of a [`Configuration`]: coordinates and followers.
     pub(crate) places: usize,
     pub(crate) floating: bool,
     /// Whether some column moves more than one joint.
-    pub(crate) tied: bool,
+    pub(crate) has_mimics: bool,
 }
 
 /// A rigid body and the joint that moves it.
@@ -46,10 +46,10 @@ pub(crate) struct PlanBody<T> {
     pub motion: Motion<T>,
     /// The joint's coordinate, or its leader's; of no meaning for the root and for welds.
     pub coordinate: usize,
-    /// Where a [`Posture`] has the joint's angle or displacement.
+    /// Where a [`Configuration`] has the joint's angle or displacement.
     pub place: usize,
     /// How it follows, if it does.
-    pub tie: Option<Tie>,
+    pub mimic: Option<MimicRatio>,
     /// The joint's column, or for the root the last of the base (pitch); none where it is held or bolted.
     pub column: Option<usize>,
     /// About the body's origin, in its own axes.
@@ -62,29 +62,29 @@ pub(crate) struct PlanBody<T> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Motion<T> {
     Root,
-    Turn {
+    Revolute {
         sign: T,
         rate: T,
     },
-    Slide {
+    Prismatic {
         direction: Vector<T>,
         rate: Vector<T>,
     },
     /// None: it is rigid on its parent.
-    Weld,
+    Fixed,
 }
 
-/// A follower's coordinate: multiplier q + offset of its leader's.
+/// A mimic's coordinate: multiplier q + offset of its leader's.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Tie {
+pub(crate) struct MimicRatio {
     pub multiplier: f64,
     pub offset: f64,
 }
 
-/// Cosines, sines and displacements of a configuration, one entry per coordinate of q and then one per follower of the robot:
+/// Cosines, sines and displacements of a configuration, one entry per coordinate of q and then one per mimic of the robot:
 /// of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
 #[derive(Debug, Clone)]
-pub struct Posture<T = f64> {
+pub struct Configuration<T = f64> {
     /// Cosine of each angle.
     pub cos: Vec<T>,
     /// Sine of each angle.
@@ -93,13 +93,13 @@ pub struct Posture<T = f64> {
     pub displacement: Vec<T>,
 }
 
-impl<T> Default for Posture<T> {
+impl<T> Default for Configuration<T> {
     fn default() -> Self {
         Self { cos: Vec::new(), sin: Vec::new(), displacement: Vec::new() }
     }
 }
 
-impl<T: Trigonometry> Posture<T> {
+impl<T: Trigonometry> Configuration<T> {
     /// Takes the cosines and sines of exactly `position` (q), in f64 the same bits on every platform.
     pub fn set(&mut self, plan: &Plan<T>, position: &[f64]) {
         self.displacement.clear();
@@ -111,17 +111,17 @@ impl<T: Trigonometry> Posture<T> {
         self.sin.resize(plan.places, T::zero());
         for body in &plan.bodies {
             let (place, value) = (body.place, position.get(body.coordinate).copied().unwrap_or(0.0));
-            let turn = match (body.motion, body.tie) {
+            let turn = match (body.motion, body.mimic) {
                 (Motion::Root, _) if !plan.floating => continue,
-                (Motion::Weld, _) => continue,
-                (Motion::Root | Motion::Turn { .. }, None) => {
+                (Motion::Fixed, _) => continue,
+                (Motion::Root | Motion::Revolute { .. }, None) => {
                     let [cos, sin] = T::cos_sin(value);
                     Rotation { cos, sin }
                 }
-                (Motion::Root | Motion::Turn { .. }, Some(tie)) => tie.turn(value),
-                (Motion::Slide { .. }, None) => continue,
-                (Motion::Slide { .. }, Some(tie)) => {
-                    let [multiplier, value, offset] = [tie.multiplier, value, tie.offset].map(T::from_f64);
+                (Motion::Root | Motion::Revolute { .. }, Some(mimic)) => mimic.turn(value),
+                (Motion::Prismatic { .. }, None) => continue,
+                (Motion::Prismatic { .. }, Some(mimic)) => {
+                    let [multiplier, value, offset] = [mimic.multiplier, value, mimic.offset].map(T::from_f64);
                     self.displacement[place] = multiplier * value + offset;
                     continue;
                 }
@@ -131,13 +131,13 @@ impl<T: Trigonometry> Posture<T> {
     }
 }
 
-impl<T: Real> Posture<T> {
+impl<T: Real> Configuration<T> {
     pub(crate) fn turn(&self, place: usize) -> Rotation<T> {
         Rotation { cos: self.cos[place], sin: self.sin[place] }
     }
 }
 
-impl Tie {
+impl MimicRatio {
     /// The turn by exactly multiplier `angle` + offset, as f64 angles that add up to it.
     ///
     /// A product whose rounding error lies below the range of f64 (|multiplier angle| < 1e-290) is taken as rounded.
@@ -156,9 +156,9 @@ impl Tie {
 
 impl<T: Real> Plan<T> {
     /// Compiles `robot` with the joints `held` (indices into [`Robot::joints`]) kept at their rate, and `rotor_inertia`
-    /// per joint and then per follower (empty for none) \[kg m^2\].
+    /// per joint and then per mimic (empty for none) \[kg m^2\].
     ///
-    /// A follower whose leader is held does not move either. A rotor at a follower's joint turns at the follower's rate, so
+    /// A mimic whose leader is held does not move either. A rotor at a mimic's joint turns at the mimic's rate, so
     /// that it adds multiplier^2 of its inertia to the leader's coordinate.
     pub fn new(robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Self {
         let base = robot.base_dofs();
@@ -167,9 +167,9 @@ impl<T: Real> Plan<T> {
             bodies: Vec::with_capacity(robot.bodies.len()),
             parents: if floating { vec![None, Some(0), Some(1)] } else { Vec::new() },
             coordinates: (0..base).collect(),
-            places: robot.dofs() + robot.followers.len(),
+            places: robot.dofs() + robot.mimic_joints.len(),
             floating,
-            tied: false,
+            has_mimics: false,
         };
         // The column of each joint that has one, and of each body the greatest one on its way to the root.
         let mut columns = vec![None; robot.joints.len()];
@@ -187,22 +187,22 @@ impl<T: Real> Plan<T> {
                     motion: Motion::Root,
                     coordinate: 2,
                     place: 2,
-                    tie: None,
+                    mimic: None,
                     column: floating.then_some(2),
                     inertia,
                     rotor: T::zero(),
                 });
                 continue;
             };
-            // The joint whose coordinate moves the body, and the body's own place in lists per joint and follower; none of a
-            // weld. And its tie.
-            let (moved, tie) = match mover {
-                Mover::Joint(index) => (Some((index, index)), None),
-                Mover::Follower(index) => {
-                    let Follower { leader, multiplier, offset, .. } = robot.followers[index];
-                    (Some((leader, robot.joints.len() + index)), Some(Tie { multiplier, offset }))
+            // The joint whose coordinate moves the body, and the body's own place in lists per joint and mimic; none of a
+            // weld. And its mimic.
+            let (moved, mimic) = match mover {
+                ParentJoint::Joint(index) => (Some((index, index)), None),
+                ParentJoint::Mimic(index) => {
+                    let MimicJoint { mimicked, multiplier, offset, .. } = robot.mimic_joints[index];
+                    (Some((mimicked, robot.joints.len() + index)), Some(MimicRatio { multiplier, offset }))
                 }
-                Mover::Weld { .. } => (None, None),
+                ParentJoint::Fixed { .. } => (None, None),
             };
             let (parent, origin, axis) = robot.hinge(mover);
             let column = moved.filter(|(index, _)| !held.contains(index));
@@ -211,28 +211,30 @@ impl<T: Real> Plan<T> {
                 Some(column) => plan.join_branch(column, parent, greatest[parent]),
                 None => greatest[parent],
             });
-            let multiplier = tie.map_or(1.0, |tie| tie.multiplier);
+            let multiplier = mimic.map_or(1.0, |mimic| mimic.multiplier);
             let rotor = moved.and_then(|(_, own)| rotor_inertia.get(own).copied());
             let rotor = number(rotor.unwrap_or(0.0));
             plan.bodies.push(PlanBody {
                 parent: Some(parent),
                 origin: origin.map(number),
                 motion: match axis {
-                    None => Motion::Weld,
+                    None => Motion::Fixed,
                     // Exactly: the sign is one or minus one.
-                    Some(Axis::Turn { sign }) => Motion::Turn { sign: number(sign), rate: number(sign * multiplier) },
-                    Some(Axis::Slide { direction }) => {
+                    Some(Axis::Revolute { sign }) => {
+                        Motion::Revolute { sign: number(sign), rate: number(sign * multiplier) }
+                    }
+                    Some(Axis::Prismatic { direction }) => {
                         let direction = direction.map(number);
-                        let rate = if tie.is_some() { direction * number(multiplier) } else { direction };
-                        Motion::Slide { direction, rate }
+                        let rate = if mimic.is_some() { direction * number(multiplier) } else { direction };
+                        Motion::Prismatic { direction, rate }
                     }
                 },
                 coordinate: moved.map_or(0, |(index, _)| base + index),
                 place: moved.map_or(0, |(_, own)| base + own),
-                tie,
+                mimic,
                 column,
                 inertia,
-                rotor: if tie.is_some() { number(multiplier) * number(multiplier) * rotor } else { rotor },
+                rotor: if mimic.is_some() { number(multiplier) * number(multiplier) * rotor } else { rotor },
             });
         }
         plan
@@ -240,7 +242,7 @@ impl<T: Real> Plan<T> {
 
     /// The column of a coordinate, which may be known already from another joint that it moves.
     fn column(&mut self, known: &mut Option<usize>, coordinate: usize) -> usize {
-        self.tied |= known.is_some();
+        self.has_mimics |= known.is_some();
         *known.get_or_insert_with(|| {
             self.parents.push(None);
             self.coordinates.push(coordinate);
@@ -289,7 +291,7 @@ impl<T: Real> Plan<T> {
     /// Takes what one body brings to an entry; where a column moves several, the entry is their sum.
     #[inline]
     pub(crate) fn bring(&self, entry: &mut T, part: T) {
-        *entry = if self.tied { *entry + part } else { part };
+        *entry = if self.has_mimics { *entry + part } else { part };
     }
 
     /// Number of columns: the coordinates that are not held.

@@ -1,7 +1,7 @@
 //! Memory of the dynamics, reused from state to state.
 
-use super::articulated::Articulated;
-use super::loops::LoopRows;
+use super::articulated_inertia::ArticulatedInertia;
+use super::ltl::LtlFactor;
 use crate::planar::{Inertia, Pair, Rotation, Vector};
 
 /// Everything that the dynamics of one state computes; nb bodies, nv columns of the plan, n contacts.
@@ -22,12 +22,12 @@ pub struct Workspace<T = f64> {
     pub mass_matrix: Vec<T>,
 
     // Computed by `factorize`.
-    /// L below the diagonal (its own diagonal is one) and D on it, of M = L^T D L. nv x nv
-    pub factor: Vec<T>,
+    /// M = L^T D L. nv x nv
+    pub factor: LtlFactor<T>,
 
     // Computed by `articulated_inertias`.
     /// Inertia that each body shows at its origin while the joints beyond it give way. nb
-    pub articulated: Vec<Articulated<T>>,
+    pub articulated: Vec<ArticulatedInertia<T>>,
     /// D of M = L^T D L, without M. nv
     pub pivots: Vec<T>,
 
@@ -58,7 +58,7 @@ impl<T> Default for Workspace<T> {
             direction: Vec::new(),
             composite: Vec::new(),
             mass_matrix: Vec::new(),
-            factor: Vec::new(),
+            factor: LtlFactor::default(),
             articulated: Vec::new(),
             pivots: Vec::new(),
             contact_jacobian: Vec::new(),
@@ -67,6 +67,37 @@ impl<T> Default for Workspace<T> {
             half: Vec::new(),
             half_by_d: Vec::new(),
             delassus: Vec::new(),
+        }
+    }
+}
+
+/// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's axes) per
+/// loop, as `orthogonalize` leaves them.
+#[derive(Debug, Clone)]
+pub struct LoopRows<T = f64> {
+    /// Coordinates that keep their rates; their rows come first.
+    pub(super) kept: Vec<usize>,
+    /// Rows of K in the order of their elimination: 2 loop + axis; none that follows from others.
+    pub(super) rows: Vec<usize>,
+    /// Z by columns, those of a foot at rest behind those of the loops. nv each
+    pub(super) basis: Vec<T>,
+    /// D^-1 Z by columns.
+    pub(super) basis_by_d: Vec<T>,
+    /// Z^T D^-1 Z, which is diagonal.
+    pub(super) squares: Vec<T>,
+    /// C below its unit diagonal, by rows of the full square.
+    pub(super) coupling: Vec<T>,
+}
+
+impl<T> Default for LoopRows<T> {
+    fn default() -> Self {
+        Self {
+            kept: Vec::new(),
+            rows: Vec::new(),
+            basis: Vec::new(),
+            basis_by_d: Vec::new(),
+            squares: Vec::new(),
+            coupling: Vec::new(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Touching;
 use crate::contact::{Circle, Feet, Placement, Plane, Point, points};
-use crate::dynamics::plan::{Plan, Posture};
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Robot};
@@ -17,7 +17,7 @@ const SLOPE: f64 = 0.15;
 pub(super) struct Points<'r> {
     robot: &'r Robot,
     plan: Plan,
-    posture: Posture,
+    posture: Configuration,
     workspace: Workspace,
     points: Vec<(usize, Point)>,
 }
@@ -34,7 +34,7 @@ impl<'r> Points<'r> {
             }
         }
         let plan = Plan::new(robot, &[], &[]);
-        Self { robot, plan, posture: Posture::default(), workspace: Workspace::default(), points: all }
+        Self { robot, plan, posture: Configuration::default(), workspace: Workspace::default(), points: all }
     }
 
     pub fn is_empty(&self) -> bool {

@@ -148,8 +148,7 @@ impl Pipeline<'_> {
     pub(super) fn check_inertia(&self, has_loops: bool) -> Result<()> {
         let nv = self.plan.columns();
         for column in (0..nv).rev() {
-            let (whole, rest) =
-                (self.workspace.mass_matrix[column * nv + column], self.workspace.factor[column * nv + column]);
+            let (whole, rest) = (self.workspace.mass_matrix[column * nv + column], self.workspace.factor.pivot(column));
             // Each of up to nv eliminations loses at most a few units in the last place of the whole.
             finite(whole, || "the mass matrix".into())?;
             if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {

@@ -17,7 +17,7 @@ use self::loops::Loops;
 use self::robust::Robustness;
 use self::strike::Strike;
 use crate::contact::{Contact, Feet, Placement};
-use crate::dynamics::plan::{Plan, Posture};
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
     Bounds, Constraints, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias,
     contact_jacobian, delassus, factorize, kinematics, mass_matrix,
@@ -116,7 +116,7 @@ pub struct Pipeline<'r> {
     rotor_inertia: Vec<f64>,
     /// Coordinates of held joints that have a column all the same.
     kept: Vec<usize>,
-    posture: Posture,
+    posture: Configuration,
     workspace: Workspace,
     bounds: Bounds,
     scratch: Scratch,
@@ -137,7 +137,7 @@ impl<'r> Pipeline<'r> {
             held: Vec::new(),
             rotor_inertia: Vec::new(),
             kept: Vec::new(),
-            posture: Posture::default(),
+            posture: Configuration::default(),
             workspace: Workspace::default(),
             bounds: Bounds::default(),
             scratch: Scratch::default(),
@@ -214,7 +214,7 @@ impl<'r> Pipeline<'r> {
         let asked = AnalysisOptions { rejections, prove: !no_proof, reductions };
         let analysis = self.scratch.analyse(&problem, &source, asked);
         let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
-        if !self.plan.tied && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+        if !self.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.plan, &mut self.workspace);
         }
         let (velocity_after, loop_impulse) = outcomes
@@ -252,14 +252,14 @@ impl<'r> Pipeline<'r> {
     /// [`Reason::Singular`] for a coordinate without inertia, and lengths that do not fit.
     pub fn contact_problem(
         &mut self,
-        posture: &Posture,
+        posture: &Configuration,
         velocity: &[f64],
         contacts: &[NamedContact],
         friction: Vec<Friction>,
         restitution: Vec<f64>,
     ) -> Result<ContactProblem> {
         let dofs = self.robot.dofs();
-        let places = dofs + self.robot.followers.len();
+        let places = dofs + self.robot.mimic_joints.len();
         let lengths = [posture.cos.len(), posture.sin.len(), posture.displacement.len()].map(|length| (length, places));
         for (length, wanted) in lengths.into_iter().chain([(velocity.len(), dofs)]) {
             if length != wanted {
@@ -299,7 +299,7 @@ impl<'r> Pipeline<'r> {
             let axes = point.axes();
             let vector = axes[0] * tangential + axes[1] * normal;
             let at = (point.body, point.arm(workspace));
-            if plan.tied {
+            if plan.has_mimics {
                 add_impulse(plan, workspace, at, vector, column, &mut after);
             } else {
                 add_articulated_impulse(plan, workspace, at, vector, (&mut *column, &mut *motions), &mut after);

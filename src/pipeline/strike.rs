@@ -1,7 +1,7 @@
 //! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
 
 use crate::contact::Contact;
-use crate::dynamics::plan::{Plan, Posture};
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
     Closed, Constraints, ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus,
     articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, mass_matrix,
@@ -39,7 +39,7 @@ pub struct Strike<'a> {
 /// What of a state is a number that may be known inexactly.
 pub struct Inputs<T> {
     /// Of q.
-    pub posture: Posture<T>,
+    pub posture: Configuration<T>,
     /// dq/dt; with a foot x and z are not read.
     pub velocity: Vec<T>,
     /// The robot, its rotors' inertia included.
@@ -58,7 +58,7 @@ impl Strike<'_> {
     fn inputs<T: Trigonometry>(&self) -> Inputs<T> {
         let held = if self.constraints.kept.is_empty() { &self.scene.held[..] } else { &[] };
         let plan = Plan::new(self.robot, held, &self.scene.rotor_inertia);
-        let mut posture = Posture::default();
+        let mut posture = Configuration::default();
         posture.set(&plan, self.position);
         Inputs { posture, velocity: self.velocity.iter().map(|&entry| T::from_f64(entry)).collect(), plan }
     }
@@ -71,7 +71,7 @@ impl Strike<'_> {
         kinematics(&plan, &posture, &mut workspace);
         let constrained = !(scene.loops.is_empty() && self.constraints.kept.is_empty());
         // Articulated bodies hold neither ties nor constraints.
-        let by_mass = plan.tied || constrained;
+        let by_mass = plan.has_mimics || constrained;
         if by_mass {
             mass_matrix(&plan, &mut workspace);
             factorize(&plan, &mut workspace);

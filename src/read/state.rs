@@ -247,10 +247,10 @@ fn held(field: Node, robot: &Robot) -> Result<Vec<usize>> {
 
 /// An object of inertias by joint, for every joint and then every follower of the robot.
 fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
-    let mut inertia = vec![0.0; robot.joints.len() + robot.followers.len()];
+    let mut inertia = vec![0.0; robot.joints.len() + robot.mimic_joints.len()];
     for entry in field.fields("joint")? {
         let name = entry.key();
-        let place = match robot.followers.iter().position(|follower| follower.name == name) {
+        let place = match robot.mimic_joints.iter().position(|follower| follower.name == name) {
             Some(follower) => robot.joints.len() + follower,
             None => joint(entry, name, robot)?,
         };
@@ -344,12 +344,12 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.joints.iter().map(|joint| joint.name.as_str());
     robot.joint(name).ok_or_else(|| {
         let what = format!("joint \"{name}\"");
-        if let Some(follower) = robot.followers.iter().find(|follower| follower.name == name) {
-            let leader = &robot.joints[follower.leader].name;
+        if let Some(follower) = robot.mimic_joints.iter().find(|follower| follower.name == name) {
+            let leader = &robot.joints[follower.mimicked].name;
             let reason = format!("{what} has no coordinate: it follows joint \"{leader}\"");
             return node.refuse_name(name, Reason::Inconsistent(reason)).hint(format!("name {leader} instead"));
         }
-        match robot.held(name) {
+        match robot.frozen(name) {
             Some(held) => {
                 node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", held.why())))
             }

@@ -11,7 +11,7 @@
 
 use super::plane::PARALLEL;
 use super::role::Role;
-use super::{Axis, Base, Still};
+use super::{Axis, Base, FreezeReason};
 use crate::description::Description;
 use crate::planar::Vector;
 
@@ -95,7 +95,7 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
 fn hold_free(description: &Description, roles: &mut [Role], base: Option<usize>) {
     for (index, role) in roles.iter_mut().enumerate() {
         if *role == Role::Free && Some(index) != base {
-            *role = Role::Held(Still::Kind(description.joints[index].kind));
+            *role = Role::Frozen(FreezeReason::Kind(description.joints[index].kind));
         }
     }
 }
@@ -119,7 +119,7 @@ impl Welded {
         for index in description.outward() {
             let joint = &description.joints[index];
             let parent = group[joint.parent];
-            if let Role::Held(_) = roles[index] {
+            if let Role::Frozen(_) = roles[index] {
                 group[joint.child] = parent;
                 masses[parent] += mass(joint.child);
             } else {
@@ -159,12 +159,12 @@ impl Welded {
         for joint in &mut chain {
             *joint = self.single_exit(link).filter(|_| self.is_massless(link, light))?;
             match &roles[*joint] {
-                Role::Moves { axis: Axis::Turn { .. }, leader: None, .. } => turns += 1,
-                Role::Moves { axis: Axis::Slide { direction }, leader: None, .. } => slides.push(*direction),
+                Role::Moves { axis: Axis::Revolute { .. }, mimicked: None, .. } => turns += 1,
+                Role::Moves { axis: Axis::Prismatic { direction }, mimicked: None, .. } => slides.push(*direction),
                 _ => return None,
             }
             let follows =
-                |role: &Role| matches!(role, Role::Moves { leader: Some(leader), .. } if leader.joint == *joint);
+                |role: &Role| matches!(role, Role::Moves { mimicked: Some(mimicked), .. } if mimicked.joint == *joint);
             if roles.iter().any(follows) {
                 return None;
             }

@@ -2,7 +2,7 @@
 
 use super::plane::{PARALLEL, Plane};
 use super::posture::Posture;
-use super::reading::{HeldJoint, Still};
+use super::reading::{FreezeReason, FrozenJoint};
 use crate::description::{Description, JointKind, Matrix, apply, turn};
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
@@ -18,15 +18,18 @@ pub(super) struct Seen<'a> {
 }
 
 /// The cautions about joints that are held, of which `kept` others stay.
-pub(super) fn about_held(seen: &Seen, held: &[HeldJoint], kept: usize) -> Vec<String> {
-    let movable = held.iter().filter(|joint| !matches!(joint.still, Still::Fixed | Still::Asked { .. } | Still::Base));
-    let movable: Vec<&HeldJoint> = movable.collect();
-    let nearly = movable.iter().filter_map(|joint| match joint.still {
-        Still::OffPlane { angle, .. } if angle <= NEARLY => Some((joint.name.as_str(), angle)),
+pub(super) fn about_held(seen: &Seen, held: &[FrozenJoint], kept: usize) -> Vec<String> {
+    let movable = held
+        .iter()
+        .filter(|joint| !matches!(joint.reason, FreezeReason::Fixed | FreezeReason::Asked { .. } | FreezeReason::Base));
+    let movable: Vec<&FrozenJoint> = movable.collect();
+    let nearly = movable.iter().filter_map(|joint| match joint.reason {
+        FreezeReason::OffPlane { angle, .. } if angle <= NEARLY => Some((joint.name.as_str(), angle)),
         _ => None,
     });
     let nearly: Vec<(&str, f64)> = nearly.collect();
-    let hidden = movable.iter().filter(|joint| matches!(joint.still, Still::Kind(_))).map(|joint| joint.name.as_str());
+    let hidden =
+        movable.iter().filter(|joint| matches!(joint.reason, FreezeReason::Kind(_))).map(|joint| joint.name.as_str());
     let hidden: Vec<&str> = hidden.collect();
     let mut cautions = Vec::new();
     if !nearly.is_empty() && nearly.len() >= kept {

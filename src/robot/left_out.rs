@@ -1,11 +1,11 @@
 //! What of a file does not enter the analysis, in words.
 
 use super::LeftOut;
-use super::reading::{HeldJoint, Reading};
+use super::reading::{FrozenJoint, Reading};
 use crate::description::{self, Collision, Description, Geometry, Ignored, joint_place, link_place};
 
 /// A joint without a coordinate.
-pub(super) fn held(joint: &HeldJoint) -> LeftOut {
+pub(super) fn held(joint: &FrozenJoint) -> LeftOut {
     LeftOut { what: joint_place(&joint.name), why: joint.why() }
 }
 

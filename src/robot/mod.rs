@@ -30,7 +30,7 @@ mod tree;
 mod weld;
 
 pub use plane::Plane;
-pub use reading::{HeldJoint, PlaneReason, Reading, Still};
+pub use reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
 pub use reduce::Reduction;
 pub use shape::{FootShape, Rim};
 
@@ -58,8 +58,8 @@ pub struct Robot {
     pub bodies: Vec<Body>,
     /// Joints that move independently, in the file's order: joint `k` is coordinate `base_dofs + k`.
     pub joints: Vec<Joint>,
-    /// Joints that follow one of these (mimic), in the file's order; they have no coordinate of their own.
-    pub followers: Vec<Follower>,
+    /// Joints that mimic one of these, in the file's order; they have no coordinate of their own.
+    pub mimic_joints: Vec<MimicJoint>,
     /// The links of the file, in its order; without those that are the base itself.
     pub links: Vec<Link>,
     /// What of the file does not enter the analysis, and why.
@@ -73,8 +73,8 @@ pub struct Robot {
 pub struct Body {
     /// The link that carries the body's frame.
     pub name: String,
-    /// What moves the body; none for the root.
-    pub joint: Option<Mover>,
+    /// The joint between the body and its parent; `None` for the root.
+    pub joint: Option<ParentJoint>,
     /// Mass \[kg\].
     pub mass: f64,
     /// CoG in the body's frame \[m\].
@@ -83,16 +83,16 @@ pub struct Body {
     pub moment: f64,
 }
 
-/// What moves a body against its parent.
+/// The joint between a body and its parent.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Mover {
+pub enum ParentJoint {
     /// A joint with a coordinate of its own: an index into [`Robot::joints`].
     Joint(usize),
-    /// One that follows another: an index into [`Robot::followers`].
-    Follower(usize),
-    /// Nothing: it is rigid on its parent, and a body only because such links are not welded here
+    /// A mimic joint: an index into [`Robot::followers`].
+    Mimic(usize),
+    /// A fixed joint: the body is rigid on its parent, and kept apart only on request
     /// (see [`Reductions`](crate::reductions::Reductions)).
-    Weld {
+    Fixed {
         /// The body it is fixed to (an index into [`Robot::bodies`]).
         parent: usize,
         /// Its origin in that body's frame \[m\].
@@ -115,16 +115,16 @@ pub struct Joint {
     pub axis: Axis,
 }
 
-/// A joint that follows another: q = multiplier q_leader + offset (URDF's mimic).
+/// A mimic joint: q = multiplier q_mimicked + offset (URDF's `<mimic>`).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Follower {
+pub struct MimicJoint {
     /// Name in the file.
     pub name: String,
-    /// The joint that it follows (an index into [`Robot::joints`]).
-    pub leader: usize,
-    /// How much it moves for a unit of its leader \[1, m/rad, rad/m\].
+    /// The joint that it mimics (an index into [`Robot::joints`]).
+    pub mimicked: usize,
+    /// How much it moves for a unit of the mimicked joint \[1, m/rad, rad/m\].
     pub multiplier: f64,
-    /// Its coordinate where the leader's is zero \[rad, m\].
+    /// Its coordinate where that of the mimicked joint is zero \[rad, m\].
     pub offset: f64,
     /// The body it hangs on (an index into [`Robot::bodies`]).
     pub parent: usize,
@@ -141,12 +141,12 @@ pub struct Follower {
 pub enum Axis {
     /// It turns the child about the plane's normal; `sign` is +1 where the URDF's axis points along the normal, -1 where
     /// against it.
-    Turn {
+    Revolute {
         /// +1 or -1.
         sign: f64,
     },
     /// It moves the child along a unit vector of the parent body's frame.
-    Slide {
+    Prismatic {
         /// The direction, of length one.
         direction: Vector<f64>,
     },
@@ -187,9 +187,7 @@ impl Link {
         });
         Vector::new(forward, up)
     }
-}
 
-impl Link {
     /// The point of the link's own 3-D frame, in the plane through its origin, that lies at `point` in its body's planar
     /// frame \[m\], up to rounding.
     pub fn offset(&self, point: Vector<f64>) -> [f64; 3] {
@@ -222,19 +220,19 @@ impl Robot {
             .chain(self.joints.iter().map(|joint| joint.name.as_str()))
     }
 
-    /// The body on which what moves a body hangs, its origin in that body's frame at coordinate zero \[m\], and its motion;
-    /// none of a weld.
-    pub fn hinge(&self, mover: Mover) -> (usize, Vector<f64>, Option<Axis>) {
+    /// The parent body of a joint, the joint's origin in that body's frame at coordinate zero \[m\], and its motion (`None`
+    /// for a fixed joint).
+    pub fn hinge(&self, mover: ParentJoint) -> (usize, Vector<f64>, Option<Axis>) {
         match mover {
-            Mover::Joint(joint) => {
+            ParentJoint::Joint(joint) => {
                 let Joint { parent, origin, axis, .. } = self.joints[joint];
                 (parent, origin, Some(axis))
             }
-            Mover::Follower(follower) => {
-                let Follower { parent, origin, axis, .. } = self.followers[follower];
+            ParentJoint::Mimic(mimic) => {
+                let MimicJoint { parent, origin, axis, .. } = self.mimic_joints[mimic];
                 (parent, origin, Some(axis))
             }
-            Mover::Weld { parent, origin } => (parent, origin, None),
+            ParentJoint::Fixed { parent, origin } => (parent, origin, None),
         }
     }
 
@@ -261,8 +259,8 @@ impl Robot {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
-    /// The joint of that name that the file has and the reduced robot has not: it is welded, or part of the base.
-    pub fn held(&self, name: &str) -> Option<&HeldJoint> {
-        self.reading.held.iter().find(|held| held.name == name)
+    /// The joint of that name in the file that has no coordinate in the reduced robot: it is frozen, or part of the base.
+    pub fn frozen(&self, name: &str) -> Option<&FrozenJoint> {
+        self.reading.frozen.iter().find(|held| held.name == name)
     }
 }

@@ -16,7 +16,7 @@ pub struct Reading {
     /// Why the base is floating or fixed.
     pub base_because: String,
     /// Joints of the file that have no coordinate, in its order.
-    pub held: Vec<HeldJoint>,
+    pub frozen: Vec<FrozenJoint>,
     /// Links of the file that are not part of the robot but of the base, in its order.
     pub outside: Vec<String>,
     /// What a user must know before trusting the reduced robot, each with its remedy.
@@ -37,11 +37,11 @@ pub enum PlaneReason {
 
 /// A joint of the file that has no coordinate in the reduced robot.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HeldJoint {
+pub struct FrozenJoint {
     /// Its name.
     pub name: String,
     /// Why it has none.
-    pub still: Still,
+    pub reason: FreezeReason,
     /// The body that its child is welded into; for a joint of the base the robot's root link.
     pub body: String,
     /// False where its child is kept apart as a body of its own, `body`.
@@ -50,7 +50,7 @@ pub struct HeldJoint {
 
 /// Why a joint has no coordinate.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Still {
+pub enum FreezeReason {
     /// It is fixed.
     Fixed,
     /// The user holds it.
@@ -68,7 +68,7 @@ pub enum Still {
     /// It follows a joint that is held.
     Follows {
         /// That joint.
-        leader: String,
+        mimicked: String,
     },
     /// A joint of this kind is held at zero wherever it is not the base.
     Kind(JointKind),
@@ -91,19 +91,19 @@ impl Reading {
     }
 }
 
-impl HeldJoint {
+impl FrozenJoint {
     /// Why it has no coordinate and what became of its child, in words.
     pub fn why(&self) -> String {
-        let Self { body, still, .. } = self;
-        match still {
-            Still::Base => format!("{still}: x, z and pitch of {body} take its place"),
-            _ if self.welded => format!("{still}: welded into {body}"),
-            _ => format!("{still}: it has no coordinate, and moves a body of its own, {body}"),
+        let Self { body, reason, .. } = self;
+        match reason {
+            FreezeReason::Base => format!("{reason}: x, z and pitch of {body} take its place"),
+            _ if self.welded => format!("{reason}: welded into {body}"),
+            _ => format!("{reason}: it has no coordinate, and moves a body of its own, {body}"),
         }
     }
 }
 
-impl fmt::Display for Still {
+impl fmt::Display for FreezeReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Fixed => f.write_str("fixed"),
@@ -112,7 +112,7 @@ impl fmt::Display for Still {
                 let wanted = if *slides { "the plane" } else { "the plane's normal" };
                 write!(f, "held at zero, its axis being {:.2} degrees off {wanted}", angle.to_degrees())
             }
-            Self::Follows { leader } => write!(f, "held like {leader}, which it follows"),
+            Self::Follows { mimicked } => write!(f, "held like {mimicked}, which it follows"),
             Self::Kind(kind) => write!(f, "held at zero, being {}", kind.name()),
             Self::Base => f.write_str("part of the floating base"),
         }

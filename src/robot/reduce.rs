@@ -4,7 +4,7 @@ use super::composite::{Part, composite};
 use super::outline::outline;
 use super::plane::{PARALLEL, Plane};
 use super::posture::Posture;
-use super::reading::{HeldJoint, PlaneReason, Reading, Still};
+use super::reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
 use super::role::{Role, roles};
 use super::tree::{Place, Tree};
 use super::{Base, LeftOut, Link, Robot, base, caution, left_out};
@@ -60,7 +60,7 @@ impl Robot {
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
         let outside: Vec<String> = outside.map(|(link, _)| link.name.clone()).collect();
         let seen = caution::Seen { description, posture: &posture, plane };
-        let mut cautions = caution::about_held(&seen, &held, tree.joints.len() + tree.followers.len());
+        let mut cautions = caution::about_held(&seen, &held, tree.joints.len() + tree.mimic_joints.len());
         cautions.extend(found.caution);
         cautions.extend(caution::about_outside(description, &outside));
         let reading = Reading {
@@ -68,7 +68,7 @@ impl Robot {
             plane_because,
             better_plane: better_plane(description, &posture, plane),
             base_because: found.because,
-            held,
+            frozen: held,
             outside,
             cautions,
         };
@@ -79,7 +79,7 @@ impl Robot {
             reading,
             bodies: tree.bodies,
             joints: tree.joints,
-            followers: tree.followers,
+            mimic_joints: tree.mimic_joints,
             links: Vec::new(),
         };
 
@@ -139,20 +139,20 @@ fn better_plane(description: &Description, posture: &Posture, plane: Plane) -> O
 }
 
 /// The joints without a coordinate, in the file's order.
-fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgement) -> Vec<HeldJoint> {
+fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgement) -> Vec<FrozenJoint> {
     let body = |link: usize| tree.places[link].as_ref().map(|place| tree.bodies[place.body].name.clone());
     let welded = |link: usize| tree.places[link].as_ref().is_none_or(|place| !tree.is_apart(place.body));
     let joints = description.joints.iter().zip(roles).enumerate();
     let held = joints.filter_map(|(index, (joint, role))| {
         let name = joint.name.clone();
         match (role, body(joint.child)) {
-            (Role::Held(still), Some(body)) => {
-                Some(HeldJoint { name, still: still.clone(), body, welded: welded(joint.child) })
+            (Role::Frozen(reason), Some(body)) => {
+                Some(FrozenJoint { name, reason: reason.clone(), body, welded: welded(joint.child) })
             }
             // A weld among links of the base says nothing about the robot.
-            (role, outside) if found.chain.contains(&index) || outside.is_none() && matches!(role, Role::Held(_)) => {
+            (role, outside) if found.chain.contains(&index) || outside.is_none() && matches!(role, Role::Frozen(_)) => {
                 let root = description.links[found.root].name.clone();
-                Some(HeldJoint { name, still: Still::Base, body: root, welded: true })
+                Some(FrozenJoint { name, reason: FreezeReason::Base, body: root, welded: true })
             }
             _ => None,
         }
@@ -162,7 +162,7 @@ fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Ju
 
 /// What is left out of joints, in the file's order, and of links that are not part of the robot.
 fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, reading: &Reading) -> Vec<LeftOut> {
-    let mut held = reading.held.iter().peekable();
+    let mut held = reading.frozen.iter().peekable();
     let mut all = Vec::new();
     for (index, joint) in description.joints.iter().enumerate() {
         if let Some(held) = held.next_if(|held| held.name == joint.name) {
@@ -215,8 +215,8 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
     for joint in &robot.joints {
         refuse("the place at zero", &joint.origin.components(), description::joint_place(&joint.name))?;
     }
-    for follower in &robot.followers {
-        refuse("the place at zero", &follower.origin.components(), description::joint_place(&follower.name))?;
+    for mimic in &robot.mimic_joints {
+        refuse("the place at zero", &mimic.origin.components(), description::joint_place(&mimic.name))?;
     }
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;

@@ -12,7 +12,7 @@
 
 use super::posture::{Posture, held_shift, held_turn};
 use super::role::Role;
-use super::{Body, Follower, Joint, Mover};
+use super::{Body, Joint, MimicJoint, ParentJoint};
 use crate::description::{self, Description, Inertial, Matrix, Mimic, Pose, apply, product};
 use crate::planar::Vector;
 use crate::reductions::Reductions;
@@ -49,7 +49,7 @@ impl Place {
 pub(super) struct Tree {
     pub(super) bodies: Vec<Body>,
     pub(super) joints: Vec<Joint>,
-    pub(super) followers: Vec<Follower>,
+    pub(super) mimic_joints: Vec<MimicJoint>,
     /// The place of each link; none for those that do not hang on the root.
     pub(super) places: Vec<Option<Place>>,
 }
@@ -73,9 +73,9 @@ impl Tree {
         in_the_tree.sort_unstable();
         for index in in_the_tree {
             match roles[index] {
-                Role::Moves { leader: None, .. } => movers[index] = Some(Mover::Joint(next(&mut coordinates))),
-                Role::Moves { leader: Some(_), .. } => movers[index] = Some(Mover::Follower(next(&mut followers))),
-                Role::Held(_) | Role::Free => {}
+                Role::Moves { mimicked: None, .. } => movers[index] = Some(ParentJoint::Joint(next(&mut coordinates))),
+                Role::Moves { mimicked: Some(_), .. } => movers[index] = Some(ParentJoint::Mimic(next(&mut followers))),
+                Role::Frozen(_) | Role::Free => {}
             }
         }
 
@@ -89,12 +89,12 @@ impl Tree {
             let Some(parent) = &places[joint.parent] else { continue };
             let at = parent.frame(&joint.origin);
             let child = match (&roles[index], movers[index]) {
-                (&Role::Moves { axis, ref leader, .. }, Some(mover)) => {
+                (&Role::Moves { axis, ref mimicked, .. }, Some(mover)) => {
                     let (name, parent, child, origin) = (joint.name.clone(), at.body, bodies.len(), at.in_plane());
                     bodies.push(Body::of(&links[joint.child].name, Some(mover)));
-                    let led = leader.as_ref().map(|leader| (movers[leader.joint], leader));
-                    if let Some((Some(Mover::Joint(leader)), &Mimic { multiplier, offset, .. })) = led {
-                        following.push(Follower { name, leader, multiplier, offset, parent, child, origin, axis });
+                    let led = mimicked.as_ref().map(|mimicked| (movers[mimicked.joint], mimicked));
+                    if let Some((Some(ParentJoint::Joint(mimicked)), &Mimic { multiplier, offset, .. })) = led {
+                        following.push(MimicJoint { name, mimicked, multiplier, offset, parent, child, origin, axis });
                     } else {
                         joints.push(Joint { name, parent, child, origin, axis });
                     }
@@ -113,7 +113,7 @@ impl Tree {
                     if welds {
                         at
                     } else {
-                        let weld = Mover::Weld { parent: at.body, origin: at.in_plane() };
+                        let weld = ParentJoint::Fixed { parent: at.body, origin: at.in_plane() };
                         bodies.push(Body::of(&child.name, Some(weld)));
                         Place { body: bodies.len() - 1, offset: [0.0; 3], ..at }
                     }
@@ -122,13 +122,13 @@ impl Tree {
             places[joint.child] = Some(child);
         }
         joints.sort_by_key(|joint| bodies[joint.child].joint.and_then(order));
-        following.sort_by_key(|follower| bodies[follower.child].joint.and_then(order));
-        Self { bodies, joints, followers: following, places }
+        following.sort_by_key(|mimic| bodies[mimic.child].joint.and_then(order));
+        Self { bodies, joints, mimic_joints: following, places }
     }
 
     /// Whether a body is rigid on another and kept apart all the same.
     pub(super) fn is_apart(&self, body: usize) -> bool {
-        matches!(self.bodies[body].joint, Some(Mover::Weld { .. }))
+        matches!(self.bodies[body].joint, Some(ParentJoint::Fixed { .. }))
     }
 }
 
@@ -146,16 +146,16 @@ fn next(count: &mut usize) -> usize {
 }
 
 /// The place of a mover among those of its kind.
-fn order(mover: Mover) -> Option<usize> {
+fn order(mover: ParentJoint) -> Option<usize> {
     match mover {
-        Mover::Joint(index) | Mover::Follower(index) => Some(index),
-        Mover::Weld { .. } => None,
+        ParentJoint::Joint(index) | ParentJoint::Mimic(index) => Some(index),
+        ParentJoint::Fixed { .. } => None,
     }
 }
 
 impl Body {
     /// A body that still weighs nothing.
-    fn of(link: &str, joint: Option<Mover>) -> Self {
+    fn of(link: &str, joint: Option<ParentJoint>) -> Self {
         Self { name: link.into(), joint, mass: 0.0, com: Vector::zero(), moment: 0.0 }
     }
 }

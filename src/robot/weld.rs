@@ -1,7 +1,7 @@
 //! Bodies that are rigid on each other although they are kept apart (see [`Reductions::weld`](crate::reductions::Reductions)).
 
 use super::composite::{Part, composite};
-use super::{Base, Mover, Robot};
+use super::{Base, ParentJoint, Robot};
 use crate::planar::Vector;
 
 impl Robot {
@@ -11,7 +11,7 @@ impl Robot {
             return true;
         }
         let mut at = body;
-        while let Some(Mover::Weld { parent, .. }) = self.bodies[at].joint {
+        while let Some(ParentJoint::Fixed { parent, .. }) = self.bodies[at].joint {
             at = parent;
         }
         self.bodies[at].joint.is_some()
@@ -24,7 +24,7 @@ impl Robot {
         let mut grounds: Vec<(usize, Vector<f64>)> = Vec::with_capacity(self.bodies.len());
         for (index, body) in self.bodies.iter().enumerate() {
             let (ground, place) = match body.joint {
-                Some(Mover::Weld { parent, origin }) => (grounds[parent].0, grounds[parent].1 + origin),
+                Some(ParentJoint::Fixed { parent, origin }) => (grounds[parent].0, grounds[parent].1 + origin),
                 _ => (index, Vector::zero()),
             };
             grounds.push((ground, place));

@@ -80,8 +80,8 @@ fn of_state(robot: &Robot, State { position, velocity, scene, .. }: &State) -> V
         Base::Fixed => &[],
     };
     let joints = robot.joints.iter().map(|joint| match joint.axis {
-        Axis::Turn { .. } => ANGLE,
-        Axis::Slide { .. } => LENGTH,
+        Axis::Revolute { .. } => ANGLE,
+        Axis::Prismatic { .. } => LENGTH,
     });
     let units = || base.iter().copied().chain(joints.clone());
     let positions = units().map(|(unit, _)| unit).zip(position.iter().copied());

@@ -6,7 +6,7 @@ use super::result::LeftOut;
 use super::text::Palette;
 use crate::Robot;
 use crate::planar::Vector;
-use crate::robot::{self, Axis, Base, FootShape, Mover, Rim, Still};
+use crate::robot::{self, Axis, Base, FootShape, FreezeReason, ParentJoint, Rim};
 use crate::state::NamedContact;
 use serde::Serialize;
 
@@ -112,7 +112,7 @@ pub struct Held<'a> {
     /// Why it has none.
     pub why: String,
     #[serde(skip)]
-    still: &'a Still,
+    still: &'a FreezeReason,
 }
 
 /// A link of the file.
@@ -158,7 +158,7 @@ impl<'a> Inspection<'a> {
         let body_name = |body: usize| robot.bodies[body].name.as_str();
         let bodies = robot.bodies.iter().enumerate().map(|(at, body)| {
             let weld = match body.joint {
-                Some(Mover::Weld { parent, origin }) => Some((body_name(parent), origin)),
+                Some(ParentJoint::Fixed { parent, origin }) => Some((body_name(parent), origin)),
                 _ => None,
             };
             Body {
@@ -173,8 +173,8 @@ impl<'a> Inspection<'a> {
         });
         let joint = |name: &'a str, parent, child, origin, axis| {
             let (kind, sign, direction) = match axis {
-                Axis::Turn { sign } => ("turn", Some(sign), None),
-                Axis::Slide { direction } => ("slide", None, Some(direction)),
+                Axis::Revolute { sign } => ("turn", Some(sign), None),
+                Axis::Prismatic { direction } => ("slide", None, Some(direction)),
             };
             Joint { name, kind, parent: body_name(parent), child: body_name(child), origin, sign, direction }
         };
@@ -182,13 +182,13 @@ impl<'a> Inspection<'a> {
             .joints
             .iter()
             .map(|&robot::Joint { ref name, parent, child, origin, axis }| joint(name, parent, child, origin, axis));
-        let followers = robot.followers.iter().map(|follower| {
-            let &robot::Follower { ref name, leader, multiplier, offset, parent, child, origin, axis } = follower;
-            let leader = &robot.joints[leader].name;
+        let followers = robot.mimic_joints.iter().map(|follower| {
+            let &robot::MimicJoint { ref name, mimicked, multiplier, offset, parent, child, origin, axis } = follower;
+            let leader = &robot.joints[mimicked].name;
             Follower { joint: joint(name, parent, child, origin, axis), leader, multiplier, offset }
         });
         let reading = &robot.reading;
-        let held = reading.held.iter();
+        let held = reading.frozen.iter();
         let feet = robot.links.iter().enumerate().flat_map(|(at, link)| {
             let given = feet.iter().filter(move |foot| foot.link == at);
             let given = given.map(|foot| Foot::disc(robot, link, link.point(foot.offset), foot.radius));
@@ -214,8 +214,8 @@ impl<'a> Inspection<'a> {
                 .map(|held| Held {
                     name: &held.name,
                     body: &held.body,
-                    why: held.still.to_string(),
-                    still: &held.still,
+                    why: held.reason.to_string(),
+                    still: &held.reason,
                 })
                 .collect(),
             links: links

@@ -2,7 +2,7 @@
 //! digits against a reference of at least 256 bits.
 
 use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, Subject, cases, of_state, study};
-use heelstrike::dynamics::plan::{Plan, Posture};
+use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
@@ -79,7 +79,8 @@ fn every_other_case_keeps_its_digits() {
 /// The energy of all bodies after the impact, link by link, is what the contacts left of it.
 fn assert_energy(name: &str, robot: &Robot, state: &State) -> Impact {
     let impact = Pipeline::new(robot, Options::default()).impact(state).expect("an answer");
-    let (plan, mut posture, mut workspace) = (Plan::new(robot, &[], &[]), Posture::default(), Workspace::default());
+    let (plan, mut posture, mut workspace) =
+        (Plan::new(robot, &[], &[]), Configuration::default(), Workspace::default());
     posture.set(&plan, &state.position);
     kinematics(&plan, &posture, &mut workspace);
     let outcomes = &impact.analysis.as_ref().expect("outcomes").outcomes;

@@ -3,7 +3,7 @@
 
 use dashu::rational::RBig;
 use heelstrike::Robot;
-use heelstrike::dynamics::plan::{Plan, Posture};
+use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};
 use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{ContactProblem, Friction};
@@ -148,7 +148,7 @@ fn run<T: Real>(half_tangents: [T; 5]) -> Vec<T> {
     let sin = half_tangents.map(|t| (t + t) / (one + t * t));
     // x and z have no angle; their entries are not read.
     let padded = |values: [T; 5]| [[T::zero(); 2].as_slice(), values.as_slice()].concat();
-    let posture = Posture { cos: padded(cos), sin: padded(sin), displacement: vec![T::zero(); 7] };
+    let posture = Configuration { cos: padded(cos), sin: padded(sin), displacement: vec![T::zero(); 7] };
     let mut workspace = Workspace::default();
     kinematics(&plan, &posture, &mut workspace);
     mass_matrix(&plan, &mut workspace);

@@ -9,7 +9,7 @@
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::radau::{Equations, Limits, integrate};
-use crate::dynamics::plan::{Motion, Plan, Posture};
+use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
@@ -80,7 +80,7 @@ struct Equation<'a> {
 #[derive(Debug, Default)]
 struct Memory {
     workspace: Workspace,
-    posture: Posture,
+    posture: Configuration,
     column: Vec<f64>,
 }
 
@@ -196,12 +196,12 @@ fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<
                 let (spin, rate) = (spins[parent], velocity[body.coordinate]);
                 let carried = origins[parent] - workspace.arm[index] * (spin * spin);
                 match motion {
-                    Motion::Turn { sign, .. } => (spin + sign * rate, carried),
+                    Motion::Revolute { sign, .. } => (spin + sign * rate, carried),
                     // Coriolis: twice the turn of the direction of sliding.
-                    Motion::Slide { .. } => {
+                    Motion::Prismatic { .. } => {
                         (spin, carried + workspace.direction[index].perpendicular() * (2.0 * spin * rate))
                     }
-                    Motion::Root | Motion::Weld => (spin, carried),
+                    Motion::Root | Motion::Fixed => (spin, carried),
                 }
             }
         };

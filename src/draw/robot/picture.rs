@@ -99,7 +99,7 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
         shapes,
         ..view
     };
-    let joints = robot.joints.len() + robot.followers.len();
+    let joints = robot.joints.len() + robot.mimic_joints.len();
     let shaped = |last: bool| drawing.bodies.iter().any(|body| body.is_last == last && !body.shapes.is_empty());
     let entries = [
         (joints > 0, LegendKey::Mark(Mark::Ring, Color::Black), "joint"),

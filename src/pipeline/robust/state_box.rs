@@ -1,8 +1,8 @@
 //! Boxes of states.
 
-use crate::dynamics::plan::{Plan, Posture};
+use crate::dynamics::plan::{Configuration, Plan};
 use crate::law::Friction;
-use crate::robot::{Axis, Base, Mover, Robot};
+use crate::robot::{Axis, Base, ParentJoint, Robot};
 use crate::scalar::{Affine, Real, Trigonometry};
 use crate::state::{State, Uncertainty};
 
@@ -134,12 +134,12 @@ impl StateBox {
     }
 
     /// Cosines, sines and displacements of all positions in the box.
-    pub fn posture<const N: usize>(&self, robot: &Robot, position: &[f64]) -> Posture<Affine<N>> {
+    pub fn posture<const N: usize>(&self, robot: &Robot, position: &[f64]) -> Configuration<Affine<N>> {
         let base = robot.base_dofs();
-        let mut posture = Posture::default();
+        let mut posture = Configuration::default();
         for (coordinate, &entry) in position.iter().enumerate() {
             let turns = match coordinate.checked_sub(base) {
-                Some(joint) => matches!(robot.joints[joint].axis, Axis::Turn { .. }),
+                Some(joint) => matches!(robot.joints[joint].axis, Axis::Revolute { .. }),
                 None => coordinate == 2,
             };
             let quantity = Quantity::Position(coordinate);
@@ -165,7 +165,7 @@ impl StateBox {
     pub fn plan<const N: usize>(&self, robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
         let mut plan = Plan::new(robot, held, rotor_inertia);
         for (body, own) in plan.bodies.iter_mut().zip(&robot.bodies) {
-            let Some(Mover::Joint(joint)) = own.joint else { continue };
+            let Some(ParentJoint::Joint(joint)) = own.joint else { continue };
             if let Some((index, middle, radius)) = self.find(Quantity::RotorInertia(joint)) {
                 body.rotor = Affine::varying(middle, radius, index);
             }

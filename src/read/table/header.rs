@@ -1,7 +1,7 @@
 //! Reads the header of a table: the meaning of each column, resolved once against the robot.
 
 use super::records::place_of;
-use crate::robot::{Base, Plane, Still};
+use crate::robot::{Base, FreezeReason, Plane};
 use crate::{Error, Reason, Result, Robot};
 use std::collections::HashSet;
 
@@ -299,14 +299,14 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
         Some(_) => return Err(Error::new(spatial_velocity()).hint(SPATIAL_VELOCITY)),
         None => {}
     }
-    match robot.held(name) {
-        Some(held) if held.still == Still::Base => {
+    match robot.frozen(name) {
+        Some(held) if held.reason == FreezeReason::Base => {
             let reason = Reason::Inconsistent(format!("joint \"{}\" is {}", short(name), held.why()));
             let hint = format!("give {prefix}base_x, {prefix}base_z and {prefix}base_pitch");
             return Err(Error::new(reason).hint(hint));
         }
         Some(_) => return Ok(Column::Ignored),
-        None if robot.followers.iter().any(|follower| follower.name == name) => return Ok(Column::Ignored),
+        None if robot.mimic_joints.iter().any(|follower| follower.name == name) => return Ok(Column::Ignored),
         None => {}
     }
     let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();

@@ -3,7 +3,7 @@
 
 use super::{Inspection, Joint};
 use crate::planar::Vector;
-use crate::robot::Still;
+use crate::robot::FreezeReason;
 use crate::write::list::list;
 use crate::write::text::Palette;
 use crate::write::text::table::{Table, number, scale};
@@ -115,9 +115,9 @@ impl Inspection<'_> {
     }
 
     fn joints_in_words(&self) -> String {
-        let still = |is: fn(&Still) -> bool| self.held.iter().filter(|held| is(held.still)).count();
-        let fixed = still(|still| *still == Still::Fixed);
-        let base = still(|still| *still == Still::Base);
+        let still = |is: fn(&FreezeReason) -> bool| self.held.iter().filter(|held| is(held.still)).count();
+        let fixed = still(|still| *still == FreezeReason::Fixed);
+        let base = still(|still| *still == FreezeReason::Base);
         let parts = [
             (self.joints.len(), "kept"),
             (self.followers.len(), "kept as followers"),

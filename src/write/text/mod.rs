@@ -55,8 +55,8 @@ impl<'a> Subject<'a> {
             Base::Fixed => &[],
         };
         let joints = robot.joints.iter().map(|joint| match joint.axis {
-            Axis::Turn { .. } => "rad/s",
-            Axis::Slide { .. } => "m/s",
+            Axis::Revolute { .. } => "rad/s",
+            Axis::Prismatic { .. } => "m/s",
         });
         Self {
             title: words::titled(&robot.name, &state.id),

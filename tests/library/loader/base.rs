@@ -1,7 +1,7 @@
 //! What the root is, and where the robot begins.
 
 use super::*;
-use heelstrike::robot::{HeldJoint, Still};
+use heelstrike::robot::{FreezeReason, FrozenJoint};
 
 /// A robot whose links `a`, `b`, ... of these masses form a chain with joints j, k, ... of these types and axes.
 fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
@@ -56,10 +56,10 @@ fn a_whole_chain_under_a_massless_root_is_the_base_itself() {
         assert_eq!(robot.reading.outside, ["a", "b", "c"]);
         assert_eq!(robot.links.iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["d", "e"]);
         let still: Vec<_> =
-            robot.reading.held.iter().map(|HeldJoint { name, still, .. }| (name.as_str(), still)).collect();
-        assert_eq!(still, [("j", &Still::Base), ("k", &Still::Base), ("l", &Still::Base)]);
+            robot.reading.frozen.iter().map(|FrozenJoint { name, reason: still, .. }| (name.as_str(), still)).collect();
+        assert_eq!(still, [("j", &FreezeReason::Base), ("k", &FreezeReason::Base), ("l", &FreezeReason::Base)]);
         let why = "part of the floating base: x, z and pitch of d take its place";
-        assert_eq!(robot.held("k").expect("the slide").why(), why);
+        assert_eq!(robot.frozen("k").expect("the slide").why(), why);
     }
 }
 
@@ -208,7 +208,7 @@ fn a_link_of_the_base_is_no_place_for_a_contact() {
 fn a_joint_that_is_welded_to_the_base_belongs_to_it() {
     let robot = load(&chain(&[0.0, 0.0, 0.0, 0.0, 2.0], &[FIXED, X, Z, PITCH]));
     assert_eq!(robot.reading.outside, ["a", "b", "c", "d"]);
-    assert!(robot.reading.held.iter().all(|joint| joint.still == Still::Base), "{:?}", robot.reading.held);
+    assert!(robot.reading.frozen.iter().all(|joint| joint.reason == FreezeReason::Base), "{:?}", robot.reading.frozen);
 }
 
 #[test]

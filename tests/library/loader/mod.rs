@@ -4,7 +4,7 @@
 
 use heelstrike::description::Description;
 use heelstrike::planar::Vector;
-use heelstrike::robot::{Axis, Base, LeftOut, Link, Mover, Reduction, Rim, Robot};
+use heelstrike::robot::{Axis, Base, LeftOut, Link, ParentJoint, Reduction, Rim, Robot};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 
@@ -88,7 +88,7 @@ fn ramone_keeps_the_digits_of_table_1() {
             ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin.components())).collect();
         let (hip, knee) = ([0.0, -0.137675], [0.0, -0.200]);
         assert_eq!(joints, [(0, 1, hip), (1, 2, knee), (0, 3, hip), (3, 4, knee)]);
-        assert!(ramone.joints.iter().all(|joint| joint.axis == Axis::Turn { sign: -1.0 }));
+        assert!(ramone.joints.iter().all(|joint| joint.axis == Axis::Revolute { sign: -1.0 }));
 
         for foot in ["left_foot", "right_foot"] {
             let foot = &ramone.links[ramone.link(foot).expect("a foot")];
@@ -115,7 +115,7 @@ fn walkers_hang_from_the_hip_with_point_feet() {
         for body in &walker.bodies {
             assert_eq!((body.mass, body.com, body.moment), (1.0, Vector::new(0.0, -along), moment));
         }
-        assert_eq!((walker.joints[0].origin, walker.joints[0].axis), (Vector::zero(), Axis::Turn { sign: -1.0 }));
+        assert_eq!((walker.joints[0].origin, walker.joints[0].axis), (Vector::zero(), Axis::Revolute { sign: -1.0 }));
         for link in &walker.links {
             let (centre, radius) = disc(link);
             assert_eq!((centre, radius), ([0.0, -1.0], 0.0));
@@ -219,8 +219,8 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
             assert_eq!(joint.parent, body(&expected.bodies[reference.parent_body].link));
             assert_eq!(joint.child, body(&expected.bodies[reference.child_body].link));
             match (joint.axis, reference.axis_sign_y, reference.direction_zero) {
-                (Axis::Turn { sign }, Some(expected), _) => assert_eq!(sign, expected, "{}", joint.name),
-                (Axis::Slide { direction }, _, Some(expected)) => assert_eq!(direction, expected, "{}", joint.name),
+                (Axis::Revolute { sign }, Some(expected), _) => assert_eq!(sign, expected, "{}", joint.name),
+                (Axis::Prismatic { direction }, _, Some(expected)) => assert_eq!(direction, expected, "{}", joint.name),
                 (axis, ..) => panic!("{}: {axis:?}", joint.name),
             }
             for k in [0, 1] {
@@ -258,7 +258,7 @@ fn an_axis_may_have_either_sign_and_any_length() {
     {
         for kind in ["revolute", "continuous"] {
             let robot = load(&two_links(kind, &format!("<axis xyz=\"{axis}\"/>")));
-            assert_eq!(robot.joints[0].axis, Axis::Turn { sign }, "{axis}");
+            assert_eq!(robot.joints[0].axis, Axis::Revolute { sign }, "{axis}");
         }
     }
 }
@@ -267,7 +267,7 @@ fn an_axis_may_have_either_sign_and_any_length() {
 fn an_axis_is_turned_by_all_origins_before_it() {
     // The frame of b is rolled by a quarter turn, so its z axis is the root's -y.
     let robot = load(&two_links("revolute", &format!("<origin rpy=\"{FRAC_PI_2} 0 0\"/><axis xyz=\"0 0 1\"/>")));
-    assert_eq!(robot.joints[0].axis, Axis::Turn { sign: -1.0 });
+    assert_eq!(robot.joints[0].axis, Axis::Revolute { sign: -1.0 });
     assert_eq!(robot.left_out, []);
 }
 
@@ -281,8 +281,8 @@ fn an_axis_slightly_off_is_brought_into_line_and_told() {
 #[test]
 fn a_slide_has_its_direction_in_the_roots_axes_at_length_one() {
     let direction = |joint: &str| match load(&two_links("prismatic", joint)).joints[0].axis {
-        Axis::Slide { direction } => direction,
-        Axis::Turn { .. } => panic!("it turns"),
+        Axis::Prismatic { direction } => direction,
+        Axis::Revolute { .. } => panic!("it turns"),
     };
     assert_eq!(direction("<axis xyz=\"0 0 -2\"/>"), [0.0, -1.0]);
     assert_eq!(direction("<axis xyz=\"0.6 0 0.8\"/>"), [0.6, 0.8]);
@@ -319,7 +319,7 @@ fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
     let robot = load(&text);
     assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
     let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
-    let joint = |joint| Some(Mover::Joint(joint));
+    let joint = |joint| Some(ParentJoint::Joint(joint));
     assert_eq!(
         bodies,
         [("root", None), ("thigh", joint(2)), ("shank", joint(1)), ("foot", joint(0)), ("tip", joint(3))]
@@ -360,7 +360,7 @@ fn fixed_links_are_welded_with_their_turned_inertia() {
     // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
     let Vector { x, z } = robot.joints[0].origin;
     assert!((x - 2.0).abs() < 1e-15 && z.abs() < 1e-15);
-    assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Turn { sign: 1.0 }));
+    assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Revolute { sign: 1.0 }));
 }
 
 #[test]

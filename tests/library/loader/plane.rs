@@ -1,7 +1,7 @@
 //! Which plane, which joints stay in it, and what becomes of the others.
 
 use super::*;
-use heelstrike::robot::{Plane, PlaneReason, Still};
+use heelstrike::robot::{FreezeReason, Plane, PlaneReason};
 
 fn in_plane(plane: Plane) -> Reduction {
     Reduction { plane: Some(plane), ..Reduction::default() }
@@ -31,8 +31,8 @@ fn kept(robot: &Robot) -> Vec<&str> {
     robot.joints.iter().map(|joint| joint.name.as_str()).collect()
 }
 
-fn still<'a>(robot: &'a Robot, joint: &str) -> &'a Still {
-    &robot.held(joint).expect("a held joint").still
+fn still<'a>(robot: &'a Robot, joint: &str) -> &'a FreezeReason {
+    &robot.frozen(joint).expect("a frozen joint").reason
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn the_common_direction_of_all_hinges_gives_the_plane() {
         let robot = load(&chain(&[("continuous", axis), ("revolute", axis)]));
         assert_eq!((robot.reading.plane, robot.reading.plane_because), (plane, PlaneReason::CommonAxis), "{axis}");
         // The normal of y-z is -x and that of x-y is -z.
-        assert!(robot.joints.iter().all(|joint| joint.axis == Axis::Turn { sign }), "{axis}");
+        assert!(robot.joints.iter().all(|joint| joint.axis == Axis::Revolute { sign }), "{axis}");
         assert_eq!(robot.reading.better_plane, None);
     }
 }
@@ -120,8 +120,8 @@ fn held_joints_are_welded_at_their_values_and_axes_judged_there() {
     let hold =
         |hold: &[(usize, f64)]| Reduction { plane: Some(Plane::XZ), hold: hold.to_vec(), ..Reduction::default() };
     let robot = reduce(&text, &hold(&[(0, FRAC_PI_2)]));
-    assert_eq!((kept(&robot), robot.joints[0].axis), (vec!["k"], Axis::Turn { sign: -1.0 }));
-    assert_eq!(still(&robot, "j"), &Still::Asked { value: FRAC_PI_2 });
+    assert_eq!((kept(&robot), robot.joints[0].axis), (vec!["k"], Axis::Revolute { sign: -1.0 }));
+    assert_eq!(still(&robot, "j"), &FreezeReason::Asked { value: FRAC_PI_2 });
     // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
     let Vector { x, z } = robot.joints[0].origin;
     assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15, "{x} {z}");
@@ -231,14 +231,19 @@ fn a_follower_is_tied_to_the_last_of_its_leaders() {
     let robot = load(&text);
     assert_eq!(kept(&robot), ["l", "m"]);
     let followers: Vec<_> = robot
-        .followers
+        .mimic_joints
         .iter()
-        .map(|follower| (follower.name.as_str(), follower.leader, follower.multiplier, follower.offset))
+        .map(|follower| (follower.name.as_str(), follower.mimicked, follower.multiplier, follower.offset))
         .collect();
     assert_eq!(followers, [("j", 1, -6.0, 0.5), ("k", 1, -3.0, 0.0)]);
     let movers: Vec<_> = robot.bodies.iter().map(|body| body.joint).collect();
-    let expected =
-        [None, Some(Mover::Follower(0)), Some(Mover::Follower(1)), Some(Mover::Joint(0)), Some(Mover::Joint(1))];
+    let expected = [
+        None,
+        Some(ParentJoint::Mimic(0)),
+        Some(ParentJoint::Mimic(1)),
+        Some(ParentJoint::Joint(0)),
+        Some(ParentJoint::Joint(1)),
+    ];
     assert_eq!(movers, expected);
 }
 
@@ -251,9 +256,9 @@ fn a_follower_of_a_held_joint_is_held_with_it() {
         )
     };
     let robot = load(&mimic("1 0 0", "j"));
-    assert!(robot.joints.is_empty() && robot.followers.is_empty());
+    assert!(robot.joints.is_empty() && robot.mimic_joints.is_empty());
     // At zero, whatever its offset.
-    assert_eq!(still(&robot, "k"), &Still::Follows { leader: "j".into() });
+    assert_eq!(still(&robot, "k"), &FreezeReason::Follows { mimicked: "j".into() });
     assert_eq!(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), [0.0, -3.0]);
 
     // A leader that is held at a value takes its follower along: 2 * 0.2 + 0.1.
@@ -267,8 +272,8 @@ fn a_follower_of_a_held_joint_is_held_with_it() {
         &chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0")])
             .replace("name=\"k\" type=\"revolute\">", "name=\"k\" type=\"revolute\"><mimic joint=\"j\"/>"),
     );
-    assert_eq!((kept(&robot), robot.followers.len()), (vec!["j"], 0));
-    assert!(matches!(still(&robot, "k"), Still::OffPlane { .. }));
+    assert_eq!((kept(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
+    assert!(matches!(still(&robot, "k"), FreezeReason::OffPlane { .. }));
 }
 
 // Whatever the order and the names.

@@ -10,7 +10,7 @@
 use crate::balls::number::Number;
 use heelstrike::impact::Friction;
 use heelstrike::planar::Vector;
-use heelstrike::robot::{Axis, Mover, Robot};
+use heelstrike::robot::{Axis, ParentJoint, Robot};
 use heelstrike::state::Ground;
 use heelstrike::state::State;
 use std::cmp::Ordering;
@@ -121,20 +121,20 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                 }
                 Pose { turn: angle.cos_sin(), angle, origin, motions }
             }
-            Some(Mover::Follower(_) | Mover::Weld { .. }) => unreachable!("no robot here has them"),
-            Some(Mover::Joint(index)) => {
+            Some(ParentJoint::Mimic(_) | ParentJoint::Fixed { .. }) => unreachable!("no robot here has them"),
+            Some(ParentJoint::Joint(index)) => {
                 let joint = &robot.joints[index];
                 let parent = &poses[joint.parent];
                 let coordinate = base + index;
                 let mut pose = Pose { origin: parent.point(&joint.origin.map(number).into()), ..parent.clone() };
                 let displacement = number(position[coordinate]);
                 pose.motions[coordinate] = Some(match joint.axis {
-                    Axis::Turn { sign } => {
+                    Axis::Revolute { sign } => {
                         pose.angle = parent.angle.plus(&displacement.times(&number(sign)));
                         pose.turn = pose.angle.cos_sin();
                         Motion::Turn(pose.origin.clone(), sign)
                     }
-                    Axis::Slide { direction } => {
+                    Axis::Prismatic { direction } => {
                         let direction = parent.axes(&direction.map(number).into());
                         pose.origin = add(&pose.origin, &direction.clone().map(|entry| entry.times(&displacement)));
                         Motion::Slide(direction)

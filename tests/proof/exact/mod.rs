@@ -14,7 +14,7 @@ use case::Case;
 use dashu::rational::RBig;
 use enumeration::{Combination, Enumeration, Friction, Problem, enumerate};
 use heelstrike::Robot;
-use heelstrike::dynamics::plan::Posture;
+use heelstrike::dynamics::plan::Configuration;
 use heelstrike::impact::{self, Analysis, ContactProblem, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::NamedContact;
@@ -300,7 +300,7 @@ fn robot(number: u64) -> (Tree, Vec<(Case, Enumeration)>) {
 fn analyse(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
     let numbers = |values: &[_]| values.iter().map(to_f64).collect::<Vec<f64>>();
     let motions = &case.motions;
-    let posture = Posture {
+    let posture = Configuration {
         cos: numbers(&motions.cos),
         sin: numbers(&motions.sin),
         displacement: numbers(&motions.displacement),

@@ -1,0 +1,87 @@
+//! The inertia of a body while the joints beyond it give way.
+
+use crate::planar::{Inertia, Vector};
+use crate::scalar::Real;
+
+/// The symmetric inertia [[moment, coupling^T], [coupling, linear]] that a body shows at its origin, in world axes, while
+/// all joints beyond it give way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArticulatedInertia<T> {
+    /// Moment for a unit angular acceleration \[kg m^2\].
+    pub moment: T,
+    /// Force for a unit angular acceleration, moment for a unit linear one \[kg m\].
+    pub coupling: Vector<T>,
+    /// Force for a unit linear acceleration: entries xx, xz, zz \[kg\].
+    pub linear: [T; 3],
+}
+
+impl<T: Real> ArticulatedInertia<T> {
+    pub(super) fn rigid(body: Inertia<T>) -> Self {
+        Self { moment: body.second, coupling: body.first.perpendicular(), linear: [body.mass, T::zero(), body.mass] }
+    }
+
+    /// Force for the linear acceleration `along`.
+    pub(super) fn stretch(&self, along: Vector<T>) -> Vector<T> {
+        let [xx, xz, zz] = self.linear;
+        Vector { x: Vector::new(xx, xz).dot(along), z: Vector::new(xz, zz).dot(along) }
+    }
+
+    /// What is left to the parent by a hinge of pivot D = moment + rotor. Always u (u / D), never u u (1 / D): the latter
+    /// underflows for small masses.
+    pub(super) fn without_turn(&self, rotor: T, pivot: T) -> Self {
+        let kept = rotor / pivot;
+        let [xx, xz, zz] = self.linear;
+        let Vector { x, z } = self.coupling;
+        let [by_x, by_z] = [x / pivot, z / pivot];
+        Self {
+            moment: self.moment * kept,
+            coupling: self.coupling * kept,
+            linear: [xx - x * by_x, xz - x * by_z, zz - z * by_z],
+        }
+    }
+
+    /// What is left to the parent by a slide along `along` of pivot D.
+    ///
+    /// It is taken apart along and across the slide, so that what the slide does not pass on cancels before it is rounded.
+    pub(super) fn without_slide(&self, along: Vector<T>, rotor: T, pivot: T) -> Self {
+        let across = along.perpendicular();
+        let (pulled, pushed) = (self.stretch(along), self.stretch(across));
+        let (same, mixed, other) = (along.dot(pulled), across.dot(pulled), across.dot(pushed));
+        let (lever, side) = (along.dot(self.coupling), across.dot(self.coupling));
+        let (kept, by_lever) = (rotor / pivot, lever / pivot);
+        let (same, other, mixed) = (same * kept, other - mixed * (mixed / pivot), mixed * kept);
+        let (lever, side, spent) = (lever * kept, side - across.dot(pulled) * by_lever, lever * by_lever);
+        // `along` has length one but for rounding; dividing by its square makes the formula right for any length.
+        let square = along.dot(along);
+        let [same, other, mixed] = [same, other, mixed].map(|entry| entry / square / square);
+        let [Vector { x, z }, Vector { x: p, z: q }] = [along, across];
+        let two = T::one() + T::one();
+        Self {
+            moment: self.moment - spent,
+            coupling: along * (lever / square) + across * (side / square),
+            linear: [
+                same * x * x + two * (mixed * x * p) + other * p * p,
+                same * x * z + mixed * (x * q + z * p) + other * p * q,
+                same * z * z + two * (mixed * z * q) + other * q * q,
+            ],
+        }
+    }
+
+    /// The same inertia about a point from which the old one is seen at `arm`.
+    pub(super) fn seen_from(self, arm: Vector<T>) -> Self {
+        let lever = arm.perpendicular();
+        let shifted = self.coupling + self.stretch(lever);
+        // A + 2 h.l + l.M l, with the new coupling h + M l in place of one h.
+        Self { moment: self.moment + (self.coupling + shifted).dot(lever), coupling: shifted, linear: self.linear }
+    }
+
+    /// Both inertias as one; they must be given about the same point.
+    pub(super) fn with(self, other: Self) -> Self {
+        let [[a, b, c], [d, e, f]] = [self.linear, other.linear];
+        Self {
+            moment: self.moment + other.moment,
+            coupling: self.coupling + other.coupling,
+            linear: [a + d, b + e, c + f],
+        }
+    }
+}
