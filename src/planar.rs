@@ -1,8 +1,9 @@
 //! Vectors, rotations and inertias of the plane; frame, order and handedness are stated here, once.
 //!
-//! The plane has axes *forward* (x) and *up* (z) and the normal n = up x forward. An angle is right-handed about n, so a
-//! positive one turns up toward forward: **clockwise** seen with forward to the right and up upward, the nose of a robot
-//! dips. A rotation is the pair (cos, sin) of such an angle; nothing here computes a cosine, so any [`Real`] works.
+//! The plane has axes *forward* (x) and *up* (z) and the normal n = up x forward. An angle is right-handed about n, so
+//! a positive one turns up toward forward: **clockwise** seen with forward to the right and up upward, the nose of a
+//! robot dips. A rotation is the pair (cos, sin) of such an angle; nothing here computes a cosine, so any [`Real`]
+//! works.
 
 use crate::scalar::Real;
 use serde::{Serialize, Serializer};
@@ -53,8 +54,8 @@ impl<T: Real> Vector<T> {
         self.x * other.x + self.z * other.z
     }
 
-    /// The vector turned by a right angle about the normal: the velocity of a point at this arm from an axis that turns at
-    /// 1 rad/s.
+    /// The vector turned by a right angle about the normal: the velocity of a point at this arm from an axis that turns
+    /// at 1 rad/s.
     pub fn perpendicular(self) -> Self {
         Self { x: self.z, z: -self.x }
     }
@@ -154,7 +155,7 @@ impl<T: schemars::JsonSchema> schemars::JsonSchema for Vector<T> {
     }
 }
 
-/// A turn about the plane's normal by the angle whose cosine and sine it holds.
+/// A rotation about the plane's normal, as the cosine and sine of its angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation<T> {
     /// Cosine of the angle.
@@ -164,7 +165,7 @@ pub struct Rotation<T> {
 }
 
 impl<T: Real> Rotation<T> {
-    /// The turn by nothing.
+    /// The rotation by zero.
     pub fn identity() -> Self {
         Self { cos: T::one(), sin: T::zero() }
     }
@@ -174,14 +175,14 @@ impl<T: Real> Rotation<T> {
         Vector { x: self.cos * x + self.sin * z, z: self.cos * z - self.sin * x }
     }
 
-    /// The turn by the sum of both angles.
+    /// The rotation by the sum of both angles.
     pub fn then(self, other: Self) -> Self {
         Self { cos: self.cos * other.cos - self.sin * other.sin, sin: self.sin * other.cos + self.cos * other.sin }
     }
 }
 
 impl Rotation<f64> {
-    /// The turn by `angle` \[rad\], the same bits on every platform.
+    /// The rotation by `angle` \[rad\], the same bits on every platform.
     pub fn by(angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);
         Self { cos, sin }

@@ -37,9 +37,9 @@ pub struct Stance {
     pub base: Vector<f64>,
 }
 
-/// The point of the link that stands: its lowest along the ground's normal at x = 0, of several within `tolerance` \[m\] the
-/// one with the smallest t; of the `named` contacts of the link if it has any, else of its feet. `placement` has the root at
-/// zero.
+/// The point of the link that stands: its lowest along the ground's normal at x = 0, of several within `tolerance`
+/// \[m\] the one with the smallest t; of the `named` contacts of the link if it has any, else of its feet. `placement`
+/// has the root at zero.
 ///
 /// # Errors
 /// [`Reason::Missing`] where the link has no foot, [`Reason::Inconsistent`] where there is no ground at x = 0.
@@ -77,8 +77,8 @@ pub fn stance(
         })
 }
 
-/// All closed contacts: the `named` ones whatever their height, else every point of a foot within `tolerance` \[m\] of the
-/// ground, in the order of the links and within a link along t of a plane, along x of a profile.
+/// All closed contacts: the `named` ones whatever their height, else every point of a foot within `tolerance` \[m\] of
+/// the ground, in the order of the links and within a link along t of a plane, along x of a profile.
 ///
 /// # Errors
 /// [`Reason::Penetration`] for the deepest of the feet that are deeper than the tolerance.
@@ -147,7 +147,7 @@ pub fn out_of_reach(feet: &Feet, placement: &Placement, surface: &Surface, toler
     feet.iter().filter(|foot| surface.is_out_of_reach(foot, placement, tolerance)).count()
 }
 
-/// The foot nearest to the ground, and its distance from it \[m\]; none where the robot has no feet.
+/// The foot nearest to the ground, and its distance from it \[m\]; `None` if the robot has no feet.
 pub fn nearest(robot: &Robot, feet: &Feet, placement: &Placement, surface: &Surface) -> Option<(String, f64)> {
     let distances = feet.iter().map(|foot| (foot.link, surface.clearance(foot, placement)));
     let (link, distance) = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -159,7 +159,8 @@ pub fn clearances(feet: &Feet, placement: &Placement, surface: &Surface) -> Vec<
     feet.iter().map(|foot| surface.clearance(foot, placement)).collect()
 }
 
-/// The links of feet that reach beyond an end of the ground no higher than `tolerance` \[m\] above it, and the end's x \[m\].
+/// The links of feet that reach beyond an end of the ground no higher than `tolerance` \[m\] above it, and the end's x
+/// \[m\].
 pub fn left_behind(
     robot: &Robot,
     feet: &Feet,

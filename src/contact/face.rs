@@ -27,8 +27,8 @@ pub(super) struct Face {
 }
 
 impl Face {
-    /// The side between two different points, its solid to the right of the way from one to the other, seen with forward to
-    /// the right and up upward.
+    /// The side between two different points, its solid to the right of the way from one to the other, seen with
+    /// forward to the right and up upward.
     pub fn of_ground(from: Vector<f64>, to: Vector<f64>) -> Self {
         let Vector { x, z } = unit(to - from);
         Self { from, to, tangent: Vector::new(x, z), normal: Vector::new(-z, x) }
@@ -65,8 +65,8 @@ impl Face {
         self.past_begin(point) >= 0.0 && self.past_end(point) <= 0.0
     }
 
-    /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbour` stays in front of the
-    /// side: it may go behind it by `slack` \[m\] where both lie flat on each other.
+    /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbour` stays in front of
+    /// the side: it may go behind it by `slack` \[m\] where both lie flat on each other.
     pub fn clears(&self, point: Vector<f64>, neighbour: Vector<f64>, slack: f64) -> bool {
         let way = unit(neighbour - point);
         let descent = -self.normal.dot(way);

@@ -4,16 +4,16 @@
 //!     body poses + feet + ground --> closed contacts
 //! ```
 
-mod detect;
 mod face;
 mod feet;
-mod outline;
-mod placement;
-mod plane;
 mod point;
+mod placement;
+mod outline;
+mod plane;
+mod terrain;
 mod profile;
 mod surface;
-mod terrain;
+mod detect;
 
 pub use detect::{Stance, clearances, detect, left_behind, nearest, out_of_reach, stance};
 pub use feet::{Feet, Foot};
@@ -35,7 +35,8 @@ pub struct Contact {
     pub body: usize,
     /// The point, or the centre of the circle, in the body's frame \[m\].
     pub centre: Vector<f64>,
-    /// Where the centre was named in the link's own 3-D frame \[m\]; none of a shape of the robot, which has it in `centre`.
+    /// Where the centre was named in the link's own 3-D frame \[m\]; `None` for a shape of the robot, whose center is
+    /// `centre`.
     pub offset: Option<[f64; 3]>,
     /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
     pub radius: f64,

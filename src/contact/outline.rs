@@ -130,11 +130,11 @@ impl<'p> Outline<'p> {
         [low.map(|entry| entry - margin), high.map(|entry| entry + margin)]
     }
 
-    /// The direction out of a corner's rim toward a point, and how far the point lies beyond the rim \[m\]; none from the
-    /// rim's centre.
+    /// The direction out of a corner's rim toward a point, and how far the point lies beyond the rim \[m\]; `None` from
+    /// the rim's center.
     ///
-    /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the centre, which is
-    /// the nearest one where the distance is nothing; and the distance that to the tangent there.
+    /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the centre,
+    /// which is the nearest one where the distance is nothing; and the distance that to the tangent there.
     pub fn beyond_rim(&self, corner: usize, point: Vector<f64>) -> Option<(Vector<f64>, f64)> {
         let way = point - self.corners[corner];
         let far = distance(point, self.corners[corner]);

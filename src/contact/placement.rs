@@ -60,8 +60,8 @@ impl Placement {
         Rotation { cos, sin: -sin }.apply(vector)
     }
 
-    /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material point
-    /// that is lowest along the normal now.
+    /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material
+    /// point that is lowest along the normal now.
     pub(super) fn circle(&self, point: Point, normal: Vector<f64>) -> Circle {
         let Point { body, centre, offset, rim } = point;
         match rim {

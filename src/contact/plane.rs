@@ -4,9 +4,9 @@
 //!     bounding circle --reaches the ground?--> polygon without its rim --parry--> corners within reach of the ground
 //! ```
 //!
-//! parry's contact manifolds (ground as half space first, the order in which they are right) say which corners of a polygon
-//! are near; the rim reaches equally far from each. The point that touches, its gap and its velocity are those of the
-//! exact material point, not parry's.
+//! parry's contact manifolds (ground as half space first, the order in which they are right) say which corners of a
+//! polygon are near; the rim reaches equally far from each. The point that touches, its gap and its velocity are those
+//! of the exact material point, not parry's.
 
 use super::feet::Foot;
 use super::placement::Placement;
@@ -62,8 +62,8 @@ impl Plane {
         self.ground.apply(Vector::new(1.0, 0.0)).dot(point)
     }
 
-    /// How far heights are off by rounding alone: they are sums of a few terms of this size. On level ground it does not
-    /// matter how far away the base is.
+    /// How far heights are off by rounding alone: they are sums of a few terms of this size. On level ground it does
+    /// not matter how far away the base is.
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         let Vector { x, z } = placement.base();
         let Vector { x: along, z: up } = self.normal();
@@ -80,8 +80,8 @@ impl Plane {
         self.normal().dot(placement.world(foot.body, centre)) - radius > tolerance
     }
 
-    /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that faces
-    /// it.
+    /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that
+    /// faces it.
     ///
     /// # Errors
     /// [`Reason::Unsupported`] for a pair of shapes that parry does not serve; none of ours is.

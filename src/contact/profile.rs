@@ -7,9 +7,10 @@
 //!     a foot's corner on a convex corner       the middle of the normals that both allow
 //! ```
 //!
-//! Each corner of one boundary belongs to the side of the other that it is above, or to the corner whose sides it is past, so
-//! that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches with its
-//! corner and at the edge that it overhangs. A side may go behind another by twice the tolerance, and only at a small angle.
+//! Each corner of one boundary belongs to the side of the other that it is above, or to the corner whose sides it is
+//! past, so that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches
+//! with its corner and at the edge that it overhangs. A side may go behind another by twice the tolerance, and only at
+//! a small angle.
 
 use super::face::{Face, PARALLEL, distance, unit, upright};
 use super::feet::Foot;
@@ -106,8 +107,8 @@ fn corners_of(segments: &[usize]) -> impl Iterator<Item = usize> + '_ {
     (0..segments.len()).flat_map(move |at| new(at).then(|| segments[at] - 1).into_iter().chain([segments[at]]))
 }
 
-/// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' rims, of the ground's corners in
-/// the foot, and of sides that cross.
+/// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' rims, of the ground's corners
+/// in the foot, and of sides that cross.
 fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
     let corners = (0..outline.corners().len()).map(|corner| depth_of_rim(terrain, outline, corner, near));
     let ground = corners_of(near).map(|corner| outline.depth_of(terrain.at_corner(corner)[0].to));
@@ -151,7 +152,7 @@ pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) 
     if hangs(rear, -1.0) { Some(rear.x) } else { hangs(front, 1.0).then_some(front.x) }
 }
 
-/// The shortest way that takes one of two crossing sides off the other \[m\]; none where they do not cross.
+/// The shortest way that takes one of two crossing sides off the other \[m\]; `None` if they do not cross.
 fn crossing(a: &Face, b: &Face) -> Option<f64> {
     let [from, to] = [a.height(b.from), a.height(b.to)];
     let [begin, end] = [b.height(a.from), b.height(a.to)];
@@ -228,8 +229,8 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
     (0..outline.corners().len()).find_map(on)
 }
 
-/// The middle of the normals that a convex corner of the ground and a corner of the foot both allow; where the foot lies
-/// flat on a segment, that segment's normal.
+/// The middle of the normals that a convex corner of the ground and a corner of the foot both allow; where the foot
+/// lies flat on a segment, that segment's normal.
 fn common_normal(ground: [&Face; 2], foot: Option<[&Face; 2]>) -> Vector<f64> {
     // From the rear face's normal clockwise to the front one's. A foot pushes the ground the other way.
     let ground = ground.map(|face| face.normal);
@@ -258,7 +259,7 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         let face = &outline.sides()[side];
         let (gap, slack) = (face.height(at), 2.0 * close.tolerance);
         let beneath = face.past_begin(at) >= -close.rounding && face.past_end(at) <= close.rounding;
-        // Of a line, which is all surface, the ground's way tells the side.
+        // A line is all surface; the way along the ground decides its side.
         let solid = outline.sides().len() > 2;
         let clear = |side: &Face| side.clears(at, before.from, slack) && side.clears(at, after.to, slack);
         let nearer = |other: &Face| solid && gap < 0.0 && other.faces(at) && other.height(at) > gap && clear(other);

@@ -132,8 +132,8 @@ impl Surface {
         }
     }
 
-    /// Whether two contacts of a link are one: the same point, and on a profile the same place with the same normal up to
-    /// `rounding` \[m\], because a side's point at a corner is found and not given.
+    /// Whether two contacts of a link are one: the same point, and on a profile the same place with the same normal up
+    /// to `rounding` \[m\], because a side's point at a corner is found and not given.
     pub(super) fn is_same(&self, a: &Contact, b: &Contact, rounding: f64) -> bool {
         let same_foot = (a.link, a.body, a.radius) == (b.link, b.body, b.radius);
         same_foot
@@ -145,7 +145,8 @@ impl Surface {
             }
     }
 
-    /// The end of the profile that a foot reaches beyond, not higher than `tolerance` above it: there is no ground there.
+    /// The end of the profile that a foot reaches beyond, not higher than `tolerance` above it: there is no ground
+    /// there.
     pub(super) fn left_behind(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Option<f64> {
         match &self.0 {
             Kind::Plane(_) => None,

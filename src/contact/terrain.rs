@@ -4,9 +4,10 @@
 //!     points --points on a straight line dropped--> faces [wall, segment, ..., segment, wall], corner k between k and k + 1
 //! ```
 //!
-//! The solid below the profile ends in upright walls below its ends. They bound the directions that the end points may push
-//! in, but are no ground themselves. A corner is convex where the ground falls away behind it, and concave in a notch.
-//! parry's polyline finds the segments near a foot and the nearest point; which side is inside, it does not know.
+//! The solid below the profile ends in upright walls below its ends. They bound the directions that the end points may
+//! push in, but are no ground themselves. A corner is convex where the ground falls away behind it, and concave in a
+//! notch. parry's polyline finds the segments near a foot and the nearest point; which side is inside, it does not
+//! know.
 
 use super::face::{Face, distance, unit, upright};
 use super::point::{Circle, Touch};
@@ -86,7 +87,7 @@ impl Terrain {
         near
     }
 
-    /// How deep a point is in the solid \[m\], and the normal of the segment that is nearest; none outside.
+    /// How deep a point is in the solid \[m\], and the normal of the segment that is nearest; `None` outside.
     pub(super) fn depth_of(&self, point: Vector<f64>) -> Option<(f64, Vector<f64>)> {
         let (face, corner) = self.is_inside(point).then(|| self.nearest(point))?;
         let depth = match corner {
@@ -107,8 +108,8 @@ impl Terrain {
         }
     }
 
-    /// The segment above, below or at x; none beyond the ends. Of two that meet there it is the less steep one, of equally
-    /// steep ones the rear one.
+    /// The segment above, below or at x; `None` beyond the ends. Of two that meet there it is the less steep one, of
+    /// equally steep ones the rear one.
     pub(super) fn segment_at(&self, x: f64) -> Option<&Face> {
         let segments = self.segments();
         let next = segments.partition_point(|face| face.to.x < x);
@@ -128,8 +129,8 @@ impl Terrain {
     }
 
     /// The contact of a circle or point that was named: with the ground nearest to its centre, which is in the world at
-    /// `centre`. A point within `tolerance` of a corner takes the middle of the corner's normals; beyond the ends the last
-    /// segment counts as going on.
+    /// `centre`. A point within `tolerance` of a corner takes the middle of the corner's normals; beyond the ends the
+    /// last segment counts as going on.
     pub(super) fn nearest_touch(&self, circle: Circle, centre: Vector<f64>, tolerance: f64) -> Touch {
         let (face, corner) = self.nearest(centre);
         let inner = corner.filter(|&corner| corner > 0 && corner + 2 < self.faces.len() && self.is_convex(corner));

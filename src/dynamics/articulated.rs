@@ -5,10 +5,11 @@
 //!     y_i = S_i^T f_i,   f_parent = f_i - U_i D_i^-1 y_i                            G = Y^T D^-1 Y
 //! ```
 //!
-//! A and f are 3 x 3 and 3-vectors in the plane, kept as a moment, a coupling and a linear block about each body's origin in
-//! world axes. A hinge without rotor passes no moment on, so that its child is a 2 x 2 block for the parent. D and Y are
-//! those of M = L^T D L, found without M: a second, independent way to the same numbers, and the only quick one for long
-//! chains. It knows no joints that follow others: a column here moves one joint. Source: Featherstone 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
+//! A and f are 3 x 3 and 3-vectors in the plane, kept as a moment, a coupling and a linear block about each body's
+//! origin in world axes. A revolute joint without rotor passes no moment on, so that its child is a 2 x 2 block for the
+//! parent. D and Y are those of M = L^T D L, found without M: a second, independent way to the same numbers, and the
+//! only quick one for long chains. It does not handle mimic joints: a column here moves one joint. Source: Featherstone
+//! 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
 use super::articulated_inertia::ArticulatedInertia;
 use super::contact_point::ContactPoint;
@@ -26,7 +27,7 @@ struct Force<T> {
 
 /// Computes every body's articulated inertia and the pivots D (nv, columns of the plan) from the kinematics.
 ///
-/// A vanishing pivot is the caller's to notice, as with [`factorize`](super::factorize).
+/// Callers check for a vanishing pivot, as with [`factorize`](super::factorize).
 pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, articulated, pivots, .. } = workspace;
     articulated.clear();
@@ -165,7 +166,7 @@ fn root_motion<T: Real>(workspace: &Workspace<T>, rates: &mut [T]) -> (T, Vector
     (rates[2], origin)
 }
 
-/// Passes a force on `body` inward, joint by joint; tells y and y/D of every column that it meets.
+/// Passes a force on `body` inward, joint by joint; reports y and y/D of every column on the way.
 fn to_root<T: Real>(
     plan: &Plan<T>,
     workspace: &Workspace<T>,
@@ -211,7 +212,7 @@ fn to_root<T: Real>(
     }
 }
 
-/// The columns on which both bodies hang, from the outermost inward.
+/// The columns that move both bodies, from the outermost inward.
 fn shared_columns<T: Real>(plan: &Plan<T>, a: usize, b: usize) -> impl Iterator<Item = usize> + use<'_, T> {
     let (mut a, mut b) = (a, b);
     // A parent's number is less than its child's.
@@ -299,8 +300,8 @@ mod tests {
     #[test]
     fn a_chain_of_a_thousand_links_is_told_as_by_its_mass_matrix() {
         let (found, expected) = both_ways(&chain(1000, usize::MAX));
-        // Entries of M grow to a third of the cube of the chain's length while its pivots do not, so that L^T D L loses as
-        // many digits; the recursion does not, which the suite of the module `accuracy` checks with 256 bits.
+        // Entries of M grow to a third of the cube of the chain's length while its pivots do not, so that L^T D L loses
+        // as many digits; the recursion does not, which the suite of the module `accuracy` checks with 256 bits.
         assert_near(&found, &expected, 3e8 * f64::EPSILON);
     }
 

@@ -3,8 +3,8 @@
 use crate::planar::{Inertia, Vector};
 use crate::scalar::Real;
 
-/// The symmetric inertia [[moment, coupling^T], [coupling, linear]] that a body shows at its origin, in world axes, while
-/// all joints beyond it give way.
+/// The symmetric inertia [[moment, coupling^T], [coupling, linear]] that a body shows at its origin, in world axes,
+/// while all joints beyond it give way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArticulatedInertia<T> {
     /// Moment for a unit angular acceleration \[kg m^2\].
@@ -26,8 +26,8 @@ impl<T: Real> ArticulatedInertia<T> {
         Vector { x: Vector::new(xx, xz).dot(along), z: Vector::new(xz, zz).dot(along) }
     }
 
-    /// What is left to the parent by a hinge of pivot D = moment + rotor. Always u (u / D), never u u (1 / D): the latter
-    /// underflows for small masses.
+    /// What a revolute joint of pivot D leaves to the parent = moment + rotor. Always u (u / D), never u u (1 / D): the
+    /// latter underflows for small masses.
     pub(super) fn without_turn(&self, rotor: T, pivot: T) -> Self {
         let kept = rotor / pivot;
         let [xx, xz, zz] = self.linear;
@@ -40,9 +40,10 @@ impl<T: Real> ArticulatedInertia<T> {
         }
     }
 
-    /// What is left to the parent by a slide along `along` of pivot D.
+    /// What a prismatic joint along `along` of pivot D leaves to the parent.
     ///
-    /// It is taken apart along and across the slide, so that what the slide does not pass on cancels before it is rounded.
+    /// Components along and across the joint are kept apart, so that what the joint does not pass on cancels before
+    /// rounding.
     pub(super) fn without_slide(&self, along: Vector<T>, rotor: T, pivot: T) -> Self {
         let across = along.perpendicular();
         let (pulled, pushed) = (self.stretch(along), self.stretch(across));
@@ -51,7 +52,7 @@ impl<T: Real> ArticulatedInertia<T> {
         let (kept, by_lever) = (rotor / pivot, lever / pivot);
         let (same, other, mixed) = (same * kept, other - mixed * (mixed / pivot), mixed * kept);
         let (lever, side, spent) = (lever * kept, side - across.dot(pulled) * by_lever, lever * by_lever);
-        // `along` has length one but for rounding; dividing by its square makes the formula right for any length.
+        // `along` has length one up to rounding; dividing by its square makes the formula right for any length.
         let square = along.dot(along);
         let [same, other, mixed] = [same, other, mixed].map(|entry| entry / square / square);
         let [Vector { x, z }, Vector { x: p, z: q }] = [along, across];

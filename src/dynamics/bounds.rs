@@ -15,7 +15,7 @@
 //!    triangular solves add gamma sqrt(nv tau) of it (Higham 2002, theorem 8.5).
 //! 5. A *mimic* turns by up to three angles instead of one and brings further roundings to its slide: it counts for three
 //!    levels. Its motion is multiplied by its rate, and where a column moves several joints b, the triangle inequality of the
-//!    energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum likewise.
+//!    energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum of the same form.
 //! 6. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
 //!
 //! Everything is doubled for the terms of second order, which are small because the bound counts as unknown beyond a
@@ -116,7 +116,7 @@ impl Bounds {
         ENTRY * terms as f64 * UNIT_ROUNDOFF
     }
 
-    /// Bounds c = J v. With the foot of a `stance` the base's velocity is computed from the others'; `rests` tells which
+    /// Bounds c = J v. With the foot of a `stance` the base's velocity is computed from the others'; `rests` says which
     /// contacts are exactly at rest.
     pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let mut bounds = std::mem::take(&mut self.velocity);
@@ -193,8 +193,8 @@ impl Bounds {
             if sum < SMALL { 2.0 * (2.0 * eps + 2.0 * jacobian + 4.0 * solve + 2.0 * gamma) } else { f64::INFINITY };
     }
 
-    /// Walks from a contact to the root and tells each joint's column, coordinate and stretched arm (1 of a slide), times its
-    /// rate if it follows another.
+    /// Walks from a contact to the root and reports each joint's column, coordinate and stretched arm (1 of a slide),
+    /// times its rate if it follows another.
     fn walk(&self, plan: &Plan, contact: Arm, mut tell: impl FnMut(Option<usize>, usize, f64)) {
         let mut arm = contact.length;
         let mut at = contact.body;

@@ -13,7 +13,7 @@ use crate::planar::Vector;
 
 use crate::scalar::Real;
 
-/// Kinetic energy \[J\] for `velocity` (dq/dt by coordinate, held joints included), after `kinematics`.
+/// Kinetic energy \[J\] for `velocity` (dq/dt by coordinate, braked joints included), after `kinematics`.
 pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> T {
     let mut twice = T::zero();
     for (index, body) in plan.bodies.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Contact Jacobian at the material points, and the contact velocities c = J v.
 //!
-//! A column is the velocity of the contact point for a unit rate of one joint: turned(r) of a revolute joint at distance r,
-//! the direction of a prismatic one. r is summed from the contact inward, so that no large positions are subtracted.
-//! Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
+//! A column is the velocity of the contact point for a unit rate of one joint: turned(r) of a revolute joint at
+//! distance r, the direction of a prismatic one. r is summed from the contact inward, so that no large positions are
+//! subtracted. Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
 
 use super::contact_point::ContactPoint;
 use super::workspace::Workspace;
@@ -10,10 +10,11 @@ use crate::dynamics::plan::{Motion, Plan};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
-/// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity` (dq/dt by coordinate).
+/// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity` (dq/dt by
+/// coordinate).
 ///
-/// With a `stance` (an index into `contacts`) that contact is exactly at rest, and so are further contacts of a body that
-/// does not turn: base velocities are taken as the ones that make it so.
+/// With a `stance` (an index into `contacts`) that contact is exactly at rest, and so are further contacts of a body
+/// that does not turn: base velocities are taken as the ones that make it so.
 pub fn contact_jacobian<T: Real>(
     plan: &Plan<T>,
     contacts: &[ContactPoint<T>],
@@ -62,8 +63,8 @@ pub fn point_velocity<T: Real>(
     walk(plan, body, arm, velocity, workspace, |_, _| {})
 }
 
-/// Walks from a point to the root: tells what every joint on the way brings to the velocity of the point for a unit rate of
-/// its column, and returns the velocity for all rates, held joints' included.
+/// Walks from a point to the root: reports what every joint on the way adds to the velocity of the point for a unit
+/// rate of its column, and returns the velocity for all rates, braked joints' included.
 pub(super) fn walk<T: Real>(
     plan: &Plan<T>,
     body: usize,

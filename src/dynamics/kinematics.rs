@@ -7,7 +7,8 @@ use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
-/// Computes every body's rotation and arm for a posture (cos, sin and displacement per coordinate and mimic).
+/// Computes every body's rotation and arm for a configuration (cos, sin and displacement per coordinate and mimic
+/// joint).
 ///
 /// Only differences of position enter the dynamics, so the base's x and z are not read.
 pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Configuration<T>, workspace: &mut Workspace<T>) {

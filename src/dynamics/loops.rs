@@ -1,17 +1,19 @@
-//! Loops: pairs of points that stay together, eliminated before the contact problem; and held joints that have a column.
+//! Loops: pairs of points that stay together, eliminated before the contact problem; and braked joints that have a
+//! column.
 //!
 //! ```text
 //!     K v = 0,   K = J_a - J_b            M (v+ - v-) = J^T L + K^T l            W = K M^-1 K^T
 //!     l = -W^-1 K M^-1 J^T L              G' = G - X^T W^-1 X,  X = K M^-1 J^T
 //! ```
 //!
-//! W is never formed. In the inner product a.b = a^T D^-1 b of the columns Y = L^-T J^T (see [`delassus`](super::delassus))
-//! the rows of K are made orthogonal to each other one by one (modified Gram-Schmidt), K = C Z with C unit lower triangular,
-//! and every contact row loses its part along Z. So G' = Y'^T D^-1 Y' is semidefinite by construction, and no difference of
-//! large matrices is taken. Rows that follow from others are found by pivoting, in f64 alone: every other number takes the
-//! same rows in the same order. A joint that keeps its rate although it has a column (see
-//! [`Reductions::held`](crate::reductions::Reductions)) brings a row of the identity, before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT
-//! form). Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
+//! W is never formed. In the inner product a.b = a^T D^-1 b of the columns Y = L^-T J^T (see
+//! [`delassus`](super::delassus)) the rows of K are made orthogonal to each other one by one (modified Gram-Schmidt), K
+//! = C Z with C unit lower triangular, and every contact row loses its part along Z. So G' = Y'^T D^-1 Y' is
+//! semidefinite by construction, and no difference of large matrices is taken. Rows that follow from others are found
+//! by pivoting, in f64 alone: every other number takes the same rows in the same order. A joint that keeps its rate
+//! although it has a column (see [`Reductions::held`](crate::reductions::Reductions)) brings a row of the identity,
+//! before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT form).
+//! Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
 
 use super::contact_point::ContactPoint;
 use super::delassus::{from_half, products};
@@ -68,7 +70,7 @@ impl<T: Real> Loop<T> {
         a - b
     }
 
-    /// The velocities of a and b, held joints' rates included \[m/s\].
+    /// The velocities of a and b, braked joints' rates included \[m/s\].
     pub fn velocities(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> [Vector<T>; 2] {
         let arms = self.arms(workspace);
         [0, 1].map(|end| point_velocity(plan, self.bodies[end], arms[end], velocity, workspace))
@@ -94,11 +96,12 @@ impl<T: Real> Loop<T> {
     }
 }
 
-/// Chooses the rows of K that do not follow from others, the most independent first: of each more than `tolerance` is left,
-/// as a part of the squared motions of its two points, after its part along those before it is taken away.
+/// Chooses the rows of K that do not follow from others, the most independent first: of each more than `tolerance` is
+/// left, as a part of the squared motions of its two points, after its part along those before it is taken away.
 ///
-/// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column counts by the
-/// greatest motion that it gives to an end of a loop, which makes the choice free of units; one that is `kept` counts nothing.
+/// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column counts
+/// by the greatest motion that it gives to an end of a loop, which makes the choice free of units; one that is `kept`
+/// counts nothing.
 pub fn independent_rows(
     plan: &Plan,
     loops: &[Loop],
@@ -130,7 +133,7 @@ pub fn independent_rows(
         .collect();
     let mut chosen = Vec::new();
     loop {
-        // Of equals the first, so that the choice does not hang on how a maximum is sought.
+        // Of equals the first, so that the choice does not depend on how a maximum is sought.
         let share = |motion: f64, left: &[f64]| if motion > 0.0 { square(left) / motion } else { 0.0 };
         let shares = rest.iter().enumerate().map(|(place, (_, motion, left))| (share(*motion, left), place));
         let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
@@ -145,8 +148,8 @@ pub fn independent_rows(
     }
 }
 
-/// Makes the rows of these constraints orthogonal, and behind them those of a `foot` that is to stay at rest where velocities
-/// are closed, from the factorized mass matrix.
+/// Makes the rows of these constraints orthogonal, and behind them those of a `foot` that is to stay at rest where
+/// velocities are closed, from the factorized mass matrix.
 pub fn orthogonalize<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
@@ -205,8 +208,8 @@ pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
 }
 
-/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. Gives the
-/// amplitude of each constraint for [`loop_impulse`] and [`spent_energy`].
+/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. Gives
+/// the amplitude of each constraint for [`loop_impulse`] and [`spent_energy`].
 pub fn close<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
@@ -278,7 +281,7 @@ fn unit_row<T: Real>(plan: &Plan<T>, coordinate: usize) -> Vec<T> {
     plan.coordinates.iter().map(entry).collect()
 }
 
-/// No velocity at all, where a walk tells motions alone.
+/// No velocity, for walks that need the motions only.
 fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
     vec![T::zero(); plan.places]
 }

@@ -1,7 +1,7 @@
 //! The factor of M = L^T D L along the branches of the tree, without fill-in.
 //!
-//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda the parent columns of the plan's elimination tree. It needs no
-//! root, so any [`Real`] works. Cost: O(nv depth^2), and O(nv depth) per solve.
+//! Source: Featherstone 2008, section 6.5 (LTDL), with lambda the parent columns of the plan's elimination tree. It
+//! needs no root, so any [`Real`] works. Cost: O(nv depth^2), and O(nv depth) per solve.
 
 use super::plan::Plan;
 use crate::scalar::Real;

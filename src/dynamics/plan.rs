@@ -14,8 +14,9 @@
 //!     v_joints = T v,   M = T^T M_joints T,   J = J_joints T         a row of T has one entry: 1, or the multiplier
 //! ```
 //!
-//! T is never formed: what several bodies bring to one entry is added up. A column then hangs on more than one branch, and
-//! its parent is that of the elimination tree, so that the factorization fills in nothing beyond its ancestors.
+//! T is never formed: what several bodies bring to one entry is added up. A column then belongs to more than one
+//! branch, and its parent is that of the elimination tree, so that the factorization fills in nothing beyond its
+//! ancestors.
 
 use crate::planar::{Inertia, Rotation, Vector};
 use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
@@ -50,7 +51,7 @@ pub(crate) struct PlanBody<T> {
     pub place: usize,
     /// How it follows, if it does.
     pub mimic: Option<MimicRatio>,
-    /// The joint's column, or for the root the last of the base (pitch); none where it is held or bolted.
+    /// The joint's column, or for the root the last of the base (pitch); `None` if it is braked or bolted.
     pub column: Option<usize>,
     /// About the body's origin, in its own axes.
     pub inertia: Inertia<T>,
@@ -70,7 +71,7 @@ pub(crate) enum Motion<T> {
         direction: Vector<T>,
         rate: Vector<T>,
     },
-    /// None: it is rigid on its parent.
+    /// No motion: the body is rigid on its parent.
     Fixed,
 }
 
@@ -81,8 +82,8 @@ pub(crate) struct MimicRatio {
     pub offset: f64,
 }
 
-/// Cosines, sines and displacements of a configuration, one entry per coordinate of q and then one per mimic of the robot:
-/// of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
+/// Cosines, sines and displacements of a configuration, one entry per coordinate of q and then one per mimic of the
+/// robot: of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
 #[derive(Debug, Clone)]
 pub struct Configuration<T = f64> {
     /// Cosine of each angle.
@@ -194,8 +195,8 @@ impl<T: Real> Plan<T> {
                 });
                 continue;
             };
-            // The joint whose coordinate moves the body, and the body's own place in lists per joint and mimic; none of a
-            // weld. And its mimic.
+            // The joint whose coordinate moves the body, and the body's own place in lists per joint and mimic; none of
+            // a weld. And its mimic.
             let (moved, mimic) = match mover {
                 ParentJoint::Joint(index) => (Some((index, index)), None),
                 ParentJoint::Mimic(index) => {
@@ -250,8 +251,8 @@ impl<T: Real> Plan<T> {
         })
     }
 
-    /// Makes all columns on the way from a new body to the root each other's ancestors in the elimination tree, as they are
-    /// without the body's own `column`; `greatest` of them is on the body's parent. Gives the greatest of all.
+    /// Makes all columns on the way from a new body to the root each other's ancestors in the elimination tree, as they
+    /// are without the body's own `column`; `greatest` of them is on the body's parent. Gives the greatest of all.
     fn join_branch(&mut self, column: usize, parent: usize, greatest: Option<usize>) -> Option<usize> {
         match greatest {
             // Whatever comes before the greatest is its ancestor already, as x and z are the pitch's.
@@ -294,7 +295,7 @@ impl<T: Real> Plan<T> {
         *entry = if self.has_mimics { *entry + part } else { part };
     }
 
-    /// Number of columns: the coordinates that are not held.
+    /// Number of columns: the coordinates whose joints are not braked.
     pub fn columns(&self) -> usize {
         self.coordinates.len()
     }

@@ -12,7 +12,7 @@ pub struct Workspace<T = f64> {
     pub rotation: Vec<Rotation<T>>,
     /// Position of each body's origin from its parent's, in the world's axes \[m\]. nb
     pub arm: Vec<Vector<T>>,
-    /// Motion of each sliding joint for a unit rate of its column, in the world's axes; of no meaning for others. nb
+    /// Motion of each prismatic joint for a unit rate of its column, in the world's axes; of no meaning for others. nb
     pub direction: Vec<Vector<T>>,
 
     // Computed by `mass_matrix`.
@@ -34,7 +34,7 @@ pub struct Workspace<T = f64> {
     // Computed by `contact_jacobian`.
     /// J by rows, tangential and normal of each contact. 2n x nv
     pub contact_jacobian: Vec<T>,
-    /// Contact velocities c = J v, held joints' rates included \[m/s\]. n
+    /// Contact velocities c = J v, braked joints' rates included \[m/s\]. n
     pub contact_velocity: Vec<Pair<T>>,
 
     // Computed by `orthogonalize`.
@@ -71,13 +71,13 @@ impl<T> Default for Workspace<T> {
     }
 }
 
-/// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's axes) per
-/// loop, as `orthogonalize` leaves them.
+/// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's
+/// axes) per loop, as `orthogonalize` leaves them.
 #[derive(Debug, Clone)]
 pub struct LoopRows<T = f64> {
     /// Coordinates that keep their rates; their rows come first.
     pub(super) kept: Vec<usize>,
-    /// Rows of K in the order of their elimination: 2 loop + axis; none that follows from others.
+    /// Rows of K in the order of their elimination: 2 loop + axis; without those that depend on others.
     pub(super) rows: Vec<usize>,
     /// Z by columns, those of a foot at rest behind those of the loops. nv each
     pub(super) basis: Vec<T>,

@@ -104,7 +104,7 @@ fn hold_free(description: &Description, roles: &mut [Role], base: Option<usize>)
 struct Welded {
     group: Vec<usize>,
     masses: Vec<f64>,
-    /// The moving joints that hang on each group.
+    /// The moving joints whose parent is in each group.
     exits: Vec<Vec<usize>>,
     world: Option<usize>,
     total: f64,

@@ -90,8 +90,8 @@ fn about_tilted(seen: &Seen, nearly: &[(&str, f64)], all: usize) -> String {
     )
 }
 
-/// What brings the axis of a joint into line: a held hinge before it that can turn it there, or else the joint whose origin
-/// tilts it.
+/// What brings the axis of a joint into line: a held hinge before it that can turn it there, or else the joint whose
+/// origin tilts it.
 fn remedy(seen: &Seen, joint: usize) -> Option<String> {
     let Seen { description, posture, plane } = seen;
     let axis = posture.axes[joint];
@@ -124,7 +124,8 @@ fn remedy(seen: &Seen, joint: usize) -> Option<String> {
     }
 }
 
-/// The angle \[rad\] by which a turn about `hinge` brings `axis` to the plane's normal, if one does; both of length one.
+/// The angle \[rad\] by which a turn about `hinge` brings `axis` to the plane's normal, if one does; both of length
+/// one.
 fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane) -> Option<f64> {
     let [_, normal, _] = plane.axes();
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

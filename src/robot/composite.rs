@@ -16,8 +16,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Files give a few digits: a moment may be greater than the other two together by this share.
 const ROUNDED: f64 = 1e-3;
 
-/// Whether some body has this inertia about its CoG: no principal moment is greater than the other two together, so that
-/// none is negative (Featherstone 2008, section 2.13).
+/// Whether some body has this inertia about its CoG: no principal moment is greater than the other two together, so
+/// that none is negative (Featherstone 2008, section 2.13).
 ///
 /// That is, `tr(I) / 2 - I` has no negative eigenvalue, and so no negative principal minor.
 pub(super) fn is_physical(inertia: &Matrix) -> bool {
@@ -53,8 +53,8 @@ impl Part {
         Self { mass, com, moment: 0.0 }
     }
 
-    /// The part with the three-dimensional `inertia` about its CoG, whose axes are the columns of `rotation` in the body's
-    /// frame; a point mass without one.
+    /// The part with the three-dimensional `inertia` about its CoG, whose axes are the columns of `rotation` in the
+    /// body's frame; a point mass without one.
     ///
     /// # Errors
     /// A negative moment about the normal.
@@ -149,7 +149,8 @@ mod tests {
 
     #[test]
     fn a_thin_rod_along_the_normal_has_no_moment_and_is_no_error() {
-        // (1, 1, 1) / sqrt(3) is this rod's direction; the turn takes it to the normal, and rounding may leave less than 0.
+        // (1, 1, 1) / sqrt(3) is this rod's direction; the turn takes it to the normal, and rounding may leave less
+        // than 0.
         let third = 1.0 / 3.0;
         let rod = [[2.0 * third, -third, -third], [-third, 2.0 * third, -third], [-third, -third, 2.0 * third]];
         let length = 3.0_f64.sqrt().recip();

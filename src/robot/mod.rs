@@ -4,29 +4,29 @@
 //!     Description (links and joints of the file, 3-D) --reduce--> Robot (bodies and joints, planar)
 //! ```
 //!
-//! Links joined by fixed and held joints are one [`Body`]. A body's frame has its origin at its joint's origin (the root
-//! body: at the root link's origin) and, at zero joint coordinates, the axes of the plane: forward, normal and up among
-//! those of the file's root link. So no constant rotation stands between a body and its parent, and where the file turns
-//! nothing its numbers are kept bit for bit. Bodies are numbered so that a parent comes before its children; joints, and
-//! with them the coordinates, keep the file's order.
+//! Links joined by fixed and held joints are one [`Body`]. A body's frame has its origin at its joint's origin (the
+//! root body: at the root link's origin) and, at zero joint coordinates, the axes of the plane: forward, normal and up
+//! among those of the file's root link. So no constant rotation stands between a body and its parent, and where the
+//! file turns nothing its numbers are kept bit for bit. Bodies are numbered so that a parent comes before its children;
+//! joints, and with them the coordinates, keep the file's order.
 //!
 //! ```text
-//!     Description --posture--> axes in the posture --plane--> plane --role--> hinge, slide or weld --base--> where the robot
+//!     Description --posture--> axes in the posture --plane--> plane --role--> revolute, prismatic or fixed --base--> where the robot
 //!     begins --tree--> bodies, places of links --composite, outline--> inertias, feet
 //! ```
 
-mod base;
-mod caution;
 mod composite;
-mod left_out;
-mod outline;
 mod plane;
 mod posture;
 mod reading;
-mod reduce;
+mod caution;
+mod left_out;
 mod role;
+mod base;
 mod shape;
+mod outline;
 mod tree;
+mod reduce;
 mod weld;
 
 pub use plane::Plane;
@@ -105,7 +105,7 @@ pub enum ParentJoint {
 pub struct Joint {
     /// Name in the file.
     pub name: String,
-    /// The body it hangs on (an index into [`Robot::bodies`]).
+    /// The parent body (an index into [`Robot::bodies`]).
     pub parent: usize,
     /// The body it moves.
     pub child: usize,
@@ -126,7 +126,7 @@ pub struct MimicJoint {
     pub multiplier: f64,
     /// Its coordinate where that of the mimicked joint is zero \[rad, m\].
     pub offset: f64,
-    /// The body it hangs on (an index into [`Robot::bodies`]).
+    /// The parent body (an index into [`Robot::bodies`]).
     pub parent: usize,
     /// The body it moves.
     pub child: usize,
@@ -139,8 +139,8 @@ pub struct MimicJoint {
 /// The motion of a joint for a coordinate that grows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Axis {
-    /// It turns the child about the plane's normal; `sign` is +1 where the URDF's axis points along the normal, -1 where
-    /// against it.
+    /// It rotates the child about the plane's normal; `sign` is +1 where the URDF's axis points along the normal, -1
+    /// where against it.
     Revolute {
         /// +1 or -1.
         sign: f64,
@@ -159,7 +159,8 @@ pub struct Link {
     pub name: String,
     /// The body it belongs to.
     pub body: usize,
-    /// The plane's two rows of the link's pose in the body's frame: `[rotation row (3), translation]` for forward and up.
+    /// The plane's two rows of the link's pose in the body's frame: `[rotation row (3), translation]` for forward and
+    /// up.
     pub pose: [[f64; 4]; 2],
     /// Collision shapes in the body's frame.
     pub shapes: Vec<FootShape>,
@@ -188,8 +189,8 @@ impl Link {
         Vector::new(forward, up)
     }
 
-    /// The point of the link's own 3-D frame, in the plane through its origin, that lies at `point` in its body's planar
-    /// frame \[m\], up to rounding.
+    /// The point of the link's own 3-D frame, in the plane through its origin, that lies at `point` in its body's
+    /// planar frame \[m\], up to rounding.
     pub fn offset(&self, point: Vector<f64>) -> [f64; 3] {
         // The rows are orthonormal, so that their transpose turns back.
         let [[.., x], [.., z]] = self.pose;
@@ -212,7 +213,8 @@ impl Robot {
         self.base_dofs() + self.joints.len()
     }
 
-    /// Names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the file's order.
+    /// Names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the file's
+    /// order.
     pub fn coordinates(&self) -> impl Iterator<Item = &str> {
         ["x", "z", "pitch"]
             .into_iter()
@@ -220,8 +222,8 @@ impl Robot {
             .chain(self.joints.iter().map(|joint| joint.name.as_str()))
     }
 
-    /// The parent body of a joint, the joint's origin in that body's frame at coordinate zero \[m\], and its motion (`None`
-    /// for a fixed joint).
+    /// The parent body of a joint, the joint's origin in that body's frame at coordinate zero \[m\], and its motion
+    /// (`None` for a fixed joint).
     pub fn hinge(&self, mover: ParentJoint) -> (usize, Vector<f64>, Option<Axis>) {
         match mover {
             ParentJoint::Joint(joint) => {
@@ -259,7 +261,8 @@ impl Robot {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
-    /// The joint of that name in the file that has no coordinate in the reduced robot: it is frozen, or part of the base.
+    /// The joint of that name in the file that has no coordinate in the reduced robot: it is frozen, or part of the
+    /// base.
     pub fn frozen(&self, name: &str) -> Option<&FrozenJoint> {
         self.reading.frozen.iter().find(|held| held.name == name)
     }

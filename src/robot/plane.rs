@@ -54,7 +54,7 @@ impl Plane {
         }
     }
 
-    /// The plane whose normal all of these unit vectors are parallel to; none where there are none.
+    /// The plane whose normal all of these unit vectors are parallel to; `None` without any.
     pub(super) fn normal_to(axes: impl Iterator<Item = [f64; 3]> + Clone) -> Option<Self> {
         axes.clone().next()?;
         Self::ALL.into_iter().find(|plane| axes.clone().all(|axis| plane.off_normal(axis) <= PARALLEL))

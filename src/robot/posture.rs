@@ -23,8 +23,8 @@ impl Posture {
     /// The posture with these joints held at these values.
     ///
     /// # Errors
-    /// [`Reason::Inconsistent`] for a joint without a coordinate of its own, [`Reason::Duplicate`] for one that is named
-    /// twice, [`Reason::NotFinite`].
+    /// [`Reason::Inconsistent`] for a joint without a coordinate of its own, [`Reason::Duplicate`] for one that is
+    /// named twice, [`Reason::NotFinite`].
     pub(super) fn new(description: &Description, hold: &[(usize, f64)]) -> Result<Self> {
         let joints = &description.joints;
         let mut held = vec![None; joints.len()];

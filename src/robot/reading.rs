@@ -15,7 +15,7 @@ pub struct Reading {
     pub better_plane: Option<(Plane, usize)>,
     /// Why the base is floating or fixed.
     pub base_because: String,
-    /// Joints of the file that have no coordinate, in its order.
+    /// Joints of the file without a coordinate, in its order.
     pub frozen: Vec<FrozenJoint>,
     /// Links of the file that are not part of the robot but of the base, in its order.
     pub outside: Vec<String>,
@@ -53,24 +53,25 @@ pub struct FrozenJoint {
 pub enum FreezeReason {
     /// It is fixed.
     Fixed,
-    /// The user holds it.
+    /// The user froze it.
     Asked {
         /// At this value \[rad or m\].
         value: f64,
     },
-    /// It would lead out of the plane, and is held at zero.
+    /// It would lead out of the plane, and is frozen at zero.
     OffPlane {
-        /// The angle from a hinge's axis to the plane's normal, or from a slide's to the plane \[rad\].
+        /// The angle from a revolute joint's axis to the plane's normal, or from a prismatic one's to the plane
+        /// \[rad\].
         angle: f64,
-        /// True for a slide.
+        /// True for a prismatic joint.
         slides: bool,
     },
-    /// It follows a joint that is held.
+    /// It mimics a joint that is frozen.
     Follows {
         /// That joint.
         mimicked: String,
     },
-    /// A joint of this kind is held at zero wherever it is not the base.
+    /// A joint of this kind is frozen at zero unless it is the base.
     Kind(JointKind),
     /// It is part of the floating base itself, whose coordinates are x, z and pitch.
     Base,

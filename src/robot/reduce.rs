@@ -1,4 +1,5 @@
-//! Description -> robot: the tree placed at zero coordinates, projected into its plane, and welded at joints that leave it.
+//! Description -> robot: the tree placed at zero coordinates, projected into its plane, and welded at joints that leave
+//! it.
 
 use super::composite::{Part, composite};
 use super::outline::outline;
@@ -17,8 +18,8 @@ use crate::reductions::Reductions;
 pub struct Reduction {
     /// The plane; without one it is found.
     pub plane: Option<Plane>,
-    /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this posture the axes
-    /// are judged.
+    /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this posture the
+    /// axes are judged.
     pub hold: Vec<(usize, f64)>,
     /// How the root is held; without it that is judged.
     pub base: Option<Base>,
@@ -37,15 +38,15 @@ impl Robot {
 
     /// Reduces `description` to a plane of its root link.
     ///
-    /// The plane is the one whose normal all revolute and continuous axes are parallel to, else x-z. Joints that turn about
-    /// the normal or slide in the plane, both within 1e-3 rad, stay; all others are held at zero and welded, with the
-    /// inertia that their links have then. The base floats, is bolted to the world, or is a chain of the file's own joints.
-    /// What was found and why is told in [`Robot::reading`], all that does not enter in [`Robot::left_out`].
+    /// The plane is the one whose normal all revolute and continuous axes are parallel to, else x-z. Joints that turn
+    /// about the normal or slide in the plane, both within 1e-3 rad, stay; all others are held at zero and welded, with
+    /// the inertia that their links have then. The base floats, is bolted to the world, or is a chain of the file's own
+    /// joints. [`Robot::reading`] reports what was found and why, [`Robot::left_out`] what does not enter the analysis.
     ///
     /// # Errors
-    /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be held at a value, and
-    /// where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the normal; [`Reason::NotFinite`] where sizes or masses
-    /// add up to more than an f64 holds.
+    /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be held at a
+    /// value, and where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the
+    /// normal; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
         let posture = Posture::new(description, &reduction.hold)?;
         let (plane, plane_because) = find_plane(description, &posture, reduction.plane);

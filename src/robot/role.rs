@@ -1,8 +1,8 @@
-//! What each joint of the file is in the plane: a hinge, a slide, or a weld.
+//! What each joint of the file is in the plane: revolute, prismatic, or fixed.
 //!
 //! ```text
-//!     turns:   angle(a, n) <= 1e-3 rad  ->  it turns about ±n exactly        else held
-//!     slides:  angle(a, plane) <= 1e-3 rad  ->  it slides along a in the plane  else held
+//!     revolute:   angle(a, n) <= 1e-3 rad      ->  it turns about ±n exactly         else frozen
+//!     prismatic:  angle(a, plane) <= 1e-3 rad  ->  it slides along a in the plane    else frozen
 //! ```
 
 use super::plane::{PARALLEL, Plane};
@@ -26,7 +26,7 @@ pub(super) enum Role {
     },
     /// Planar or floating: the base itself where it joins the robot to the world.
     Free,
-    /// It keeps the value that the posture gives it.
+    /// It keeps its value in the posture.
     Frozen(FreezeReason),
 }
 

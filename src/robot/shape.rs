@@ -10,8 +10,8 @@
 //!     two      circle   capsule
 //! ```
 //!
-//! Along a direction d the outline reaches as far as its farthest corner does, plus the rim's own reach: so it touches a
-//! line with one corner's rim, or with those of both ends of a flat side.
+//! Along a direction d the outline reaches as far as its farthest corner does, plus the rim's own reach: so it touches
+//! a line with one corner's rim, or with those of both ends of a flat side.
 
 use crate::planar::Vector;
 use parry2d::math::Vector as ParryVector;
@@ -79,9 +79,9 @@ impl FootShape {
         Self { corners: vec![centre], rim: Rim::Circle { radius }, mesh: None, polygon: None }
     }
 
-    /// The polygon of `corners` \[m\] in the body's frame, convex and counter-clockwise seen with forward to the right and
-    /// up upward, with `rim` about each; two corners are a line, one is a point. None for no corner, or for neighbours
-    /// that coincide.
+    /// The polygon of `corners` \[m\] in the body's frame, convex and counter-clockwise seen with forward to the right
+    /// and up upward, with `rim` about each; two corners are a line, one is a point. None for no corner, or for
+    /// neighbours that coincide.
     pub fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Option<Self> {
         let points: Vec<ParryVector> = corners.iter().map(|&Vector { x, z }| ParryVector::new(x, z)).collect();
         let polygon = match points[..] {
@@ -114,7 +114,7 @@ impl FootShape {
         self.mesh.as_deref()
     }
 
-    /// The polygon without its rim, for parry: a convex polygon, or a segment; none of one corner.
+    /// The polygon without its rim, for parry: a convex polygon, or a segment; `None` for one corner.
     pub(crate) fn polygon(&self) -> Option<&SharedShape> {
         self.polygon.as_ref()
     }

@@ -6,9 +6,9 @@
 //!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 in a body of its own
 //! ```
 //!
-//! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is held at a value
-//! shifts and turns its child by that once more. What lies beside the plane counts as if it lay in it. Linear in links;
-//! nothing recurses.
+//! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is held at
+//! a value shifts and turns its child by that once more. What lies off the plane counts as if it lay in it. Linear in
+//! links; nothing recurses.
 
 use super::posture::{Posture, held_shift, held_turn};
 use super::role::Role;
@@ -50,7 +50,7 @@ pub(super) struct Tree {
     pub(super) bodies: Vec<Body>,
     pub(super) joints: Vec<Joint>,
     pub(super) mimic_joints: Vec<MimicJoint>,
-    /// The place of each link; none for those that do not hang on the root.
+    /// The place of each link; `None` for links outside the robot.
     pub(super) places: Vec<Option<Place>>,
 }
 

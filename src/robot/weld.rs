@@ -1,4 +1,5 @@
-//! Bodies that are rigid on each other although they are kept apart (see [`Reductions::weld`](crate::reductions::Reductions)).
+//! Bodies that are rigid on each other although they are kept apart (see
+//! [`Reductions::weld`](crate::reductions::Reductions)).
 
 use super::composite::{Part, composite};
 use super::{Base, ParentJoint, Robot};
@@ -17,7 +18,8 @@ impl Robot {
         self.bodies[at].joint.is_some()
     }
 
-    /// The CoG of each body together with all that is welded to it, in its frame \[m\]; none of a welded body.
+    /// The CoG of each body together with all that is welded to it, in its frame \[m\]; `None` for a body that is fixed
+    /// to another.
     pub(crate) fn centres(&self) -> Vec<Option<Vector<f64>>> {
         let mut parts: Vec<Vec<Part>> = vec![Vec::new(); self.bodies.len()];
         // The body that each is rigid on in the end, and its own origin there.

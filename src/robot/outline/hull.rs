@@ -1,29 +1,29 @@
-//! The corners of a cloud of points: the vertices of its convex hull, without those that no contact can tell from a straight
-//! side.
+//! The corners of a cloud of points: the vertices of its convex hull, without those that no contact can distinguish
+//! from a straight side.
 //!
 //! ```text
 //!     points --parry, scaled to size one--> convex hull --drop what bulges less than 1e-6 of the size--> corners
 //! ```
 //!
-//! A real sole is meshed with dozens of vertices along one side, which rounding (f32, or six decimals of a text) leaves a
-//! little off the line. The chain of hull vertices between two kept ones is replaced by its chord where none of it is
-//! farther off than [`FLAT`] (Douglas and Peucker, 1973); corners are dropped, never moved, so a side loses at most that
-//! much, and what is kept are points of the file. In n points with h on the hull: n log h as a rule.
+//! A real sole is meshed with dozens of vertices along one side, which rounding (f32, or six decimals of a text) leaves
+//! a little off the line. The chain of hull vertices between two kept ones is replaced by its chord where none of it is
+//! farther off than [`FLAT`] (Douglas and Peucker, 1973); corners are dropped, never moved, so a side loses at most
+//! that much, and what is kept are points of the file. In n points with h on the hull: n log h as a rule.
 
 use crate::planar::Vector;
 use parry2d::math::Vector as ParryVector;
 use parry2d::transformation::convex_hull_idx;
 use std::cmp::Ordering;
 
-/// What a chain may bulge and still be a straight side, as part of the hull's size: as much as the default contact tolerance
-/// is of the robot's size.
+/// What a chain may bulge and still be a straight side, as part of the hull's size: as much as the default contact
+/// tolerance is of the robot's size.
 const FLAT: f64 = 1e-6;
 
 /// Coordinates that differ by less than this part of the largest one are the same point.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The corners of the convex hull of `points`, counter-clockwise from the lowest (of several the rearmost); two if the points lie on a line, one if they coincide. Or
-/// why there are none.
+/// The corners of the convex hull of `points`, counter-clockwise from the lowest (of several the rearmost); two if the
+/// points lie on a line, one if they coincide. Or why there are none.
 pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String> {
     let Some(&first) = points.first() else { return Err("it has no vertices".into()) };
     let coordinates = || points.iter().flat_map(|point| point.components());

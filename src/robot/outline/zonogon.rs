@@ -1,17 +1,17 @@
-//! The projection of a box: `{c + sum of s_i g_i, |s_i| <= 1}` with the projected half axes g_i, a polygon with parallel
-//! sides (a zonogon).
+//! The projection of a box: `{c + sum of s_i g_i, |s_i| <= 1}` with the projected half axes g_i, a polygon with
+//! parallel sides (a zonogon).
 //!
-//! Walking along the half sides in the order of their angles gives the corners, so those of a shape that is not turned come
-//! from its centre and half sizes by one sum each.
+//! Walking along the half sides in the order of their angles gives the corners, so those of a shape that is not turned
+//! come from its centre and half sizes by one sum each.
 
 use crate::planar::Vector;
 
-/// Half sides shorter than this part of the longest, or as nearly parallel, are rounding (a quarter turn, whose cosine is
-/// 6e-17 in f64, leaves them) and would tear one corner into two.
+/// Half sides shorter than this part of the longest, or as nearly parallel, are rounding (a quarter turn, whose cosine
+/// is 6e-17 in f64, leaves them) and would tear one corner into two.
 const ROUNDING: f64 = 1e-12;
 
-/// The corners about `centre` with these half sides, counter-clockwise from the lowest: one if all vanish, two if all are
-/// parallel.
+/// The corners about `centre` with these half sides, counter-clockwise from the lowest: one if all vanish, two if all
+/// are parallel.
 pub(super) fn corners(centre: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let sides = distinct(half_sides);
     // From the lowest corner up along all sides, and back down along them.
@@ -54,8 +54,8 @@ fn length(Vector { x, z }: Vector<f64>) -> f64 {
     libm::hypot(x, z)
 }
 
-/// Sine of the angle from `a` to `b`; positive where `b` points to the left of `a`, seen with forward to the right and up
-/// upward.
+/// Sine of the angle from `a` to `b`; positive where `b` points to the left of `a`, seen with forward to the right and
+/// up upward.
 fn sine(a: Vector<f64>, b: Vector<f64>) -> f64 {
     let (la, lb) = (length(a), length(b));
     (a.x / la) * (b.z / lb) - (a.z / la) * (b.x / lb)
