@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::support::answers::answers;
+use crate::support::command::{heelstrike, read};
 use crate::support::scaled::{Differences, largest};
 
 const FRICTIONS: [&str; 3] = ["0.4", "0.8", "infinite"];
@@ -69,12 +70,12 @@ impl Expected {
 }
 
 fn path(name: &str) -> String {
-    format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"))
+    format!("tests/data/{name}")
 }
 
 impl Gait {
     fn reference(&self) -> Vec<Expected> {
-        let text = std::fs::read_to_string(path(&format!("gaits/{}.reference.json", self.name))).expect("a reference");
+        let text = read(&path(&format!("gaits/{}.reference.json", self.name)));
         let Reference { states } = serde_json::from_str(&text).expect("the reference is readable");
         states
     }
@@ -123,18 +124,10 @@ impl Gait {
 
     /// The touchdowns that `batch` finds in the table of this ending.
     fn touchdowns(&self, table: &str, options: &[&str]) -> Vec<Value> {
-        let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-        let output = command
-            .args(["batch", &path(self.robot[0]), &path(&format!("gaits/{}{table}", self.name))])
-            .args(&self.robot[1..])
-            .args(["--touchdowns", "--at", "row"])
-            .args(options)
-            .output()
-            .expect("the binary starts");
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{}{table}: {stderr}", self.name);
-        let lines = String::from_utf8(output.stdout).expect("UTF-8");
-        lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+        let (robot, table) = (path(self.robot[0]), path(&format!("gaits/{}{table}", self.name)));
+        let first = ["batch", &robot, &table];
+        let arguments = [&first[..], &self.robot[1..], &["--touchdowns", "--at", "row"], options].concat();
+        heelstrike(&arguments).well().lines()
     }
 
     /// Every touchdown of the reference is found, and none beyond, with the same end of the same foot.
@@ -247,13 +240,9 @@ fn a_humanoids_run() {
 
 #[test]
 fn what_a_motion_in_three_dimensions_loses_is_told_once() {
-    let output = assert_cmd::Command::new(env!("CARGO_BIN_EXE_heelstrike"))
-        .args(["batch", &path("robots/a1/a1.urdf"), &path("gaits/a1_walk.3d.csv")])
-        .args(["--velocity", "central", "--touchdowns", "--friction", "0.8"])
-        .output()
-        .expect("the binary starts");
-    assert!(output.status.success());
-    let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+    let (robot, table) = (path("robots/a1/a1.urdf"), path("gaits/a1_walk.3d.csv"));
+    let options = ["--velocity", "central", "--touchdowns", "--friction", "0.8"];
+    let stderr = heelstrike(&[&["batch", &robot, &table], &options[..]].concat()).well().stderr;
     let notes: Vec<&str> = stderr.lines().filter(|line| line.starts_with("note: ")).collect();
     assert_eq!(
         notes,

@@ -6,13 +6,13 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_4;
 use std::sync::LazyLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::DMatrix;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::support::answers::{Answer, answers};
+use crate::support::command::{file, read};
 use crate::support::scaled::{Differences, largest, matrix};
 
 /// To this share of the largest entry, contact velocity or impulse of the case.
@@ -127,17 +127,13 @@ fn impact(model: &Model, states: &[Value]) -> Vec<Result<Answer, String>> {
 
 /// The path of the model's URDF file; one with another inertia is derived from the project's.
 fn urdf(model: &Model) -> String {
-    let file = format!("{}/urdf/{}.urdf", env!("CARGO_MANIFEST_DIR"), model.urdf);
-    let Some(inertia) = model.inertia else { return file };
-    let text = std::fs::read_to_string(&file).expect("the model's URDF file");
+    let source = format!("urdf/{}.urdf", model.urdf);
+    let Some(inertia) = model.inertia else { return source };
+    let text = read(&source);
     let of_file = "iyy=\"0.04\"";
-    assert_eq!(text.matches(of_file).count(), 2, "{file}: the inertia of two legs");
-    // A file per call: test threads, and test processes, run at once.
-    static FILES: AtomicUsize = AtomicUsize::new(0);
-    let number = FILES.fetch_add(1, Ordering::Relaxed);
-    let derived = format!("{}/{}.{}.{number}.urdf", env!("CARGO_TARGET_TMPDIR"), model.name, std::process::id());
-    std::fs::write(&derived, text.replace(of_file, &format!("iyy=\"{inertia}\""))).expect("the derived URDF file");
-    derived
+    assert_eq!(text.matches(of_file).count(), 2, "{source}: the inertia of two legs");
+    // A file per call: its content is always the same.
+    file(&format!("{}.urdf", model.name), text.replace(of_file, &format!("iyy=\"{inertia}\"")))
 }
 
 /// The trailing foot at rest on the ground, the robot turning about it at 1 rad/s counter-clockwise, joints at rest.
