@@ -45,8 +45,3 @@ pub fn joint(name: impl Display, axis: Axis, ends: [&str; 2], [x, z]: [f64; 2], 
         ends[0], ends[1]
     )
 }
-
-/// A `<collision>` with this shape.
-pub fn collision(shape: &str) -> String {
-    format!("<collision><geometry>{shape}</geometry></collision>")
-}
