@@ -1,7 +1,7 @@
 //! Error against run time, stiff and extreme cases, and compliant contact next to the rigid impact.
 //!
 //! ```text
-//!     state --[pose]--> M, G, c in f32, f64, double-double, by each factorization --[study]--> errors, times, conditions
+//!     state --[pose]--> M, G, c in f32, f64, double-double, by each factorization --[study]--> errors, times
 //!     state --[reference]--> the same, enclosed by 320 bits and more --[study]
 //!     [suite]: stiff and extreme cases by name            [compliant]: springs and dampers in place of rigid contact
 //! ```

@@ -1,7 +1,7 @@
 //! The outcomes of each region along the parameter, at points so close that straight lines between them look smooth.
 //!
 //! ```text
-//!     Region --even points, its borders' inner sides included--> halved until the middle lies on the line --> RegionCurves
+//!     Region --even points from border to border--> halved until the middle lies on the line --> RegionCurves
 //! ```
 
 use super::line::RESOLUTION;

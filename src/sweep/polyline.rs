@@ -16,15 +16,15 @@ pub struct Polyline {
 }
 
 /// A point by its digits: ends that meet are the same numbers.
-type Key = [u64; 2];
+type PointKey = [u64; 2];
 
-fn key(point: [f64; 2]) -> Key {
+fn key(point: [f64; 2]) -> PointKey {
     point.map(f64::to_bits)
 }
 
 /// The curves that segments of the same regimes and transitions join to.
 pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
-    let mut starts: HashMap<Key, Vec<(usize, bool)>> = HashMap::new();
+    let mut starts: HashMap<PointKey, Vec<(usize, bool)>> = HashMap::new();
     for (index, segment) in segments.iter().enumerate() {
         starts.entry(key(segment.from)).or_default().push((index, true));
         starts.entry(key(segment.to)).or_default().push((index, false));
@@ -75,7 +75,7 @@ fn same_border(own: &Segment, other: &Segment, along: bool) -> bool {
 
 /// The closed loops that have `regime` on their left, of borders and of the frame.
 pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> Vec<Vec<[f64; 2]>> {
-    let mut next: HashMap<Key, Vec<[f64; 2]>> = HashMap::new();
+    let mut next: HashMap<PointKey, Vec<[f64; 2]>> = HashMap::new();
     let mut order = Vec::new();
     let mut add = |from: [f64; 2], to: [f64; 2]| {
         next.entry(key(from)).or_default().push(to);
