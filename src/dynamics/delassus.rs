@@ -23,7 +23,7 @@ pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     for y in half.chunks_exact_mut(nv.max(1)) {
         factor.half_solve(plan, y);
     }
-    // Not from the Jacobian's length: where every joint is held it has no columns.
+    // Not from the Jacobian's length: if every joint is braked it has no columns.
     from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
 }
 

@@ -1,14 +1,14 @@
-//! A robot compiled for the hot path: flat arrays, held joints without a coordinate of their own.
+//! A robot compiled for the hot path: flat arrays, without columns for braked joints.
 //!
 //! ```text
-//!     Robot + held joints + rotor inertias --> Plan<T>
+//!     Robot + braked joints + rotor inertias --> Plan<T>
 //! ```
 //!
 //! Moving coordinates are the *columns* of the plan. They are numbered from the root outward, so that a column's parent
 //! (the nearest moving joint below it in the tree, lambda in Featherstone 2008) comes before it; the coordinates of the
-//! user's q keep the file's order. A held joint keeps its place in the chain of bodies and loses its column.
+//! user's q keep the file's order. A braked joint keeps its place in the chain of bodies and loses its column.
 //!
-//! A joint that follows another shares its leader's column, and its motion is that for a unit rate of the leader:
+//! A mimic joint shares the column of the mimicked one, and its motion is that for a unit rate of that joint:
 //!
 //! ```text
 //!     v_joints = T v,   M = T^T M_joints T,   J = J_joints T         a row of T has one entry: 1, or the multiplier
@@ -45,7 +45,7 @@ pub(crate) struct PlanBody<T> {
     /// Origin of the joint in the parent's frame \[m\].
     pub origin: Vector<T>,
     pub motion: Motion<T>,
-    /// The joint's coordinate, or its leader's; of no meaning for the root and for welds.
+    /// The joint's coordinate, or that of the joint it mimics; of no meaning for the root and for fixed joints.
     pub coordinate: usize,
     /// Where a [`Configuration`] has the joint's angle or displacement.
     pub place: usize,
@@ -75,14 +75,14 @@ pub(crate) enum Motion<T> {
     Fixed,
 }
 
-/// A mimic's coordinate: multiplier q + offset of its leader's.
+/// A mimic joint's coordinate: multiplier q + offset, with q that of the mimicked joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MimicRatio {
     pub multiplier: f64,
     pub offset: f64,
 }
 
-/// Cosines, sines and displacements of a configuration, one entry per coordinate of q and then one per mimic of the
+/// Cosines, sines and displacements of a configuration: one entry per coordinate of q, then one per mimic joint of the
 /// robot: of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
 #[derive(Debug, Clone)]
 pub struct Configuration<T = f64> {
@@ -157,10 +157,10 @@ impl MimicRatio {
 
 impl<T: Real> Plan<T> {
     /// Compiles `robot` with the joints `held` (indices into [`Robot::joints`]) kept at their rate, and `rotor_inertia`
-    /// per joint and then per mimic (empty for none) \[kg m^2\].
+    /// per joint and then per mimic joint (empty for none) \[kg m^2\].
     ///
-    /// A mimic whose leader is held does not move either. A rotor at a mimic's joint turns at the mimic's rate, so
-    /// that it adds multiplier^2 of its inertia to the leader's coordinate.
+    /// A joint that mimics a braked one does not move either. A rotor at a mimic joint turns at that joint's rate, so
+    /// that it adds multiplier^2 of its inertia to the mimicked joint's coordinate.
     pub fn new(robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Self {
         let base = robot.base_dofs();
         let floating = robot.base == Base::Floating;
@@ -195,8 +195,8 @@ impl<T: Real> Plan<T> {
                 });
                 continue;
             };
-            // The joint whose coordinate moves the body, and the body's own place in lists per joint and mimic; none of
-            // a weld. And its mimic.
+            // The joint whose coordinate moves the body, and the body's own place in lists per joint and mimic joint;
+            // `None` for a fixed joint. And its ratio.
             let (moved, mimic) = match mover {
                 ParentJoint::Joint(index) => (Some((index, index)), None),
                 ParentJoint::Mimic(index) => {

@@ -4,15 +4,15 @@
 //!     Description (links and joints of the file, 3-D) --reduce--> Robot (bodies and joints, planar)
 //! ```
 //!
-//! Links joined by fixed and held joints are one [`Body`]. A body's frame has its origin at its joint's origin (the
+//! Links joined by fixed and frozen joints are one [`Body`]. A body's frame has its origin at its joint's origin (the
 //! root body: at the root link's origin) and, at zero joint coordinates, the axes of the plane: forward, normal and up
 //! among those of the file's root link. So no constant rotation stands between a body and its parent, and where the
 //! file turns nothing its numbers are kept bit for bit. Bodies are numbered so that a parent comes before its children;
 //! joints, and with them the coordinates, keep the file's order.
 //!
 //! ```text
-//!     Description --posture--> axes in the posture --plane--> plane --role--> revolute, prismatic or fixed --base--> where the robot
-//!     begins --tree--> bodies, places of links --composite, outline--> inertias, feet
+//!     Description --posture--> axes in the posture --plane--> plane --role--> revolute, prismatic or fixed
+//!     --base--> where the robot begins --tree--> bodies, places of links --composite, outline--> inertias, feet
 //! ```
 
 mod composite;
@@ -88,7 +88,7 @@ pub struct Body {
 pub enum ParentJoint {
     /// A joint with a coordinate of its own: an index into [`Robot::joints`].
     Joint(usize),
-    /// A mimic joint: an index into [`Robot::followers`].
+    /// A mimic joint: an index into [`Robot::mimic_joints`].
     Mimic(usize),
     /// A fixed joint: the body is rigid on its parent, and kept apart only on request
     /// (see [`Reductions`](crate::reductions::Reductions)).
