@@ -8,8 +8,9 @@ use crate::write::accuracy::{Accuracy, name_of};
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
 
 impl Accuracy {
-    /// Errors of G and of the outcomes against run time, a point for each method and case. The reference is left out: its
-    /// hundred digits would squeeze all others together. An error of exactly zero has no place on a logarithmic axis.
+    /// Errors of G and of the outcomes against run time, a point for each method and case. The reference is left out:
+    /// its hundred digits would squeeze all others together. An error of exactly zero has no place on a logarithmic
+    /// axis.
     pub fn picture(&self) -> Picture {
         let named = self.studies.len() <= MARKS.len();
         let title = match self.studies.as_slice() {

@@ -85,7 +85,8 @@ pub(super) struct PageScale {
     /// Coordinates are multiples of this \[m\].
     #[serde(skip)]
     pub unit: f64,
-    /// The lower left corner of the view, from the middle of the robot along an axis on which the view follows it \[m\].
+    /// The lower left corner of the view, from the middle of the robot along an axis on which the view follows it
+    /// \[m\].
     low: Vector<f64>,
     /// The upper right one \[m\].
     high: Vector<f64>,

@@ -6,8 +6,8 @@
 //!     Picture --rendered--> SVG, windows of its panels ──────────────┘
 //! ```
 //!
-//! A page stops at states with the robot in its configuration and every outcome. Texts and collision shapes that many states
-//! share are in the data once; numbers have the digits that a screen shows.
+//! A page stops at states with the robot in its configuration and every outcome. Texts and collision shapes that many
+//! states share are in the data once; numbers have the digits that a screen shows.
 
 mod number;
 mod frame;

@@ -178,10 +178,11 @@ impl Canvas {
     pub fn svg(&self) -> String {
         let (width, height) = (Short(self.size.0), Short(self.size.1));
         let mut svg = format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="{}" stroke-linejoin="round"><rect width="100%" height="100%" fill="{}"/>"#,
-            font::FAMILY,
-            Color::White.hex()
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="{}""#,
+            font::FAMILY
         );
+        let white = Color::White.hex();
+        svg += &format!(r#" stroke-linejoin="round"><rect width="100%" height="100%" fill="{white}"/>"#);
         let mut sizes: Vec<Pixel> = Vec::new();
         for element in &self.layer.0 {
             if let Element::Window { size, .. } = element

@@ -34,7 +34,8 @@ pub(super) fn visible(points: &[Pixel], (width, height): Pixel) -> Vec<Vec<Pixel
 /// The part of the area within a closed loop of `corners` that lies within the panel, or just beyond: its corners.
 pub(super) fn enclosed(corners: &[Pixel], (width, height): Pixel) -> Vec<Pixel> {
     let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
-    // A loop's ends are one point; where it has gone half its way it is cut, so that each half is a curve with two ends.
+    // A loop's ends are one point; where it has gone half its way it is cut, so that each half is a curve with two
+    // ends.
     let (once, again) = rest.split_at(rest.len() / 2);
     let turn = once.last().copied().unwrap_or(first);
     let halves = [[&[first], once].concat(), [&[turn], again, &[first]].concat()];

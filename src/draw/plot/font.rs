@@ -1,11 +1,13 @@
 //! The one font of all pictures, embedded so that they are the same everywhere.
 //!
-//! `DejaVuSans.ttf` is a subset of DejaVu Sans 2.37: Latin, Greek and Cyrillic letters and the signs in use, without hints
-//! and layout tables. Its license is in `DejaVuSans.license.txt`. fontTools 4 made it by
+//! `DejaVuSans.ttf` is a subset of DejaVu Sans 2.37: Latin, Greek and Cyrillic letters and the signs in use, without
+//! hints and layout tables. Its license is in `DejaVuSans.license.txt`. fontTools 4 made it by
 //!
 //! ```text
-//!     pyftsubset DejaVuSans.ttf --layout-features= --no-hinting --notdef-outline --drop-tables+=kern,GPOS,GSUB,GDEF,FFTM
-//!         --unicodes=U+0020-007E,U+00A0-017F,U+0370-03FF,U+0400-045F,U+2010-2044,U+2070-209C,U+2190-2193,U+21D2,U+2200-2265,U+FFFD
+//!     pyftsubset DejaVuSans.ttf --layout-features= --no-hinting --notdef-outline
+//!         --drop-tables+=kern,GPOS,GSUB,GDEF,FFTM
+//!         --unicodes=U+0020-007E,U+00A0-017F,U+0370-03FF,U+0400-045F,U+2010-2044,U+2070-209C,U+2190-2193,
+//!                    U+21D2,U+2200-2265,U+FFFD
 //! ```
 
 use ttf_parser::{Face, GlyphId};

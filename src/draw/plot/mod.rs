@@ -2,13 +2,13 @@
 //!
 //! ```text
 //!     Picture: rows of panels, a legend
-//!       Panel: axes, bands, shapes  --axis--> PlotArea --panel, shape, mark, names, curve-->  ──┐
-//!       Legend                      --legend-->                                              ──┴──> Canvas --> SVG
-//!                                                                                                          --png--> PNG
+//!       Panel: axes, bands, shapes --axis--> PlotArea --panel, shape, mark, names, curve--┐
+//!       Legend --legend-------------------------------------------------------------------┴-> Canvas --> SVG
+//!                                                                                                 --png--> PNG
 //! ```
 //!
-//! The same input gives the same bytes everywhere: texts are measured, and drawn in a PNG, with one embedded font, never
-//! with the system's. However many points a curve has, an SVG has no more of them than are seen.
+//! The same input gives the same bytes everywhere: texts are measured, and drawn in a PNG, with one embedded font,
+//! never with the system's. However many points a curve has, an SVG has no more of them than are seen.
 
 mod color;
 mod font;

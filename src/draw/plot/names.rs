@@ -1,7 +1,7 @@
 //! Names next to their points, so that none covers another.
 //!
 //! ```text
-//!     names in their order --> the nearest free place about the point, rings outward --> text, and a line where it is far
+//!     names in their order --> the nearest free place around the point --> text, and a line if it is far away
 //! ```
 
 use super::axis::PlotArea;

@@ -1,4 +1,5 @@
-//! A robot in its configuration, its contacts and the outcomes of its impact, as points, shapes and arrows of the plane.
+//! A robot in its configuration, its contacts and the outcomes of its impact, as points, shapes and arrows of the
+//! plane.
 //!
 //! ```text
 //!     Robot + Placement + feet             --> bodies: bones, shapes, CoG; joints      shape.rs
@@ -7,7 +8,7 @@
 //!     Drawing --> the data of an interactive page                                      ../page
 //! ```
 //!
-//! Points are in the world's axes, `[x, z]` in metres; only shapes and CoGs are in the frames of their bodies.
+//! Points are in the world's axes, `[x, z]` in meters; only shapes and CoGs are in the frames of their bodies.
 
 mod extent;
 mod shape;
@@ -52,7 +53,8 @@ pub struct DrawnBody {
     pub shapes: Vec<DrawnShape>,
     /// Its CoG, in its frame; `None` if it has no mass.
     pub com: Option<Vector<f64>>,
-    /// The ends of its bones, which all begin at its origin: joints of its children, shapes, a CoG apart from all of them.
+    /// The ends of its bones, which all begin at its origin: joints of its children, shapes, a CoG apart from all of
+    /// them.
     pub bones: Vec<Vector<f64>>,
     /// Whether it has no children.
     pub is_last: bool,
@@ -222,8 +224,8 @@ impl DrawnBody {
         })
     }
 
-    /// Adds bones to the shapes of a body without children, and to a CoG that lies on nothing that is drawn. A bone that is
-    /// not longer than `short` \[m\] is left out.
+    /// Adds bones to the shapes of a body without children, and to a CoG that lies on nothing that is drawn. A bone
+    /// that is not longer than `short` \[m\] is left out.
     fn grow_bones(&mut self, short: f64) {
         let origin = self.origin;
         let is_long = |end: &Vector<f64>| (*end - origin).length() > short;

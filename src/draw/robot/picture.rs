@@ -29,8 +29,8 @@ const INNER: Color = Color::Tint(0);
 
 /// Panels side by side.
 const COLUMNS: usize = 4;
-/// Shares of the robot's size: the room around all that is drawn, the normal of a contact, the axes of the root, the longest
-/// arrow, the longest arrow of the legend.
+/// Shares of the robot's size: the room around all that is drawn, the normal of a contact, the axes of the root, the
+/// longest arrow, the longest arrow of the legend.
 const ROOM: f64 = 0.06;
 const SHORT: f64 = 0.08;
 const AXES: f64 = 0.18;
@@ -42,12 +42,12 @@ const HEAVY: f64 = 8.0;
 /// Names are drawn for at most so many bodies.
 const NAMED: usize = 60;
 
-/// A state with an arrow for each impulse and velocity, a panel for each outcome; `feet` are those in addition to the robot's
-/// own shapes. `None` if the outcomes were refused.
+/// A state with an arrow for each impulse and velocity, a panel for each outcome; `feet` are those in addition to the
+/// robot's own shapes. `None` if the outcomes were refused.
 pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Option<Picture> {
     let analysis = impact.analysis.as_ref().ok()?;
     let drawing = Drawing::of_impact(robot, feet, state, impact);
-    let scene = Scene::new(&drawing);
+    let scene = DrawnScene::new(&drawing);
     let captions: Vec<String> = analysis.outcomes.iter().enumerate().map(|outcome| caption(impact, outcome)).collect();
     let panel = |title: &String, outcome: Option<&DrawnOutcome>| Panel {
         title: title.clone(),
@@ -68,15 +68,15 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     })
 }
 
-/// The robot with its joints at zero, or where they are held, and the names of its bodies; `feet` are those in addition to its
-/// own shapes.
+/// The robot with its joints at zero, or where they are held, and the names of its bodies; `feet` are those in addition
+/// to its own shapes.
 pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     let placement = Placement::of_robot(robot, &vec![0.0; robot.dofs()]);
     let drawing = Drawing::of_robot(robot, &placement, feet);
     let size = drawing.extent().size();
     let root = placement.world(0, Vector::zero());
     let tip = |axis: Vector<f64>| root + placement.turned(0, axis * (AXES * size));
-    let mut shapes = Scene::new(&drawing).robot();
+    let mut shapes = DrawnScene::new(&drawing).robot();
     let axes = Vector::axes().map(tip);
     shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root), to: point(tip), stroke: AFTER }));
     let mut names: Vec<(PlotPoint, String)> =
@@ -158,7 +158,7 @@ impl DrawnBody {
 }
 
 /// A drawing as shapes of a panel.
-struct Scene<'d> {
+struct DrawnScene<'d> {
     drawing: &'d Drawing,
     /// The robot's size \[m\].
     size: f64,
@@ -170,7 +170,7 @@ struct Scene<'d> {
     view: Extent,
 }
 
-impl<'d> Scene<'d> {
+impl<'d> DrawnScene<'d> {
     fn new(drawing: &'d Drawing) -> Self {
         let (size, view) = (drawing.size(), drawing.extent());
         let scale = |most: f64| if most > 0.0 { LONGEST * size / most } else { 0.0 };

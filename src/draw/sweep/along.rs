@@ -25,8 +25,8 @@ const HEIGHT: f64 = 176.0;
 /// The height of a panel with nothing but the letters of regions.
 const STRIP: f64 = 30.0;
 
-/// A curve that grows by more than this factor in its last eighth has a pole. It is shown up to so many times its greatest
-/// value in its middle half.
+/// A curve that grows by more than this factor in its last eighth has a pole. It is shown up to so many times its
+/// greatest value in its middle half.
 const POLE: f64 = 4.0;
 const NEAR_POLE: f64 = 1.5;
 
@@ -167,7 +167,8 @@ impl<'a> Curves<'a> {
     }
 }
 
-/// The range of a curve's values that a panel shows: all of them, except those that grow like 1 / x toward a pole at its end.
+/// The range of a curve's values that a panel shows: all of them, except those that grow like 1 / x toward a pole at
+/// its end.
 fn shown(points: &[PlotPoint]) -> Option<(f64, f64)> {
     let (&(from, _), &(to, _)) = (points.first()?, points.last()?);
     let largest = |least: f64, most: f64| {

@@ -29,8 +29,8 @@ struct OutcomeStyle<'a> {
 }
 
 impl<'a> OutcomeStyles<'a> {
-    /// If some region is ambiguous, each visible outcome has its own dashes wherever it is valid. If there are more outcomes
-    /// than dashes, only those of ambiguous regions have them.
+    /// If some region is ambiguous, each visible outcome has its own dashes wherever it is valid. If there are more
+    /// outcomes than dashes, only those of ambiguous regions have them.
     pub fn of(survey: &'a Survey, kinds: &[KindLook]) -> Self {
         let mut styles: Vec<OutcomeStyle> = Vec::new();
         for region in &survey.regions {
