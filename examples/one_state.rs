@@ -10,7 +10,7 @@ fn main() -> Result<()> {
 
     let mut pipeline = Pipeline::new(&robot, Options::default());
     let impact = pipeline.impact(&state)?;
-    let analysis = impact.analysis?;
+    let analysis = impact.analysed()?;
 
     println!("{:?}", analysis.verdict);
     for outcome in &analysis.outcomes {

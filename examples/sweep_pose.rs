@@ -24,7 +24,7 @@ fn main() -> Result<()> {
             scene: scene.clone(),
             ..State::default()
         };
-        let outcomes = pipeline.impact(&state)?.analysis?.outcomes;
+        let outcomes = pipeline.impact(&state)?.into_analysis()?.outcomes;
         let modes = |modes: &[_]| format!("{modes:?}");
         let now = outcomes.iter().map(|outcome| modes(&outcome.modes)).collect::<Vec<_>>().join(" or ");
         if now != before {

@@ -71,7 +71,7 @@
 //! let state = r#"{"position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1.0}}, "friction": 0.8}"#;
 //! let state = State::from_json(state, &robot, &Defaults::default())?;
 //! let impact = Pipeline::new(&robot, Options::default()).impact(&state)?;
-//! let outcomes = impact.analysis?.outcomes;
+//! let outcomes = impact.into_analysis()?.outcomes;
 //! assert_eq!(outcomes.len(), 1);
 //! assert_eq!(outcomes[0].impulse, [[0.0, 2.0]]);
 //! # Ok(())

@@ -6,11 +6,12 @@
 //! works.
 
 use crate::scalar::Real;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 /// A position, direction, velocity, force or impulse in the plane; `[x, z]` in JSON.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(from = "[T; 2]")]
 pub struct Vector<T = f64> {
     /// Component forward.
     pub x: T,

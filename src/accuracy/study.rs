@@ -147,10 +147,10 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
     };
     let pose = Pose::new(robot, state, &impact);
     study.contacts = impact.contacts.len();
-    let analysis = match &impact.analysis {
+    let analysis = match impact.analysed() {
         Ok(analysis) => study.answered(analysis),
         Err(error) => {
-            study = study.refuse(error.clone());
+            study = study.refuse(error);
             None
         }
     };
@@ -334,9 +334,9 @@ impl Bench<'_> {
     /// The error of the outcomes; `None` with applied impulses, which need more than G, or with restitution.
     fn outcome_error<T: Number>(&self, computation: &Computation<T>) -> Option<f64> {
         let analysis = self.analysis.filter(|_| self.pose.state.scene.impulses.is_empty())?;
-        let shape = self.pose.shape().filter(|shape| shape.restitution().iter().all(|&e| e == 0.0))?;
-        let problem = filled(&shape, &computation.workspace().delassus, &computation.workspace().contact_velocity);
-        let exact = filled(&shape, self.reference.delassus(), self.reference.velocity());
+        let shape = Some(self.pose.problem).filter(|shape| shape.restitution().iter().all(|&e| e == 0.0))?;
+        let problem = filled(shape, &computation.workspace().delassus, &computation.workspace().contact_velocity);
+        let exact = filled(shape, self.reference.delassus(), self.reference.velocity());
         outcome_error(analysis, &problem, &exact)
     }
 }

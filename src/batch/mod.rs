@@ -171,21 +171,23 @@ impl<'q> Batch<'q> {
         if let Some(columns) = columns {
             columns.append_result(&report, around.carried, &mut block.out)?;
         } else {
-            let carried = header.zip(around.carried).map(|(header, carried)| carried.by_name(header).collect());
+            let carried = header
+                .zip(around.carried)
+                .map(|(header, carried)| carried.by_name(header).map(|(name, text)| (name.into(), text)).collect());
             report.carried = carried.filter(|fields: &Vec<_>| !fields.is_empty()).map(CarriedFields);
             report.append_json(detail, &mut block.out);
         }
         self.keep(state.id.as_ref(), around, block, || {
             Keyframe::of_impact(robot, &self.question.options.feet, state, &impact)
         });
-        match &impact.analysis {
+        match impact.analysed() {
             Ok(analysis) => {
                 let needed = self.friction_needed(state, analysis);
                 let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
                 block.summary.count(place, &impact, analysis, needed);
             }
             // The result contains it next to the matrices.
-            Err(error) => block.refuse(error.clone(), around),
+            Err(error) => block.refuse(error, around),
         }
         Ok(())
     }
@@ -230,7 +232,7 @@ impl<'q> Batch<'q> {
         let given = std::mem::replace(&mut state.scene.friction, ByLink::everywhere(Friction::Infinite));
         let rough = self.pipeline.impact(state);
         state.scene.friction = given;
-        let outcomes = rough.ok()?.analysis.ok()?.outcomes;
+        let outcomes = rough.ok()?.analysis?.outcomes;
         let without_slip = outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
         without_slip.map(friction_of).min_by(f64::total_cmp)
     }

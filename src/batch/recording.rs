@@ -54,7 +54,14 @@ impl Landing {
     pub(super) fn record(&self, (at, touching): (At, Touching)) -> write::Touchdown<'_> {
         let Self { row, time, striking, shift_z } = self;
         let (at, touching) = (at.name(), touching.to_string());
-        write::Touchdown { row: *row, time: *time, striking, shift_z: *shift_z, at, touching }
+        write::Touchdown {
+            row: *row,
+            time: *time,
+            striking: striking.into(),
+            shift_z: *shift_z,
+            at: at.into(),
+            touching,
+        }
     }
 }
 

@@ -111,7 +111,7 @@ impl Answers for Impacts<'_> {
         let impact = self.pipeline.impact(&state)?;
         self.draw(&state, &impact);
         Report::of_state(self.robot, &state, &impact, self.detail)?.append_json(self.detail, out);
-        Ok(impact.analysis.err())
+        Ok(impact.analysed().err())
     }
 
     fn text(&mut self, state: &str, palette: &Palette) -> Result<(String, Option<Error>)> {
@@ -120,6 +120,6 @@ impl Answers for Impacts<'_> {
         self.draw(&state, &impact);
         let report = Report::of_state(self.robot, &state, &impact, self.detail)?;
         let text = text(&report, &Subject::of_state(self.robot, &state, &impact), self.detail, palette);
-        Ok((text, impact.analysis.err()))
+        Ok((text, impact.analysed().err()))
     }
 }

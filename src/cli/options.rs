@@ -18,7 +18,7 @@ use std::thread::available_parallelism;
 #[command(next_help_heading = "Scene")]
 pub(super) struct SceneOptions {
     /// Friction where the input gives none: a number from 0 on, or "infinite"
-    #[arg(long, value_name = "MU", value_parser = friction, allow_hyphen_values = true)]
+    #[arg(long, value_name = "MU", value_parser = str::parse::<Friction>, allow_hyphen_values = true)]
     pub friction: Option<Friction>,
 }
 
@@ -164,16 +164,6 @@ pub(super) fn pipeline_options(
         matrices: detail.matrices,
         no_proof: detail.no_proof,
         reductions: reductions.reductions(),
-    }
-}
-
-fn friction(text: &str) -> Result<Friction, String> {
-    if text == "infinite" {
-        return Ok(Friction::Infinite);
-    }
-    match text.parse() {
-        Ok(mu) if f64::is_finite(mu) && mu >= 0.0 => Ok(Friction::Finite(mu)),
-        _ => Err("expected a number from 0 on, or \"infinite\"".to_owned()),
     }
 }
 

@@ -58,7 +58,7 @@ struct Problems {
 impl Problems {
     fn analyse(&mut self, problem: &Problem, explain: bool) -> Result<Analysis> {
         let asked = AnalysisOptions { rejections: explain.into(), prove: self.prove, reductions: self.reductions };
-        self.scratch.analyse(&problem.contact, &problem.contact, asked)
+        self.scratch.analyse(&problem.contact, problem, asked)
     }
 }
 

@@ -14,7 +14,7 @@ pub(super) fn modes<'a>(contacts: impl Iterator<Item = &'a str>, outcome: &Outco
 /// How sure and how special it is.
 pub(super) fn remarks(outcome: &Outcome) -> Vec<String> {
     let border = outcome.border.as_ref().map(|border| {
-        let zeros: Vec<String> = border.at_zero.iter().map(|(_, zero)| zero.to_string()).collect();
+        let zeros: Vec<String> = border.at_zero.iter().map(|zero| zero.inequality.to_string()).collect();
         format!("on a border: {}", zeros.join(", "))
     });
     let remarks = [

@@ -46,13 +46,13 @@ pub struct ListedKeyframe {
 impl Keyframe {
     /// A state and its impact; `feet` are those in addition to the robot's own shapes.
     pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
-        let answer = impact.analysis.as_ref().map(|analysis| KeyframeAnswer {
+        let answer = impact.analysed().map(|analysis| KeyframeAnswer {
             verdict: analysis.verdict,
             proven: analysis.proven,
             outcomes: analysis.outcomes.clone(),
         });
         let drawing = Some(Drawing::of_impact(robot, feet, state, impact));
-        Self { drawing, answer: answer.map_err(Error::clone), notes: impact.notes.clone() }
+        Self { drawing, answer, notes: impact.notes.clone() }
     }
 
     /// A state that is refused.

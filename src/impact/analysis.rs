@@ -24,6 +24,12 @@ use crate::law::{ContactLaw, Impulse, Mode};
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
 
+/// The refusal of more contacts than are enumerated.
+pub fn too_many_contacts(contacts: usize) -> Error {
+    Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
+        .hint("name the contacts that matter by hand, or lower the contact tolerance")
+}
+
 /// Memory that is reused from problem to problem.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
@@ -56,8 +62,7 @@ impl Scratch {
     ) -> Result<Analysis> {
         let contacts = problem.contacts();
         if contacts > CONTACT_LIMIT {
-            return Err(Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
-                .hint("name the contacts that matter by hand, or lower the contact tolerance"));
+            return Err(too_many_contacts(contacts));
         }
         let options = AnalysisOptions { prove: options.prove && source.is_exact(), ..options };
         let errors = source.errors();
@@ -65,6 +70,7 @@ impl Scratch {
         self.tableau.share_equal_impulses(options.reductions.frictionless);
         self.tableau.load(problem);
         self.bounds.load(&self.tableau, &self.scale, errors.delassus, self.scale.noise);
+        let name = |contact| source.contact_name(contact);
         let mut pass = F64Pass {
             bounds: &mut self.bounds,
             labels: &mut self.labels,
@@ -73,7 +79,7 @@ impl Scratch {
             regular: contacts == 0,
             undecided: Vec::new(),
             coarse: Vec::new(),
-            collected: Collected::new(problem, &self.scale, options),
+            collected: Collected::new(problem, &self.scale, options, &name),
         };
         self.tableau.visit(&mut pass);
         let F64Pass { mut regular, undecided, mut coarse, mut collected, .. } = pass;

@@ -78,6 +78,8 @@ pub struct Collected<'a> {
     pub problem: &'a ContactProblem,
     pub scale: &'a Scale,
     pub options: AnalysisOptions<'a>,
+    /// Each contact's name.
+    name: &'a dyn Fn(usize) -> String,
     /// Combinations in all.
     pub total: usize,
     pub effort: Effort,
@@ -87,9 +89,14 @@ pub struct Collected<'a> {
 
 impl<'a> Collected<'a> {
     /// Nothing yet.
-    pub fn new(problem: &'a ContactProblem, scale: &'a Scale, options: AnalysisOptions<'a>) -> Self {
+    pub fn new(
+        problem: &'a ContactProblem,
+        scale: &'a Scale,
+        options: AnalysisOptions<'a>,
+        name: &'a dyn Fn(usize) -> String,
+    ) -> Self {
         let (outcomes, rejected) = (Vec::new(), Vec::new());
-        Self { problem, scale, options, total: 0, effort: Effort::default(), outcomes, rejected }
+        Self { problem, scale, options, name, total: 0, effort: Effort::default(), outcomes, rejected }
     }
 
     /// Adds a combination that was solved with more digits than f64 has.
@@ -183,11 +190,14 @@ impl<'a> Collected<'a> {
 
     /// A decided outcome with a unique impulse; the caller sets index and margin.
     fn outcome(&self, modes: Vec<Mode>, motion: Motion, at_zero: &[(usize, Inequality)]) -> Outcome {
-        let border = border(&modes, self.problem.laws(), at_zero, &motion);
+        let border = border(&modes, self.problem.laws(), at_zero, &motion, self.name);
         let mut outcome = Outcome {
             modes,
             impulse: Vec::new(),
             velocity_after: Vec::new(),
+            base_velocity_after: None,
+            joint_velocity_after: None,
+            loop_impulse: None,
             energy_loss: 0.0,
             impulse_unique: true,
             impulse_range: None,

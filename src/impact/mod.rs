@@ -25,10 +25,10 @@ mod passes;
 pub mod analysis;
 
 pub use crate::law::{Friction, Inequality, Law, Mode};
-pub use analysis::{CONTACT_LIMIT, Scratch, analyse};
+pub use analysis::{CONTACT_LIMIT, Scratch, analyse, too_many_contacts};
 pub use collected::{AnalysisOptions, ListedRejections};
 pub use inequalities::Inequalities;
 pub use outcome::{
-    Analysis, Border, Effort, Explanation, ImpulseRegion, Motion, Outcome, Rejection, RejectionReason, Verdict,
+    Analysis, AtZero, Border, Effort, Explanation, ImpulseRegion, Motion, Outcome, Rejection, RejectionReason, Verdict,
 };
 pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

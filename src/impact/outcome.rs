@@ -1,12 +1,13 @@
 //! The answer of an analysis: outcomes, rejections, the verdict. Data only.
 
 use crate::law::{Inequality, Mode};
-use crate::planar::Pair;
-use serde::Serialize;
+use crate::planar::{Pair, Vector};
+use crate::state::Named;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The answer in one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -38,8 +39,9 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// A consistent combination of modes.
-#[derive(Debug, Clone, PartialEq)]
+/// A consistent combination of modes. It is written as a JSON object with these fields.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outcome {
     /// One mode per contact.
     pub modes: Vec<Mode>,
@@ -47,26 +49,38 @@ pub struct Outcome {
     pub impulse: Vec<Pair<f64>>,
     /// Contact velocities after the impact, [tangential, normal] per contact \[m/s\].
     pub velocity_after: Vec<Pair<f64>>,
-    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction gains
-    /// energy.
+    /// Velocity of the base after the impact \[m/s, rad/s\]; only of a robot that is not bolted to the world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_velocity_after: Option<Named>,
+    /// Rates of the joints after the impact, held ones included \[rad/s, m/s\]; only of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_velocity_after: Option<Named>,
+    /// Impulse on point a of each loop, [x, z] in the world \[N s\]; the opposite acts on b. Only of a state with loops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loop_impulse: Option<Vec<Vector>>,
+    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction adds some.
     pub energy_loss: f64,
     /// False if other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
     pub impulse_unique: bool,
-    /// |L_t| / L_n of each sticking contact with L_n > 0; `None` for others.
-    pub friction_needed: Vec<Option<f64>>,
-    /// Sign of det A (paper, section 2); `None` if it is not defined.
-    pub index: Option<i8>,
-    /// The smallest slack of the outcome's inequalities, free of units; `None` if there is no inequality.
-    pub margin: Option<f64>,
-    /// Least and greatest of every impulse's entry; `None` if the impulse is the only one.
+    /// Least and greatest of every entry of `impulse`, null if it has no bound; only if `impulse` is not unique.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub impulse_range: Option<Vec<Pair<Range>>>,
-    /// What is exactly zero, if an impulse inequality is.
+    /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others.
+    pub friction_needed: Vec<Option<f64>>,
+    /// Sign of det A (paper, section 2); null if it is not defined, as on a border.
+    pub index: Option<i8>,
+    /// The smallest slack of the outcome's inequalities, free of units; null if there is no inequality.
+    pub margin: Option<f64>,
+    /// What is exactly zero, and the lists of modes beyond; only on a border.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub border: Option<Border>,
-    /// An end of a family: every velocity between both ends is an outcome.
+    /// True, and only then present, of an end of a family: every velocity between both ends is an outcome.
+    #[serde(default, skip_serializing_if = "is_false")]
     pub family: bool,
-    /// True if every sign was shown by an error bound.
+    /// Every sign is shown by an error bound.
     pub proven: bool,
-    /// False if no precision decided a sign: the combination is neither excluded nor shown.
+    /// False, and only then present, if no precision settled a sign: the combination is neither shown nor excluded.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub decided: bool,
 }
 
@@ -74,15 +88,66 @@ pub struct Outcome {
 pub type Range = [Option<f64>; 2];
 
 /// Where an outcome turns into others: impulse inequalities that are zero for every admissible impulse.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Border {
-    /// The contact, from 0, and what is zero there.
-    pub at_zero: Vec<(usize, Inequality)>,
-    /// The lists of modes beyond; each differs in one contact. Where several inequalities are zero, so do combinations.
+    /// The impulse inequalities that are exactly zero.
+    pub at_zero: Vec<AtZero>,
+    /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are combinations.
     pub neighbours: Vec<Vec<Mode>>,
 }
 
+/// An impulse inequality that is zero.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct AtZero {
+    /// The contact's name.
+    pub contact: String,
+    /// What is zero there.
+    #[cfg_attr(feature = "schema", schemars(with = "ZeroImpulse"))]
+    pub inequality: Inequality,
+}
+
+/// The schema of an inequality that is zero on an outcome's border: a velocity of zero belongs to another outcome.
+#[cfg(feature = "schema")]
+struct ZeroImpulse;
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for ZeroImpulse {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Zero".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let all = Inequality::json_schema(generator);
+        let named = |inequality| {
+            let wanted = serde_json::json!(inequality);
+            all.get("oneOf")?.as_array()?.iter().find(|known| known["const"] == wanted).cloned()
+        };
+        let known: Vec<serde_json::Value> = Inequality::OF_IMPULSES.into_iter().filter_map(named).collect();
+        schemars::json_schema!({"description": "An impulse inequality that is zero.", "oneOf": known})
+    }
+}
+
+fn is_true(flag: &bool) -> bool {
+    *flag
+}
+
+fn is_false(flag: &bool) -> bool {
+    !*flag
+}
+
+fn yes() -> bool {
+    true
+}
+
 impl Outcome {
+    /// v after the impact, in the order of q \[m/s, rad/s\]; empty without a robot.
+    pub fn velocity(&self) -> impl Iterator<Item = f64> {
+        let parts = [&self.base_velocity_after, &self.joint_velocity_after];
+        parts.into_iter().flatten().flat_map(|part| part.values().iter().copied())
+    }
+
     /// Takes over impulses and velocities after, and what follows from them with the contact velocities `before`.
     pub(super) fn set_motion(&mut self, motion: Motion, before: &[Pair<f64>]) {
         // Adding zero turns a negative zero into the one that people expect to read.
@@ -170,7 +235,9 @@ impl RejectionReason {
 }
 
 /// The paper's section 4 for each contact: the body as seen from it while all other contacts stick.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Explained"))]
 pub struct Explanation {
     /// Angle of the impulse that a purely tangential velocity change needs, atan(M_nt / M_tt) \[rad\].
     pub beta: Vec<f64>,
@@ -181,7 +248,7 @@ pub struct Explanation {
 }
 
 /// The paper's regions of the plane of gamma and beta, for infinite friction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "Region"))]
 pub enum ImpulseRegion {

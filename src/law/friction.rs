@@ -1,6 +1,7 @@
 //! How much friction a contact has.
 
 use std::fmt;
+use std::str::FromStr;
 
 /// Coulomb friction of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +19,26 @@ impl Friction {
     /// Whether mu = 0.
     pub fn is_zero(self) -> bool {
         self == Friction::ZERO
+    }
+}
+
+impl From<f64> for Friction {
+    /// The coefficient mu; of infinity [`Friction::Infinite`].
+    fn from(mu: f64) -> Self {
+        if mu == f64::INFINITY { Self::Infinite } else { Self::Finite(mu) }
+    }
+}
+
+impl FromStr for Friction {
+    type Err = String;
+
+    /// Reads a number from 0 on, or `infinite`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse::<f64>() {
+            _ if text == "infinite" => Ok(Self::Infinite),
+            Ok(mu) if mu >= 0.0 && mu.is_finite() => Ok(Self::Finite(mu)),
+            _ => Err("expected a number from 0 on, or \"infinite\"".to_owned()),
+        }
     }
 }
 

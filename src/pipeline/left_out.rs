@@ -1,4 +1,4 @@
-//! What of one scene does not enter its analysis, beside what of the robot's file does not.
+//! Parts of one scene that do not enter its analysis; those of the robot's file are in [`Robot`](crate::Robot).
 
 use super::Pipeline;
 use crate::contact::Contact;
@@ -21,7 +21,7 @@ pub enum LeftOut {
 }
 
 impl Pipeline<'_> {
-    /// What of a scene is left out; `out_of_reach` tells how many shapes were not looked at.
+    /// Lists what a scene leaves out; `out_of_reach` is how many shapes are too far from the ground.
     pub(super) fn left_out(
         &self,
         scene: &Scene,

@@ -1,38 +1,25 @@
 //! The loops of a state: whether they close, which of their rows count, and the velocity that keeps them closed.
 
 use super::Pipeline;
+use super::assembly::Assembly;
 use crate::contact::Contact;
-use crate::dynamics::{
-    Closed, Constraints, ContactPoint, Loop, close, eliminate_loops, independent_rows, kinetic_energy, loop_impulse,
-    orthogonalize, point_velocity, spent_energy,
-};
+use crate::dynamics::{ContactPoint, Loop, independent_rows, kinetic_energy, point_velocity, spent_energy};
 use crate::error::{Error, Reason, Result};
-use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::scalar::Real;
 use crate::state::NamedLoop;
-use crate::state::State;
 
-/// How far apart the points of a loop may lie, as part of the robot's size: recorded poses are rounded, and simulators keep
-/// their loops closed by springs.
+/// How far apart the points of a loop may lie, as part of the robot's size: recorded poses are rounded, and simulators
+/// keep their loops closed by springs.
 const OPEN: f64 = 1e-4;
 /// The greatest part of the kinetic energy that may lie in a motion that opens the loops: a hundredth of the speed.
 const OPENING: f64 = 1e-4;
 /// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
 const ROUNDING: f64 = 1e-20;
-/// A row of K of which less is left than this part of its points' squared motions follows from others, but for rounding.
+/// A row of K is taken to follow from others if less than this part of its points' squared motions is left.
 const DEPENDENT: f64 = 1e-22;
-/// A pose that leaves a loop open tells directions no better than some multiple of the gap.
+/// A pose that leaves a loop open gives directions only to this multiple of the gap.
 const PER_GAP: f64 = 16.0;
-
-/// The loops of one state in f64.
-#[derive(Debug, Clone, Default)]
-pub struct Loops {
-    /// Their points.
-    pub points: Vec<Loop>,
-    /// The rows of their constraints that count, in the order in which every number eliminates them.
-    pub rows: Vec<usize>,
-}
 
 impl NamedLoop {
     /// The loop for the dynamics, in numbers of any kind.
@@ -51,26 +38,6 @@ impl NamedLoop {
     }
 }
 
-impl Loops {
-    /// Whether both rows of a loop count.
-    fn is_whole(&self, index: usize) -> bool {
-        [2 * index, 2 * index + 1].iter().all(|row| self.rows.contains(row))
-    }
-
-    /// What follows from others, in words.
-    fn tell_left_out(&self, named: &[NamedLoop], robot: &Robot, notes: &mut Vec<String>) {
-        for (index, own) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
-            let left = [(2 * index, "x"), (2 * index + 1, "z")].into_iter().filter(|(row, _)| !self.rows.contains(row));
-            let left: Vec<&str> = left.map(|(_, axis)| axis).collect();
-            notes.push(format!(
-                "{} is already closed along {} by what else holds its points: that is left out, its impulse is 0",
-                own.name(index, robot),
-                left.join(" and ")
-            ));
-        }
-    }
-}
-
 impl Pipeline<'_> {
     /// Finds which rows of the loops count, and closes them in `velocity`; a `foot` that rests keeps resting.
     ///
@@ -78,38 +45,58 @@ impl Pipeline<'_> {
     /// [`Reason::Inconsistent`] for a loop that the pose or the velocity leaves open, with the gap.
     pub(super) fn close_loops(
         &mut self,
-        state: &State,
+        named: &[NamedLoop],
         foot: Option<&Contact>,
         velocity: &mut [f64],
         notes: &mut Vec<String>,
-    ) -> Result<Loops> {
-        let (robot, named) = (self.robot, &state.scene.loops);
-        let points: Vec<Loop> = named.iter().map(|own| own.points(robot)).collect();
-        let tolerance = self.refuse_gaps(&points, named)?;
-        let rows = independent_rows(&self.plan, &points, &self.kept, tolerance, &self.workspace);
-        let loops = Loops { points, rows };
-        loops.tell_left_out(named, robot, notes);
-        let foot = foot.map(Contact::point_of);
-        notes.extend(self.close_velocity(&loops, named, foot, velocity)?);
-        Ok(loops)
+    ) -> Result<()> {
+        self.assembly.loops.clear();
+        self.assembly.rows.clear();
+        if named.is_empty() {
+            self.assembly.constrain(None);
+            return Ok(());
+        }
+        let robot = self.robot;
+        self.assembly.loops.extend(named.iter().map(|own| own.points(robot)));
+        let tolerance = self.refuse_gaps(named)?;
+        let Assembly { plan, loops, kept, workspace, .. } = &self.assembly;
+        self.assembly.rows = independent_rows(plan, loops, kept, tolerance, workspace);
+        // What follows from others is left out.
+        for (index, own) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
+            let left = [(2 * index, "x"), (2 * index + 1, "z")];
+            let left = left.into_iter().filter(|(row, _)| !self.assembly.rows.contains(row));
+            let left: Vec<&str> = left.map(|(_, axis)| axis).collect();
+            notes.push(format!(
+                "{} is already closed along {} by what else holds its points: that is left out, its impulse is 0",
+                own.name(index, robot),
+                left.join(" and ")
+            ));
+        }
+        notes.extend(self.close_velocity(named, foot.map(Contact::point_of), velocity)?);
+        Ok(())
     }
 
-    /// Closes the loops in `velocity`, and tells if that is more than rounding.
+    /// Whether both rows of a loop count.
+    fn is_whole(&self, index: usize) -> bool {
+        [2 * index, 2 * index + 1].iter().all(|row| self.assembly.rows.contains(row))
+    }
+
+    /// Closes the loops in `velocity`; gives a note if that changes it by more than rounding.
     fn close_velocity(
         &mut self,
-        loops: &Loops,
         named: &[NamedLoop],
         foot: Option<ContactPoint>,
         velocity: &mut [f64],
     ) -> Result<Option<String>> {
-        let Self { robot, plan, workspace, kept, .. } = self;
-        let Loops { points, rows } = loops;
+        let robot = self.robot;
+        let Assembly { plan, workspace, loops, .. } = &self.assembly;
         let energy = kinetic_energy(plan, velocity, workspace);
-        let openings = points.iter().map(|own| own.opening(plan, velocity, workspace).length());
+        let openings = loops.iter().map(|own| own.opening(plan, velocity, workspace).length());
         let widest = openings.zip(named).enumerate().reduce(|most, next| if next.1.0 > most.1.0 { next } else { most });
         let Some((worst, (opening, own))) = widest else { return Ok(None) };
-        orthogonalize(plan, points, (Constraints { kept, rows }, foot), workspace);
-        let amplitudes = close(plan, points, Closed::Velocity, velocity, workspace);
+        self.assembly.constrain(foot);
+        let amplitudes = self.assembly.close(velocity);
+        let Assembly { plan, workspace, loops, .. } = &self.assembly;
         if let Some(foot) = foot {
             let moving = point_velocity(plan, foot.body, foot.arm(workspace), velocity, workspace);
             for (own, moving) in velocity.iter_mut().zip(moving.components()) {
@@ -121,7 +108,7 @@ impl Pipeline<'_> {
             return Err(moves_apart(own, worst, opening, robot));
         }
         // What was left out must hold all the same.
-        for (index, own) in points.iter().enumerate().filter(|(index, _)| !loops.is_whole(*index)) {
+        for (index, own) in loops.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
             let [a, b] = own.velocities(plan, velocity, workspace);
             let left = (a - b).length();
             if left * left > OPENING * (a.dot(a) + b.dot(b)) {
@@ -137,12 +124,12 @@ impl Pipeline<'_> {
         }))
     }
 
-    /// Refuses a loop whose points are apart; tells how large a row must be to count.
-    fn refuse_gaps(&self, points: &[Loop], named: &[NamedLoop]) -> Result<f64> {
+    /// Refuses a loop whose points are apart; gives how large a row must be to count.
+    fn refuse_gaps(&self, named: &[NamedLoop]) -> Result<f64> {
         let size = self.feet.size();
         let mut widest = 0.0_f64;
-        for (index, (own, named)) in points.iter().zip(named).enumerate() {
-            let gap = own.gap(&self.plan, &self.workspace).length();
+        for (index, (own, named)) in self.assembly.loops.iter().zip(named).enumerate() {
+            let gap = own.gap(&self.assembly.plan, &self.assembly.workspace).length();
             if gap.is_nan() || gap > OPEN * size {
                 let name = named.name(index, self.robot);
                 let reason = format!("the pose leaves {name} open: its points are {gap:.4e} m apart");
@@ -154,36 +141,6 @@ impl Pipeline<'_> {
         }
         let known = PER_GAP * widest / size;
         Ok(if widest > 0.0 { DEPENDENT.max(known * known) } else { DEPENDENT })
-    }
-
-    /// Prepares the constraints of a state without loops: the joints that keep their rates although they have columns.
-    pub(super) fn keep_rates(&mut self) {
-        if self.kept.is_empty() {
-            return;
-        }
-        let Self { plan, workspace, kept, .. } = self;
-        orthogonalize(plan, &[], (Constraints { kept, rows: &[] }, None), workspace);
-    }
-
-    /// Whether something beside the contacts gives impulses.
-    pub(super) fn is_constrained(&self, loops: &Loops) -> bool {
-        !(loops.points.is_empty() && self.kept.is_empty())
-    }
-
-    /// G without what the loops and the joints that keep their rates do not let move.
-    pub(super) fn eliminate_loops(&mut self, loops: &Loops) {
-        if self.is_constrained(loops) {
-            eliminate_loops(&self.plan, &mut self.workspace);
-        }
-    }
-
-    /// Adds to a `change` of velocity by impulses what the loops answer; gives their impulses, per loop on its point a.
-    pub(super) fn answer_of_loops(&self, loops: &Loops, change: &mut [f64]) -> Vec<Vector<f64>> {
-        if !self.is_constrained(loops) {
-            return Vec::new();
-        }
-        let amplitudes = close(&self.plan, &loops.points, Closed::Change, change, &self.workspace);
-        loop_impulse(loops.points.len(), &amplitudes, &self.workspace)
     }
 }
 

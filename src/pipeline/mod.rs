@@ -1,44 +1,45 @@
 //! One state end to end: the only place where all stages meet.
 //!
 //! ```text
-//!     State --> posture --> kinematics --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
+//!     State --> configuration --> stance, loops, contacts --> M, J, G --> ContactProblem --> Analysis --> Impact
 //! ```
 
-mod before;
+pub(crate) mod assembly;
+mod exact;
 mod left_out;
 mod loops;
-mod strike;
+mod prepared;
 pub mod robust;
 
-use self::before::Before;
-pub use self::before::Unsolved;
+use self::assembly::{Assembly, Elimination};
+use self::exact::ExactState;
 pub use self::left_out::LeftOut;
-use self::loops::Loops;
-use self::robust::Robustness;
-use self::strike::Strike;
+pub use self::prepared::Unsolved;
+use self::prepared::{Prepared, check_length};
 use crate::contact::{Contact, Feet, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{
-    Bounds, Constraints, ContactPoint, Workspace, add_articulated_impulse, add_impulse, articulated_inertias,
-    contact_jacobian, delassus, factorize, kinematics, mass_matrix,
+use crate::dynamics::{Bounds, Constraints, ContactPoint, articulated_inertias};
+use crate::error::{Result, finite};
+use crate::impact::{
+    Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, too_many_contacts,
 };
-use crate::error::{Error, Reason, Result, finite};
-use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch};
 use crate::law::{Friction, Mode};
-use crate::planar::{Pair, Rotation, Vector};
+use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::state::State;
-use crate::state::{NamedContact, Scene};
+use crate::state::{Named, NamedContact, Scene};
+use std::sync::Arc;
 
-/// What the pipeline is asked for beside the outcomes.
+/// What the pipeline is asked for in addition to the outcomes.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// How far from the ground a foot may be and still touch \[m\]; by default [`CONTACT_TOLERANCE`] times the robot's size.
+    /// How far from the ground a foot may be and still touch \[m\]; by default [`CONTACT_TOLERANCE`] times the robot's
+    /// size.
     pub contact_tolerance: Option<f64>,
     /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 snaps nothing.
     pub resting_speed: f64,
-    /// Feet beside the robot's shapes, detected by their height like them.
+    /// Feet in addition to the robot's shapes; they are detected by their height, too.
     pub feet: Vec<NamedContact>,
     /// Up to how many contacts to list every rejected combination, and beta, gamma and the region of each contact.
     pub explain_up_to: usize,
@@ -46,7 +47,7 @@ pub struct Options {
     pub matrices: bool,
     /// Do without bounds of the rounding in M, J and c: faster, and nothing is proven.
     pub no_proof: bool,
-    /// What of the computation is left out where a scene does not need it.
+    /// Parts of the computation to leave out if a scene does not need them.
     pub reductions: Reductions,
 }
 
@@ -64,14 +65,14 @@ pub struct Impact {
     pub velocity_before: Vec<Pair<f64>>,
     /// Kinetic energy before the impact \[J\].
     pub kinetic_energy: f64,
-    /// Every outcome and the verdict, or why the outcomes cannot be told.
-    pub analysis: Result<Analysis>,
-    /// v after each outcome of the analysis, in the order of q \[m/s, rad/s\].
-    pub velocity_after: Vec<Vec<f64>>,
-    /// Impulse on point a of each loop, in the world's axes, for each outcome of the analysis \[N s\]; on b the opposite acts.
-    pub loop_impulse: Vec<Vec<Vector<f64>>>,
-    /// Whether the outcomes are the same on the box of the state's uncertainty; none where it has none.
-    pub holds: Option<Robustness>,
+    /// The contact problem, in f64.
+    pub problem: ContactProblem,
+    /// Which contact is that of the stance's foot; `None` without a stance or if its foot does not touch.
+    pub stance: Option<usize>,
+    /// Every outcome and the verdict; `None` of more contacts than are enumerated (see [`Impact::analysed`]).
+    pub analysis: Option<Analysis>,
+    /// Whether the outcomes are the same on the box of the state's uncertainty; `None` if it has none.
+    pub holds: Option<robust::Robustness>,
     /// The matrices, if asked for.
     pub matrices: Option<Matrices>,
     /// What of the scene does not enter the analysis.
@@ -80,13 +81,29 @@ pub struct Impact {
     pub notes: Vec<String>,
 }
 
+impl Impact {
+    /// Every outcome and the verdict.
+    ///
+    /// # Errors
+    /// [`Reason::TooManyContacts`](crate::Reason) for more contacts than are enumerated.
+    pub fn analysed(&self) -> Result<&Analysis> {
+        self.analysis.as_ref().map_or_else(|| Err(too_many_contacts(self.contacts.len())), Ok)
+    }
+
+    /// As [`Impact::analysed`], without the rest.
+    ///
+    /// # Errors
+    /// As [`Impact::analysed`].
+    pub fn into_analysis(self) -> Result<Analysis> {
+        self.analysis.ok_or_else(|| too_many_contacts(self.contacts.len()))
+    }
+}
+
 /// The answer for one state, and what of its contacts was taken as given.
 struct Answer {
     impact: Impact,
     /// The foot of the stance.
     foot: Option<Contact>,
-    /// Its place among the contacts.
-    stance: Option<usize>,
     /// Contacts that were taken as exactly at rest.
     resting: Vec<bool>,
 }
@@ -110,40 +127,31 @@ pub struct Pipeline<'r> {
     robot: &'r Robot,
     options: Options,
     feet: Feet,
-    /// The plan of the last state, and what it was compiled for.
-    plan: Plan,
+    /// Names of the base's coordinates and of the joints.
+    names: [Arc<[String]>; 2],
+    assembly: Assembly,
+    /// The held joints and rotors for which the last plan was compiled.
     held: Vec<usize>,
     rotor_inertia: Vec<f64>,
-    /// Coordinates of held joints that have a column all the same.
-    kept: Vec<usize>,
-    posture: Configuration,
-    workspace: Workspace,
     bounds: Bounds,
     scratch: Scratch,
-    points: Vec<ContactPoint>,
-    column: Vec<f64>,
-    motions: Vec<(f64, Vector<f64>)>,
 }
 
 impl<'r> Pipeline<'r> {
     /// A pipeline for states of `robot`.
     pub fn new(robot: &'r Robot, options: Options) -> Self {
         let feet = Feet::new(robot, &options.feet);
+        let mut names = robot.coordinates().map(str::to_owned);
         Self {
             robot,
             feet: if options.reductions.reach { feet } else { feet.reaching_everywhere() },
             options,
-            plan: Plan::new(robot, &[], &[]),
+            names: [names.by_ref().take(robot.base_dofs()).collect(), names.collect()],
+            assembly: Assembly::new(Plan::new(robot, &[], &[])),
             held: Vec::new(),
             rotor_inertia: Vec::new(),
-            kept: Vec::new(),
-            posture: Configuration::default(),
-            workspace: Workspace::default(),
             bounds: Bounds::default(),
             scratch: Scratch::default(),
-            points: Vec::new(),
-            column: Vec::new(),
-            motions: Vec::new(),
         }
     }
 
@@ -162,8 +170,8 @@ impl<'r> Pipeline<'r> {
         Ok(answer.impact)
     }
 
-    /// As [`Pipeline::impact`], whatever the state's uncertainty is; of all rejected combinations those with `chosen` modes
-    /// are listed.
+    /// As [`Pipeline::impact`], whatever the state's uncertainty is; of all rejected combinations those with `chosen`
+    /// modes are listed.
     ///
     /// # Errors
     /// As [`Pipeline::impact`].
@@ -171,30 +179,29 @@ impl<'r> Pipeline<'r> {
         self.answer(state, Some(chosen)).map(|answer| answer.impact)
     }
 
-    /// As [`Pipeline::impact`], whatever the state's uncertainty is; with `chosen` modes of rejected combinations, if they are.
+    /// As [`Pipeline::impact`], whatever the state's uncertainty is; with `chosen` modes of rejected combinations, if
+    /// they are.
     fn answer(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
-        let Before {
+        let Prepared {
             placement,
             velocity,
             foot,
-            loops,
             contacts,
             out_of_reach,
             stance,
             resting,
             kinetic_energy,
-            change,
             applied,
+            change,
             problem,
             mut notes,
-        } = self.before(state)?;
+        } = self.prepare(state)?;
         let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
         for &entry in &free {
             finite(entry, || "a velocity after the applied impulses".into())?;
         }
-        let kept = self.kept.clone();
-        let source = Strike {
+        let source = ExactState {
             robot: self.robot,
             scene,
             position: &state.position,
@@ -203,7 +210,7 @@ impl<'r> Pipeline<'r> {
             stance,
             contacts: &contacts,
             resting: &resting,
-            constraints: Constraints { kept: &kept, rows: &loops.rows },
+            constraints: Constraints { kept: &self.assembly.kept, rows: &self.assembly.rows },
             laws: problem.laws(),
             restitution: problem.restitution(),
             errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
@@ -212,118 +219,129 @@ impl<'r> Pipeline<'r> {
         let Options { no_proof, reductions, .. } = self.options;
         let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
         let asked = AnalysisOptions { rejections, prove: !no_proof, reductions };
-        let analysis = self.scratch.analyse(&problem, &source, asked);
-        let outcomes = analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
-        if !self.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
-            articulated_inertias(&self.plan, &mut self.workspace);
+        // More contacts than are enumerated are all that it refuses.
+        let mut analysis = self.scratch.analyse(&problem, &source, asked).ok();
+        let outcomes = analysis.as_mut().map_or(&mut [][..], |analysis| &mut analysis.outcomes);
+        if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+            articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
         }
-        let (velocity_after, loop_impulse) = outcomes
-            .iter()
-            .map(|outcome| match self.is_constrained(&loops) {
-                false => (self.struck(&free, &outcome.impulse), Vec::new()),
-                true => {
-                    let mut change = self.struck(&applied, &outcome.impulse);
-                    let impulse = self.answer_of_loops(&loops, &mut change);
-                    (velocity.iter().zip(&change).map(|(before, change)| before + change).collect(), impulse)
-                }
-            })
-            .unzip();
-        notes.extend(analysis.as_ref().ok().and_then(Analysis::energy_note));
+        for outcome in outcomes {
+            self.set_velocity(outcome, &velocity, &applied, &free);
+        }
+        notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
         let impact = Impact {
             velocity_before: problem.velocity_before().to_vec(),
             kinetic_energy,
-            velocity_after,
-            loop_impulse,
             matrices: self.options.matrices.then(|| self.matrices()),
             holds: None,
             left_out: self.left_out(scene, &contacts, problem.laws(), out_of_reach),
+            problem,
+            stance,
             analysis,
             placement,
             contacts,
             notes,
         };
-        Ok(Answer { impact, foot, stance, resting })
+        Ok(Answer { impact, foot, resting })
     }
 
-    /// The contact problem of contacts given by hand, at a posture whose cosines and sines the caller knows better than
-    /// their angle tells; `velocity` is dq/dt by coordinate. Level ground, restitution and friction per contact.
+    /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows
+    /// better than an f64 angle can give them; `velocity` is dq/dt by coordinate. Level ground, restitution and
+    /// friction per contact.
     ///
     /// # Errors
     /// [`Reason::Singular`] for a coordinate without inertia, and lengths that do not fit.
     pub fn contact_problem(
         &mut self,
-        posture: &Configuration,
+        configuration: &Configuration,
         velocity: &[f64],
         contacts: &[NamedContact],
         friction: Vec<Friction>,
         restitution: Vec<f64>,
     ) -> Result<ContactProblem> {
-        let dofs = self.robot.dofs();
-        let places = dofs + self.robot.mimic_joints.len();
-        let lengths = [posture.cos.len(), posture.sin.len(), posture.displacement.len()].map(|length| (length, places));
-        for (length, wanted) in lengths.into_iter().chain([(velocity.len(), dofs)]) {
-            if length != wanted {
-                let reason =
-                    Reason::Inconsistent(format!("the robot has {dofs} coordinates, but {length} values are given"));
-                let hint = "velocity has an entry per coordinate of q, posture these and one per follower";
-                return Err(Error::new(reason).hint(hint));
-            }
+        let coordinates = self.robot.dofs();
+        let places = coordinates + self.robot.mimic_joints.len();
+        for length in [configuration.cos.len(), configuration.sin.len(), configuration.displacement.len()] {
+            check_length("configuration", length, places)?;
         }
+        check_length("velocity", velocity.len(), coordinates)?;
         self.compile(&Scene::default());
-        kinematics(&self.plan, posture, &mut self.workspace);
-        mass_matrix(&self.plan, &mut self.workspace);
-        factorize(&self.plan, &mut self.workspace);
+        self.close_loops(&[], None, &mut [], &mut Vec::new())?;
+        self.assembly.configuration.clone_from(configuration);
+        self.assembly.place();
+        self.assembly.factorize();
         self.check_inertia(false)?;
-        self.points.clear();
-        self.points.extend(contacts.iter().map(|contact| {
+        let point = |contact: &NamedContact| {
             let link = &self.robot.links[contact.link];
-            ContactPoint {
-                body: link.body,
-                centre: link.point(contact.offset),
-                radius: contact.radius,
-                ground: Rotation::identity(),
+            let (centre, ground) = (link.point(contact.offset), Rotation::identity());
+            ContactPoint { body: link.body, centre, radius: contact.radius, ground }
+        };
+        self.assembly.points = contacts.iter().map(point).collect();
+        self.assembly.contact_jacobian(velocity, None);
+        self.assembly.delassus();
+        let before = self.assembly.workspace.contact_velocity.clone();
+        ContactProblem::new(self.assembly.workspace.delassus.clone(), before, friction, restitution)
+    }
+
+    /// Completes an outcome by the robot's velocity after it, and by the impulses of the loops. `applied` is what the
+    /// applied impulses change in the `velocity` before by themselves, `free` the velocity after them without contact
+    /// impulses.
+    fn set_velocity(&mut self, outcome: &mut Outcome, velocity: &[f64], applied: &[f64], free: &[f64]) {
+        let mut after;
+        if self.assembly.is_constrained() {
+            after = self.struck(applied, &outcome.impulse);
+            let impulse = self.assembly.answer(&mut after);
+            outcome.loop_impulse = (!impulse.is_empty()).then_some(impulse);
+            for (after, before) in after.iter_mut().zip(velocity) {
+                *after += before;
             }
-        }));
-        contact_jacobian(&self.plan, &self.points, velocity, None, &mut self.workspace);
-        delassus(&self.plan, &mut self.workspace);
-        let before = self.workspace.contact_velocity.clone();
-        ContactProblem::new(self.workspace.delassus.clone(), before, friction, restitution)
+        } else {
+            after = self.struck(free, &outcome.impulse);
+        }
+        let [base, joints] = &self.names;
+        let rates = after.split_off(base.len());
+        outcome.base_velocity_after = (!base.is_empty()).then(|| Named::new(base.clone(), after));
+        outcome.joint_velocity_after = Some(Named::new(joints.clone(), rates));
     }
 
     /// The velocity by coordinate after contact impulses, from the one without them: by articulated bodies, which keep
-    /// thirteen digits and more in chains where M = L^T D L leaves eight, unless joints follow others.
+    /// thirteen digits and more in chains where M = L^T D L leaves eight, unless there are mimic joints.
     fn struck(&mut self, free: &[f64], impulse: &[Pair<f64>]) -> Vec<f64> {
         let mut after = free.to_vec();
-        let Self { plan, workspace, points, column, motions, .. } = self;
-        for (point, &[tangential, normal]) in points.iter().zip(impulse) {
+        let by = if self.assembly.plan.has_mimics { Elimination::Ltl } else { Elimination::ArticulatedBodies };
+        for (index, &[tangential, normal]) in impulse.iter().enumerate() {
+            let point = self.assembly.points[index];
             let axes = point.axes();
             let vector = axes[0] * tangential + axes[1] * normal;
-            let at = (point.body, point.arm(workspace));
-            if plan.has_mimics {
-                add_impulse(plan, workspace, at, vector, column, &mut after);
-            } else {
-                add_articulated_impulse(plan, workspace, at, vector, (&mut *column, &mut *motions), &mut after);
-            }
+            let at = (point.body, point.arm(&self.assembly.workspace));
+            self.assembly.push(by, at, vector, &mut after);
         }
         after
     }
 
     fn matrices(&self) -> Matrices {
-        let nv = self.plan.columns();
+        let nv = self.assembly.plan.columns();
         // Columns of the plan run outward from the root, the user's coordinates in the file's order.
         let mut order: Vec<usize> = (0..nv).collect();
-        order.sort_by_key(|&column| self.plan.coordinates()[column]);
+        order.sort_by_key(|&column| self.assembly.plan.coordinates()[column]);
         let names: Vec<&str> = self.robot.coordinates().collect();
-        let mass = &self.workspace.mass_matrix;
+        let mass = &self.assembly.workspace.mass_matrix;
         let entry = |i: usize, j: usize| mass[i.max(j) * nv + i.min(j)];
-        let rows = self.workspace.contact_velocity.len() * 2;
+        let rows = self.assembly.workspace.contact_velocity.len() * 2;
         Matrices {
-            coordinates: order.iter().map(|&column| names[self.plan.coordinates()[column]].to_owned()).collect(),
+            coordinates: order
+                .iter()
+                .map(|&column| names[self.assembly.plan.coordinates()[column]].to_owned())
+                .collect(),
             mass_matrix: order.iter().map(|&i| order.iter().map(|&j| entry(i, j)).collect()).collect(),
             contact_jacobian: (0..rows)
-                .map(|row| order.iter().map(|&column| self.workspace.contact_jacobian[row * nv + column]).collect())
+                .map(|row| {
+                    order.iter().map(|&column| self.assembly.workspace.contact_jacobian[row * nv + column]).collect()
+                })
                 .collect(),
-            delassus: (0..rows).map(|row| self.workspace.delassus[row * rows..(row + 1) * rows].to_vec()).collect(),
+            delassus: (0..rows)
+                .map(|row| self.assembly.workspace.delassus[row * rows..(row + 1) * rows].to_vec())
+                .collect(),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod expression;
 pub(crate) mod json;
+pub(crate) mod format;
 pub mod documents;
 pub(crate) mod state;
 mod uncertainty;

@@ -1,10 +1,11 @@
 //! Reads a contact problem given as matrices.
 
 use super::state as read;
-use crate::impact::ContactProblem;
 use crate::impact::problem::check_matrix_size;
+use crate::impact::{ContactProblem, Errors, Source};
 use crate::law::Friction;
 use crate::read::json::{Node, Value};
+use crate::scalar::{Ordered, Trigonometry};
 use crate::state::Defaults;
 use crate::{Error, Reason, Result};
 
@@ -64,6 +65,24 @@ impl Problem {
         };
         let contact = matrices.problem(friction, restitution).map_err(|error| fields.locate(error))?;
         Ok(Self { id, names, contact })
+    }
+}
+
+impl Source for Problem {
+    fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
+        self.contact.problem()
+    }
+
+    fn errors(&self) -> Errors<'_> {
+        self.contact.errors()
+    }
+
+    fn is_exact(&self) -> bool {
+        self.contact.is_exact()
+    }
+
+    fn contact_name(&self, contact: usize) -> String {
+        self.names[contact].clone()
     }
 }
 

@@ -1,5 +1,6 @@
 //! The fields of a state, one function for each shape of value.
 
+use super::format::fields_of;
 use super::json::{Node, Value, id_in};
 use super::uncertainty::{self, uncertainty};
 use crate::law::Friction;
@@ -8,23 +9,6 @@ use crate::robot::Base;
 use crate::state::{AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, State};
 use crate::{Error, Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
-
-/// All fields of a state, for hints.
-const FIELDS: [&str; 13] = [
-    "id",
-    "position",
-    "velocity",
-    "friction",
-    "restitution",
-    "ground",
-    "stance",
-    "held",
-    "rotor_inertia",
-    "contacts",
-    "loops",
-    "uncertainty",
-    "impulse",
-];
 
 /// The entries of a floating base in the order of q.
 const BASE: [&str; 3] = ["x", "z", "pitch"];
@@ -35,7 +19,7 @@ const LOOP_LIMIT: usize = 256;
 /// Reads loops of `robot` from a JSON list, as a state's field `loops` has it.
 ///
 /// # Errors
-/// Whatever is no such list; the error tells place, line and column in `text`.
+/// Anything else than such a list; the error has place, line and column in `text`.
 pub fn loops_from_json(text: &str, robot: &Robot) -> Result<Vec<NamedLoop>> {
     let tree = Value::parse(text)?;
     loops(Node::root(&tree, text), robot)
@@ -48,14 +32,14 @@ impl State {
     ///
     /// # Errors
     /// Whatever is not a state of this robot: broken JSON, unknown or doubled fields and names, values of the wrong
-    /// kind or outside their range, a base that is both placed and given. The error tells place, line and column in
+    /// kind or outside their range, a base that is both placed and given. The error has place, line and column in
     /// `text`.
     pub fn from_json(text: &str, robot: &Robot, defaults: &Defaults) -> Result<Self> {
         let tree = Value::parse(text)?;
         read(Node::root(&tree, text), robot, defaults)
     }
 
-    /// The `id` in the text of a state that may be refused; none where none can be read.
+    /// The `id` in the text of a state that may be refused; `None` if there is none.
     pub fn id_in(text: &str) -> Option<serde_json::Value> {
         id_in(text)
     }
@@ -63,8 +47,7 @@ impl State {
 
 /// Reads a whole state.
 pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
-    let dofs = robot.dofs();
-    let mut state = State { position: vec![0.0; dofs], velocity: vec![0.0; dofs], ..State::default() };
+    let mut state = State::zero(robot);
     let scene = &mut state.scene;
     let mut own_loops = None;
 
@@ -83,7 +66,7 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
             "impulse" => scene.impulses = impulses(field, robot)?,
             "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
-            _ => return Err(field.unknown_field(&FIELDS)),
+            _ => return Err(field.unknown_field(&fields_of("State"))),
         }
     }
     if scene.stance.is_some() {
@@ -118,7 +101,7 @@ pub(super) fn coordinates(
                 for entry in part.fields("base entry")? {
                     match BASE.iter().position(|name| *name == entry.key()) {
                         Some(at) => base[at] = number(entry)?,
-                        None => return Err(entry.unknown_field(&BASE)),
+                        None => return Err(entry.unknown_field(&fields_of("Base"))),
                     }
                 }
             }
@@ -127,7 +110,7 @@ pub(super) fn coordinates(
                     joints[joint(entry, entry.key(), robot)?] = number(entry)?;
                 }
             }
-            _ => return Err(part.unknown_field(&["base", "joints"])),
+            _ => return Err(part.unknown_field(&fields_of("Coordinates"))),
         }
     }
     Ok(())
@@ -165,11 +148,13 @@ pub(super) fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -
     if !field.is_object() {
         return Ok(ByLink::everywhere(read(field)?));
     }
-    let mut values = ByLink { default: None, links: Vec::new() };
+    let mut values = ByLink::default();
     for entry in field.fields("link")? {
         match entry.key() {
             "default" => values.default = Some(read(entry)?),
-            name => values.links.push((link(entry, name, robot)?, read(entry)?)),
+            name => {
+                values.links.insert(link(entry, name, robot)?, read(entry)?);
+            }
         }
     }
     Ok(values)
@@ -206,7 +191,7 @@ fn ground(field: Node) -> Result<Ground> {
         let read = match entry.key() {
             "slope" => Ground::Slope(slope(entry)?),
             "profile" => Ground::Profile(profile(entry)?),
-            _ => return Err(entry.unknown_field(&["slope", "profile"])),
+            _ => return Err(entry.unknown_field(&fields_of("Ground"))),
         };
         if ground.replace(read).is_some() {
             let reason = Reason::Inconsistent("the ground has either a slope or a profile".into());
@@ -269,7 +254,7 @@ fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
                 "link" => named = Some(link(part, part.text()?, robot)?),
                 "offset" => offset = part.numbers("a list of 3 numbers")?,
                 "radius" => radius = part.number_from_zero("radius")?,
-                _ => return Err(part.unknown_field(&["link", "offset", "radius"])),
+                _ => return Err(part.unknown_field(&fields_of("Contact"))),
             }
         }
         let link = named.ok_or_else(|| missing(entry, "link"))?;
@@ -291,7 +276,7 @@ pub(super) fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
             match part.key() {
                 "a" => a = Some(link_point(part, robot)?),
                 "b" => b = Some(link_point(part, robot)?),
-                _ => return Err(part.unknown_field(&["a", "b"])),
+                _ => return Err(part.unknown_field(&fields_of("Loop"))),
             }
         }
         let a = a.ok_or_else(|| missing(entry, "a"))?;
@@ -308,7 +293,7 @@ fn link_point(field: Node, robot: &Robot) -> Result<LinkPoint> {
         match part.key() {
             "link" => named = Some(link(part, part.text()?, robot)?),
             "offset" => offset = part.numbers("a list of 3 numbers")?,
-            _ => return Err(part.unknown_field(&["link", "offset"])),
+            _ => return Err(part.unknown_field(&fields_of("LinkPoint"))),
         }
     }
     let link = named.ok_or_else(|| missing(field, "link"))?;
@@ -325,7 +310,7 @@ fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
                 "link" => named = Some(link(part, part.text()?, robot)?),
                 "offset" => offset = part.numbers("a list of 3 numbers")?,
                 "vector" => applied = Some(Vector::from(part.numbers("a list of 2 numbers, [x, z]")?)),
-                _ => return Err(part.unknown_field(&["link", "offset", "vector"])),
+                _ => return Err(part.unknown_field(&fields_of("AppliedImpulse"))),
             }
         }
         let link = named.ok_or_else(|| missing(entry, "link"))?;

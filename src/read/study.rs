@@ -1,5 +1,6 @@
 //! Reads studies: parameters, and a state and a robot whose numbers are expressions of them.
 
+use super::format::fields_of;
 use super::state as read;
 use super::variation;
 use crate::description::Description;
@@ -8,9 +9,6 @@ use crate::read::json::{Node, Value};
 use crate::state::{Defaults, State};
 use crate::{Error, Reason, Result, Robot};
 use std::borrow::Cow;
-
-/// All fields of a study, for hints.
-const FIELDS: [&str; 4] = ["parameters", "constants", "state", "robot"];
 
 /// The most samples of all parameters together.
 const SAMPLE_LIMIT: usize = 10_000_000;
@@ -69,8 +67,8 @@ impl<'t> Study<'t> {
         for field in root.fields("field")? {
             match field.key() {
                 "constants" => read_constants(&tree, text, &mut constants)?,
-                key if FIELDS.contains(&key) => {}
-                _ => return Err(field.unknown_field(&FIELDS)),
+                "parameters" | "state" | "robot" => {}
+                _ => return Err(field.unknown_field(&fields_of("Study"))),
             }
         }
         let with_constants = Node::root_with(&tree, text, &constants);
@@ -209,7 +207,7 @@ fn parameter(entry: Node, constants: &Names) -> Result<Parameter> {
             "from" => from = Some(part.number()?),
             "to" => to = Some(part.number()?),
             "steps" => steps = Some(samples(part)?),
-            _ => return Err(part.unknown_field(&["from", "to", "steps"])),
+            _ => return Err(part.unknown_field(&fields_of("Parameter"))),
         }
     }
     let example = "a parameter is {\"from\": 0, \"to\": 1, \"steps\": 50}";

@@ -1,5 +1,6 @@
 //! Half-widths of a state's numbers.
 
+use super::format::fields_of;
 use super::json::Node;
 use super::state::{by_link, coordinates, joint};
 use crate::state::{ByLink, Uncertainty};
@@ -27,7 +28,7 @@ pub(super) fn uncertainty(field: Node, robot: &Robot) -> Result<Uncertainty> {
                 }
             }
             "rotor_inertia" => read.rotor_inertia.fill(half_width(part)?),
-            _ => return Err(part.unknown_field(&["position", "velocity", "friction", "rotor_inertia"])),
+            _ => return Err(part.unknown_field(&fields_of("Uncertainty"))),
         }
     }
     Ok(read)

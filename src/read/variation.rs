@@ -1,12 +1,9 @@
 //! Reads the numbers of a robot that a study varies.
 
 use crate::description::{Collision, Description, Geometry, Inertial, Pose};
+use crate::read::format::fields_of;
 use crate::read::json::Node;
 use crate::{Error, Reason, Result};
-
-/// The fields of links and joints that can be varied, for hints.
-const OF_LINK: [&str; 4] = ["mass", "com", "inertia", "radius"];
-const OF_JOINT: [&str; 1] = ["origin"];
 
 /// `description` with the numbers of `{"links": {name: {"mass", "com", "inertia", "radius"}}, "joints": {name:
 /// {"origin"}}}`.
@@ -31,7 +28,7 @@ pub fn applied(field: Node, description: &Description) -> Result<Description> {
                     joint(entry, &mut varied)?;
                 }
             }
-            _ => return Err(part.unknown_field(&["links", "joints"])),
+            _ => return Err(part.unknown_field(&fields_of("Variation"))),
         }
     }
     Ok(varied)
@@ -54,7 +51,7 @@ fn link(entry: Node, varied: &mut Description) -> Result<()> {
                 link.inertial.get_or_insert_with(massless).inertia = Some(inertia);
             }
             "radius" => radius(part, &mut link.collisions)?,
-            _ => return Err(part.unknown_field(&OF_LINK)),
+            _ => return Err(part.unknown_field(&fields_of("LinkVariation"))),
         }
     }
     Ok(())
@@ -86,7 +83,7 @@ fn joint(entry: Node, varied: &mut Description) -> Result<()> {
     for part in entry.fields("field")? {
         match part.key() {
             "origin" => varied.joints[at].origin.xyz = part.numbers("a list of 3 numbers")?,
-            _ => return Err(part.unknown_field(&OF_JOINT)),
+            _ => return Err(part.unknown_field(&fields_of("JointVariation"))),
         }
     }
     Ok(())

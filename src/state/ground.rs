@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!     solid below the line           level (slope 0), or uphill toward +x
-//!     solid below the profile        (x_0, z_0) -- (x_1, z_1) -- ... -- (x_n, z_n), x rising; no ground beyond its ends
+//!     solid below the profile        (x_0, z_0) -- (x_1, z_1) -- ... -- (x_n, z_n), x rising; no ground beyond the ends
 //! ```
 
 use crate::error::{Error, Reason, Result};
@@ -25,8 +25,8 @@ impl Default for Ground {
 }
 
 impl Ground {
-    /// The turn from the world's axes to those of a contact (tangent, normal) that detection found to be `found`, in numbers
-    /// of any kind: that of a slope from its angle, that of a profile by the very f64 numbers.
+    /// The turn from the world's axes to those of a contact (tangent, normal) that detection found to be `found`, in
+    /// numbers of any kind: that of a slope from its angle, that of a profile by the very f64 numbers.
     pub fn axes<T: Real + Trigonometry>(&self, found: Rotation<f64>) -> Rotation<T> {
         match self {
             Self::Slope(slope) => {
@@ -38,7 +38,8 @@ impl Ground {
     }
 }
 
-/// A ground of straight segments between points of rising x; what lies below it is solid, what lies beyond its ends is void.
+/// A ground of straight segments between points of rising x; what lies below it is solid, what lies beyond its ends is
+/// void.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     points: Vec<Vector<f64>>,

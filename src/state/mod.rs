@@ -1,31 +1,68 @@
 //! One pre-impact state: coordinates, velocities and scene, resolved against a robot.
 
 mod ground;
+mod named;
 mod scene;
 mod uncertainty;
 
 pub use ground::{Ground, Profile};
+pub use named::Named;
 pub use scene::{AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene};
 pub use uncertainty::Uncertainty;
 
+use crate::error::{Error, Reason, Result};
 use crate::law::Friction;
+use crate::robot::Robot;
 
 /// A state just before the impact; every name in it is resolved to an index of its robot.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct State {
     /// What the user calls it: a JSON string or number.
     pub id: Option<serde_json::Value>,
     /// q = [x, z, pitch, joints...] \[m, rad\]; with a stance x and z are placeholders until the base is placed.
     pub position: Vec<f64>,
-    /// v = dq/dt \[m/s, rad/s\]; with a stance its x and z likewise.
+    /// v = dq/dt \[m/s, rad/s\]; with a stance its x and z are placeholders, too.
     pub velocity: Vec<f64>,
     /// Everything else.
     pub scene: Scene,
-    /// How far the numbers may be off; none where they are meant as they are.
+    /// How far the numbers may be off; `None` if they are exact.
     pub uncertainty: Option<Uncertainty>,
 }
 
-/// What a state takes from elsewhere where it is silent.
+impl State {
+    /// The robot at rest, every coordinate zero, on level ground without friction of its own.
+    pub fn zero(robot: &Robot) -> Self {
+        Self { position: vec![0.0; robot.dofs()], velocity: vec![0.0; robot.dofs()], ..Self::default() }
+    }
+
+    /// Sets a coordinate by its name: x, z or pitch of the base \[m, rad\], or a joint \[rad, m\].
+    ///
+    /// # Errors
+    /// [`Reason::UnknownName`] for a name that is none of [`Robot::coordinates`].
+    pub fn set_position(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
+        set(&mut self.position, robot, name, value)
+    }
+
+    /// Sets the rate of a coordinate by its name \[m/s, rad/s\].
+    ///
+    /// # Errors
+    /// As [`State::set_position`].
+    pub fn set_velocity(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
+        set(&mut self.velocity, robot, name, value)
+    }
+}
+
+fn set(list: &mut Vec<f64>, robot: &Robot, name: &str, value: f64) -> Result<()> {
+    let place = robot.coordinates().position(|known| known == name).ok_or_else(|| {
+        let unknown = Reason::UnknownName { what: "coordinate", name: name.to_owned() };
+        Error::new(unknown).did_you_mean(name, robot.coordinates())
+    })?;
+    list.resize(robot.dofs(), 0.0);
+    list[place] = value;
+    Ok(())
+}
+
+/// What a state takes from elsewhere if it does not give it itself.
 #[derive(Debug, Clone, Default)]
 pub struct Defaults {
     /// Friction of every link to which the state gives none.

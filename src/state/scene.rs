@@ -3,24 +3,25 @@
 use super::ground::Ground;
 use crate::law::Friction;
 use crate::planar::Vector;
+use std::collections::BTreeMap;
 
 /// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     /// What the robot strikes.
     pub ground: Ground,
-    /// Friction of each contact's link; none where the state leaves it to the command line.
+    /// Friction of each contact's link; none if neither the state nor its [`Defaults`](super::Defaults) give any.
     pub friction: ByLink<Friction>,
-    /// Newton restitution of each contact's link, 0 to 1; 0 where none is given.
+    /// Newton restitution of each contact's link, 0 to 1; 0 if none is given.
     pub restitution: ByLink<f64>,
     /// The link whose lowest point is placed on the ground at x = 0 and is at rest.
     pub stance: Option<usize>,
     /// Joints that keep their velocity through the impact.
     pub held: Vec<usize>,
-    /// Rotor inertia at each joint and then at each follower \[kg m^2\]; empty for none. It is added to the mass matrix's
-    /// diagonal, that of a follower times multiplier^2.
+    /// Rotor inertia at each joint and then at each follower \[kg m^2\]; empty for none. It is added to the mass
+    /// matrix's diagonal, that of a follower times multiplier^2.
     pub rotor_inertia: Vec<f64>,
-    /// Contacts named by hand; none where they are detected.
+    /// Contacts named by hand; `None` if they are detected.
     pub contacts: Option<Vec<NamedContact>>,
     /// Pairs of points that stay together.
     pub loops: Vec<NamedLoop>,
@@ -33,8 +34,8 @@ pub struct Scene {
 pub struct ByLink<T> {
     /// For links that are not named.
     pub default: Option<T>,
-    /// Link and its value.
-    pub links: Vec<(usize, T)>,
+    /// By link.
+    pub links: BTreeMap<usize, T>,
 }
 
 /// A contact point that the user names.
@@ -79,18 +80,18 @@ pub struct AppliedImpulse {
 
 impl<T> Default for ByLink<T> {
     fn default() -> Self {
-        Self { default: None, links: Vec::new() }
+        Self { default: None, links: BTreeMap::new() }
     }
 }
 
 impl<T: Copy> ByLink<T> {
     /// The same value for every link.
     pub fn everywhere(value: T) -> Self {
-        Self { default: Some(value), links: Vec::new() }
+        Self { default: Some(value), links: BTreeMap::new() }
     }
 
     /// The value of a link.
     pub fn of(&self, link: usize) -> Option<T> {
-        self.links.iter().find(|(named, _)| *named == link).map(|&(_, value)| value).or(self.default)
+        self.links.get(&link).copied().or(self.default)
     }
 }

@@ -128,7 +128,7 @@ impl CurvePoint {
     fn of(solver: &mut Solver, at: f64, regime: &Regime) -> Option<Self> {
         let answer = solver.impact(&[at]);
         let same = Regime::of(&answer) == *regime;
-        let analysis: Analysis = answer.ok().filter(|_| same)?.analysis.ok()?;
+        let analysis: Analysis = answer.ok().filter(|_| same)?.analysis?;
         let motion = |Outcome { modes, impulse, velocity_after, .. }| (modes, Motion { impulse, velocity_after });
         let mut outcomes: Vec<(Vec<Mode>, Motion)> =
             analysis.outcomes.into_iter().filter(|outcome| outcome.decided).map(motion).collect();

@@ -126,7 +126,7 @@ impl<'a> Solver<'a> {
     pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
         let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))??;
         let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
-        Ok((names, impact.analysis?))
+        Ok((names, impact.into_analysis()?))
     }
 
     /// Properties of a region, found at a point in it.

@@ -35,8 +35,8 @@ impl Regime {
         };
         let (impact, analysis) = match answer {
             Err(error) => return refused(error),
-            Ok(impact) => match &impact.analysis {
-                Err(error) => return refused(error),
+            Ok(impact) => match impact.analysed() {
+                Err(error) => return refused(&error),
                 Ok(analysis) => (impact, analysis),
             },
         };

@@ -1,9 +1,10 @@
 //! Results as CSV: one row per outcome.
 
 use crate::contact::Feet;
+use crate::impact::Outcome;
 use crate::read::table::{Carried, Header, prefixed};
 use crate::state::NamedContact;
-use crate::write::{ErrorObject, Outcome, Refused, Report, Touchdown};
+use crate::write::{ErrorObject, Refused, Report, Touchdown};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
@@ -59,7 +60,7 @@ impl Cells {
 
 impl Columns {
     /// The columns for states of `robot` with the `feet` that were added to it; `input` is the table that the states
-    /// come from, if they come from one; `touchdowns` where they are touchdowns found in it.
+    /// come from, if they come from one; `touchdowns` if they are touchdowns found in it.
     pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, touchdowns: bool) -> Self {
         Self::with(robot, feet, std::iter::empty(), input.into_iter().flat_map(Header::carried), touchdowns)
     }
@@ -114,7 +115,7 @@ impl Columns {
     /// A contact that has no column, because the state names it and the robot has no such foot; nothing is appended
     /// then.
     pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut Vec<u8>) -> Result<()> {
-        let mut cells = self.cells(report.id, carried);
+        let mut cells = self.cells(report.id.as_deref(), carried);
         cells.text(1, report.verdict.map_or(String::new(), |verdict| verdict.to_string()));
         if let Some(proven) = report.proven {
             cells.text(4, proven.to_string());
@@ -123,10 +124,10 @@ impl Columns {
             self.touchdown(touchdown, &mut cells);
         }
         if let Some(error) = &report.error {
-            cells.text(self.last() + 2, sentence(&error.message, error.place, error.hint));
+            cells.text(self.last() + 2, sentence(error));
         }
         let places: Vec<usize> =
-            report.contacts.iter().map(|contact| self.place(contact.name)).collect::<Result<_>>()?;
+            report.contacts.iter().map(|contact| self.place(&contact.name)).collect::<Result<_>>()?;
         let outcomes = report.outcomes.as_deref().unwrap_or_default();
         if outcomes.is_empty() {
             append(&cells.0, out);
@@ -156,7 +157,7 @@ impl Columns {
     ) {
         let mut cells = self.cells(id, carried);
         cells.text(1, "refused");
-        cells.text(self.last() + 2, before.to_owned() + &sentence(&error.message, error.place, error.hint));
+        cells.text(self.last() + 2, before.to_owned() + &sentence(error));
         append(&cells.0, out);
     }
 
@@ -179,16 +180,14 @@ impl Columns {
         cells.text(2, number.to_string());
         cells.text(3, outcome.margin.map_or(String::new(), |margin| format!("{margin:?}")));
         cells.text(4, outcome.proven.to_string());
-        for ((&place, mode), impulse) in places.iter().zip(outcome.modes).zip(outcome.impulse) {
+        for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
             cells.text(place, mode.to_string());
             cells.number(place + 1, impulse[0]);
             cells.number(place + 2, impulse[1]);
         }
-        let base = outcome.base_velocity_after.iter().flat_map(|named| &named.0);
-        let joints = outcome.joint_velocity_after.iter().flat_map(|named| &named.0);
         let start = self.velocities();
-        for (at, (_, velocity)) in base.chain(joints).take(self.coordinates).enumerate() {
-            cells.number(start + at, *velocity);
+        for (at, velocity) in outcome.velocity().take(self.coordinates).enumerate() {
+            cells.number(start + at, velocity);
         }
         let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
         let at_zero: Vec<String> = at_zero.map(|zero| format!("{}: {}", zero.contact, zero.inequality)).collect();
@@ -201,9 +200,9 @@ impl Columns {
             let start = self.velocities() + self.coordinates;
             cells.text(start, touchdown.row.to_string());
             cells.number(start + 1, touchdown.time);
-            cells.text(start + 2, touchdown.striking);
+            cells.text(start + 2, &*touchdown.striking);
             cells.number(start + 3, touchdown.shift_z);
-            cells.text(start + 4, touchdown.at);
+            cells.text(start + 4, &*touchdown.at);
             cells.text(start + 5, &touchdown.touching);
         }
     }
@@ -246,9 +245,9 @@ fn contacts(robot: &Robot, feet: &[NamedContact], every_corner: bool) -> Vec<Str
 }
 
 /// An error in one cell.
-fn sentence(message: &str, place: Option<&str>, hint: Option<&str>) -> String {
-    let place = place.map_or(String::new(), |place| format!("{place}: "));
-    let hint = hint.map_or(String::new(), |hint| format!("; {hint}"));
+fn sentence(ErrorObject { message, place, hint }: &ErrorObject) -> String {
+    let place = place.as_ref().map_or(String::new(), |place| format!("{place}: "));
+    let hint = hint.as_ref().map_or(String::new(), |hint| format!("; {hint}"));
     format!("{place}{message}{hint}")
 }
 

@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::result::LeftOut;
+use super::result::LeftOutRecord;
 use super::text::Palette;
 use crate::Robot;
 use crate::planar::Vector;
@@ -42,7 +42,7 @@ pub struct Inspection<'a> {
     /// Shapes that can touch the ground, in the links' order.
     pub feet: Vec<Foot<'a>>,
     /// What of the file does not enter the analysis, and why.
-    pub left_out: Vec<LeftOut<'a>>,
+    pub left_out: Vec<LeftOutRecord<'a>>,
 }
 
 /// Links that no moving joint separates.
@@ -222,7 +222,7 @@ impl<'a> Inspection<'a> {
                 .map(|link| Link { name: &link.name, body: body_name(link.body), has_inertial: link.has_inertial })
                 .collect(),
             feet: feet.collect(),
-            left_out: LeftOut::all(robot),
+            left_out: LeftOutRecord::all(robot),
         }
     }
 

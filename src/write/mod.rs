@@ -11,14 +11,13 @@
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```
 
-mod holds;
-mod id;
 #[cfg(feature = "accuracy")]
 pub mod accuracy;
 mod inspection;
 mod list;
-mod outcome;
 mod problem;
+mod state;
+mod holds;
 mod result;
 pub mod sweep;
 #[cfg(feature = "schema")]
@@ -31,11 +30,10 @@ mod csv;
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
 pub use csv::Columns;
-pub use holds::{Counterexample, Holds, StateFields};
-pub(crate) use id::short_id;
+pub use holds::{CounterexampleRecord, HoldsRecord};
 pub use inspection::Inspection;
-pub use outcome::{AtZero, Border, NamedVelocities, Outcome, OutcomeInBrief};
-pub use result::{Brief, Contact, ErrorObject, Explained, LeftOut, Refused, Rejected, Report};
+pub(crate) use result::short_id;
+pub use result::{Brief, ContactRecord, ErrorObject, LeftOutRecord, OutcomeInBrief, Refused, Rejected, Report};
 pub use text::{Palette, Subject, text};
 pub use touchdown::{CarriedFields, Touchdown};
 

@@ -1,74 +1,75 @@
-//! The JSON contract: these structs are what is written, field by field and in this order.
+//! The JSON contract: these structs are what is written, field by field and in this order, and can be read back.
 //!
 //! Fields that do not apply are absent; fields that apply but have no value (the index on a border, the condition of a
 //! singular matrix) are null. Numbers are written with every digit.
 
 use super::Detail;
-use super::holds::{Counterexample, Holds};
-use super::outcome::{Outcome, OutcomeInBrief};
+use super::holds::{CounterexampleRecord, HoldsRecord};
 #[cfg(feature = "schema")]
 use super::schema::Id;
 use super::touchdown::{CarriedFields, Touchdown};
-use crate::impact::{Analysis, Explanation, ImpulseRegion, Verdict, outcome};
+use crate::contact::Contact;
+use crate::impact::{Analysis, Explanation, Outcome, Rejection, Verdict};
 use crate::law::Mode;
-use crate::pipeline::{Impact, Matrices};
+use crate::pipeline::{self, Impact, Matrices};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::state::State;
-use crate::{Error, Result, Robot, contact, description, pipeline};
-use serde::Serialize;
+use crate::{Error, Robot, description};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
 
 /// The result of a state or of a contact problem.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report<'a> {
     /// What the user calls it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
-    pub id: Option<&'a Value>,
+    pub id: Option<Cow<'a, Value>>,
     /// Where the state was found; of a touchdown in a recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touchdown: Option<Touchdown<'a>>,
-    /// The answer in one word; absent beside an `error`.
+    /// The answer in one word; absent next to an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
-    /// Every combination is decided by an error bound: the list is complete and right; absent beside an `error`.
+    /// Every combination is decided by an error bound: the list is complete and right; absent next to an
+    /// `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
-    /// Whether every state of the box has the same outcomes, as lists of modes: true, false or "unknown"; of an uncertain
-    /// state.
+    /// Whether every state of the box has the same outcomes, as lists of modes: true, false or "unknown"; of an
+    /// uncertain state.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub holds: Option<Holds>,
-    /// A state of the box with other outcomes; where `holds` is false.
+    pub holds: Option<HoldsRecord>,
+    /// A state of the box with other outcomes; if `holds` is false.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub counterexample: Option<Counterexample<'a>>,
+    pub counterexample: Option<CounterexampleRecord<'a>>,
     /// The closed contacts, in the order of all lists per contact.
-    pub contacts: Vec<Contact<'a>>,
-    /// Every outcome; absent beside an `error`.
+    pub contacts: Vec<ContactRecord<'a>>,
+    /// Every outcome; absent next to an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub outcomes: Option<Vec<Outcome<'a>>>,
+    pub outcomes: Option<Cow<'a, [Outcome]>>,
     /// Every other combination, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejected: Option<Vec<Rejected<'a>>>,
     /// Kinetic energy before the impact \[J\]; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinetic_energy: Option<f64>,
-    /// Whether some outcome has no sliding contact; null where that is undecided, absent beside an `error`.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Whether some outcome has no sliding contact; null if that is undecided, absent next to an `error`.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub no_slip_consistent: Option<Option<bool>>,
     /// The paper's section 4 for each contact, if asked for; null for a singular Delassus matrix.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
-    pub explain: Option<Option<Explained<'a>>>,
-    /// Sum of the outcomes' indices; null where one of them has none.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explain: Option<Option<Cow<'a, Explanation>>>,
+    /// Sum of the outcomes' indices; null if one of them has none.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub index_sum: Option<Option<i32>>,
-    /// Condition number of the Delassus matrix scaled to a unit diagonal; null where it is singular.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Condition number of the Delassus matrix scaled to a unit diagonal; null if it is singular.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
     pub condition: Option<Option<f64>>,
     /// Rank of the Delassus matrix.
@@ -76,19 +77,19 @@ pub struct Report<'a> {
     pub rank: Option<usize>,
     /// What of the robot's file and of the scene does not enter the analysis; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub left_out: Option<Vec<LeftOut<'a>>>,
+    pub left_out: Option<Vec<LeftOutRecord<'a>>>,
     /// What a reader should know, in whole sentences.
-    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    #[serde(default, skip_serializing_if = "<[String]>::is_empty")]
     pub notes: Cow<'a, [String]>,
     /// Names of the kept coordinates in the order of q, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub coordinates: Option<&'a [String]>,
+    pub coordinates: Option<Cow<'a, [String]>>,
     /// M, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mass_matrix: Option<&'a [Vec<f64>]>,
+    pub mass_matrix: Option<Cow<'a, [Vec<f64>]>>,
     /// J, rows tangential and normal per contact, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub contact_jacobian: Option<&'a [Vec<f64>]>,
+    pub contact_jacobian: Option<Cow<'a, [Vec<f64>]>>,
     /// G = J M^-1 J^T, without what the loops do not let move; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delassus: Option<Cow<'a, [Vec<f64>]>>,
@@ -97,18 +98,19 @@ pub struct Report<'a> {
     pub carried: Option<CarriedFields<'a>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<ErrorObject<'a>>,
+    pub error: Option<ErrorObject>,
 }
 
 /// A closed contact.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Contact<'a> {
+#[serde(rename = "Contact")]
+pub struct ContactRecord<'a> {
     /// The URDF link that carries the shape; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub link: Option<&'a str>,
-    /// Its name, which is its link's, or link/0, link/1 ... where a link has several.
-    pub name: &'a str,
+    pub link: Option<Cow<'a, str>>,
+    /// Its name, which is its link's, or link/0, link/1 ... if a link has several.
+    pub name: Cow<'a, str>,
     /// The contact point in the world \[m\]; of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub point: Option<Vector<f64>>,
@@ -123,21 +125,23 @@ pub struct Contact<'a> {
 }
 
 /// Something of the robot's file or of the scene that does not enter the analysis.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct LeftOut<'a> {
+#[serde(rename = "LeftOut")]
+pub struct LeftOutRecord<'a> {
     /// What, as in `joint "left_ankle"`.
     pub what: Cow<'a, str>,
     /// Why, as in `fixed: welded into left_shank`.
-    pub why: &'a str,
+    pub why: Cow<'a, str>,
 }
 
-impl<'a> LeftOut<'a> {
+impl<'a> LeftOutRecord<'a> {
     /// All that was left out of `robot`, and of every robot.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
         let what = Cow::Borrowed("gravity, Coriolis forces, joint limits");
-        let never = Self { what, why: "do not enter an impact" };
-        let of_robot = robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: &left.why });
+        let never = Self { what, why: Cow::Borrowed("do not enter an impact") };
+        let of_robot =
+            robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: Cow::Borrowed(&left.why) });
         of_robot.chain([never]).collect()
     }
 
@@ -159,48 +163,51 @@ impl<'a> LeftOut<'a> {
                 pipeline::LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
                 pipeline::LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
             };
-            Self { what: Cow::Owned(what), why }
+            Self { what: Cow::Owned(what), why: Cow::Borrowed(why) }
         });
         of_scene.chain(Self::all(robot)).collect()
     }
 }
 
 /// A combination of modes that is not an outcome.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Rejected<'a> {
     /// One mode per contact.
-    pub modes: &'a [Mode],
+    pub modes: Cow<'a, [Mode]>,
     /// Why it is none, with the contact's name.
     pub because: String,
-    /// The smallest slack, negative; null where the combination has no solution at all.
+    /// The smallest slack, negative; null if the combination has no solution at all.
     pub margin: Option<f64>,
     /// The impulses that it would have needed \[N s\].
-    pub impulse: Option<&'a [Pair<f64>]>,
+    pub impulse: Option<Cow<'a, [Pair<f64>]>>,
     /// The contact velocities that it would have led to \[m/s\].
-    pub velocity_after: Option<&'a [Pair<f64>]>,
+    pub velocity_after: Option<Cow<'a, [Pair<f64>]>>,
 }
 
-/// The paper's section 4, one entry per contact.
-#[derive(Debug, Clone, Serialize)]
+/// An outcome in brief.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Explained<'a> {
-    /// Angle of the impulse of a pure slide \[rad\].
-    pub beta: &'a [f64],
-    /// Angle of the impulse that the contact takes over from the rest \[rad\].
-    pub gamma: &'a [f64],
-    /// What infinite friction does there.
-    pub region: &'a [ImpulseRegion],
+pub struct OutcomeInBrief<'a> {
+    /// One mode per contact.
+    pub modes: Cow<'a, [Mode]>,
+    /// Sign of det A.
+    pub index: Option<i8>,
+    /// The smallest slack of the outcome's inequalities, free of units.
+    pub margin: Option<f64>,
+    /// False, and only then present, if the combination is neither shown nor excluded.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub decided: bool,
 }
 
 /// The result in brief.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Brief<'a> {
     /// What the user calls it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
-    pub id: Option<&'a Value>,
+    pub id: Option<Cow<'a, Value>>,
     /// Where the state was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touchdown: Option<Touchdown<'a>>,
@@ -212,88 +219,84 @@ pub struct Brief<'a> {
     pub proven: Option<bool>,
     /// Whether every state of the box has the same outcomes; of an uncertain state.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub holds: Option<Holds>,
+    pub holds: Option<HoldsRecord>,
     /// Every outcome.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
     /// Why there are no outcomes.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<ErrorObject<'a>>,
+    pub error: Option<ErrorObject>,
 }
 
 /// What stands in place of the result of a refused input.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Refused<'a> {
-    /// What the user calls it, where that can be read; of a long one the beginning and `... (cut)`.
+pub struct Refused {
+    /// What the user calls it, if that can be read; of a long one the beginning and `... (cut)`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Value>,
     /// The line on which the input begins, from 1.
     pub line: usize,
     /// Why it was refused.
-    pub error: ErrorObject<'a>,
+    pub error: ErrorObject,
 }
 
 /// A refusal; it names no file, so that a file, a pipe and standard input give the same bytes.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ErrorObject<'a> {
+pub struct ErrorObject {
     /// Why.
     pub message: String,
     /// Where inside the input, as in `position.joints.left_hip`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub place: Option<&'a str>,
+    pub place: Option<String>,
     /// What to do.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub hint: Option<&'a str>,
+    pub hint: Option<String>,
 }
 
-impl<'a> Refused<'a> {
+impl Refused {
     /// The refusal of the input that begins on `line`.
-    pub fn new(id: Option<Value>, line: usize, error: &'a Error) -> Self {
-        Self { id: id.map(super::short_id), line, error: ErrorObject::new(error) }
+    pub fn new(id: Option<Value>, line: usize, error: &Error) -> Self {
+        Self { id: id.map(short_id), line, error: ErrorObject::new(error) }
     }
 }
 
-impl<'a> ErrorObject<'a> {
+impl ErrorObject {
     /// The error without its file, line and column.
-    pub fn new(error: &'a Error) -> Self {
-        Self { message: error.reason().to_string(), place: error.place(), hint: error.remedy() }
+    pub fn new(error: &Error) -> Self {
+        let [place, hint] = [error.place(), error.remedy()].map(|text| text.map(str::to_owned));
+        Self { message: error.reason().to_string(), place, hint }
     }
 }
 
 impl<'a> Report<'a> {
-    /// The result of a state. Where the outcomes were refused it has an `error`, beside the matrices if they were asked for.
+    /// The result of a state. If the outcomes were refused it has an `error`, next to the matrices that were asked for.
     ///
     /// # Errors
-    /// The refusal of the outcomes, where there are no matrices that could stand beside it.
-    pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> Result<Self> {
-        let analysis = match &impact.analysis {
-            Err(error) if impact.matrices.is_none() => return Err(error.clone()),
-            analysis => analysis.as_ref(),
+    /// The refusal of the outcomes, if no matrices were asked for.
+    pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> crate::Result<Self> {
+        let error = match impact.analysed() {
+            Err(error) if impact.matrices.is_none() => return Err(error),
+            analysis => analysis.err(),
         };
         let contacts = impact.contacts.iter().zip(&impact.velocity_before);
-        let contacts = contacts.map(|(contact, velocity)| Contact::of_robot(robot, contact, *velocity)).collect();
+        let contacts = contacts.map(|(contact, velocity)| ContactRecord::of_robot(robot, contact, *velocity)).collect();
         let mut report = Self {
-            id: state.id.as_ref(),
+            id: state.id.as_ref().map(Cow::Borrowed),
             kinetic_energy: Some(impact.kinetic_energy),
-            left_out: Some(LeftOut::of_impact(robot, impact)),
-            holds: impact.holds.as_ref().map(Holds::from),
-            counterexample: impact.holds.as_ref().and_then(|holds| Counterexample::of(robot, holds)),
+            left_out: Some(LeftOutRecord::of_impact(robot, impact)),
+            holds: impact.holds.as_ref().map(HoldsRecord::from),
+            counterexample: impact.holds.as_ref().and_then(|holds| CounterexampleRecord::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),
-            ..Self::of_analysis(contacts, analysis, detail)
+            error: error.as_ref().map(ErrorObject::new),
+            ..Self::of_analysis(contacts, impact.analysis.as_ref(), detail)
         };
-        for (outcome, velocity) in report.outcomes.iter_mut().flatten().zip(&impact.velocity_after) {
-            outcome.set_velocity_after(robot, velocity);
-        }
-        for (outcome, impulse) in report.outcomes.iter_mut().flatten().zip(&impact.loop_impulse) {
-            outcome.loop_impulse = (!impulse.is_empty()).then_some(impulse);
-        }
         if let Some(Matrices { coordinates, mass_matrix, contact_jacobian, delassus }) = &impact.matrices {
-            report.coordinates = Some(coordinates);
-            report.mass_matrix = Some(mass_matrix);
-            report.contact_jacobian = Some(contact_jacobian);
+            report.coordinates = Some(Cow::Borrowed(coordinates));
+            report.mass_matrix = Some(Cow::Borrowed(mass_matrix));
+            report.contact_jacobian = Some(Cow::Borrowed(contact_jacobian));
             report.delassus = Some(Cow::Borrowed(delassus));
         }
         Ok(report)
@@ -302,30 +305,21 @@ impl<'a> Report<'a> {
     /// The result of a contact problem without a robot.
     pub fn of_problem(problem: &'a Problem, analysis: &'a Analysis, detail: Detail) -> Self {
         let contacts = problem.names.iter().zip(problem.contact.velocity_before());
-        let contacts = contacts.map(|(name, velocity)| Contact::of_problem(name, *velocity)).collect();
+        let contacts = contacts.map(|(name, velocity)| ContactRecord::of_problem(name, *velocity)).collect();
         Self {
-            id: problem.id.as_ref(),
+            id: problem.id.as_ref().map(Cow::Borrowed),
             delassus: detail.matrices.then(|| Cow::Owned(super::problem::delassus(problem))),
             notes: super::problem::notes(problem, analysis),
-            ..Self::of_analysis(contacts, Ok(analysis), detail)
+            ..Self::of_analysis(contacts, Some(analysis), detail)
         }
     }
 
     /// What robots and matrices have in common.
-    fn of_analysis(
-        contacts: Vec<Contact<'a>>,
-        analysis: std::result::Result<&'a Analysis, &'a Error>,
-        detail: Detail,
-    ) -> Self {
-        let known = analysis.ok();
+    fn of_analysis(contacts: Vec<ContactRecord<'a>>, known: Option<&'a Analysis>, detail: Detail) -> Self {
         let explained = known.filter(|_| detail.explain);
         let rejected = explained.map(|analysis| {
-            let names: Vec<String> = contacts.iter().map(|contact| contact.name.to_owned()).collect();
+            let names: Vec<String> = contacts.iter().map(|contact| contact.name.to_string()).collect();
             analysis.rejected.iter().map(|rejection| Rejected::new(rejection, &names)).collect()
-        });
-        let outcomes = known.map(|analysis| {
-            let name = |contact: usize| contacts[contact].name;
-            analysis.outcomes.iter().map(|outcome| Outcome::new(outcome, name)).collect()
         });
         Self {
             id: None,
@@ -334,11 +328,11 @@ impl<'a> Report<'a> {
             proven: known.map(|analysis| analysis.proven),
             holds: None,
             counterexample: None,
-            outcomes,
+            outcomes: known.map(|analysis| Cow::Borrowed(&*analysis.outcomes)),
             rejected,
             kinetic_energy: None,
             no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
-            explain: explained.map(|analysis| analysis.explanation.as_ref().map(Explained::new)),
+            explain: explained.map(|analysis| analysis.explanation.as_ref().map(Cow::Borrowed)),
             index_sum: known.map(|analysis| analysis.index_sum),
             condition: known.map(|analysis| analysis.condition),
             rank: known.map(|analysis| analysis.rank),
@@ -349,20 +343,20 @@ impl<'a> Report<'a> {
             contact_jacobian: None,
             delassus: None,
             carried: None,
-            error: analysis.err().map(ErrorObject::new),
+            error: None,
             contacts,
         }
     }
 
     /// The same in brief.
-    pub fn brief(&self) -> Brief<'a> {
+    pub fn brief(&self) -> Brief<'_> {
         Brief {
-            id: self.id,
+            id: self.id.clone(),
             touchdown: self.touchdown.clone(),
             verdict: self.verdict,
             proven: self.proven,
             holds: self.holds,
-            outcomes: self.outcomes.as_ref().map(|outcomes| outcomes.iter().map(Outcome::brief).collect()),
+            outcomes: self.outcomes.as_deref().map(|outcomes| outcomes.iter().map(OutcomeInBrief::new).collect()),
             error: self.error.clone(),
         }
     }
@@ -373,37 +367,96 @@ impl<'a> Report<'a> {
     }
 }
 
-impl<'a> Contact<'a> {
-    fn of_robot(robot: &'a Robot, contact: &'a contact::Contact, velocity_before: Pair<f64>) -> Self {
+impl<'a> ContactRecord<'a> {
+    fn of_robot(robot: &'a Robot, contact: &'a Contact, velocity_before: Pair<f64>) -> Self {
         Self {
-            link: robot.links.get(contact.link).map(|link| link.name.as_str()),
-            name: &contact.name,
+            link: robot.links.get(contact.link).map(|link| Cow::Borrowed(&*link.name)),
             point: Some(contact.point),
             normal: Some(contact.normal()),
             gap: Some(contact.gap),
-            velocity_before,
+            ..Self::of_problem(&contact.name, velocity_before)
         }
     }
 
     fn of_problem(name: &'a str, velocity_before: Pair<f64>) -> Self {
-        Self { link: None, name, point: None, normal: None, gap: None, velocity_before }
+        Self { link: None, name: Cow::Borrowed(name), point: None, normal: None, gap: None, velocity_before }
     }
 }
 
 impl<'a> Rejected<'a> {
-    fn new(rejection: &'a outcome::Rejection, names: &[String]) -> Self {
+    fn new(rejection: &'a Rejection, names: &[String]) -> Self {
+        let motion = rejection.motion.as_ref();
         Self {
-            modes: &rejection.modes,
+            modes: Cow::Borrowed(&rejection.modes),
             because: rejection.because.describe(names),
             margin: rejection.margin,
-            impulse: rejection.motion.as_ref().map(|motion| motion.impulse.as_slice()),
-            velocity_after: rejection.motion.as_ref().map(|motion| motion.velocity_after.as_slice()),
+            impulse: motion.map(|motion| Cow::Borrowed(&*motion.impulse)),
+            velocity_after: motion.map(|motion| Cow::Borrowed(&*motion.velocity_after)),
         }
     }
 }
 
-impl<'a> Explained<'a> {
-    fn new(explanation: &'a Explanation) -> Self {
-        Self { beta: &explanation.beta, gamma: &explanation.gamma, region: &explanation.region }
+impl<'a> OutcomeInBrief<'a> {
+    fn new(outcome: &'a Outcome) -> Self {
+        let Outcome { modes, index, margin, decided, .. } = outcome;
+        Self { modes: Cow::Borrowed(modes), index: *index, margin: *margin, decided: *decided }
+    }
+}
+
+/// The most characters of an id that are repeated.
+const ID_LIMIT: usize = 200;
+
+/// An id as it is repeated where it only has to be recognized; of a long text the beginning and `... (cut)`.
+pub(crate) fn short_id(id: Value) -> Value {
+    let end = id.as_str().and_then(|text| text.char_indices().nth(ID_LIMIT));
+    match (&id, end) {
+        (Value::String(text), Some((end, _))) => format!("{}... (cut)", &text[..end]).into(),
+        _ => id,
+    }
+}
+
+/// Reads a field that may be null although it may also be absent.
+fn present<'de, D: Deserializer<'de>, T: Deserialize<'de>>(field: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(field).map(Some)
+}
+
+fn is_true(flag: &bool) -> bool {
+    *flag
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::{Options, Pipeline};
+    use crate::state::Defaults;
+
+    #[test]
+    fn a_long_id_is_cut_and_a_short_one_is_not() {
+        for kept in [Value::from(17), "k17".into(), "é".repeat(ID_LIMIT).into()] {
+            assert_eq!(short_id(kept.clone()), kept);
+        }
+        assert_eq!(short_id("é".repeat(1 << 20).into()), format!("{}... (cut)", "é".repeat(ID_LIMIT)));
+    }
+
+    #[test]
+    fn a_written_result_reads_back_as_the_same() {
+        let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).unwrap();
+        let options = Options { explain_up_to: 9, matrices: true, ..Options::default() };
+        let detail = Detail { explain: true, matrices: true, ..Detail::default() };
+        let wide = include_str!("../../examples/ramone_measured.json").replace("1e-3", "1e-2");
+        for text in [include_str!("../../examples/ramone.json"), &wide] {
+            let state = State::from_json(text, &robot, &Defaults::default()).unwrap();
+            let impact = Pipeline::new(&robot, options.clone()).impact(&state).unwrap();
+            let mut lines = [Vec::new(), Vec::new()];
+            Report::of_state(&robot, &state, &impact, detail).unwrap().append_json(detail, &mut lines[0]);
+            let read: Report = serde_json::from_slice(&lines[0]).unwrap();
+            read.append_json(detail, &mut lines[1]);
+            assert_eq!(lines[0], lines[1]);
+            assert_eq!(read.outcomes.as_deref(), Some(&*impact.analysis.unwrap().outcomes));
+        }
     }
 }

@@ -108,7 +108,11 @@ fn answer(bytes: &[u8], kept: &mut Pipeline, case: &str) -> bool {
     let mut answered = false;
     for document in documents(text) {
         match State::from_json(document.text, &RAMONE, &Defaults::default()) {
-            Ok(state) => answered |= check_state(&state, &RAMONE, kept, &options(), case),
+            Ok(state) => {
+                let again = State::from_json(&state.to_json(&RAMONE), &RAMONE, &Defaults::default());
+                assert_eq!(again.ok().as_ref(), Some(&state), "written, it reads as another state\n{case}");
+                answered |= check_state(&state, &RAMONE, kept, &options(), case);
+            }
             Err(error) => check_refusal(&document.locate(error), case),
         }
     }

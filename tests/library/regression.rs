@@ -225,7 +225,8 @@ fn a_robot_that_cannot_move_answers() {
 
 #[test]
 fn numbers_that_overflow_are_refused_by_name() {
-    let refused = |state: &str| impact(&flat_box(), state).map(|found| found.analysis).expect_err(state).to_string();
+    let refused =
+        |state: &str| impact(&flat_box(), state).and_then(Impact::into_analysis).expect_err(state).to_string();
     let far = r#"{"contacts": [{"link": "body", "offset": [1e200, 0, 1e200]}], "velocity": {"base": {"z": -1}}}"#;
     assert!(refused(far).contains("the Delassus matrix must be a finite number"), "{}", refused(far));
     let fast = r#"{"velocity": {"base": {"x": 1e308, "z": -1e308}}, "position": {"base": {"z": 0.1}}}"#;

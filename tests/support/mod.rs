@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each binary uses its own part")]
 
+pub mod after;
 pub mod answers;
 pub mod command;
 pub mod mechanism;

@@ -45,10 +45,12 @@ const NAMED: usize = 60;
 /// A state with an arrow for each impulse and velocity, a panel for each outcome; `feet` are those in addition to the
 /// robot's own shapes. `None` if the outcomes were refused.
 pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Option<Picture> {
-    let analysis = impact.analysis.as_ref().ok()?;
+    let analysis = impact.analysis.as_ref()?;
     let drawing = Drawing::of_impact(robot, feet, state, impact);
     let scene = DrawnScene::new(&drawing);
-    let captions: Vec<String> = analysis.outcomes.iter().enumerate().map(|outcome| caption(impact, outcome)).collect();
+    let several = analysis.outcomes.len() > 1;
+    let outcomes = analysis.outcomes.iter().enumerate();
+    let captions: Vec<String> = outcomes.map(|outcome| caption(impact, several, outcome)).collect();
     let panel = |title: &String, outcome: Option<&DrawnOutcome>| Panel {
         title: title.clone(),
         shapes: [scene.robot(), scene.impact(outcome)].concat(),
@@ -118,11 +120,11 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
 }
 
 /// What happens, and then how sure that is.
-fn caption(impact: &Impact, (at, outcome): (usize, &Outcome)) -> String {
+fn caption(impact: &Impact, several: bool, (at, outcome): (usize, &Outcome)) -> String {
     let modes = caption::modes(impact.contacts.iter().map(|contact| contact.name.as_str()), outcome);
     let grades = Some(words::grades(outcome.margin, outcome.index)).filter(|grades| !grades.is_empty());
     let below: Vec<String> = grades.into_iter().chain(caption::remarks(outcome)).collect();
-    let number = if impact.velocity_after.len() > 1 { format!("{}: ", at + 1) } else { String::new() };
+    let number = if several { format!("{}: ", at + 1) } else { String::new() };
     format!("{number}{modes}\n{}", below.join(", "))
 }
 

@@ -17,6 +17,11 @@ pub trait Source {
     fn is_exact(&self) -> bool {
         true
     }
+
+    /// What an outcome calls a contact.
+    fn contact_name(&self, contact: usize) -> String {
+        format!("contact/{contact}")
+    }
 }
 
 /// Error bounds of a problem in f64.

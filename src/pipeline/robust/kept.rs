@@ -1,6 +1,6 @@
 //! A state whose numbers vary in a box while its contacts are kept.
 
-use super::super::strike::{Contacts, Inputs, Strike};
+use super::super::exact::{Contacts, ExactState, Inputs};
 use super::super::{Answer, Impact, Pipeline};
 use super::Counterexample;
 use super::combination::UncertainProblem;
@@ -11,7 +11,7 @@ use crate::impact::Analysis;
 use crate::law::{ContactLaw, Coulomb, Friction, Frictionless, Law, Mode, Unbounded};
 use crate::robot::Robot;
 use crate::scalar::{Affine, Real};
-use crate::state::{ByLink, NamedContact, State};
+use crate::state::{NamedContact, State};
 
 /// A state whose contacts, stance and resting contacts are kept while its numbers vary.
 pub(super) struct KeptContacts<'a, 'r> {
@@ -34,7 +34,9 @@ impl KeptContacts<'_, '_> {
             match quantity {
                 Quantity::Position(coordinate) => state.position[coordinate] = value,
                 Quantity::Velocity(coordinate) => state.velocity[coordinate] = value,
-                Quantity::Friction(link) => set(&mut state.scene.friction, link, Friction::Finite(value)),
+                Quantity::Friction(link) => {
+                    state.scene.friction.links.insert(link, Friction::Finite(value));
+                }
                 Quantity::RotorInertia(joint) => {
                     state.scene.rotor_inertia.resize(self.pipeline.robot.joints.len(), 0.0);
                     state.scene.rotor_inertia[joint] = value;
@@ -47,7 +49,7 @@ impl KeptContacts<'_, '_> {
     /// The proven answer at a point, if its contacts are the same.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let Answer { impact, foot, stance, resting } = self.pipeline.answer(&state, None).ok()?;
+        let Answer { impact, foot, resting } = self.pipeline.answer(&state, None).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
                 let far = one.centre - other.centre;
@@ -58,8 +60,8 @@ impl KeptContacts<'_, '_> {
         // Elsewhere on a profile a named contact may have another normal.
         let mut contacts = impact.contacts.iter().zip(&self.answer.impact.contacts);
         let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
-        (same_foot && same_axes && stance == self.answer.stance && resting == self.answer.resting)
-            .then_some((state, impact.analysis.ok()?))
+        (same_foot && same_axes && impact.stance == self.answer.impact.stance && resting == self.answer.resting)
+            .then_some((state, impact.analysis?))
     }
 
     /// The square of how far a foot that is named may lie from the same foot as it was found \[m^2\].
@@ -90,15 +92,15 @@ impl KeptContacts<'_, '_> {
 
     /// The contact problems of all states of the box.
     pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
-        let Answer { impact, foot, stance, resting } = self.answer;
+        let Answer { impact, foot, resting } = self.answer;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
-        let strike = Strike {
+        let exact = ExactState {
             robot,
             scene,
             position: &self.state.position,
             velocity: &self.state.velocity,
             foot: foot.as_ref(),
-            stance: *stance,
+            stance: impact.stance,
             contacts: &impact.contacts,
             resting,
             constraints: Constraints::default(),
@@ -106,8 +108,8 @@ impl KeptContacts<'_, '_> {
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,
         };
-        let Contacts { delassus, before, free } = strike.contacts(Inputs {
-            posture: whole.posture::<N>(robot, &self.state.position),
+        let Contacts { delassus, before, free } = exact.contacts(Inputs {
+            configuration: whole.posture::<N>(robot, &self.state.position),
             velocity: whole.velocity(&self.state.velocity),
             plan: whole.plan(robot, &scene.held, &scene.rotor_inertia),
         });
@@ -151,11 +153,4 @@ pub(super) fn with_named_contacts(robot: &Robot, state: &State, answer: &Answer)
     };
     named.scene.contacts.get_or_insert_with(|| contacts.iter().map(name).collect());
     named
-}
-
-fn set<T>(values: &mut ByLink<T>, link: usize, value: T) {
-    match values.links.iter_mut().find(|(named, _)| *named == link) {
-        Some((_, own)) => *own = value,
-        None => values.links.push((link, value)),
-    }
 }

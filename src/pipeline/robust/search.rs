@@ -26,7 +26,7 @@ impl Pipeline<'_> {
         uncertainty: &Uncertainty,
         answer: &Answer,
     ) -> Robustness {
-        let Some(expected) = answer.impact.analysis.as_ref().ok().and_then(proven_modes) else {
+        let Some(expected) = answer.impact.analysis.as_ref().and_then(proven_modes) else {
             return Robustness::Unknown;
         };
         let links: Vec<usize> = answer.impact.contacts.iter().map(|contact| contact.link).collect();

@@ -275,9 +275,9 @@ impl<'n> Node<'n> {
     }
 
     /// Refuses a field that the format does not have, and offers the nearest of those it has.
-    pub(crate) fn unknown_field(&self, known: &[&str]) -> Error {
+    pub(crate) fn unknown_field(&self, known: &[String]) -> Error {
         let error = self.refuse_name(self.key(), Reason::UnknownField(self.key().to_owned()));
-        let nearest = error.did_you_mean(self.key(), known.iter().copied());
+        let nearest = error.did_you_mean(self.key(), known.iter().map(String::as_str));
         match nearest.remedy() {
             Some(_) => nearest,
             None => nearest.hint(format!("the fields here are {}", known.join(", "))),

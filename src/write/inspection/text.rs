@@ -148,7 +148,7 @@ impl Inspection<'_> {
             name.is_some_and(|name| names.contains(name))
         };
         let rest = self.left_out.iter().filter(|left| !is_held(&left.what));
-        grouped(held.chain(rest.map(|left| (left.why.to_owned(), left.what.clone().into_owned()))))
+        grouped(held.chain(rest.map(|left| (left.why.to_string(), left.what.to_string()))))
     }
 }
 

@@ -1,15 +1,13 @@
 //! JSON Schema (draft 2020-12) of what is read and written.
 //!
-//! A result's schema is derived from the very structs that are written. States, problems and studies are read by hand, so that each
-//! refusal has its place; `inputs` mirrors what those readers accept, and a test holds the two together.
+//! A result's schema is derived from the very structs that are written; those of states, problems and studies are parts
+//! of `format.json`, from which their readers know their fields.
 //!
-//! The schemas are closed: a field that they do not name is none, as the strict readers have it.
+//! The schemas are closed: as for the strict readers, a field that they do not name does not exist.
 
-mod expressions;
 mod inputs;
 
-use super::NamedVelocities;
-use super::holds::{Holds, StateFields};
+use super::holds::HoldsRecord;
 use super::result::{Brief, Refused, Report};
 use super::sweep::{MapSweep, RefusedSample, Sweep};
 use super::touchdown::CarriedFields;
@@ -25,18 +23,18 @@ const MAY_BE_NULL: &str = "x-may-be-null";
 
 /// The schema of a state.
 pub fn state() -> Value {
-    schema_of::<inputs::State>(SchemaSettings::draft2020_12().for_deserialize())
+    inputs::schema("State")
 }
 
 /// The schema of a contact problem that is given as matrices.
 pub fn problem() -> Value {
-    schema_of::<inputs::Problem>(SchemaSettings::draft2020_12().for_deserialize())
+    inputs::schema("Problem")
 }
 
 /// The schema of a study; every number of it but an id may be an expression.
 pub fn study() -> Value {
-    let mut schema = schema_of::<inputs::Study>(SchemaSettings::draft2020_12().for_deserialize());
-    expressions::allow(&mut schema);
+    let mut schema = inputs::schema("Study");
+    inputs::allow_expressions(&mut schema);
     schema
 }
 
@@ -64,7 +62,7 @@ pub fn accuracy() -> Value {
 enum ResultLine<'a> {
     Whole(Box<Report<'a>>),
     Brief(Brief<'a>),
-    Refused(Refused<'a>),
+    Refused(Refused),
 }
 
 /// What is found along one parameter, or over two.
@@ -104,7 +102,7 @@ struct SampleWhole<'a> {
 enum SampleResult<'a> {
     Whole(Box<Report<'a>>),
     Brief(Brief<'a>),
-    Refused(RefusedSample<'a>),
+    Refused(RefusedSample),
 }
 
 /// What the user calls a state or a problem.
@@ -119,18 +117,6 @@ pub(super) enum Id {
     Number(f64),
 }
 
-impl JsonSchema for NamedVelocities<'_> {
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> Cow<'static, str> {
-        "NamedVelocities".into()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        BTreeMap::<String, f64>::json_schema(generator)
-    }
-}
-
 impl JsonSchema for CarriedFields<'_> {
     fn inline_schema() -> bool {
         true
@@ -143,7 +129,7 @@ impl JsonSchema for CarriedFields<'_> {
     }
 }
 
-impl JsonSchema for Holds {
+impl JsonSchema for HoldsRecord {
     fn inline_schema() -> bool {
         true
     }
@@ -155,17 +141,9 @@ impl JsonSchema for Holds {
     }
 }
 
-impl JsonSchema for StateFields<'_> {
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> Cow<'static, str> {
-        "StateFields".into()
-    }
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        // What a state may have has a schema of its own.
-        schemars::json_schema!({"type": "object"})
-    }
+/// Any object, of which there is a schema of its own.
+pub(super) fn any_object(_: &mut SchemaGenerator) -> Schema {
+    schemars::json_schema!({"type": "object"})
 }
 
 fn schema_of<T: JsonSchema>(settings: SchemaSettings) -> Value {
@@ -185,6 +163,8 @@ fn strict(schema: &mut Schema) {
     let required: Vec<Value> = schema.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
     if let Some(Value::Object(properties)) = schema.get_mut("properties") {
         for (name, property) in properties {
+            // What is read in place of an absent field is no part of what is written.
+            property.as_object_mut().map(|property| property.remove("default"));
             if !required.iter().any(|required| required == name) {
                 without_null(property);
             }

@@ -83,7 +83,7 @@ pub struct Happening<'a> {
     pub undecided: Option<&'a [Vec<Mode>]>,
     /// Why the states in it are refused, as at its middle.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<ErrorObject<'a>>,
+    pub error: Option<ErrorObject>,
 }
 
 impl<'a> Regions<'a> {

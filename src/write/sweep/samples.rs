@@ -26,9 +26,9 @@ pub struct Sample<'a> {
 /// The record of a refused sample.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub(crate) struct RefusedSample<'a> {
+pub(crate) struct RefusedSample {
     /// Why.
-    error: ErrorObject<'a>,
+    error: ErrorObject,
 }
 
 impl<'a> Sample<'a> {
@@ -106,7 +106,7 @@ fn answer(
 ) -> Result<()> {
     let impact = pipeline.impact(state)?;
     write(&Report::of_state(robot, state, &impact, detail)?);
-    impact.analysis.map(|_| ())
+    impact.analysed().map(drop)
 }
 
 /// The columns of a table of samples: those of a batch, then the parameters and the region's letter; `contacts` are

@@ -7,9 +7,9 @@ use self::outcome::graded;
 use crate::planar::Vector;
 pub(crate) mod table;
 
-use super::holds::Holds;
+use super::holds::HoldsRecord;
 use super::list::list;
-use super::result::{Contact, Report};
+use super::result::{ContactRecord, Report};
 use super::{Detail, words};
 use crate::Robot;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
@@ -62,7 +62,7 @@ impl<'a> Subject<'a> {
             title: words::titled(&robot.name, &state.id),
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
             units: base.iter().copied().chain(joints).collect(),
-            analysis: impact.analysis.as_ref().ok(),
+            analysis: impact.analysis.as_ref(),
         }
     }
 
@@ -110,7 +110,7 @@ impl<'w> Writer<'w> {
             for (at, outcome) in outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.modes.is_empty()) {
                 let border = if outcome.border.is_some() { ", on a border" } else { "" };
                 let family = if outcome.family { ", the end of a family" } else { "" };
-                let words = self.in_words(outcome.modes);
+                let words = self.in_words(&outcome.modes);
                 writeln!(self.out, "  {}  {words}{border}{family}{}", at + 1, graded(outcome))?;
             }
             return Ok(());
@@ -127,13 +127,19 @@ impl<'w> Writer<'w> {
     }
 
     fn names(&self) -> impl Iterator<Item = &'w str> + use<'w> {
-        self.report.contacts.iter().map(|contact| contact.name)
+        self.report.contacts.iter().map(|contact| &*contact.name)
     }
 
     /// The fastest contact velocity before or after.
     fn speeds(&self) -> f64 {
         let before = self.report.contacts.iter().map(|contact| contact.velocity_before);
-        let after = self.report.outcomes.iter().flatten().flat_map(|outcome| outcome.velocity_after.iter().copied());
+        let after = self
+            .report
+            .outcomes
+            .as_deref()
+            .into_iter()
+            .flatten()
+            .flat_map(|outcome| outcome.velocity_after.iter().copied());
         scale(before.chain(after).flatten())
     }
 
@@ -187,13 +193,13 @@ impl<'w> Writer<'w> {
         let Some(holds) = self.report.holds else { return Ok(()) };
         self.out.push_str("Holds on the whole box of the uncertainty: ");
         match (holds, &self.report.counterexample) {
-            (Holds::Yes, _) => self.out.push_str("yes.\n"),
-            (Holds::No, Some(other)) => {
+            (HoldsRecord::Yes, _) => self.out.push_str("yes.\n"),
+            (HoldsRecord::No, Some(other)) => {
                 let outcomes: Vec<String> = other.outcomes.iter().map(|modes| self.in_words(modes)).collect();
                 writeln!(self.out, "no; a state in it (`format: json`) has: {}.", outcomes.join("; or "))?;
             }
-            (Holds::No, None) => self.out.push_str("no.\n"),
-            (Holds::Unknown, _) => self.out.push_str("unknown.\n"),
+            (HoldsRecord::No, None) => self.out.push_str("no.\n"),
+            (HoldsRecord::Unknown, _) => self.out.push_str("unknown.\n"),
         }
         Ok(())
     }
@@ -207,7 +213,7 @@ impl<'w> Writer<'w> {
             Some(Some(explained)) => {
                 self.out.push_str("\nWith infinite friction, while all other contacts stick:\n");
                 Table::default()
-                    .text("contact", self.report.contacts.iter().map(|contact| contact.name))
+                    .text("contact", self.names())
                     .numbers("beta [rad]", 1.0, explained.beta.iter().copied())
                     .numbers("gamma [rad]", 1.0, explained.gamma.iter().copied())
                     .text("region", explained.region.iter().map(|region| described(*region)))
@@ -217,16 +223,16 @@ impl<'w> Writer<'w> {
     }
 
     fn matrices(&mut self) -> std::fmt::Result {
-        if let Some(coordinates) = self.report.coordinates {
+        if let Some(coordinates) = &self.report.coordinates {
             writeln!(self.out, "\ncoordinates: {}", coordinates.join(", "))?;
         }
         let matrices = [
-            ("mass matrix", self.report.mass_matrix),
-            ("contact Jacobian, rows t and n per contact", self.report.contact_jacobian),
-            ("Delassus matrix, rows and columns t and n per contact", self.report.delassus.as_deref()),
+            ("mass matrix", &self.report.mass_matrix),
+            ("contact Jacobian, rows t and n per contact", &self.report.contact_jacobian),
+            ("Delassus matrix, rows and columns t and n per contact", &self.report.delassus),
         ];
         for (name, matrix) in matrices {
-            let Some(rows) = matrix.filter(|rows| !rows.is_empty()) else { continue };
+            let Some(rows) = matrix.as_deref().filter(|rows| !rows.is_empty()) else { continue };
             writeln!(self.out, "\n{name}")?;
             Table::matrix(rows).write_body(&mut self.out);
         }
@@ -279,12 +285,12 @@ impl<'w> Writer<'w> {
     }
 }
 
-fn touching(contacts: &[Contact]) -> String {
+fn touching(contacts: &[ContactRecord]) -> String {
     match contacts {
         [] => "nothing touches the ground.".to_owned(),
         [contact] => format!("{} touches the ground.", contact.name),
         [.., last] => {
-            let names: Vec<&str> = contacts[..contacts.len() - 1].iter().map(|contact| contact.name).collect();
+            let names: Vec<&str> = contacts[..contacts.len() - 1].iter().map(|contact| &*contact.name).collect();
             format!("{} and {} touch the ground.", names.join(", "), last.name)
         }
     }

@@ -2,9 +2,9 @@
 
 use super::Palette;
 use super::Writer;
+use crate::impact::Outcome;
 use crate::law::Mode;
 use crate::planar::Vector;
-use crate::write::outcome::Outcome;
 use crate::write::text::table::{Table, number, scale};
 use crate::write::words;
 use std::fmt::Write;
@@ -15,7 +15,7 @@ impl Writer<'_> {
             return Ok(());
         }
         let Palette { strong, plain, .. } = *self.palette;
-        let words = self.in_words(outcome.modes);
+        let words = self.in_words(&outcome.modes);
         let decided = self.subject.analysis.and_then(|analysis| analysis.outcomes.get(count - 1));
         let open = if decided.is_some_and(|outcome| !outcome.decided) { ", not excluded" } else { "" };
         writeln!(self.out, "\n{strong}{count}  {words}{open}{plain}{}", graded(outcome))?;
@@ -59,7 +59,7 @@ impl Writer<'_> {
 
     /// What every loop gives to its point a.
     fn loops(&mut self, outcome: &Outcome) {
-        let impulses = outcome.loop_impulse.unwrap_or_default();
+        let impulses = outcome.loop_impulse.as_deref().unwrap_or_default();
         if impulses.is_empty() {
             return;
         }
@@ -111,7 +111,7 @@ pub(super) fn graded(outcome: &Outcome) -> String {
 }
 
 /// v after an outcome, base and joints.
-fn named_velocities<'a>(outcome: &Outcome<'a>) -> Vec<(&'a str, f64)> {
+fn named_velocities(outcome: &Outcome) -> Vec<(&str, f64)> {
     let parts = [&outcome.base_velocity_after, &outcome.joint_velocity_after];
-    parts.into_iter().flatten().flat_map(|part| part.0.iter().copied()).collect()
+    parts.into_iter().flatten().flat_map(|part| part.iter().map(|(name, &velocity)| (name, velocity))).collect()
 }

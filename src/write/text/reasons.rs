@@ -66,15 +66,19 @@ impl Writer<'_> {
         table.write(&mut self.out);
 
         self.out.push_str("\n  what each would have been\n");
-        let impulses = scale(rejected.iter().filter_map(|rejection| rejection.impulse).flatten().copied().flatten());
-        let after = rejected.iter().filter_map(|rejection| rejection.velocity_after).flatten().copied().flatten();
+        let impulses =
+            scale(rejected.iter().filter_map(|rejection| rejection.impulse.as_deref()).flatten().copied().flatten());
+        let after =
+            rejected.iter().filter_map(|rejection| rejection.velocity_after.as_deref()).flatten().copied().flatten();
         let speeds = scale(after).max(self.speeds());
         for (contact, name) in self.names().enumerate() {
-            let impulse = |axis: usize| rejected.iter().map(move |r| r.impulse.map(|list| list[contact][axis]));
-            let after = |axis: usize| rejected.iter().map(move |r| r.velocity_after.map(|list| list[contact][axis]));
+            let impulse =
+                |axis: usize| rejected.iter().map(move |r| r.impulse.as_deref().map(|list| list[contact][axis]));
+            let after =
+                |axis: usize| rejected.iter().map(move |r| r.velocity_after.as_deref().map(|list| list[contact][axis]));
             self.out.push('\n');
             Table::default()
-                .text(name, rejected.iter().map(|rejection| modes_listed(rejection.modes)))
+                .text(name, rejected.iter().map(|rejection| modes_listed(&rejection.modes)))
                 .numbers("impulse: t [N s]", impulses, impulse(0))
                 .numbers("n [N s]", impulses, impulse(1))
                 .numbers("after: t [m/s]", speeds, after(0))

@@ -105,7 +105,7 @@ fn states_are_refused_word_for_word() {
     ]);
     assert_refused("states", cases, &["impact", RAMONE, "-"], |text| {
         let state = State::from_json(text, &ramone, &Defaults::default())?;
-        Pipeline::new(&ramone, Options::default()).impact(&state)?.analysis.map(drop)
+        Pipeline::new(&ramone, Options::default()).impact(&state)?.into_analysis().map(drop)
     });
 }
 

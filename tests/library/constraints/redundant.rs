@@ -2,7 +2,7 @@
 
 use crate::constraints::four_bar::{L, M, M_COUPLER, WIDTH, assert_stops, bolted, parallelogram, pin, state};
 use crate::constraints::mechanism::{impact, point, try_impact};
-use heelstrike::planar::Vector;
+use crate::support::after::{loop_impulses, velocities_after};
 use serde_json::json;
 
 const Q: f64 = 0.6;
@@ -23,7 +23,7 @@ fn a_loop_given_twice_counts_once() {
           impulse is 0"
         ]
     );
-    assert_eq!(twice.loop_impulse[0], [once.loop_impulse[0][0], Vector::zero()]);
+    assert_eq!(loop_impulses(&twice)[0], [loop_impulses(&once)[0][0], [0.0; 2]]);
 }
 
 /// A third crank guides the coupler no more than two do: of its two rows one is new, its own angle.
@@ -36,7 +36,7 @@ fn a_parallelogram_with_a_third_crank_still_moves() {
     assert_stops(&found, Q, RATE, 3.0);
     assert_eq!(found.notes.len(), 1, "{:?}", found.notes);
     assert!(found.notes[0].contains("already closed along"), "{:?}", found.notes);
-    assert_eq!(found.loop_impulse[0].iter().flat_map(|own| own.components()).filter(|entry| *entry == 0.0).count(), 1);
+    assert_eq!(loop_impulses(&found)[0].iter().flatten().filter(|entry| **entry == 0.0).count(), 1);
 }
 
 /// A pose of six digits leaves the loops open by 1e-7 m; its rows, taken at their word, would lock the mechanism.
@@ -77,10 +77,10 @@ fn a_braced_parallelogram_is_rigid() {
     let brace = json!({"a": point("coupler", [0.5 * WIDTH, 0.0]), "b": point("root", coupler)});
     let still = state(&mechanism, Q, 0.0, json!([pin("rear", WIDTH), brace]));
     let found = impact(&bolted(&mechanism), &still);
-    for entry in found.matrices.expect("asked for").delassus.into_iter().flatten() {
+    for entry in found.matrices.as_ref().expect("asked for").delassus.iter().flatten() {
         assert!(entry.abs() < 1e-14, "{entry}");
     }
-    assert_eq!(found.velocity_after[0], [0.0; 3]);
+    assert_eq!(velocities_after(&found)[0], [0.0; 3]);
     // And moving it is refused.
     let error =
         try_impact(&bolted(&mechanism), &state(&mechanism, Q, RATE, still["loops"].clone())).expect_err("refused");

@@ -49,7 +49,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         return Err(format!("contacts {:?} and {:?}", names(one), names(other)));
     }
     let (a, b) = match (&one.analysis, &other.analysis) {
-        (Ok(a), Ok(b)) => (a, b),
+        (Some(a), Some(b)) => (a, b),
         (a, b) => return Err(format!("{a:?} and {b:?}")),
     };
     if a.verdict != b.verdict || (a.rank, a.index_sum) != (b.rank, b.index_sum) {
@@ -60,7 +60,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         near("conditions", &[one.recip()], &[other.recip()], 1.0)?;
     }
     let [a, b] = [one, other].map(sorted);
-    let modes = |outcomes: &[(usize, &Outcome)]| outcomes.iter().map(|own| own.1.modes.clone()).collect::<Vec<_>>();
+    let modes = |outcomes: &[&Outcome]| outcomes.iter().map(|own| own.modes.clone()).collect::<Vec<_>>();
     if modes(&a) != modes(&b) {
         return Err(format!("modes {:?} and {:?}", modes(&a), modes(&b)));
     }
@@ -72,18 +72,19 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
     // sqrt J, as margins are measured.
     let speeds = one.velocity_before.iter().flatten().zip(&mobility);
     let speed = speeds.map(|(c, mobility)| c.abs() / mobility).fold(f64::MIN_POSITIVE, f64::max);
-    for ((at, a), (bt, b)) in a.into_iter().zip(b) {
+    for (a, b) in a.into_iter().zip(b) {
         let scaled = |rows: &[[f64; 2]], power: i32| -> Vec<f64> {
             rows.iter().flatten().zip(&mobility).map(|(entry, mobility)| entry * mobility.powi(power) / speed).collect()
         };
         near("impulses", &scaled(&a.impulse, 1), &scaled(&b.impulse, 1), 1.0)?;
         near("contact velocities", &scaled(&a.velocity_after, -1), &scaled(&b.velocity_after, -1), 1.0)?;
         if let Some(rate) = rate {
-            let [loops, others] = [&one.loop_impulse[at], &other.loop_impulse[bt]]
-                .map(|impulse| impulse.iter().flat_map(|own| own.components()).collect::<Vec<f64>>());
+            let [loops, others] = [a, b]
+                .map(|own| own.loop_impulse.iter().flatten().flat_map(|own| own.components()).collect::<Vec<f64>>());
             let largest = a.impulse.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.abs()));
             near("impulses of loops", &loops, &others, largest)?;
-            near("velocities", &one.velocity_after[at], &other.velocity_after[bt], rate)?;
+            let [velocities, others] = [a, b].map(|own| own.velocity().collect::<Vec<_>>());
+            near("velocities", &velocities, &others, rate)?;
         }
         near("energies", &[a.energy_loss / speed / speed], &[b.energy_loss / speed / speed], 1.0)?;
     }
@@ -112,10 +113,10 @@ fn near(what: &str, a: &[f64], b: &[f64], least: f64) -> Result<(), String> {
 }
 
 /// Outcomes in the order of their modes, each with its place.
-fn sorted(impact: &Impact) -> Vec<(usize, &Outcome)> {
+fn sorted(impact: &Impact) -> Vec<&Outcome> {
     let outcomes = &impact.analysis.as_ref().expect("compared already").outcomes;
-    let mut outcomes: Vec<_> = outcomes.iter().enumerate().collect();
-    outcomes.sort_by(|(_, a), (_, b)| a.modes.cmp(&b.modes));
+    let mut outcomes: Vec<_> = outcomes.iter().collect();
+    outcomes.sort_by(|a, b| a.modes.cmp(&b.modes));
     outcomes
 }
 

@@ -92,8 +92,7 @@ pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) 
     for link in links {
         if let Some(Friction::Finite(mu)) = other.scene.friction.of(link) {
             let moved = Friction::Finite((mu + known.friction.of(link).unwrap_or(0.0) * place()).max(0.0));
-            other.scene.friction.links.retain(|(named, _)| *named != link);
-            other.scene.friction.links.push((link, moved));
+            other.scene.friction.links.insert(link, moved);
         }
     }
     for (joint, width) in known.rotor_inertia.iter().enumerate().filter(|(_, width)| **width > 0.0) {

@@ -3,12 +3,9 @@
 use crate::balls::oracle::{self, Answer, Index, Outcome};
 use crate::balls::states::{Model, beside_a_border};
 use crate::support::random::Random;
-use heelstrike::impact::{self, Analysis, Friction, Verdict};
-use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::robot::Robot;
-use heelstrike::state::Ground;
+use heelstrike::impact::{self, Analysis, Verdict};
+use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::State;
-use serde_json::{Value, json};
 use std::fmt;
 use std::ops::AddAssign;
 use std::sync::Mutex;
@@ -248,7 +245,7 @@ fn answer_block(model: &Model, block: u64) -> (Row, Vec<Failure>) {
     let mut counted = |state: &State| {
         let (counts, failure) = answer_state(model, &mut pipeline, state);
         failures.extend(failure.map(|text| {
-            let text = format!("{}, {text}\n{}", model.name, state_json(&model.robot, state));
+            let text = format!("{}, {text}\n{}", model.name, state.to_json(&model.robot));
             Failure { unproven: counts.wrong == 0, block, text }
         }));
         counts
@@ -282,9 +279,9 @@ fn answer_state(model: &Model, pipeline: &mut Pipeline<'_>, state: &State) -> (C
     assert!(
         answer.open > 0 || answer.dependent || border || sum == Some(1),
         "the oracle's own indices do not add up to one: {answer:?}\n{}",
-        state_json(&model.robot, state)
+        state.to_json(&model.robot)
     );
-    let analysis = match pipeline.impact(state).and_then(|impact| impact.analysis) {
+    let analysis = match pipeline.impact(state).and_then(Impact::into_analysis) {
         Ok(analysis) => analysis,
         Err(_) => {
             counts.refused += 1;
@@ -308,59 +305,4 @@ fn answer_state(model: &Model, pipeline: &mut Pipeline<'_>, state: &State) -> (C
         }
     }
     (counts, None)
-}
-
-/// A state as the command line reads it.
-pub fn state_json(robot: &Robot, state: &State) -> Value {
-    let scene = &state.scene;
-    let link = |link: usize| robot.links[link].name.clone();
-    let base = robot.base_dofs();
-    let skip = if scene.stance.is_some() { 2 } else { 0 };
-    let named = |values: &[f64]| {
-        let pairs: Vec<(String, Value)> =
-            robot.coordinates().map(str::to_owned).zip(values.iter().map(|&value| json!(value))).collect();
-        let joints: serde_json::Map<_, _> = pairs[base..].iter().cloned().collect();
-        let base: serde_json::Map<_, _> = pairs[..base].iter().skip(skip).cloned().collect();
-        json!({"base": base, "joints": joints})
-    };
-    let friction = |friction: Friction| match friction {
-        Friction::Finite(mu) => json!(mu),
-        Friction::Infinite => json!("infinite"),
-    };
-    let by_link = |values: Vec<(usize, Value)>| -> Value {
-        Value::Object(values.into_iter().map(|(index, value)| (link(index), value)).collect())
-    };
-    let contacts = scene.contacts.as_deref().unwrap_or_default();
-    let mut json = json!({
-        "position": named(&state.position),
-        "velocity": named(&state.velocity),
-        "friction": by_link(scene.friction.links.iter().map(|&(link, value)| (link, friction(value))).collect()),
-        "ground": match &scene.ground {
-            Ground::Slope(slope) => json!({"slope": slope}),
-            Ground::Profile(profile) => json!({"profile": profile.points()}),
-        },
-        "contacts": contacts
-            .iter()
-            .map(|contact| json!({"link": link(contact.link), "offset": contact.offset, "radius": contact.radius}))
-            .collect::<Vec<_>>(),
-        "held": scene.held.iter().map(|&joint| robot.joints[joint].name.clone()).collect::<Vec<_>>(),
-        "impulse": scene
-            .impulses
-            .iter()
-            .map(|impulse| json!({"link": link(impulse.link), "offset": impulse.offset, "vector": impulse.vector}))
-            .collect::<Vec<_>>(),
-    });
-    if !scene.restitution.links.is_empty() {
-        json["restitution"] =
-            by_link(scene.restitution.links.iter().map(|&(link, value)| (link, json!(value))).collect());
-    }
-    if !scene.rotor_inertia.is_empty() {
-        let rotors =
-            robot.joints.iter().zip(&scene.rotor_inertia).map(|(joint, &value)| (joint.name.clone(), json!(value)));
-        json["rotor_inertia"] = Value::Object(rotors.collect());
-    }
-    if let Some(stance) = scene.stance {
-        json["stance"] = json!(link(stance));
-    }
-    json
 }

@@ -23,7 +23,7 @@ mod states;
 use crate::support::random::Random;
 use census::{Finding, Row, census, compare};
 use heelstrike::impact::{Mode, Verdict};
-use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
 use oracle::Index;
 use std::time::Instant;
@@ -72,7 +72,7 @@ fn a_mistake_is_found() {
             let state = model.random(&mut random);
             let Some(answer) = oracle::answer(&model.robot, &state) else { continue };
             let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
-            let Ok(right) = impact.and_then(|impact| impact.analysis) else { continue };
+            let Ok(right) = impact.and_then(Impact::into_analysis) else { continue };
             if !matches!(compare(&answer, &right), Finding::Proven | Finding::Same) {
                 continue;
             }
@@ -118,7 +118,7 @@ fn states_are_written_as_they_are() {
         let mut random = Random::new(3);
         for _ in 0..20 {
             let state = model.random(&mut random);
-            let text = census::state_json(&model.robot, &state).to_string();
+            let text = state.to_json(&model.robot);
             let read = State::from_json(&text, &model.robot, &Defaults::default());
             let read = read.unwrap_or_else(|error| panic!("{error}\n{text}"));
             assert_eq!(oracle::answer(&model.robot, &read), oracle::answer(&model.robot, &state), "{text}");

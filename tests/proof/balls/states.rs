@@ -226,9 +226,8 @@ enum Parameter {
 impl Parameter {
     fn random(state: &State, robot: &Robot, random: &mut Random) -> Self {
         let floating = robot.base_dofs() == 3;
-        let finite: Vec<usize> = (0..state.scene.friction.links.len())
-            .filter(|&k| matches!(state.scene.friction.links[k].1, Friction::Finite(mu) if mu > 0.0))
-            .collect();
+        let finite = |(&link, &mu): (&usize, &Friction)| matches!(mu, Friction::Finite(mu) if mu > 0.0).then_some(link);
+        let finite: Vec<usize> = state.scene.friction.links.iter().filter_map(finite).collect();
         // The base's x and z lead nowhere, and with a stance nor do their rates.
         let dofs = robot.dofs() as i64 - 1;
         match random.whole(0, 2) {
@@ -242,9 +241,9 @@ impl Parameter {
         match self {
             Self::Position(k) => state.position[k],
             Self::Velocity(k) => state.velocity[k],
-            Self::Friction(k) => match state.scene.friction.links[k].1 {
-                Friction::Finite(mu) => mu,
-                Friction::Infinite => f64::INFINITY,
+            Self::Friction(link) => match state.scene.friction.of(link) {
+                Some(Friction::Finite(mu)) => mu,
+                _ => f64::INFINITY,
             },
         }
     }
@@ -254,7 +253,9 @@ impl Parameter {
         match self {
             Self::Position(k) => changed.position[k] = value,
             Self::Velocity(k) => changed.velocity[k] = value,
-            Self::Friction(k) => changed.scene.friction.links[k].1 = Friction::Finite(value.max(0.0)),
+            Self::Friction(link) => {
+                changed.scene.friction.links.insert(link, Friction::Finite(value.max(0.0)));
+            }
         }
         changed
     }

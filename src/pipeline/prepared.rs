@@ -1,18 +1,16 @@
-//! From a state to its contact problem.
+//! From a state to its contact problem in f64: what goes between the steps of the
+//! [`Assembly`](super::assembly::Assembly).
 //!
 //! ```text
-//!     State --plan, kinematics--> poses, M = L^T D L --stance, loops--> v --contact--> points --> J, c = J v, G = J M^-1 J^T
-//!     applied impulses p: v + M^-1 J_p^T p     bounds of the rounding in c and G     {G, c, mu, e} --> ContactProblem
+//!     State --plan, place, factorize--> stance, loops: v --contact--> points --> J, c, G --> bounds of their rounding
+//!                                                              applied impulses --> c_free     --> ContactProblem
 //! ```
-//!
-//! Each step reads what the ones before it left in the workspace; [`Pipeline::before`] is their order.
 
-use super::{CONTACT_TOLERANCE, Loops, Pipeline};
+use super::assembly::Assembly;
+use super::{CONTACT_TOLERANCE, Pipeline};
 use crate::contact::{self, Contact, Placement, Surface};
 use crate::dynamics::plan::Plan;
-use crate::dynamics::{
-    Arm, add_impulse, contact_jacobian, delassus, factorize, kinematics, kinetic_energy, mass_matrix, point_velocity,
-};
+use crate::dynamics::{Arm, kinetic_energy};
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::ContactProblem;
 use crate::impact::problem::check_matrix_size;
@@ -27,19 +25,18 @@ pub struct Unsolved {
     pub contacts: Vec<Contact>,
     /// Their problem, in f64.
     pub problem: ContactProblem,
-    /// How far each foot is from the ground \[m\]; empty where the state names its contacts.
+    /// How far each foot is from the ground \[m\]; empty if the state names its contacts.
     pub clearance: Vec<f64>,
 }
 
-/// A state and its contact problem, not yet analysed.
-pub struct Before {
+/// A state that is ready to be analysed.
+pub struct Prepared {
     /// Where the bodies are.
     pub placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
     pub velocity: Vec<f64>,
     /// The foot of the stance.
     pub foot: Option<Contact>,
-    pub loops: Loops,
     pub contacts: Vec<Contact>,
     /// Shapes that were too far from the ground to be asked.
     pub out_of_reach: usize,
@@ -48,9 +45,9 @@ pub struct Before {
     /// Contacts that were taken as exactly at rest.
     pub resting: Vec<bool>,
     pub kinetic_energy: f64,
-    /// What the applied impulses change in v, with and without the loops' answer.
-    pub change: Vec<f64>,
+    /// What the applied impulses change in v, without and with what the loops answer.
     pub applied: Vec<f64>,
+    pub change: Vec<f64>,
     pub problem: ContactProblem,
     pub notes: Vec<String>,
 }
@@ -61,7 +58,7 @@ impl Pipeline<'_> {
     /// # Errors
     /// As [`Pipeline::impact`].
     pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
-        let Before { placement, contacts, problem, .. } = self.before(state)?;
+        let Prepared { placement, contacts, problem, .. } = self.prepare(state)?;
         let clearance = match state.scene.contacts {
             Some(_) => Vec::new(),
             None => contact::clearances(&self.feet, &placement, &Surface::new(&state.scene.ground)),
@@ -70,63 +67,64 @@ impl Pipeline<'_> {
     }
 
     /// Everything up to the contact problem.
-    pub(super) fn before(&mut self, state: &State) -> Result<Before> {
+    pub(super) fn prepare(&mut self, state: &State) -> Result<Prepared> {
         let scene = &state.scene;
+        self.check_lengths(state)?;
         self.compile(scene);
-        self.posture.set(&self.plan, &state.position);
-        kinematics(&self.plan, &self.posture, &mut self.workspace);
-        mass_matrix(&self.plan, &mut self.workspace);
-        factorize(&self.plan, &mut self.workspace);
+        self.assembly.configuration.set(&self.assembly.plan, &state.position);
+        self.assembly.place();
+        self.assembly.factorize();
         self.check_inertia(!scene.loops.is_empty())?;
 
         let mut notes = Vec::new();
         let surface = Surface::new(&scene.ground);
         let (base, mut velocity, foot) = self.stand(state, &surface)?;
-        let loops = match scene.loops.is_empty() {
-            true => {
-                self.keep_rates();
-                Loops::default()
-            }
-            false => self.close_loops(state, foot.as_ref(), &mut velocity, &mut notes)?,
-        };
-        let placement = Placement::new(&self.plan, &self.workspace, base);
+        self.close_loops(&scene.loops, foot.as_ref(), &mut velocity, &mut notes)?;
+        let placement = Placement::new(&self.assembly.plan, &self.assembly.workspace, base);
         let (contacts, out_of_reach) = self.contacts(scene, &placement, &surface, &mut notes)?;
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
-        self.points.clear();
-        self.points.extend(contacts.iter().map(Contact::point_of));
-        contact_jacobian(&self.plan, &self.points, &velocity, stance, &mut self.workspace);
+        self.assembly.points.clear();
+        self.assembly.points.extend(contacts.iter().map(Contact::point_of));
+        self.assembly.contact_jacobian(&velocity, stance);
         let resting = self.snap(&contacts, &mut notes);
-        delassus(&self.plan, &mut self.workspace);
-        self.eliminate_loops(&loops);
+        self.assembly.delassus();
         let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
         self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
-        self.tell_of_slow(&contacts, &mut notes);
-        if !scene.impulses.is_empty() || (self.is_constrained(&loops) && !self.options.no_proof) {
+        self.note_slow(&contacts, &mut notes);
+        if !scene.impulses.is_empty() || (self.assembly.is_constrained() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;
             self.bounds.velocity.fill([f64::INFINITY; 2]);
         }
 
-        let mut change = self.applied(scene);
-        let applied = change.clone();
-        self.answer_of_loops(&loops, &mut change);
+        let applied = self.assembly.applied(self.robot, scene, self.robot.dofs());
+        let mut change = applied.clone();
+        self.assembly.answer(&mut change);
         let problem = self.problem(scene, &contacts, &change)?;
-        Ok(Before {
+        Ok(Prepared {
             placement,
             velocity,
             foot,
-            loops,
             contacts,
             out_of_reach,
             stance,
             resting,
             kinetic_energy,
-            change,
             applied,
+            change,
             problem,
             notes,
         })
+    }
+
+    /// Refuses a state whose lists are not as long as its robot has coordinates.
+    fn check_lengths(&self, state: &State) -> Result<()> {
+        let coordinates = self.robot.dofs();
+        check_length("position", state.position.len(), coordinates)?;
+        check_length("velocity", state.velocity.len(), coordinates)?;
+        let joints = self.robot.joints.len() + self.robot.mimic_joints.len();
+        check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)
     }
 
     /// Compiles the plan, unless the last one was for the same held joints and rotors.
@@ -136,23 +134,26 @@ impl Pipeline<'_> {
                 true => (&scene.held[..], &[][..]),
                 false => (&[][..], &scene.held[..]),
             };
-            self.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
-            self.kept.clear();
-            self.kept.extend(kept.iter().map(|joint| self.robot.base_dofs() + joint));
+            self.assembly.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
+            self.assembly.kept.clear();
+            self.assembly.kept.extend(kept.iter().map(|joint| self.robot.base_dofs() + joint));
             self.held.clone_from(&scene.held);
             self.rotor_inertia.clone_from(&scene.rotor_inertia);
         }
     }
 
-    /// Refuses a coordinate whose inertia, once all that hangs on it may move, is zero to rounding.
+    /// Refuses a coordinate whose inertia is zero to rounding once all that it carries may move.
     pub(super) fn check_inertia(&self, has_loops: bool) -> Result<()> {
-        let nv = self.plan.columns();
+        let nv = self.assembly.plan.columns();
         for column in (0..nv).rev() {
-            let (whole, rest) = (self.workspace.mass_matrix[column * nv + column], self.workspace.factor.pivot(column));
+            let (whole, rest) = (
+                self.assembly.workspace.mass_matrix[column * nv + column],
+                self.assembly.workspace.factor.pivot(column),
+            );
             // Each of up to nv eliminations loses at most a few units in the last place of the whole.
             finite(whole, || "the mass matrix".into())?;
             if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {
-                let coordinate = self.plan.coordinates()[column];
+                let coordinate = self.assembly.plan.coordinates()[column];
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
                 let joint = coordinate >= self.robot.base_dofs();
                 let (what, remedy) = if joint {
@@ -174,15 +175,15 @@ impl Pipeline<'_> {
         Ok(())
     }
 
-    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything. The refusal names the
-    /// greatest of the velocities that were `given`.
+    /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything. The refusal
+    /// names the greatest of the velocities that were `given`.
     fn energy_in_range(&self, given: &[f64], velocity: &[f64]) -> Result<f64> {
         let too_large =
             |error: Error| error.hint("positions and velocities are too large for f64: are they in SI units?");
-        for &entry in &self.workspace.delassus {
+        for &entry in &self.assembly.workspace.delassus {
             finite(entry, || "an entry of the Delassus matrix".into()).map_err(too_large)?;
         }
-        let energy = kinetic_energy(&self.plan, velocity, &self.workspace);
+        let energy = kinetic_energy(&self.assembly.plan, velocity, &self.assembly.workspace);
         let greatest = || {
             let named = self.robot.coordinates().zip(given).enumerate();
             let greatest = named.max_by(|(_, (_, a)), (_, (_, b))| a.abs().total_cmp(&b.abs()));
@@ -202,24 +203,22 @@ impl Pipeline<'_> {
         self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
     }
 
-    /// The root's origin and the velocity by coordinate; with a stance both are such that its foot stands, and the foot.
+    /// The root's origin and the velocity by coordinate; with a stance both are such that its foot stands, and the
+    /// foot.
     fn stand(&self, state: &State, surface: &Surface) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
         let mut velocity = state.velocity.clone();
-        if !self.plan.floating {
+        if !self.assembly.plan.floating {
             return Ok((Vector::zero(), velocity, None));
         }
         let Some(link) = state.scene.stance else {
             return Ok((Vector::new(state.position[0], state.position[1]), velocity, None));
         };
-        let at_zero = Placement::new(&self.plan, &self.workspace, Vector::zero());
+        let at_zero = Placement::new(&self.assembly.plan, &self.assembly.workspace, Vector::zero());
         let named = state.scene.contacts.as_deref();
         // A side is flat by the rounding of its corners, whatever the contact tolerance is.
         let flat = CONTACT_TOLERANCE * self.feet.size();
         let stance = contact::stance(self.robot, &self.feet, named, link, (&at_zero, surface), flat)?;
-        velocity[..2].fill(0.0);
-        let arm = stance.foot.point_of().arm(&self.workspace);
-        let moving = point_velocity(&self.plan, stance.foot.body, arm, &velocity, &self.workspace);
-        velocity[..2].copy_from_slice(&(-moving).components());
+        self.assembly.rest(&stance.foot.point_of(), &mut velocity);
         Ok((stance.base, velocity, Some(stance.foot)))
     }
 
@@ -260,14 +259,14 @@ impl Pipeline<'_> {
         Ok((contacts, out_of_reach))
     }
 
-    /// Takes slow contacts as resting where asked to, and tells which.
+    /// Takes contacts below the resting speed as exactly at rest; gives which.
     fn snap(&mut self, contacts: &[Contact], notes: &mut Vec<String>) -> Vec<bool> {
         let limit = self.options.resting_speed;
-        let speeds = self.workspace.contact_velocity.iter_mut().zip(contacts);
+        let speeds = self.assembly.workspace.contact_velocity.iter_mut().zip(contacts);
         speeds
             .map(|(speed, contact)| {
                 let slow = libm::hypot(speed[0], speed[1]);
-                // A speed that is zero but for its rounding is one of them.
+                // A speed that is zero to rounding is one of them.
                 let snapped = limit > 0.0 && slow < limit;
                 if snapped && slow > 0.0 {
                     *speed = [0.0; 2];
@@ -284,9 +283,9 @@ impl Pipeline<'_> {
 
     /// Bounds the rounding of G and c; without proofs that of G is taken for what was measured.
     fn bound(&mut self, contacts: &[Contact], velocity: &[f64], foot: Option<&Contact>, rests: impl Fn(usize) -> bool) {
-        let Self { robot, plan, posture, bounds, workspace, .. } = self;
+        let Self { robot, assembly: Assembly { plan, configuration, workspace, .. }, bounds, .. } = self;
         let arm = |contact: &Contact| Arm { body: contact.body, length: contact.stretch(robot) + contact.radius };
-        bounds.stretch(plan, posture, contacts.iter().map(arm));
+        bounds.stretch(plan, configuration, contacts.iter().map(arm));
         bounds.velocities(plan, velocity, foot.map(arm), rests);
         if self.options.no_proof {
             bounds.delassus = DYNAMICS_ROUNDING;
@@ -295,9 +294,9 @@ impl Pipeline<'_> {
         }
     }
 
-    /// Tells of speeds that are no more than rounding.
-    fn tell_of_slow(&self, contacts: &[Contact], notes: &mut Vec<String>) {
-        let speeds = self.workspace.contact_velocity.iter().zip(&self.bounds.velocity);
+    /// Notes speeds that are no more than rounding.
+    fn note_slow(&self, contacts: &[Contact], notes: &mut Vec<String>) {
+        let speeds = self.assembly.workspace.contact_velocity.iter().zip(&self.bounds.velocity);
         for (contact, (speed, noise)) in contacts.iter().zip(speeds) {
             let slow = libm::hypot(speed[0], speed[1]);
             let bound = libm::hypot(noise[0], noise[1]);
@@ -311,19 +310,7 @@ impl Pipeline<'_> {
         }
     }
 
-    /// What the applied impulses change in the velocity by coordinate.
-    fn applied(&mut self, scene: &Scene) -> Vec<f64> {
-        let mut change = vec![0.0; self.robot.dofs()];
-        for applied in &scene.impulses {
-            let link = &self.robot.links[applied.link];
-            let arm = self.workspace.rotation[link.body].apply(link.point(applied.offset));
-            let Self { plan, workspace, column, .. } = self;
-            add_impulse(plan, workspace, (link.body, arm), applied.vector, column, &mut change);
-        }
-        change
-    }
-
-    fn problem(&mut self, scene: &Scene, contacts: &[Contact], change: &[f64]) -> Result<ContactProblem> {
+    fn problem(&self, scene: &Scene, contacts: &[Contact], change: &[f64]) -> Result<ContactProblem> {
         let mut friction = Vec::with_capacity(contacts.len());
         for contact in contacts {
             friction.push(scene.friction.of(contact.link).ok_or_else(|| {
@@ -334,24 +321,24 @@ impl Pipeline<'_> {
             })?);
         }
         let restitution = contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect();
-        let before = self.workspace.contact_velocity.clone();
-        let mut unbraked = before.clone();
-        if !scene.impulses.is_empty() {
-            // Only the change goes through J, so that a contact at rest before stays exactly so without an impulse.
-            for (point, speed) in self.points.iter().zip(&mut unbraked) {
-                let more = point_velocity(&self.plan, point.body, point.arm(&self.workspace), change, &self.workspace);
-                for (entry, axis) in speed.iter_mut().zip(point.axes()) {
-                    *entry += axis.dot(more);
-                }
-            }
-        }
-        ContactProblem::checked(self.workspace.delassus.clone(), (before, unbraked), (friction, restitution))
+        let before = self.assembly.workspace.contact_velocity.clone();
+        let free = if scene.impulses.is_empty() { before.clone() } else { self.assembly.free(&before, change) };
+        ContactProblem::checked(self.assembly.workspace.delassus.clone(), (before, free), (friction, restitution))
     }
 }
 
-/// What G of a robot loses to rounding, relative to its rows' own scale: measured below 3e-15 against 640 bits on chains,
-/// straight legs and extreme mass ratios. No bound; it serves where none is asked for.
+/// What G of a robot loses to rounding, relative to its rows' own scale: measured below 3e-15 against 640 bits on
+/// chains, straight legs and extreme mass ratios. It is no bound, and used only if none is asked for.
 const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Refuses a list that is too short or too long for the robot.
+pub(super) fn check_length(place: &'static str, found: usize, wanted: usize) -> Result<()> {
+    if found == wanted {
+        return Ok(());
+    }
+    let reason = Reason::Inconsistent(format!("the robot needs {wanted} entries here, but {found} are given"));
+    Err(Error::new(reason).at(place).hint("begin with State::zero, which has an entry per coordinate"))
+}
 
 /// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {

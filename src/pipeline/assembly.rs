@@ -1,0 +1,176 @@
+//! From a configuration to G and c, step by step, in numbers of any kind.
+//!
+//! ```text
+//!     configuration --place--> poses --factorize--> M = L^T D L, or articulated bodies --rest, close--> v
+//!     v, points --contact_jacobian--> J, c = J v --delassus--> G = J M^-1 J^T      impulses p --applied, free--> c_free
+//! ```
+//!
+//! Each step reads what the steps before it left in the workspace. The f64 pipeline finds contacts and bounds its
+//! rounding between the steps; [`super::exact`] takes them for every other number, and `accuracy` times them one by
+//! one.
+
+use crate::dynamics::plan::{Configuration, Plan};
+use crate::dynamics::{
+    Closed, Constraints, ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus,
+    articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, loop_impulse,
+    mass_matrix, orthogonalize, point_velocity,
+};
+use crate::planar::{Pair, Vector};
+use crate::robot::Robot;
+use crate::scalar::Real;
+use crate::state::Scene;
+
+/// How M^-1 is applied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Elimination {
+    /// M = L^T D L along the tree's branches.
+    Ltl,
+    /// Articulated bodies, without M: quicker for long chains and with narrower enclosures. They know neither mimic
+    /// joints nor constraints.
+    ArticulatedBodies,
+}
+
+/// The dynamics of one state, and the memory that it needs.
+#[derive(Debug, Clone)]
+pub struct Assembly<T = f64> {
+    pub plan: Plan<T>,
+    pub configuration: Configuration<T>,
+    pub elimination: Elimination,
+    pub workspace: Workspace<T>,
+    /// The closed contacts.
+    pub points: Vec<ContactPoint<T>>,
+    /// Coordinates of held joints that have a column all the same.
+    pub kept: Vec<usize>,
+    pub loops: Vec<Loop<T>>,
+    /// The rows of the loops that count, in the order in which every number eliminates them.
+    pub rows: Vec<usize>,
+    column: Vec<T>,
+    motions: Vec<(T, Vector<T>)>,
+}
+
+impl<T: Real> Assembly<T> {
+    /// Of a robot without contacts, loops and kept joints.
+    pub fn new(plan: Plan<T>) -> Self {
+        Self {
+            plan,
+            configuration: Configuration::default(),
+            elimination: Elimination::Ltl,
+            workspace: Workspace::default(),
+            points: Vec::new(),
+            kept: Vec::new(),
+            loops: Vec::new(),
+            rows: Vec::new(),
+            column: Vec::new(),
+            motions: Vec::new(),
+        }
+    }
+
+    /// Where the bodies are.
+    pub fn place(&mut self) {
+        kinematics(&self.plan, &self.configuration, &mut self.workspace);
+    }
+
+    /// Prepares M^-1.
+    pub fn factorize(&mut self) {
+        match self.elimination {
+            Elimination::Ltl => {
+                mass_matrix(&self.plan, &mut self.workspace);
+                factorize(&self.plan, &mut self.workspace);
+            }
+            Elimination::ArticulatedBodies => articulated_inertias(&self.plan, &mut self.workspace),
+        }
+    }
+
+    /// Velocity of a contact point, in the world's axes.
+    fn velocity_of(&self, point: &ContactPoint<T>, velocity: &[T]) -> Vector<T> {
+        point_velocity(&self.plan, point.body, point.arm(&self.workspace), velocity, &self.workspace)
+    }
+
+    /// Takes the base's velocity as the one with which `foot` rests.
+    pub fn rest(&self, foot: &ContactPoint<T>, velocity: &mut [T]) {
+        velocity[..2].fill(T::zero());
+        let moving = self.velocity_of(foot, velocity);
+        velocity[..2].copy_from_slice(&(-moving).components());
+    }
+
+    /// Whether something other than the contacts gives impulses.
+    pub fn is_constrained(&self) -> bool {
+        !(self.loops.is_empty() && self.kept.is_empty())
+    }
+
+    /// Prepares the constraints; `foot` stays at rest when the loops are closed in a velocity.
+    pub fn constrain(&mut self, foot: Option<ContactPoint<T>>) {
+        if self.is_constrained() {
+            let constraints = Constraints { kept: &self.kept, rows: &self.rows };
+            let foot = foot.filter(|_| !self.loops.is_empty());
+            orthogonalize(&self.plan, &self.loops, (constraints, foot), &mut self.workspace);
+        }
+    }
+
+    /// Closes the loops in `velocity`, as near to it as possible; gives the amplitudes of the constraints.
+    pub fn close(&self, velocity: &mut [T]) -> Vec<T> {
+        if self.loops.is_empty() {
+            return Vec::new();
+        }
+        close(&self.plan, &self.loops, Closed::Velocity, velocity, &self.workspace)
+    }
+
+    /// Adds to a `change` of velocity by impulses what the constraints answer; gives the loops' impulses on their
+    /// points a.
+    pub fn answer(&self, change: &mut [T]) -> Vec<Vector<T>> {
+        if !self.is_constrained() {
+            return Vec::new();
+        }
+        let amplitudes = close(&self.plan, &self.loops, Closed::Change, change, &self.workspace);
+        loop_impulse(self.loops.len(), &amplitudes, &self.workspace)
+    }
+
+    /// J and c. The contact `stance` is exactly at rest.
+    pub fn contact_jacobian(&mut self, velocity: &[T], stance: Option<usize>) {
+        contact_jacobian(&self.plan, &self.points, velocity, stance, &mut self.workspace);
+    }
+
+    /// G, without what the constraints do not let move.
+    pub fn delassus(&mut self) {
+        match self.elimination {
+            Elimination::Ltl => delassus(&self.plan, &mut self.workspace),
+            Elimination::ArticulatedBodies => articulated_delassus(&self.plan, &self.points, &mut self.workspace),
+        }
+        if self.is_constrained() {
+            eliminate_loops(&self.plan, &mut self.workspace);
+        }
+    }
+
+    /// Adds to `velocity` what an impulse at a point does to it, by a way that is prepared; the point is at an arm from
+    /// the origin of its body, in the world's axes.
+    pub fn push(&mut self, by: Elimination, at: (usize, Vector<T>), impulse: Vector<T>, velocity: &mut [T]) {
+        let Self { plan, workspace, column, motions, .. } = self;
+        match by {
+            Elimination::Ltl => add_impulse(plan, workspace, at, impulse, column, velocity),
+            Elimination::ArticulatedBodies => {
+                add_articulated_impulse(plan, workspace, at, impulse, (column, motions), velocity);
+            }
+        }
+    }
+
+    /// What the applied impulses change in v, by themselves.
+    pub fn applied(&mut self, robot: &Robot, scene: &Scene, coordinates: usize) -> Vec<T> {
+        let mut change = vec![T::zero(); coordinates];
+        for applied in &scene.impulses {
+            let link = &robot.links[applied.link];
+            let arm = self.workspace.rotation[link.body].apply(link.point(applied.offset));
+            self.push(self.elimination, (link.body, arm), applied.vector.map(T::from_f64), &mut change);
+        }
+        change
+    }
+
+    /// c with a `change` of velocity. Only the change goes through J, so that a contact at rest before stays exactly so
+    /// without an impulse.
+    pub fn free(&self, before: &[Pair<T>], change: &[T]) -> Vec<Pair<T>> {
+        let free = before.iter().zip(&self.points).map(|(&[tangential, normal], point)| {
+            let (more, axes) = (self.velocity_of(point, change), point.axes());
+            [tangential + axes[0].dot(more), normal + axes[1].dot(more)]
+        });
+        free.collect()
+    }
+}
