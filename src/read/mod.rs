@@ -5,7 +5,6 @@ pub(crate) mod json;
 pub(crate) mod format;
 pub mod documents;
 pub(crate) mod state;
-mod uncertainty;
 mod problem;
 mod variation;
 mod study;

@@ -2,11 +2,12 @@
 
 use super::format::fields_of;
 use super::json::{Node, Value, id_in};
-use super::uncertainty::{self, uncertainty};
 use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::Base;
-use crate::state::{AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, State};
+use crate::state::{
+    AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, State, Uncertainty,
+};
 use crate::{Error, Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
 
@@ -83,12 +84,7 @@ fn number(node: Node) -> Result<f64> {
 }
 
 /// `{"base": {"x", "z", "pitch"}, "joints": {name: number}}` into the order of q.
-pub(super) fn coordinates(
-    field: Node,
-    robot: &Robot,
-    into: &mut [f64],
-    number: impl Fn(Node) -> Result<f64>,
-) -> Result<()> {
+fn coordinates(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Node) -> Result<f64>) -> Result<()> {
     let (base, joints) = into.split_at_mut(robot.base_dofs());
     for part in field.fields("field")? {
         match part.key() {
@@ -127,7 +123,7 @@ fn refuse_a_placed_base(root: Node) -> Result<()> {
         }
     }
     for field in root.fields("field")?.filter(|field| field.key() == "uncertainty") {
-        uncertainty::refuse_a_placed_base(field)?;
+        refuse_half_widths_of_a_placed_base(field)?;
     }
     Ok(())
 }
@@ -144,7 +140,7 @@ fn stance(field: Node, robot: &Robot) -> Result<usize> {
 }
 
 /// A value for all links, or an object of values by link with an optional `default`.
-pub(super) fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>) -> Result<ByLink<T>> {
+fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>) -> Result<ByLink<T>> {
     if !field.is_object() {
         return Ok(ByLink::everywhere(read(field)?));
     }
@@ -325,7 +321,7 @@ fn link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     robot.link(name).ok_or_else(|| node.refuse_name(name, robot.no_link(name)).did_you_mean(name, known()))
 }
 
-pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
+fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.joints.iter().map(|joint| joint.name.as_str());
     robot.joint(name).ok_or_else(|| {
         let what = format!("joint \"{name}\"");
@@ -348,4 +344,50 @@ pub(super) fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
 
 fn missing(node: Node, what: &str) -> Error {
     node.refuse(Reason::Missing(format!("\"{what}\"")))
+}
+
+/// `{"position", "velocity", "friction", "rotor_inertia"}`, each one number or by name.
+fn uncertainty(field: Node, robot: &Robot) -> Result<Uncertainty> {
+    let (dofs, joints) = (robot.dofs(), robot.joints.len());
+    let mut read = Uncertainty {
+        position: vec![0.0; dofs],
+        velocity: vec![0.0; dofs],
+        friction: ByLink::default(),
+        rotor_inertia: vec![0.0; joints],
+    };
+    for part in field.fields("field")? {
+        match part.key() {
+            "position" if part.is_object() => coordinates(part, robot, &mut read.position, half_width)?,
+            "velocity" if part.is_object() => coordinates(part, robot, &mut read.velocity, half_width)?,
+            "position" => read.position.fill(half_width(part)?),
+            "velocity" => read.velocity.fill(half_width(part)?),
+            "friction" => read.friction = by_link(part, robot, half_width)?,
+            "rotor_inertia" if part.is_object() => {
+                for entry in part.fields("joint")? {
+                    read.rotor_inertia[joint(entry, entry.key(), robot)?] = half_width(entry)?;
+                }
+            }
+            "rotor_inertia" => read.rotor_inertia.fill(half_width(part)?),
+            _ => return Err(part.unknown_field(&fields_of("Uncertainty"))),
+        }
+    }
+    Ok(read)
+}
+
+/// The base's x and z follow the stance's foot: a half-width of their own would be read in vain.
+fn refuse_half_widths_of_a_placed_base(field: Node) -> Result<()> {
+    for part in field.fields("field")?.filter(|part| matches!(part.key(), "position" | "velocity") && part.is_object())
+    {
+        for base in part.fields("field")?.filter(|entry| entry.key() == "base") {
+            if let Some(entry) = base.fields("base entry")?.find(|entry| matches!(entry.key(), "x" | "z")) {
+                let reason = Reason::Inconsistent(format!("the stance gives the base's {} from the rest", entry.key()));
+                return Err(entry.refuse(reason).hint("leave out either the stance or this half-width"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn half_width(node: Node) -> Result<f64> {
+    node.number_from_zero("a half-width")
 }

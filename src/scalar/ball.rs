@@ -1,7 +1,7 @@
 //! Numbers with an error bound.
 
 use super::double::{DoubleDouble, two_sum};
-use super::{Enclosure, Ordered, Real, Sign, Trigonometry, series};
+use super::{Enclosure, Midpoint, Ordered, Real, Sign, Trigonometry, series};
 
 /// A real number known to lie within `radius` of `mid`.
 ///
@@ -17,45 +17,6 @@ pub struct Ball<M = f64> {
     pub mid: M,
     /// The greatest distance of the number from the centre; never negative, infinite if nothing is known.
     pub radius: f64,
-}
-
-/// A floating-point number that can be the centre of a [`Ball`].
-pub trait Midpoint: Real {
-    /// The greatest relative error of a product or a quotient.
-    const ROUNDING: f64;
-
-    /// Whether it is exactly zero.
-    fn is_zero(self) -> bool;
-
-    /// Whether it is a number at all.
-    fn is_finite(self) -> bool;
-
-    /// At least the absolute value.
-    fn magnitude(self) -> f64;
-
-    /// At most the absolute value.
-    fn least_magnitude(self) -> f64;
-
-    /// The sum and a bound of its error up to a relative 2^-52, which is zero if the sum is exact.
-    fn sum(self, other: Self) -> (Self, f64);
-
-    /// The sign of a number at most `radius` away.
-    fn sign_within(self, radius: f64) -> Sign;
-
-    /// The nearest f64.
-    fn to_f64(self) -> f64;
-
-    /// The greatest error of a product that was rounded to this number; its last part covers underflow.
-    #[inline]
-    fn rounding(self) -> f64 {
-        self.magnitude() * Self::ROUNDING + f64::MIN_POSITIVE
-    }
-
-    /// The greatest error of a quotient that was rounded to this number, by a divisor no smaller than `divisor`.
-    #[inline]
-    fn quotient_rounding(self, _divisor: f64) -> f64 {
-        self.rounding()
-    }
 }
 
 impl Midpoint for f64 {

@@ -57,7 +57,7 @@ impl From<&robust::Robustness> for HoldsRecord {
 #[serde(rename = "Counterexample")]
 pub struct CounterexampleRecord<'a> {
     /// The state as it is read, with the contacts by name.
-    #[cfg_attr(feature = "schema", schemars(schema_with = "super::schema::any_object"))]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "any_object"))]
     pub state: Box<RawValue>,
     /// Its verdict.
     pub verdict: Verdict,
@@ -72,4 +72,10 @@ impl<'a> CounterexampleRecord<'a> {
         let state = serde_json::value::to_raw_value(&StateRecord { robot, state: &found.state }).ok()?;
         Some(Self { state, verdict: found.verdict, outcomes: Cow::Borrowed(&found.outcomes) })
     }
+}
+
+/// Any object, of which there is a schema of its own.
+#[cfg(feature = "schema")]
+fn any_object(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    schemars::json_schema!({"type": "object"})
 }

@@ -2,8 +2,8 @@
 
 mod text;
 
+use super::Palette;
 use super::result::LeftOutRecord;
-use super::text::Palette;
 use crate::Robot;
 use crate::planar::Vector;
 use crate::robot::{self, Axis, Base, FootShape, FreezeReason, ParentJoint, Rim};

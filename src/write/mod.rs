@@ -11,21 +11,22 @@
 //!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
 //! ```
 
-#[cfg(feature = "accuracy")]
-pub mod accuracy;
-mod inspection;
 mod list;
-mod problem;
+pub(crate) mod table;
+pub(crate) mod words;
+mod touchdown;
 mod state;
 mod holds;
+mod problem;
 mod result;
+mod text;
+mod csv;
+mod inspection;
 pub mod sweep;
+#[cfg(feature = "accuracy")]
+pub mod accuracy;
 #[cfg(feature = "schema")]
 pub mod schema;
-pub(crate) mod text;
-mod touchdown;
-pub(crate) mod words;
-mod csv;
 
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
@@ -34,10 +35,21 @@ pub use holds::{CounterexampleRecord, HoldsRecord};
 pub use inspection::Inspection;
 pub(crate) use result::short_id;
 pub use result::{Brief, ContactRecord, ErrorObject, LeftOutRecord, OutcomeInBrief, Refused, Rejected, Report};
-pub use text::{Palette, Subject, text};
+pub use text::{Subject, text};
 pub use touchdown::{CarriedFields, Touchdown};
 
 use serde::Serialize;
+
+/// Escape sequences that mark text on a terminal; empty for plain text.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Palette {
+    /// Begins what matters most.
+    pub strong: &'static str,
+    /// Begins secondary text.
+    pub faint: &'static str,
+    /// Ends both.
+    pub plain: &'static str,
+}
 
 /// How much of a result is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

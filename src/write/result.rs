@@ -5,8 +5,6 @@
 
 use super::Detail;
 use super::holds::{CounterexampleRecord, HoldsRecord};
-#[cfg(feature = "schema")]
-use super::schema::Id;
 use super::touchdown::{CarriedFields, Touchdown};
 use crate::contact::Contact;
 use crate::impact::{Analysis, Explanation, Outcome, Rejection, Verdict};
@@ -459,4 +457,17 @@ mod tests {
             assert_eq!(read.outcomes.as_deref(), Some(&*impact.analysis.unwrap().outcomes));
         }
     }
+}
+
+/// What the user calls a state or a problem.
+#[cfg(feature = "schema")]
+#[derive(schemars::JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema is all that is wanted of it")]
+enum Id {
+    /// A name.
+    Text(String),
+    /// A number.
+    Number(f64),
 }

@@ -1,6 +1,6 @@
 //! Names, modes, verdicts and grades in words.
 
-use super::text::table::number;
+use super::table::number;
 use crate::impact::Verdict;
 use crate::law::Mode;
 use serde_json::Value;

@@ -12,8 +12,8 @@
 
 mod color;
 mod font;
-mod text_box;
 mod canvas;
+mod text_box;
 mod png;
 mod axis;
 mod curve;

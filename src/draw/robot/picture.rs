@@ -12,7 +12,7 @@ use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
 use crate::state::State;
-use crate::write::text::table::number;
+use crate::write::table::number;
 use crate::write::words;
 
 const IMPULSE: Stroke = Stroke::solid(Color::Vermilion, 3.0);

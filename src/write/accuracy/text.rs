@@ -4,7 +4,7 @@ use super::{Accuracy, Compliant, name_of};
 use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
 use crate::accuracy::{Errors, Factorization, Method, Spread, Study, Work};
 use crate::write::Palette;
-use crate::write::text::table::{Table, number};
+use crate::write::table::{Table, number};
 use std::fmt::Write;
 
 impl Accuracy {

@@ -4,9 +4,9 @@
 use super::{Inspection, Joint};
 use crate::planar::Vector;
 use crate::robot::FreezeReason;
+use crate::write::Palette;
 use crate::write::list::list;
-use crate::write::text::Palette;
-use crate::write::text::table::{Table, number, scale};
+use crate::write::table::{Table, number, scale};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 

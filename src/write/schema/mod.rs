@@ -105,18 +105,6 @@ enum SampleResult<'a> {
     Refused(RefusedSample),
 }
 
-/// What the user calls a state or a problem.
-#[derive(JsonSchema)]
-#[serde(untagged)]
-#[schemars(inline)]
-#[expect(dead_code, reason = "the schema is all that is wanted of it")]
-pub(super) enum Id {
-    /// A name.
-    Text(String),
-    /// A number.
-    Number(f64),
-}
-
 impl JsonSchema for CarriedFields<'_> {
     fn inline_schema() -> bool {
         true
@@ -139,11 +127,6 @@ impl JsonSchema for HoldsRecord {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         schemars::json_schema!({"enum": [true, false, "unknown"]})
     }
-}
-
-/// Any object, of which there is a schema of its own.
-pub(super) fn any_object(_: &mut SchemaGenerator) -> Schema {
-    schemars::json_schema!({"type": "object"})
 }
 
 fn schema_of<T: JsonSchema>(settings: SchemaSettings) -> Value {

@@ -4,38 +4,25 @@ mod outcome;
 mod reasons;
 
 use self::outcome::graded;
-use crate::planar::Vector;
-pub(crate) mod table;
-
 use super::holds::HoldsRecord;
 use super::list::list;
 use super::result::{ContactRecord, Report};
-use super::{Detail, words};
+use super::table::{Table, is_residue, number, scale};
+use super::{Detail, Palette, words};
 use crate::Robot;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
 use crate::law::{Friction, Mode};
 use crate::pipeline::Impact;
+use crate::planar::Vector;
 use crate::read::Problem;
 use crate::robot::{Axis, Base};
 use crate::state::State;
 use std::fmt::Write;
-use table::{Table, is_residue, number, scale};
 
 /// The room for what was left out, in characters.
 const LEFT_OUT: usize = 200;
 
-/// What marks the important and the unimportant; empty for plain text, escape sequences for a terminal.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Palette {
-    /// Begins what matters most.
-    pub strong: &'static str,
-    /// Begins what may be passed over.
-    pub faint: &'static str,
-    /// Ends both.
-    pub plain: &'static str,
-}
-
-/// What a text tells beside the report itself.
+/// What a text needs in addition to the report.
 #[derive(Debug)]
 pub struct Subject<'a> {
     /// What the report is about, as in `ramone`.

@@ -1,11 +1,11 @@
 //! Each outcome, and the velocities after all of them.
 
-use super::Palette;
 use super::Writer;
 use crate::impact::Outcome;
 use crate::law::Mode;
 use crate::planar::Vector;
-use crate::write::text::table::{Table, number, scale};
+use crate::write::Palette;
+use crate::write::table::{Table, number, scale};
 use crate::write::words;
 use std::fmt::Write;
 

@@ -3,7 +3,7 @@
 use super::Writer;
 use crate::impact::RejectionReason;
 use crate::law::Mode;
-use crate::write::text::table::{Table, scale};
+use crate::write::table::{Table, scale};
 use std::fmt::Write;
 
 impl Writer<'_> {
