@@ -11,7 +11,7 @@ pub(super) struct Onward {
 }
 
 impl Onward {
-    /// From rows at `times` on, the last one first, for a moment no more than `most` \[s\] later; none where they are
+    /// From rows at `times` on, the last one first, for a moment no more than `most` \[s\] later; `None` if they are
     /// too few or too near to each other for that.
     pub fn from(times: &[f64], most: f64) -> Option<Self> {
         let &[last, before, ..] = times else { return None };

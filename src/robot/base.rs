@@ -150,7 +150,7 @@ impl Welded {
         }
     }
 
-    /// The three joints, from the root on, that let what hangs on them move freely in the plane, if all that they move
+    /// The three joints, from the root on, that let their descendants move freely in the plane, if all that they move
     /// before weighs at most `light`.
     fn chain(&self, description: &Description, roles: &[Role], light: f64) -> Option<[usize; 3]> {
         let mut link = description.root;

@@ -74,7 +74,7 @@ pub struct Joint<'a> {
     /// `turn` or `slide`.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// The body it hangs on.
+    /// Its parent body.
     pub parent: &'a str,
     /// The body it moves.
     pub child: &'a str,

@@ -11,7 +11,7 @@ fn json(args: &[&str]) -> Value {
     run.line()
 }
 
-/// The text with times masked, the advice that hangs on them, and blanks as wide as they happen to be made one; so are
+/// The text with times masked, the advice that depends on them, and blanks as wide as they happen to be made one; so are
 /// steps of an integration and what its tolerance leaves.
 fn masked(text: &str) -> String {
     let word = |word: &str| match word {

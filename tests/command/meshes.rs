@@ -39,7 +39,7 @@ fn heelstrike(subcommand: &str) -> Command {
     command
 }
 
-/// What `inspect` tells of `urdf` as JSON.
+/// The JSON of `inspect` for `urdf`.
 #[track_caller]
 fn inspect(command: &mut Command, urdf: &Path) -> Value {
     let output = command.args(["--format", "json"]).arg(urdf).output().expect("the command runs");

@@ -16,7 +16,7 @@ pub fn check_refusal(error: &Error, case: &str) {
     assert!(!error.reason().to_string().is_empty() && error.to_string().len() < 2_000, "{error}\n{case}");
 }
 
-/// Checks what is told of `contacts` contacts.
+/// Checks the result for `contacts` contacts.
 pub fn check_analysis(analysis: &Analysis, contacts: usize, case: &str) {
     let context = || format!("{analysis:?}\n{case}");
     let far = open::is_far(case);
@@ -53,7 +53,7 @@ pub fn check_analysis(analysis: &Analysis, contacts: usize, case: &str) {
         _ if contacts == 0 => Verdict::NoContact,
         _ if !decided => Verdict::Undecided,
         [] => Verdict::None,
-        // The ends of a family may be too near to each other to be told apart in f64.
+        // The ends of a family may be too near to each other to differ in f64.
         [only] if only.family => Verdict::Ambiguous,
         [only] if rests(only) => Verdict::NoImpact,
         [_] => Verdict::Unique,
@@ -125,7 +125,7 @@ pub fn check_state(state: &State, robot: &Robot, kept: &mut Pipeline, options: &
         });
         report.map_err(|error| error.to_string())
     });
-    assert_eq!(lines[0], lines[1], "memory that was used before tells another answer\n{case}");
+    assert_eq!(lines[0], lines[1], "reused memory gives another answer\n{case}");
     match &impact {
         Err(error) => check_refusal(error, case),
         Ok(impact) => {

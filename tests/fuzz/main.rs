@@ -46,7 +46,7 @@ fn mixed(number: u64) -> u64 {
     bits ^ bits >> 31
 }
 
-/// A test that checks bytes by `$check`, which tells whether they were answered.
+/// A test that checks bytes by `$check`, which returns whether they were answered.
 macro_rules! target {
     ($name:ident, $count:expr, $share:expr, $check:path) => {
         #[test]

@@ -186,7 +186,7 @@ impl Case {
         true
     }
 
-    /// G and c- to the last digit of f64; none where M is singular.
+    /// G and c- to the last digit of f64; `None` if M is singular.
     fn rounded(&self) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
         match &self.matrices {
             Matrices::Delassus { delassus, velocity_before } => Some((delassus.clone(), velocity_before.concat())),
@@ -270,7 +270,7 @@ fn answer(case: &Case, json: &str) -> bool {
     let asked = AnalysisOptions { rejections: case.explain.into(), ..AnalysisOptions::default() };
     let again = KEPT.with_borrow_mut(|kept| kept.analyse(&problem, &problem, asked));
     let same = again.as_ref().is_ok_and(|again| format!("{again:?}") == format!("{analysis:?}"));
-    assert!(same, "memory that was used before tells another answer: {again:?}\n{analysis:?}\n{json}");
+    assert!(same, "reused memory gives another answer: {again:?}\n{analysis:?}\n{json}");
     if let Some((delassus, before)) = case.rounded()
         && !open::is_far(json)
     {

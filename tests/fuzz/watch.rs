@@ -1,4 +1,4 @@
-//! Bounds on time and memory: whoever oversteps them is reported with the case.
+//! Bounds on time and memory: a violation is reported with its case.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{LazyLock, Mutex, MutexGuard};
@@ -60,7 +60,7 @@ fn spent(start: Instant) -> Duration {
     own.map_or_else(|| start.elapsed(), Duration::from_nanos)
 }
 
-/// Runs the case that `text` tells within the bounds, and tells it where it panics.
+/// Runs the case described by `text` within the bounds, and prints it if it panics.
 pub fn watched<T>(text: &str, run: impl FnOnce() -> T) -> T {
     watched_for(SLOW, text, run)
 }

@@ -40,7 +40,7 @@ fn assert_answered(study: &Study) {
     let answer = study.answer.as_ref().unwrap_or_else(|| panic!("{name} must be answered"));
     assert!(answer.outcomes > 0, "{name}: {answer:?}");
     assert!(answer.margin.is_none_or(f64::is_finite), "{name}: {answer:?}");
-    // A condition, or a rank that tells why there is none.
+    // A condition, or a rank that explains its absence.
     match study.condition.delassus {
         Some(condition) => assert!(condition.is_finite() && condition >= 1.0 - 1e-9, "{name}: {condition}"),
         None => assert!(answer.rank < 2 * study.contacts, "{name}: {answer:?}"),
@@ -62,7 +62,7 @@ fn assert_answered(study: &Study) {
         .methods
         .iter()
         .find(|method| method.number == "f64" && method.factorization == Some(Factorization::ArticulatedBodies));
-    // Links of one size are no difficulty to the recursion, however many hang on each other.
+    // Links of one size are no difficulty to the recursion, however many are in a chain.
     let error = recursion.and_then(|method| method.error?.delassus).expect("computed");
     assert!(error <= DIGITS, "{name}: {error:e} by articulated bodies");
 }

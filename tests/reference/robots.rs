@@ -268,7 +268,7 @@ fn compare_struck(
     if listed == 0 {
         differences.note(place, "neither among the outcomes nor among the rejected with its numbers");
     }
-    // The whole robot's velocity and energy are told of outcomes alone.
+    // The whole robot's velocity and energy are listed for outcomes alone.
     if let Some(outcome) = outcome {
         // A robot with as many coordinates as the contact has directions stops dead.
         let within = TOLERANCE * largest(&should.v_plus).max(largest(&config.v));

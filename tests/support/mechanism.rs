@@ -301,7 +301,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    /// A tree of 3 to 8 links; massless ones hang on joints that do not move.
+    /// A tree of 3 to 8 links; massless ones are on joints that do not move.
     pub fn mechanism()(root in link(), parts in prop::collection::vec(joint_and_link(), 2..8)) -> Mechanism {
         let mut mechanism = Mechanism { links: vec![root], joints: Vec::new() };
         mechanism.links[0].mass += 1.0;

@@ -72,7 +72,7 @@ fn projected(centre: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Resul
 }
 
 fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
-    FootShape::swept(corners, rim).ok_or_else(|| "its corners cannot be told apart in f64".into())
+    FootShape::swept(corners, rim).ok_or_else(|| "its corners are not distinct in f64".into())
 }
 
 #[cfg(test)]

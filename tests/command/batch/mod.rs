@@ -175,7 +175,7 @@ fn a_reader_that_has_seen_enough_ends_it_quietly() {
     for threads in ["1", "4"] {
         let mut child = spawned(threads);
         let mut stdin = child.stdin.take().expect("piped");
-        // The writer is told by a closed pipe, too.
+        // A closed pipe stops the writer, too.
         let writer = std::thread::spawn(move || while stdin.write_all(strike(1, 0.0).as_bytes()).is_ok() {});
         let mut first = [0; 1000];
         child.stdout.take().expect("piped").read_exact(&mut first).expect("answers");

@@ -70,7 +70,7 @@ fn a_long_id_is_cut_where_it_is_repeated_and_whole_in_its_result() {
     assert!(run.stderr.len() < 2000, "{} bytes", run.stderr.len());
 }
 
-/// Input, its form and what is told.
+/// Input, its form and the message.
 const FOREIGN: [(&[u8], &str, &str); 11] = [
     (b"\x1f\x8b\x08\x00", "csv", "error: <stdin>: the input is packed by gzip\nhint: unpack it: gunzip -c FILE"),
     (b"\x1f\x8b\x08\x00", "ndjson", "error: <stdin>: the input is packed by gzip\nhint: unpack it: gunzip -c FILE"),

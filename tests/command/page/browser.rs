@@ -21,7 +21,7 @@ const LISTENER: &str = include_str!("scripts/listener.js");
 /// Stands at the page's end, before the test's script.
 const TOOLS: &str = include_str!("scripts/tools.js");
 
-/// What `script` finds in the page of this file, in a window of this size; none, which is told, where there is no browser.
+/// What `script` finds in the page of this file, in a window of this size; `None`, with a note, without a browser.
 pub fn found(page: &Path, window: (u32, u32), script: &str) -> Option<Value> {
     let browser = browser()?;
     let html = std::fs::read_to_string(page).expect("a page");

@@ -67,7 +67,7 @@ fn hostile() -> (String, PathBuf) {
 fn the_data_of_a_small_study() {
     let (page, _) = swept("urdf/minimalistic.urdf", &near_a_border(), "small.html");
     let mut data = data(&page);
-    // What is found beside a border hangs on the last digits of its place.
+    // The result next to a border depends on the last digits of its place.
     let samples = [0, 5, 8].map(|sample| data["frames"][sample].take());
     data["frames"] = json!(samples);
     data["axes"][0]["values"].take();

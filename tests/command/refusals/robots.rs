@@ -174,7 +174,7 @@ fn a_chain_of_1000_links_is_read() {
 
 #[test]
 fn a_mesh_outside_its_package_is_not_opened() {
-    // No mesh is read so far; whatever its path, it is told as left out.
+    // No mesh is read so far; whatever its path, it is listed as left out.
     for path in ["package://robot/../../../../etc/passwd", "file:///dev/zero", "/dev/zero", "http://example.com/a.stl"]
     {
         let link = mass("1").replace(

@@ -28,7 +28,7 @@ fn cut_at_the_pin() -> Mechanism {
     }
 }
 
-/// The same leg with the pin as a joint and the right knee open: the right shank hangs on the left one's end.
+/// The same leg with the pin as a joint and the right knee open: the right shank is attached to the left one's end.
 fn cut_at_the_knee() -> Mechanism {
     let mut mechanism = cut_at_the_pin();
     let upside_down =

@@ -32,7 +32,7 @@ pub struct Part {
     pub follows: Option<(&'static str, f64, f64)>,
 }
 
-/// A floating root and the parts that hang on it.
+/// A floating root and its descendants.
 #[derive(Debug, Clone)]
 pub struct Mechanism {
     pub root: (f64, [f64; 2], f64),

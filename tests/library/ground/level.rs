@@ -290,7 +290,7 @@ fn slow_contacts_rest_only_where_asked() {
     let options = Options { resting_speed: 1e-2, ..Options::default() };
     let resting = try_impact(&robot, options, state).unwrap();
     assert_eq!(resting.velocity_before, [[0.0; 2]; 2]);
-    assert_eq!(resting.notes.len(), 2, "each contact is told: {:?}", resting.notes);
+    assert_eq!(resting.notes.len(), 2, "each contact has a note: {:?}", resting.notes);
     assert_eq!(resting.analysis.unwrap().verdict, Verdict::NoImpact);
 }
 

@@ -56,7 +56,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         return Err(format!("{} and {}", words(a), words(b)));
     }
     if let (Some(one), Some(other)) = (a.condition, b.condition) {
-        // It tells how many digits of itself are lost.
+        // It reports how many of its own digits are lost.
         near("conditions", &[one.recip()], &[other.recip()], 1.0)?;
     }
     let [a, b] = [one, other].map(sorted);

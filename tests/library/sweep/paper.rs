@@ -62,7 +62,7 @@ fn bands_of_ramone_are_those_that_are_printed() {
     assert!(printed(&table, several).is_empty());
 }
 
-/// With the centre of percussion in the foot all outcomes touch at pi/4: one border, and whatever is told of the sample on
+/// With the centre of percussion in the foot all outcomes touch at pi/4: one border, and whatever the result of the sample on
 /// it, no region of its own.
 #[test]
 fn the_degenerate_place_of_the_walker_is_one_border() {

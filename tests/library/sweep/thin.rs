@@ -140,7 +140,7 @@ fn a_foot_that_grazes_the_ground_is_seen() {
     }
 }
 
-/// A region that ends where rounding tells the sign at a sample: the velocity s (s + 0.001) + 1e-17 is negative between.
+/// A region that ends where rounding decides the sign at a sample: the velocity s (s + 0.001) + 1e-17 is negative between.
 #[test]
 fn a_region_that_ends_beside_a_sample_is_seen() {
     let study = of_block(json!({"velocity": {"base": {"x": 0.5, "z": "s*(s + 0.001) + 1e-17"}}}));

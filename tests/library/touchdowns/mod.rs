@@ -1,4 +1,4 @@
-//! Touchdowns in recorded gaits: those of the rabbit, with states to the last digit and as the command tells them (here; all
+//! Touchdowns in recorded gaits: those of the rabbit, with states to the last digit and as the command prints them (here; all
 //! gaits through the binary are in `tests/gaits.rs`); what decides what is a touchdown, on a foot that moves up and down
 //! (`motion`); and how motions in three dimensions are projected (`sagittal`).
 

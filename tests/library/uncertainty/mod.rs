@@ -20,7 +20,7 @@ struct Shares {
     unknown: usize,
 }
 
-/// Answers a state; what is told of its box must be so at corners and inside.
+/// Answers a state; the result for its box must hold at corners and inside.
 fn count(robot: &Robot, state: &State, random: &mut Random, shares: &mut Shares) {
     let answer = impact(robot, state);
     match answer.holds.as_ref().expect("the state is uncertain") {
@@ -83,8 +83,8 @@ fn stances_slopes_restitution_rotors_and_held_joints_take_part() {
     assert!(shares.holds >= 100 && 10 * shares.unknown <= 200, "{shares:?}");
 }
 
-/// `HEELSTRIKE_STATES=2000 cargo test --release --test uncertainty -- --nocapture shares` prints the figures that the README
-/// tells.
+/// `HEELSTRIKE_STATES=2000 cargo test --release --test library -- --nocapture shares` prints the figures of
+/// `docs/states.md`.
 #[test]
 fn shares_and_times_by_half_width() {
     let robot = ramone();

@@ -72,7 +72,7 @@ pub fn modes(impact: &Impact) -> Vec<Vec<Mode>> {
     modes
 }
 
-/// A state of the box whose place in each interval, from -1 to 1, is what `place` tells.
+/// A state of the box whose place in each interval, from -1 to 1, is given by `place`.
 pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) -> State {
     let mut other = state.clone();
     let known = other.uncertainty.take().expect("an uncertain state");

@@ -260,7 +260,7 @@ fn answer_block(model: &Model, block: u64) -> (Row, Vec<Failure>) {
     (row, failures)
 }
 
-/// Counts one state, and tells what is wrong with it.
+/// Counts one state and reports what is wrong with it.
 fn answer_state(model: &Model, pipeline: &mut Pipeline<'_>, state: &State) -> (Counts, Option<String>) {
     let mut counts = Counts { states: 1, ..Counts::default() };
     let Some(answer) = oracle::answer(&model.robot, state) else {

@@ -34,7 +34,7 @@ pub struct Problem<N> {
 /// A pair in the plane, [forward, up].
 type Pair<N> = [N; 2];
 
-/// How a coordinate moves the bodies that hang on it.
+/// How a coordinate moves its descendants.
 #[derive(Clone)]
 enum Motion<N> {
     /// All points alike, along a vector of the world.
@@ -156,7 +156,7 @@ struct Factor<N> {
 }
 
 impl<N: Number> Factor<N> {
-    /// None where a pivot is not positive for certain.
+    /// `None` if a pivot is not positive for certain.
     fn new(mut rows: Vec<Vec<N>>, bits: usize) -> Option<Self> {
         for k in 0..rows.len() {
             let pivot = rows[k][k].clone();
@@ -202,7 +202,7 @@ impl<N: Number> Factor<N> {
     }
 }
 
-/// The contact problem of a state whose contacts are named; none where the mass matrix is not positive for certain.
+/// The contact problem of a state whose contacts are named; `None` if the mass matrix is not positive for certain.
 ///
 /// A stance must name a link with one contact.
 pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<Problem<N>> {

@@ -18,7 +18,7 @@ pub struct Zero {
 const SMALL: f64 = 7.006492321624085e-46;
 
 impl Zero {
-    /// How `number` compares with zero; none where it is not told.
+    /// How `number` compares with zero; `None` if undecided.
     pub fn sign<N: Number>(self, number: &N, scale: f64) -> Option<Ordering> {
         let small = || self.last && number.size() < SMALL * scale;
         number.sign().or_else(|| small().then_some(Ordering::Equal))
@@ -171,7 +171,7 @@ pub struct Inequality<N> {
 /// More inequalities than these are left open.
 const MOST: usize = 4000;
 
-/// Whether some choice of the free numbers, each of size `unit`, satisfies all inequalities; none where it is not told.
+/// Whether some choice of the free numbers, each of size `unit`, satisfies all inequalities; `None` if undecided.
 ///
 /// Fourier and Motzkin: a number may be eliminated by adding each inequality that bounds it from below to each that bounds
 /// it from above.

@@ -20,7 +20,7 @@ pub trait Number: Clone {
     fn negative(&self) -> Self;
     /// Cosine and sine of an angle \[rad\].
     fn cos_sin(&self) -> [Self; 2];
-    /// How it compares with zero; none where that is not known.
+    /// How it compares with zero; `None` if that is not known.
     fn sign(&self) -> Option<Ordering>;
     /// No less than its magnitude, and where it has a sign at most twice that.
     fn size(&self) -> f64;

@@ -49,7 +49,7 @@ pub struct Answer {
     pub bits: usize,
 }
 
-/// Every outcome of the contacts that the state names; none where the mass matrix is singular.
+/// Every outcome of the contacts that the state names; `None` if the mass matrix is singular.
 pub fn answer(robot: &Robot, state: &State) -> Option<Answer> {
     let mut outcomes = Vec::new();
     let mut dependent = false;
@@ -200,7 +200,7 @@ fn demands(modes: &[Mode], friction: &[Friction]) -> Vec<Demand> {
     demands
 }
 
-/// c_t and xi_n of all contacts if the ground gives no impulse; none where the sign of an approach is not told.
+/// c_t and xi_n of all contacts if the ground gives no impulse; `None` if the sign of an approach is undecided.
 fn resting<N: Number>(problem: &Problem<N>, zero: Zero, scale: f64) -> Option<Vec<N>> {
     let row = |(row, free): (usize, &N)| {
         let (contact, normal) = (row / 2, row % 2 == 1);

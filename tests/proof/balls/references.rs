@@ -1,5 +1,5 @@
 //! The oracle against values known from elsewhere: the paper's models to 40 digits, Pinocchio's matrices, and a body
-//! whose borders can be told by hand.
+//! whose borders are known by hand.
 
 use crate::balls::dynamics::problem;
 use crate::balls::number::{Ball, Number};

@@ -288,13 +288,13 @@ pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
     }
 }
 
-/// The modes of all outcomes; none where they are not told.
+/// The modes of all outcomes; `None` if they are undecided.
 fn told(model: &Model, state: &State) -> Option<Vec<Vec<Mode>>> {
     let answer = oracle::answer(&model.robot, state).filter(|answer| answer.open == 0)?;
     Some(answer.outcomes.into_iter().map(|outcome| outcome.modes).collect())
 }
 
-/// Two neighbouring f64 from `a` to `b` that `property` tells apart; none if it does not tell `a` from `b`.
+/// Two neighbouring f64 from `a` to `b` that `property` distinguishes; `None` if it does not distinguish `a` from `b`.
 fn bisect<T: PartialEq>(mut a: f64, mut b: f64, property: impl Fn(f64) -> T) -> Option<[f64; 2]> {
     let at_a = property(a);
     if property(b) == at_a {
@@ -309,7 +309,7 @@ fn bisect<T: PartialEq>(mut a: f64, mut b: f64, property: impl Fn(f64) -> T) -> 
     }
 }
 
-/// Two numbers about `guessed` that `property` tells apart: what f64 guesses is off by its rounding.
+/// Two numbers about `guessed` that `property` distinguishes: what f64 guesses is off by its rounding.
 fn widen<T: PartialEq>([a, b]: [f64; 2], property: impl Fn(f64) -> T) -> Option<[f64; 2]> {
     let mut reach = b - a;
     let (mut low, mut high) = (a, b);

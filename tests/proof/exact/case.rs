@@ -33,7 +33,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// The case of that seed; none where M or G is singular or no contact moves.
+    /// The case of that seed; `None` if M or G is singular or no contact moves.
     pub fn random(tree: &Tree, seed: u64) -> Option<Self> {
         let mut random = Random::new(seed);
         let mut motions = tree.random_motions(&mut random);

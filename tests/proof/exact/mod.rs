@@ -166,7 +166,7 @@ fn matrices_have_the_outcomes_of_exact_arithmetic() {
 
 /// A problem with a known outcome that lies on borders, by c- = c+ - G L in numbers that f64 holds: some contacts leave at
 /// no speed, rest without a load, need all of their friction, or slide at no speed. In two of three problems one number is
-/// then off by 2^-1 to 2^-52 of itself. None where G is singular.
+/// then off by 2^-1 to 2^-52 of itself. `None` if G is singular.
 fn beside_borders(random: &mut Random) -> Option<Problem> {
     let contacts = random.whole(1, 3) as usize;
     let columns = 2 * contacts + random.whole(0, 2) as usize;

@@ -53,7 +53,7 @@ pub fn transposed(matrix: &Matrix) -> Matrix {
     (0..matrix[0].len()).map(|column| matrix.iter().map(|row| row[column].clone()).collect()).collect()
 }
 
-/// X with `matrix` X = `right`, by Gauss and Jordan; none where `matrix` is singular.
+/// X with `matrix` X = `right`, by Gauss and Jordan; `None` if `matrix` is singular.
 pub fn solve(matrix: &Matrix, right: &Matrix) -> Option<Matrix> {
     let n = matrix.len();
     let mut rows: Matrix = matrix.iter().zip(right).map(|(a, b)| a.iter().chain(b).cloned().collect()).collect();
@@ -114,7 +114,7 @@ pub struct Cramer {
     pub numerators: Vec<IBig>,
 }
 
-/// Solves `rows` = [A | b] without a fraction (Bareiss 1968); none where det A = 0.
+/// Solves `rows` = [A | b] without a fraction (Bareiss 1968); `None` if det A = 0.
 pub fn cramer(mut rows: Vec<Vec<IBig>>) -> Option<Cramer> {
     let n = rows.len();
     let mut previous = IBig::ONE;
