@@ -1,29 +1,26 @@
 //! Every outcome of the rigid frictional impact of a planar legged robot.
 //!
 //! A foot strikes the ground. Simulators assume that it sticks and print one answer. For some states no sticking answer
-//! exists and the other foot slides whatever the friction; for others several outcomes are equally valid. This crate reads
-//! a robot's URDF and a state just before the impact, and finds all of them: modes, impulses, velocities, and whether the
-//! answer is unique, ambiguous or absent.
+//! exists and the other foot slides at any friction; for others several outcomes are equally valid. This crate reads
+//! a robot's URDF and a state just before the impact, and finds all of them: modes, impulses, velocities, and whether
+//! the answer is unique, ambiguous or absent.
 //!
 //! # The way of the data
 //!
-//! A newcomer reads this page, then [`pipeline`], then follows its calls. Modules stand in the order of the data; each uses
-//! only those above it.
-//!
 //! ```text
 //!     URDF text --[description]--> links and joints, checked --[robot]--> Robot: planar floating-base tree
-//!     JSON state --[state]-------> q, v and Scene (ground, friction, restitution, held joints, applied impulses)
-//!     Robot + held joints --[plan]--> Plan: flat arrays for the hot path
+//!     JSON state --[read]--------> q, v and Scene (ground, friction, restitution, braked joints, applied impulses)
+//!     Robot + braked joints --[dynamics::plan]--> Plan: flat arrays for the hot path
 //!     Plan + q --[dynamics]--> poses, mass matrix M, contact Jacobian J, Delassus matrix G = J M^-1 J^T
 //!     poses + ground --[contact]--> closed contacts
-//!     G, c, friction, restitution --[impact]--> every outcome, verdict
-//!     Plan + a box of states --[uncertain]--> whether its outcomes are all the same
-//!     all of it --[pipeline]--> Impact --[report]--> JSON, text, drawing of the robot
-//!     CSV --[table]--> many states, bases in 3-D --[spatial]--> in the plane; results --[table]--> CSV
-//!     states of a recording --[touchdown]--> those in which a foot strikes
-//!     Study of one or two parameters, numbers by [expression] --[sweep]--> regions, borders --[report]--> JSON, CSV, text, picture
-//!     states along a parameter or a gait --[report::page]--> interactive page
+//!     G, c, friction, restitution --[impact, by law]--> every outcome, verdict
+//!     Robot + State --[pipeline]--> Impact --[write, draw]--> JSON, text, picture
+//!     CSV, recordings --[read, gait, batch]--> many states, touchdowns --[write]--> NDJSON, CSV
+//!     Study of one or two parameters --[sweep]--> regions, borders --[write, draw]--> JSON, CSV, text, picture, page
 //! ```
+//!
+//! The types below are the library's surface. `docs/architecture.md` describes the modules behind them, in which each
+//! uses only those declared above it.
 //!
 //! # The impact
 //!
@@ -47,20 +44,20 @@
 //! | e | `restitution` | Newton's coefficient, 0 to 1 | |
 //!
 //! Each contact separates, sticks, slides along +t or slides along -t; every consistent combination is an outcome
-//! (C. D. Remy, "Ambiguous collision outcomes and sliding with infinite friction in models of legged systems", IJRR 2017,
-//! called "the paper" throughout; "Featherstone 2008" is his *Rigid Body Dynamics Algorithms*).
+//! (C. D. Remy, "Ambiguous collision outcomes and sliding with infinite friction in models of legged systems", IJRR
+//! 2017, called "the paper" throughout; "Featherstone 2008" is his *Rigid Body Dynamics Algorithms*).
 //!
 //! # Frames and signs
 //!
-//! `x` points forward along the ground, `z` up. `pitch` and the angles of bodies are right-handed about the plane's normal
-//! n = up x forward (+y in the x-z plane): a positive pitch dips the nose. Joint coordinates keep the URDF's own sign. A contact's normal
-//! points from the ground to the robot, its tangent t is the normal turned clockwise: +x on level ground. [`planar`] is the
-//! one place where this handedness is written as code.
+//! `x` points forward along the ground, `z` up. `pitch` and the angles of bodies are right-handed about the plane's
+//! normal n = up x forward (+y in the x-z plane): a positive pitch dips the nose. Joint coordinates keep the URDF's own
+//! sign. A contact's normal points from the ground to the robot, its tangent t is the normal turned clockwise: +x on
+//! level ground. `planar` is the one place where this handedness is written as code.
 //!
 //! # Example
 //!
 //! ```
-//! use heelstrike::{pipeline::{Options, Pipeline}, state::{Defaults, State}, Robot};
+//! use heelstrike::{Defaults, Options, Pipeline, Robot, State};
 //!
 //! # fn main() -> heelstrike::Result<()> {
 //! let urdf = r#"<robot name="ball"><link name="ball">
@@ -84,26 +81,53 @@ pub mod guarantees {}
 #[doc = include_str!("../docs/left_out.md")]
 pub mod left_out {}
 
+#[doc(hidden)]
 pub mod error;
+#[doc(hidden)]
 pub mod scalar;
+#[doc(hidden)]
 pub mod planar;
+#[doc(hidden)]
 pub mod law;
 pub mod reductions;
+#[doc(hidden)]
 pub mod description;
+#[doc(hidden)]
 pub mod robot;
+#[doc(hidden)]
 pub mod state;
+#[doc(hidden)]
 pub mod dynamics;
+#[doc(hidden)]
 pub mod contact;
+#[doc(hidden)]
 pub mod impact;
+#[doc(hidden)]
 pub mod pipeline;
+#[doc(hidden)]
 pub mod gait;
+#[doc(hidden)]
 pub mod read;
+#[doc(hidden)]
 pub mod sweep;
 #[cfg(feature = "accuracy")]
+#[doc(hidden)]
 pub mod accuracy;
+#[doc(hidden)]
 pub mod write;
+#[doc(hidden)]
 pub mod draw;
+#[doc(hidden)]
 pub mod batch;
 
+pub use contact::Contact;
+pub use description::Description;
 pub use error::{Error, Reason, Result};
+pub use impact::{Analysis, ContactProblem, Outcome, Rejection, Verdict};
+pub use law::{Friction, Inequality, Mode};
+pub use pipeline::{Impact, Options, Pipeline};
+pub use read::Study;
 pub use robot::Robot;
+pub use state::{Defaults, Ground, Scene, State};
+pub use sweep::Survey;
+pub use write::{Inspection, Report};

@@ -27,6 +27,15 @@ pub use pose::{Matrix, Pose, apply, product, turn, unit};
 use crate::error::{Error, Location, Result};
 
 /// A robot as its file gives it: checked, and joined into one tree.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
+/// let description = heelstrike::Description::from_urdf(urdf)?;
+/// assert_eq!(description.links[description.root].name, "left_leg");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Description {

@@ -130,6 +130,15 @@ pub struct Location {
 }
 
 /// A refused input: the reason, its place, and the remedy.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// let error = heelstrike::Robot::from_urdf("<robot/>").expect_err("no link");
+/// println!("{error}; remedy: {:?}", error.remedy());
+/// assert_eq!(error.reason().to_string(), "a <link> is missing");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct Error(Box<Refusal>);
 

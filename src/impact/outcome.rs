@@ -7,6 +7,18 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The answer in one word.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
+///
+/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
+/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
+/// let analysis = analyse(&problem, true)?;
+/// assert_eq!(analysis.verdict, Verdict::Unique);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -40,6 +52,19 @@ impl fmt::Display for Verdict {
 }
 
 /// A consistent combination of modes. It is written as a JSON object with these fields.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
+///
+/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
+/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
+/// let analysis = analyse(&problem, true)?;
+/// let outcome = &analysis.outcomes[0];
+/// assert!(outcome.impulse[0][1] > 0.0 && outcome.energy_loss > 0.0);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outcome {
@@ -55,7 +80,8 @@ pub struct Outcome {
     /// Rates of the joints after the impact, held ones included \[rad/s, m/s\]; only of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_velocity_after: Option<Named>,
-    /// Impulse on point a of each loop, [x, z] in the world \[N s\]; the opposite acts on b. Only of a state with loops.
+    /// Impulse on point a of each loop, [x, z] in the world \[N s\]; the opposite acts on b. Only of a state with
+    /// loops.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loop_impulse: Option<Vec<Vector>>,
     /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction adds some.
@@ -93,7 +119,8 @@ pub type Range = [Option<f64>; 2];
 pub struct Border {
     /// The impulse inequalities that are exactly zero.
     pub at_zero: Vec<AtZero>,
-    /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are combinations.
+    /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are
+    /// combinations.
     pub neighbours: Vec<Vec<Mode>>,
 }
 
@@ -179,6 +206,18 @@ impl Motion {
 }
 
 /// A combination of modes that is not an outcome, and what it would have been.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
+///
+/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
+/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
+/// let analysis = analyse(&problem, true)?;
+/// assert!(analysis.rejected.iter().any(|rejection| rejection.modes == [Mode::Separate]));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rejection {
     /// One mode per contact.
@@ -276,6 +315,19 @@ pub struct Effort {
 }
 
 /// Everything that is known about a contact problem.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
+///
+/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
+/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
+/// let analysis = analyse(&problem, true)?;
+/// assert!(analysis.proven);
+/// assert_eq!(analysis.outcomes.len() + analysis.rejected.len(), 4);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
     /// The answer in one word.

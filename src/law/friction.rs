@@ -4,6 +4,16 @@ use std::fmt;
 use std::str::FromStr;
 
 /// Coulomb friction of a contact.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// use heelstrike::Friction;
+///
+/// assert_eq!("0.8".parse::<Friction>()?, Friction::from(0.8));
+/// assert_eq!("infinite".parse::<Friction>()?, Friction::Infinite);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction<T = f64> {
     /// The coefficient mu, from 0 on.

@@ -4,6 +4,13 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// An inequality of a contact's mode.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// assert_eq!(heelstrike::Inequality::NormalImpulse.equation(), "L_n = 0");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]

@@ -8,6 +8,13 @@ use std::fmt;
 
 /// How a contact ends; strict, so that every velocity after the impact has exactly one list of modes (paper, section
 /// 2).
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// assert_eq!(heelstrike::Mode::SlidePlus.to_string(), "slide+");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Mode {

@@ -17,6 +17,17 @@ const SAMPLE_LIMIT: usize = 10_000_000;
 const CONSTANT_LIMIT: usize = 256;
 
 /// A study of one or two parameters.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// let text = r#"{"parameters": {"alpha": {"from": 0.1, "to": 1.5, "steps": 15}},
+///                "state": {"position": {"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}},
+///                          "velocity": {"base": {"pitch": -1}}, "stance": "left_leg", "friction": "infinite"}}"#;
+/// let study = heelstrike::Study::from_json(text)?;
+/// assert_eq!(study.parameters()[0].name, "alpha");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct Study<'t> {
     text: &'t str,

@@ -48,6 +48,15 @@ pub enum Base {
 }
 
 /// A robot reduced to its plane. It never changes; threads share it.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
+/// let robot = heelstrike::Robot::from_urdf(urdf)?;
+/// assert_eq!(robot.coordinates().collect::<Vec<_>>(), ["x", "z", "pitch", "hip"]);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct Robot {
     /// The robot's name in the file.

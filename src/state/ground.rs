@@ -10,6 +10,16 @@ use crate::planar::{Rotation, Vector};
 use crate::scalar::{Real, Trigonometry};
 
 /// What the robot strikes.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// use heelstrike::{Ground, state::Profile};
+///
+/// let step = Profile::new(vec![[-1.0, 0.0].into(), [0.5, 0.0].into(), [0.501, 0.1].into(), [2.0, 0.1].into()])?;
+/// assert!(matches!(Ground::Profile(step), Ground::Profile(profile) if profile.points().len() == 4));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ground {
     /// A line through the world's origin by its slope \[rad\], uphill toward +x; level ground is the slope 0.

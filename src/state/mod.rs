@@ -15,6 +15,20 @@ use crate::law::Friction;
 use crate::robot::Robot;
 
 /// A state just before the impact; every name in it is resolved to an index of its robot.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
+/// use heelstrike::{Robot, State};
+///
+/// let robot = Robot::from_urdf(urdf)?;
+/// let mut state = State::zero(&robot);
+/// state.set_position(&robot, "hip", -0.6)?;
+/// state.set_velocity(&robot, "pitch", -1.0)?;
+/// assert!(state.set_position(&robot, "knee", 0.1).is_err());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct State {
     /// What the user calls it: a JSON string or number.
@@ -63,6 +77,18 @@ fn set(list: &mut Vec<f64>, robot: &Robot, name: &str, value: f64) -> Result<()>
 }
 
 /// What a state takes from elsewhere if it does not give it itself.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
+/// use heelstrike::{Defaults, Friction, Robot, State};
+///
+/// let robot = Robot::from_urdf(urdf)?;
+/// let defaults = Defaults { friction: Some(Friction::from(0.8)), ..Defaults::default() };
+/// assert!(State::from_json("{}", &robot, &defaults).is_ok());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Defaults {
     /// Friction of every link to which the state gives none.

@@ -6,6 +6,18 @@ use crate::planar::Vector;
 use std::collections::BTreeMap;
 
 /// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
+/// use heelstrike::{Robot, Scene};
+///
+/// let robot = Robot::from_urdf(urdf)?;
+/// let scene = Scene { stance: robot.link("left_leg"), ..Scene::default() };
+/// assert!(scene.stance.is_some() && scene.contacts.is_none());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     /// What the robot strikes.

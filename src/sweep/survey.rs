@@ -1,4 +1,4 @@
-//! The regions of a study of one parameter, with what transition between them.
+//! The regions of a study of one parameter, with the transitions between them.
 
 use super::line::{Along, Bracket, Probe, RESOLUTION, Stretch, brackets, stretches};
 use super::model::{RobotStudy, Solver};
@@ -44,7 +44,7 @@ pub struct Region {
 pub struct RegionBorder {
     /// Where it is, to [`RESOLUTION`] of the parameter's range.
     pub at: f64,
-    /// What transition.
+    /// What happens there.
     #[serde(flatten)]
     pub transition: Transition,
 }

@@ -11,6 +11,17 @@ use crate::state::NamedContact;
 use serde::Serialize;
 
 /// The reduced robot as it is written; what is proven refers to these numbers.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
+/// use heelstrike::{Inspection, Robot};
+///
+/// let robot = Robot::from_urdf(urdf)?;
+/// assert!(serde_json::to_string(&Inspection::new(&robot, &[])).is_ok());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Serialize)]
 pub struct Inspection<'a> {
     /// The robot's name in the file.

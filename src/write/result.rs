@@ -19,6 +19,22 @@ use serde_json::Value;
 use std::borrow::Cow;
 
 /// The result of a state or of a contact problem.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
+/// use heelstrike::{Defaults, Options, Pipeline, Robot, State};
+///
+/// let robot = Robot::from_urdf(urdf)?;
+/// let text = r#"{"position": {"base": {"pitch": -0.4}, "joints": {"hip": -0.8}}, "velocity": {"base": {"pitch": -1}},
+///                "stance": "left_leg", "friction": "infinite"}"#;
+/// let state = State::from_json(text, &robot, &Defaults::default())?;
+/// let impact = Pipeline::new(&robot, Options { explain_up_to: 2, ..Options::default() }).impact(&state)?;
+/// let report = heelstrike::Report::of_state(&robot, &state, &impact, heelstrike::write::Detail::default())?;
+/// assert_eq!(report.verdict.map(|verdict| verdict.to_string()).as_deref(), Some("unique"));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report<'a> {

@@ -4,7 +4,7 @@
 //! general that does not end at one of the rigid outcomes. The end depends on the damping and on the ratios of
 //! tangential to normal parameters, but, while the configuration is frozen, not on the stiffness.
 
-mod radau;
+mod integrate;
 mod ground;
 mod frozen;
 mod moving;

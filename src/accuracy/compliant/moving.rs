@@ -8,22 +8,20 @@
 //! difference from the frozen model falls with 1 / sqrt(k_n).
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
-use super::radau::{Equations, Limits, integrate};
+use super::integrate::{Equations, Limits, integrate};
+use crate::Result;
 use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::law::Friction;
 use crate::planar::{Pair, Vector};
-use crate::{Error, Reason, Result};
 use std::cell::RefCell;
 
 /// Downward, as everywhere on Earth \[m/s^2\].
 const GRAVITY: f64 = 9.81;
 /// The longest run, in units of sqrt(m / k_n) (1 + damping ratio).
 const HORIZON: f64 = 1e2;
-/// The most entries of a state.
-const MOST_ENTRIES: usize = 128;
 
 /// A robot just before it strikes, ready to be integrated.
 #[derive(Debug)]
@@ -44,21 +42,17 @@ impl Moving<'_> {
     /// v when all contacts have come free, or after the longest run, on a ground of `stiffness` k_n \[N/m\].
     ///
     /// # Errors
-    /// [`Reason::Unsupported`] if the integrator gives up, and for robots of more than 60 coordinates and contacts.
+    /// [`Reason::Unsupported`](crate::Reason::Unsupported) if the integrator gives up, and for robots of more than 60 coordinates and contacts.
     pub fn run(&self, ground: SoftGround, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         let dofs = self.position.len();
-        if 2 * dofs + self.contacts.len() > MOST_ENTRIES {
-            return Err(Error::new(Reason::Unsupported("compliant contact of so large a robot".into()))
-                .hint("hold joints that matter little"));
-        }
         let model = Equation::new(self, ground, stiffness);
-        let mut start = vec![0.0; 2 * dofs + self.contacts.len()];
+        let mut start = vec![0.0; (2 * dofs + self.contacts.len()).next_power_of_two().max(16)];
         for (entry, rate) in start[dofs..].iter_mut().zip(self.velocity) {
             *entry = rate / model.speed;
         }
         let horizon = HORIZON * (1.0 + ground.damping_ratio);
-        let end = integrate(&model, start, Limits { relative: tolerance, absolute: tolerance, horizon })?;
-        Ok(end.state.as_slice()[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
+        let end = integrate(&model, &start, Limits { relative: tolerance, absolute: tolerance, horizon })?;
+        Ok(end.state[dofs..2 * dofs].iter().map(|rate| rate * model.speed).collect())
     }
 }
 

@@ -27,6 +27,18 @@ use crate::scalar::{Ordered, Real};
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
 ///
 /// It runs on any [`Real`]; [`ContactProblem::map`] makes one in another number.
+///
+/// ```
+/// # fn main() -> heelstrike::Result<()> {
+/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
+///
+/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
+/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
+/// let analysis = analyse(&problem, true)?;
+/// assert_eq!((problem.contacts(), analysis.outcomes.len()), (1, 1));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct ContactProblem<T = f64> {
     /// G, 2n x 2n by rows \[1/kg\].

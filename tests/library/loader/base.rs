@@ -181,7 +181,7 @@ fn a_chain_whose_links_were_only_given_a_mass_gets_a_word() {
     let robot = load(&chain(&[1e-3, 1e-3, 1e-3, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["j", "k", "l", "m"]));
     let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
-    assert!(caution.contains("\"j\", \"k\", \"l\"") && caution.contains("--base fixed"), "{caution}");
+    assert!(caution.contains("\"j\", \"k\", \"l\"") && caution.contains("`base: fixed`"), "{caution}");
 }
 
 #[test]

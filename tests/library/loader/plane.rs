@@ -57,7 +57,7 @@ fn without_a_common_direction_the_plane_is_x_z_and_a_better_one_is_named() {
     let robot = load(&chain(&[("continuous", "1 0 0"), ("revolute", "1 0 0"), ("revolute", "0 1 0")]));
     assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::XZ, PlaneReason::Usual));
     assert_eq!((robot.reading.better_plane, kept(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
-    assert!(robot.reading.plane_in_words().ends_with("--plane yz would keep 2 joints"));
+    assert!(robot.reading.plane_in_words().ends_with("plane yz would keep 2 joints"));
 
     let given = reduce(&chain(&[("continuous", "1 0 0"), ("revolute", "0 1 0")]), &in_plane(Plane::YZ));
     assert_eq!((given.reading.plane_because, kept(&given)), (PlaneReason::Asked, vec!["j"]));
@@ -192,7 +192,7 @@ fn axes_that_are_all_a_little_off_get_a_loud_word() {
     let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
     let held = "2 of 3 joints that could move are held only because their axes are 5.0 degrees off the plane (k, l); to keep them";
     // From y + z tan 5 degrees back to y is a turn about x by minus 5 degrees.
-    assert_eq!(caution, &format!("{held}: --hold j=-0.087266"));
+    assert_eq!(caution, &format!("{held}: `hold: j=-0.087266`"));
     let text = chain(&[("revolute", "1 0 0"), tilted, tilted]);
     assert_eq!(kept(&reduce(&text, &Reduction { hold: vec![(0, -0.087266)], ..Reduction::default() })), ["k", "l"]);
 

@@ -1,0 +1,146 @@
+//! Integrates the stiff equations of a compliant impact, from its first moment until nothing more happens.
+//!
+//! ```text
+//!     y' = f(y)   from y(0)   until the model has ended, or the horizon
+//! ```
+//!
+//! Source: Hairer and Wanner, *Solving ODEs II* (1996), section IV.8 (Radau IIA of order 5).
+
+use crate::{Error, Reason, Result};
+use differential_equations::control::ControlFlag;
+use differential_equations::interpolate::Interpolation;
+use differential_equations::linalg::Matrix;
+use differential_equations::methods::ImplicitRungeKutta;
+use differential_equations::ode::{ODE, solve_ode};
+use differential_equations::solout::Solout;
+use differential_equations::solution::Solution;
+use nalgebra::DMatrix;
+
+/// The first step, in the model's own time: the damper's force is there at once.
+const FIRST_STEP: f64 = 1e-6;
+/// Steps after which a run is given up.
+const MOST_STEPS: usize = 5_000;
+/// Steps before which no run has ended: all begin without forces.
+const FEWEST_STEPS: usize = 2;
+
+/// Equations of an impact in units in which times and states are of order one.
+pub(super) trait Equations {
+    /// f(y).
+    fn rates(&self, state: &[f64]) -> Vec<f64>;
+
+    /// Their derivatives at a state and its rates; forward differences unless the model knows better.
+    fn jacobian(&self, state: &[f64], rates: &[f64]) -> DMatrix<f64> {
+        let mut jacobian = DMatrix::zeros(state.len(), state.len());
+        let mut moved = state.to_vec();
+        for (column, &entry) in state.iter().enumerate() {
+            let by = f64::EPSILON.sqrt() * entry.abs().max(1.0);
+            moved[column] += by;
+            for (row, rate) in self.rates(&moved).into_iter().enumerate() {
+                jacobian[(row, column)] = (rate - rates[row]) / by;
+            }
+            moved[column] = entry;
+        }
+        jacobian
+    }
+
+    /// Whether nothing more happens from `state` on.
+    fn has_ended(&self, state: &[f64]) -> bool;
+}
+
+/// Where a run came to.
+#[derive(Debug, Clone)]
+pub(super) struct End {
+    /// The last state.
+    pub state: Vec<f64>,
+    /// Steps of the integrator, the start included.
+    pub steps: usize,
+    /// Whether it ended before the horizon.
+    pub ended: bool,
+}
+
+/// How well and how long to integrate.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// Relative tolerance.
+    pub relative: f64,
+    /// Absolute tolerance of every entry.
+    pub absolute: f64,
+    /// The longest run, in the model's own time.
+    pub horizon: f64,
+}
+
+/// Integrates from `start`, whose length is 4, 8, 16, 32, 40, 64 or 128: the integrator takes arrays. Entries beyond the
+/// model's rates stay as they are.
+///
+/// # Errors
+/// [`Reason::Unsupported`] if the integrator gives up, and for other lengths.
+pub(super) fn integrate(model: &impl Equations, start: &[f64], limits: Limits) -> Result<End> {
+    match start.len() {
+        4 => integrate_array::<4>(model, start, limits),
+        8 => integrate_array::<8>(model, start, limits),
+        16 => integrate_array::<16>(model, start, limits),
+        32 => integrate_array::<32>(model, start, limits),
+        40 => integrate_array::<40>(model, start, limits),
+        64 => integrate_array::<64>(model, start, limits),
+        128 => integrate_array::<128>(model, start, limits),
+        _ => Err(Error::new(Reason::Unsupported("compliant contact of so large a robot".into()))
+            .hint("hold joints that matter little")),
+    }
+}
+
+fn integrate_array<const N: usize>(model: &impl Equations, start: &[f64], limits: Limits) -> Result<End> {
+    let Limits { relative, absolute, horizon } = limits;
+    // One tolerance for each entry: of a single one version 0.7 takes the power 2/3 once per entry.
+    let mut method =
+        ImplicitRungeKutta::radau5().rtol([relative; N]).atol([absolute; N]).h0(FIRST_STEP).max_steps(MOST_STEPS);
+    let mut first = [0.0; N];
+    first.copy_from_slice(start);
+    let mut run = Run { model, end: End { state: start.to_vec(), steps: 0, ended: false } };
+    solve_ode(&mut method, &System(model), 0.0, horizon, &first, &mut run).map_err(|error| gave_up(&error))?;
+    Ok(run.end)
+}
+
+fn gave_up(error: &impl std::fmt::Debug) -> Error {
+    let why: String =
+        format!("the integration of the compliant contact ended early: {error:?}").chars().take(200).collect();
+    Error::new(Reason::Unsupported(why)).hint("take another tolerance, or damping and friction that are less extreme")
+}
+
+/// A model as the integrator takes it.
+struct System<'m, M>(&'m M);
+
+impl<M: Equations, const N: usize> ODE<f64, [f64; N]> for System<'_, M> {
+    fn diff(&self, _: f64, state: &[f64; N], rates: &mut [f64; N]) {
+        rates.fill(0.0);
+        rates.iter_mut().zip(self.0.rates(state)).for_each(|(rate, own)| *rate = own);
+    }
+
+    fn jacobian(&self, _: f64, state: &[f64; N], jacobian: &mut Matrix<f64>) {
+        let own = self.0.jacobian(state, &self.0.rates(state));
+        for (row, column) in (0..own.nrows()).flat_map(|row| (0..own.ncols()).map(move |column| (row, column))) {
+            jacobian[(row, column)] = own[(row, column)];
+        }
+    }
+}
+
+/// Ends a run with its model, and keeps the last state.
+struct Run<'m, M> {
+    model: &'m M,
+    end: End,
+}
+
+impl<M: Equations, const N: usize> Solout<f64, [f64; N]> for Run<'_, M> {
+    fn solout<I: Interpolation<f64, [f64; N]> + ?Sized>(
+        &mut self,
+        _: f64,
+        _: f64,
+        state: &[f64; N],
+        _: &[f64; N],
+        _: &mut I,
+        _: &mut Solution<f64, [f64; N]>,
+    ) -> ControlFlag<f64, [f64; N]> {
+        let steps = self.end.steps + 1;
+        self.end = End { state: state.to_vec(), steps, ended: self.model.has_ended(state) };
+        if self.end.ended && steps > FEWEST_STEPS { ControlFlag::Terminate } else { ControlFlag::Continue }
+    }
+}
