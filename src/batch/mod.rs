@@ -5,7 +5,7 @@
 //!                                                            └──[summary]--> Summary of all
 //! ```
 //!
-//! Nothing here opens a file; only [`run`] starts threads, if asked to.
+//! Nothing here opens a file; only `run` starts threads, if asked to.
 
 mod summary;
 mod run;

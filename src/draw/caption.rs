@@ -23,6 +23,6 @@ pub(super) fn remarks(outcome: &Outcome) -> Vec<String> {
         (!outcome.decided, "not excluded"),
         (outcome.decided && !outcome.proven, "not proven"),
     ];
-    let remarks = remarks.into_iter().filter_map(|(applies, remark)| applies.then(|| remark.to_owned()));
+    let remarks = remarks.into_iter().filter(|(applies, _)| *applies).map(|(_, remark)| remark.to_owned());
     border.into_iter().chain(remarks).collect()
 }

@@ -87,9 +87,9 @@ pub(super) fn walk<T: Real>(
             if let Some(column) = body.column {
                 tell(column, unit);
             }
-            speed = speed + unit * velocity[body.coordinate];
+            speed += unit * velocity[body.coordinate];
         }
-        arm = arm + workspace.arm[at];
+        arm += workspace.arm[at];
         match body.parent {
             Some(parent) => at = parent,
             None => break,
@@ -100,7 +100,7 @@ pub(super) fn walk<T: Real>(
         let units = [x, z, arm.perpendicular()];
         for (column, unit) in units.into_iter().enumerate() {
             tell(column, unit);
-            speed = speed + unit * velocity[column];
+            speed += unit * velocity[column];
         }
     }
     speed

@@ -62,7 +62,7 @@ impl<T: Real> Loop<T> {
         let [a, b] = [0, 1].map(|end| {
             let (mut place, mut at) = (arms[end], self.bodies[end]);
             while let Some(parent) = plan.bodies[at].parent {
-                place = place + workspace.arm[at];
+                place += workspace.arm[at];
                 at = parent;
             }
             place

@@ -106,7 +106,7 @@ pub struct Sample<S> {
     pub state: State,
     /// From when to when its velocity was taken \[s\]: at its own time alone, or of differences between two rows.
     pub rate_over: [f64; 2],
-    /// What the plane does not hold of a base in three dimensions, until the motion is projected ([`sagittal`]).
+    /// What the plane does not hold of a base in three dimensions, until the motion is projected (`sagittal`).
     pub spatial: Option<Spatial>,
     /// What the caller knows it by.
     pub source: S,

@@ -129,7 +129,7 @@ laws! {
 impl From<Friction> for Law {
     fn from(friction: Friction) -> Self {
         match friction {
-            Friction::Finite(mu) if mu == 0.0 => Self::Frictionless(Frictionless),
+            _ if friction.is_zero() => Self::Frictionless(Frictionless),
             Friction::Finite(mu) => Self::Coulomb(Coulomb { mu }),
             Friction::Infinite => Self::Unbounded(Unbounded),
         }

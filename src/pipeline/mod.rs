@@ -197,10 +197,12 @@ impl<'r> Pipeline<'r> {
     /// Every outcome of one state.
     ///
     /// # Errors
-    /// [`Reason::Singular`] for a coordinate without inertia, [`Reason::Penetration`] for a foot deep in the ground,
-    /// [`Reason::Inconsistent`] for a loop that the pose or the velocity leaves open,
-    /// [`Reason::Missing`] for a contact without friction or a stance without a foot, [`Reason::MatricesTooLarge`] for
-    /// hundreds of contacts, [`Reason::NotFinite`] for numbers whose products leave the range of f64.
+    /// [`Reason::Singular`](crate::Reason::Singular) for a coordinate without inertia,
+    /// [`Reason::Penetration`](crate::Reason::Penetration) for a foot deep in the ground,
+    /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) for a loop that the pose or the velocity leaves open,
+    /// [`Reason::Missing`](crate::Reason::Missing) for a contact without friction or a stance without a foot,
+    /// [`Reason::MatricesTooLarge`](crate::Reason::MatricesTooLarge) for hundreds of contacts,
+    /// [`Reason::NotFinite`](crate::Reason::NotFinite) for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
         let mut answer = self.answer(state, None)?;
         if let Some(uncertainty) = &state.uncertainty {
@@ -289,7 +291,7 @@ impl<'r> Pipeline<'r> {
     /// friction per contact.
     ///
     /// # Errors
-    /// [`Reason::Singular`] for a coordinate without inertia, and lengths that do not fit.
+    /// [`Reason::Singular`](crate::Reason::Singular) for a coordinate without inertia, and lengths that do not fit.
     pub fn contact_problem(
         &mut self,
         configuration: &Configuration,

@@ -14,9 +14,9 @@ pub(super) fn fields_of(object: &str) -> Vec<String> {
         Value::Object(fields) => fields.into_iter().find(|(key, _)| key == name).map(|(_, value)| value),
         _ => None,
     };
-    let properties = Value::parse(FORMAT).ok().and_then(|format| {
-        ["$defs", object, "properties"].into_iter().try_fold(format, |value, name| fields(value, name))
-    });
+    let properties = Value::parse(FORMAT)
+        .ok()
+        .and_then(|format| ["$defs", object, "properties"].into_iter().try_fold(format, fields));
     match properties {
         Some(Value::Object(fields)) => fields.into_iter().map(|(name, _)| name.into_owned()).collect(),
         _ => Vec::new(),

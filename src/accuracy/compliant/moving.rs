@@ -166,7 +166,7 @@ fn place(plan: &Plan, contact: &ContactPoint, base: &Vector<f64>, workspace: &Wo
     let mut point = *base + contact.arm(workspace);
     let mut at = Some(contact.body);
     while let Some(body) = at {
-        point = point + workspace.arm[body];
+        point += workspace.arm[body];
         at = plan.bodies[body].parent;
     }
     point

@@ -36,7 +36,7 @@ fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
         }
         let parallel = sides.iter_mut().find(|known| sine(**known, side).abs() <= ROUNDING);
         match parallel {
-            Some(known) if known.dot(side) > 0.0 => *known = *known + side,
+            Some(known) if known.dot(side) > 0.0 => *known += side,
             Some(known) => *known = *known - side,
             None => sides.push(side),
         }
