@@ -9,8 +9,8 @@ use std::str::FromStr;
 /// # fn main() -> heelstrike::Result<()> {
 /// use heelstrike::Friction;
 ///
-/// assert_eq!("0.8".parse::<Friction>()?, Friction::from(0.8));
-/// assert_eq!("infinite".parse::<Friction>()?, Friction::Infinite);
+/// assert_eq!("0.8".parse(), Ok(Friction::from(0.8)));
+/// assert_eq!("infinite".parse(), Ok(Friction::Infinite));
 /// # Ok(())
 /// # }
 /// ```

@@ -181,7 +181,7 @@ fn meshes_that_cannot_be_read_are_told_and_the_rest_is_answered() {
         assert!(told.contains(why), "{name}: {told}");
     };
     refused("nan.obj", b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "has the coordinate NaN");
-    refused("huge.obj", b"v 0 0 1e308\nv 1e308 0 0\nv -1e308 1 0\nf 1 2 3\n", "told apart in f64");
+    refused("huge.obj", b"v 0 0 1e308\nv 1e308 0 0\nv -1e308 1 0\nf 1 2 3\n", "not distinct in f64");
     refused("short.stl", &[b' '; 100], "cannot be read");
     refused("empty.dae", b"", "cannot be read");
     refused("what.bin", b"what", "STL, OBJ or DAE");
