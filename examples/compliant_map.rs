@@ -1,5 +1,5 @@
-//! Where compliant, overdamped contact takes the paper's minimalistic biped, over the trailing foot's approach speed and
-//! d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
+//! Where compliant, overdamped contact takes the paper's minimalistic biped, over the trailing foot's approach speed
+//! and d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
 
 use heelstrike::accuracy::compliant::{Biped, LandingMap, NEAR};
 use heelstrike::draw::plot::{Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Stroke};

@@ -16,7 +16,8 @@ pub fn outcomes(found: &Found, expected: &[Modes]) -> Result<Finding, String> {
     Ok(Finding { agrees: Some(outcomes == expected), words: outcomes.join(" or ") })
 }
 
-/// One of the paper's cases with the trailing foot's velocity after \[m/s\] and impulse \[N s\], each tangential and normal.
+/// One of the paper's cases with the trailing foot's velocity after \[m/s\] and impulse \[N s\], each tangential and
+/// normal.
 pub type Case = (Modes, Pair<f64>, Pair<f64>);
 
 /// The cases have these numbers in parts of `unit`, to one of the last of three digits; `valid` alone is an outcome.

@@ -63,7 +63,8 @@ const SLIDE_FORWARD: &[Modes] = &["slide-/stick"];
 const SLIDE_BACKWARD: &[Modes] = &["slide+/stick"];
 const THREE: &[Modes] = &["separate/stick", "stick/stick", "slide+/stick"];
 
-/// The angle of inertial impulses in a pure slide of the body of Figure 9, whose M_c is [[2, -1], [-1, 2]] / 3 (section 4).
+/// The angle of inertial impulses in a pure slide of the body of Figure 9, whose M_c is [[2, -1], [-1, 2]] / 3 (section
+/// 4).
 const TAN_BETA: f64 = -0.5;
 
 const RAMONE_BANDS: &[Claim] = &[Claim {
@@ -87,7 +88,8 @@ const RAMONE_CASES: &[Claim] = &[Claim {
     },
 }];
 
-/// The inertia at which the legs' centre of percussion is the foot \[kg m^2\], of legs of 1 kg and 1 m: m along (l - along).
+/// The inertia at which the legs' centre of percussion is the foot \[kg m^2\], of legs of 1 kg and 1 m: m along (l -
+/// along).
 const fn critical_inertia(along: f64) -> f64 {
     along * (1.0 - along)
 }

@@ -2,20 +2,21 @@
 //!
 //! With u the unit roundoff, D the depth of the tree, nb its bodies, nv its columns:
 //!
-//! 1. *Kinematics.* Cosines and sines are off by 2 u each (see [`Ball`](crate::scalar::Ball)), each product of rotations
-//!    adds 3 u; so after D joints a rotation is off by at most 7 D u, and an arm by that part of its length.
-//! 2. *M and J.* Each entry is a sum of products of masses and arms, collected over at most D levels and nb bodies. Replacing
-//!    every term by its magnitude gives K_i, the moment that column i would have to move if all arms were stretched, and by
-//!    Cauchy and Schwarz |dM_ij| <= eta sqrt(K_i K_j), |dJ_ri| <= eta A_ri with A_ri the stretched arm from joint i to the
-//!    contact, and eta = [`ENTRY`] (D + nb) u.
-//! 3. *M = L^T D L* is the factorization of a matrix that differs from M by gamma sqrt(K_i K_j) more, with gamma = 2 (nv + 2) u
-//!    (Higham 2002, theorem 10.3). In the energy norm that is eps = nv (eta + gamma) tau with tau = sum K_i (M^-1)_ii, which
-//!    bounds |S M^-1 S| for S = diag(sqrt K_i). So |dG_rs| <= eps / (1 - eps) sqrt(G_rr G_ss).
-//! 4. *J* adds eta a_r with a_r = sum A_ri sqrt((M^-1)_ii) to the length sqrt(G_rr) of its row in the energy norm, and the
-//!    triangular solves add gamma sqrt(nv tau) of it (Higham 2002, theorem 8.5).
-//! 5. A *mimic joint* turns by up to three angles instead of one and brings further roundings to its displacement: it counts for three
-//!    levels. Its motion is multiplied by its rate, and where a column moves several joints b, the triangle inequality of the
-//!    energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum of the same form.
+//! 1. *Kinematics.* Cosines and sines are off by 2 u each (see [`Ball`](crate::scalar::Ball)), each product of
+//!    rotations adds 3 u; so after D joints a rotation is off by at most 7 D u, and an arm by that part of its length.
+//! 2. *M and J.* Each entry is a sum of products of masses and arms, collected over at most D levels and nb bodies.
+//!    Replacing every term by its magnitude gives K_i, the moment that column i would have to move if all arms were
+//!    stretched, and by Cauchy and Schwarz |dM_ij| <= eta sqrt(K_i K_j), |dJ_ri| <= eta A_ri with A_ri the stretched
+//!    arm from joint i to the contact, and eta = [`ENTRY`] (D + nb) u.
+//! 3. *M = L^T D L* is the factorization of a matrix that differs from M by gamma sqrt(K_i K_j) more, with gamma = 2
+//!    (nv + 2) u (Higham 2002, theorem 10.3). In the energy norm that is eps = nv (eta + gamma) tau with tau = sum K_i
+//!    (M^-1)_ii, which bounds |S M^-1 S| for S = diag(sqrt K_i). So |dG_rs| <= eps / (1 - eps) sqrt(G_rr G_ss).
+//! 4. *J* adds eta a_r with a_r = sum A_ri sqrt((M^-1)_ii) to the length sqrt(G_rr) of its row in the energy norm, and
+//!    the triangular solves add gamma sqrt(nv tau) of it (Higham 2002, theorem 8.5).
+//! 5. A *mimic joint* turns by up to three angles instead of one and brings further roundings to its displacement: it
+//!    counts for three levels. Its motion is multiplied by its rate, and where a column moves several joints b, the
+//!    triangle inequality of the energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum of the same
+//!    form.
 //! 6. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
 //!
 //! Everything is doubled for the terms of second order, which are small because the bound counts as unknown beyond a

@@ -11,8 +11,8 @@ fn json(args: &[&str]) -> Value {
     run.line()
 }
 
-/// The text with times masked, the advice that depends on them, and blanks as wide as they happen to be made one; so are
-/// steps of an integration and what its tolerance leaves.
+/// The text with times masked, the advice that depends on them, and blanks as wide as they happen to be made one; so
+/// are steps of an integration and what its tolerance leaves.
 fn masked(text: &str) -> String {
     let word = |word: &str| match word {
         "ns" | "µs" | "ms" | "s" => "TIME".to_owned(),

@@ -1,5 +1,5 @@
-//! Mesh files as a user meets them: how the command finds them by name, what it says of those that are missing, broken or
-//! hostile, and the feet that they give. Readers and hulls are tested beside their code.
+//! Mesh files as a user meets them: how the command finds them by name, what it says of those that are missing, broken
+//! or hostile, and the feet that they give. Readers and hulls are tested beside their code.
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -104,7 +104,8 @@ fn packages_are_found_by_option_environment_and_the_folders_above() {
     found(heelstrike("inspect").env("ROS_PACKAGE_PATH", elsewhere.join("share")));
     found(heelstrike("inspect").env("AMENT_PREFIX_PATH", &elsewhere));
 
-    // A package there, but without the file; then the file. The folder above is named otherwise, but its manifest says so.
+    // A package there, but without the file; then the file. The folder above is named otherwise, but its manifest says
+    // so.
     fs::create_dir(folder.join("robots/a_description")).expect("a folder");
     assert_eq!(foot(&mut heelstrike("inspect"), &urdf), Err("no such file in package a_description".to_owned()));
     write(&folder.join("robots/package.xml"), "<package><name> a_description </name></package>");

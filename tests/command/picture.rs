@@ -1,5 +1,5 @@
-//! `impact --plot` and `inspect --plot`: pictures of robots as snapshots, always the same bytes and never large; what is not
-//! drawn and why.
+//! `impact --plot` and `inspect --plot`: pictures of robots as snapshots, always the same bytes and never large; what
+//! is not drawn and why.
 //!
 //! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
 

@@ -1,5 +1,5 @@
-//! `sweep --plot`: pictures of studies as snapshots, the same bytes for any number of threads, with the text on standard
-//! output as ever.
+//! `sweep --plot`: pictures of studies as snapshots, the same bytes for any number of threads, with the text on
+//! standard output as ever.
 //!
 //! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
 

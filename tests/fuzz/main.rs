@@ -22,8 +22,8 @@ mod watch;
 /// The longest input \[bytes\].
 const LONGEST: usize = 2048;
 
-/// Whether bolero chooses the inputs: where one of its variables is set. Else the seeds are fixed, so that the same code
-/// passes the same tests.
+/// Whether bolero chooses the inputs: where one of its variables is set. Else the seeds are fixed, so that the same
+/// code passes the same tests.
 fn by_bolero() -> bool {
     std::env::vars().any(|(name, _)| name.contains("BOLERO"))
 }

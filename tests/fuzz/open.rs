@@ -1,7 +1,7 @@
 //! What was found and is not mended yet, and what its cases are excused from; each function goes with its finding.
 
-/// Products of numbers far from one leave f64 or vanish: energies, margins and impulses are then no numbers, and signs of
-/// what vanished are wrong. A case is excused whose text has such a number.
+/// Products of numbers far from one leave f64 or vanish: energies, margins and impulses are then no numbers, and signs
+/// of what vanished are wrong. A case is excused whose text has such a number.
 pub fn is_far(case: &str) -> bool {
     let words = case.split(|c: char| !c.is_ascii_alphanumeric() && !"+-.".contains(c));
     let mut numbers = words.filter_map(|word| word.parse::<f64>().ok());

@@ -1,4 +1,5 @@
-//! Studies of two parameters: the areas and curves of a map against single states, and against studies of one parameter.
+//! Studies of two parameters: the areas and curves of a map against single states, and against studies of one
+//! parameter.
 
 use heelstrike::Robot;
 use heelstrike::description::Description;

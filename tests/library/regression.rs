@@ -103,7 +103,8 @@ fn an_impulse_within_needle_thin_cones_keeps_its_digits() {
     assert_eq!(analysis.outcomes[0].impulse, [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]]);
 }
 
-/// Where contacts move a body 1e30 times less than others, 256 bits settled the signs and left 3e-9 of the impulse to rounding.
+/// Where contacts move a body 1e30 times less than others, 256 bits settled the signs and left 3e-9 of the impulse to
+/// rounding.
 #[test]
 fn an_impulse_of_a_contact_that_hardly_moves_anything_keeps_its_digits() {
     let jacobian = [[-3.0, -1.0], [1.5777218104420236e-30, 4.733165431326071e-30], [-2.0, -2.0], [-2.0, -2.0]];

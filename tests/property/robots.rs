@@ -153,8 +153,8 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Panics unless `other` is struck as the first view says: `model` and its `impact`. Another view rounds every number
-    /// once more; with conditions of G up to some 1e5 that moves an answer by some 1e-11 of its largest entry.
+    /// Panics unless `other` is struck as the first view says: `model` and its `impact`. Another view rounds every
+    /// number once more; with conditions of G up to some 1e5 that moves an answer by some 1e-11 of its largest entry.
     fn check(&self, model: &Model, impact: &Impact, other: &Model, context: &dyn Fn() -> String) {
         let other = &other.impact();
         let (analysis, others) = (analysis(impact), analysis(other));

@@ -1,5 +1,6 @@
-//! Recorded gaits (`data/gaits`) through the binary, on the robots' files as others wrote them: every outcome of the reference
-//! states, and the touchdowns found in the tables, planar and in three dimensions, with options as a user gives them.
+//! Recorded gaits (`data/gaits`) through the binary, on the robots' files as others wrote them: every outcome of the
+//! reference states, and the touchdowns found in the tables, planar and in three dimensions, with options as a user
+//! gives them.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -160,8 +160,8 @@ fn state(model: &Model, alpha: f64, pose: Option<&Pose>, friction: &str) -> Valu
     })
 }
 
-/// T of q_reference = T q_tool. Reference: angles counter-clockwise, the walkers' legs absolute [x, y, trailing, leading].
-/// Tool: pitch clockwise, joints relative.
+/// T of q_reference = T q_tool. Reference: angles counter-clockwise, the walkers' legs absolute [x, y, trailing,
+/// leading]. Tool: pitch clockwise, joints relative.
 fn to_reference(legs: Legs) -> DMatrix<f64> {
     match legs {
         Legs::Straight => DMatrix::from_row_slice(
@@ -248,7 +248,8 @@ fn the_three_cases_are_among_outcomes_and_rejections() {
                 differences.note(&place, format!("{trailing}, stick is not listed with its numbers"));
                 continue;
             };
-            // The leading foot's impulse from c_le+ = 0, for the case's largest impulse: G_le,le L_le = -(c_le + G_le,tr L_tr).
+            // The leading foot's impulse from c_le+ = 0, for the case's largest impulse: G_le,le L_le = -(c_le +
+            // G_le,tr L_tr).
             let delassus = matrix(&case.reference.delassus);
             let before = &case.reference.contact_velocity_before;
             let pull = [2, 3].map(|row| before[row] + delassus[(row, 0)] * l_x + delassus[(row, 1)] * l_y);
@@ -362,8 +363,8 @@ fn table_2_of_the_paper_comes_out_to_its_printed_digits() {
     differences.finish();
 }
 
-/// With the centre of percussion in the foot, at j = 0.24, all outcomes touch at alpha = pi/4. The f64 nearest to it lies
-/// beside that point, and is reported as one.
+/// With the centre of percussion in the foot, at j = 0.24, all outcomes touch at alpha = pi/4. The f64 nearest to it
+/// lies beside that point, and is reported as one.
 #[test]
 fn the_degenerate_walker_is_proven_however_near_its_border_is() {
     let model = MODELS.iter().find(|model| model.name == "pdw_j0.24").expect("the walker");
@@ -375,8 +376,8 @@ fn the_degenerate_walker_is_proven_however_near_its_border_is() {
     assert!((0.0..1e-15).contains(&least), "{answer:#?}");
 }
 
-/// The paper's section 4: one body of mass 1 and inertia 1 with its CoG at (-1, 1) from the contact, G = [[2, 1], [1, 2]].
-/// An external impulse L_ext acts like the velocity before G L_ext; each region of its angle has its own outcomes.
+/// The paper's section 4: one body of mass 1 and inertia 1 with its CoG at (-1, 1) from the contact, G = [[2, 1], [1,
+/// 2]]. An external impulse L_ext acts like the velocity before G L_ext; each region of its angle has its own outcomes.
 #[test]
 fn the_single_body_ends_as_its_region_says() {
     let model = Model { name: "block", urdf: "block", inertia: None, legs: Legs::Straight };
@@ -409,7 +410,8 @@ fn the_single_body_ends_as_its_region_says() {
             differences.note(region, format!("{found:?} instead of {modes:?}"));
         }
         for outcome in &answer.outcomes {
-            // Sticking takes the external impulse up; sliding has L_n = 0 and c_n = 0 = G_nt (L_t + L_ext,t) + G_nn L_ext,n.
+            // Sticking takes the external impulse up; sliding has L_n = 0 and c_n = 0 = G_nt (L_t + L_ext,t) + G_nn
+            // L_ext,n.
             let (impulse, velocity) = match outcome.modes[0].as_str() {
                 "separate" => ([0.0, 0.0], [2.0 * l_t + l_n, l_t + 2.0 * l_n]),
                 "stick" => ([-l_t, -l_n], [0.0, 0.0]),

@@ -1,5 +1,5 @@
-//! The studies and states of `examples/paper/`: all are answered, what they show is what the paper claims, and where it is
-//! not, that is the paper's own contradiction.
+//! The studies and states of `examples/paper/`: all are answered, what they show is what the paper claims, and where it
+//! is not, that is the paper's own contradiction.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -64,8 +64,8 @@ fn nothing_is_refused_anywhere_in_a_study() {
     }
 }
 
-/// Table 1 gives the shanks' CoG from the foot, and calls it the distance from the knee: with its numbers the paper's own
-/// bands and its Table 2 do not come out. The numbers of the pitch are lost.
+/// Table 1 gives the shanks' CoG from the foot, and calls it the distance from the knee: with its numbers the paper's
+/// own bands and its Table 2 do not come out. The numbers of the pitch are lost.
 #[test]
 fn all_claims_come_out_but_those_on_table_1_as_printed() -> Result<(), Box<dyn Error>> {
     for figure in FIGURES {

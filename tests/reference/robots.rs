@@ -1,6 +1,6 @@
-//! Robots of other people's projects against Pinocchio's values (`data/robots`): matrices, energy and contact points with
-//! the reference's contacts named by hand, then each contact struck alone. Of a reference's variants the one is taken that
-//! the rules of `robot` mean: `default` where the root link floats.
+//! Robots of other people's projects against Pinocchio's values (`data/robots`): matrices, energy and contact points
+//! with the reference's contacts named by hand, then each contact struck alone. Of a reference's variants the one is
+//! taken that the rules of `robot` mean: `default` where the root link floats.
 
 use std::collections::BTreeMap;
 
@@ -209,8 +209,8 @@ fn compare_matrices(robot: &Robot, differences: &mut Differences) {
     }
 }
 
-/// `stick` of the reference is the mode stick, valid or rejected; `normal_only` is a slide without friction: the contact
-/// point stays on the ground and L_t = 0.
+/// `stick` of the reference is the mode stick, valid or rejected; `normal_only` is a slide without friction: the
+/// contact point stays on the ground and L_t = 0.
 fn compare_single_contacts(robot: &Robot, differences: &mut Differences) {
     let variant = &robot.variant;
     let (mut states, mut expected) = (Vec::new(), Vec::new());

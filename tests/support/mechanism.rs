@@ -1,7 +1,7 @@
 //! Random mechanisms in the plane, written as a URDF from any of their links as the root.
 //!
-//! All geometry is kept in the world where every joint is at zero; a frame stands at the joint that leads to its link (at the
-//! link's own anchor for the root), so that another root moves frames, turns joints round, and moves no matter.
+//! All geometry is kept in the world where every joint is at zero; a frame stands at the joint that leads to its link
+//! (at the link's own anchor for the root), so that another root moves frames, turns joints round, and moves no matter.
 
 use std::fmt::Write;
 
@@ -221,8 +221,8 @@ impl Mechanism {
         self.poses(position, velocity).point(link, point)
     }
 
-    /// The ends of a loop, as JSON for the URDF with this root: a point of one link, and the point of another that is there
-    /// in this position.
+    /// The ends of a loop, as JSON for the URDF with this root: a point of one link, and the point of another that is
+    /// there in this position.
     pub fn meeting(&self, root: usize, position: &Motion, (link, point): (usize, Point), other: usize) -> Value {
         let frames = self.frames(root);
         let poses = self.poses(position, position);

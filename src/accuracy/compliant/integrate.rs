@@ -69,8 +69,8 @@ pub(super) struct Limits {
     pub horizon: f64,
 }
 
-/// Integrates from `start`, whose length is 4, 8, 16, 32, 40, 64 or 128: the integrator takes arrays. Entries beyond the
-/// model's rates stay as they are.
+/// Integrates from `start`, whose length is 4, 8, 16, 32, 40, 64 or 128: the integrator takes arrays. Entries beyond
+/// the model's rates stay as they are.
 ///
 /// # Errors
 /// [`Reason::Unsupported`] if the integrator gives up, and for other lengths.

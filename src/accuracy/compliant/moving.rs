@@ -42,7 +42,8 @@ impl Moving<'_> {
     /// v when all contacts have come free, or after the longest run, on a ground of `stiffness` k_n \[N/m\].
     ///
     /// # Errors
-    /// [`Reason::Unsupported`](crate::Reason::Unsupported) if the integrator gives up, and for robots of more than 60 coordinates and contacts.
+    /// [`Reason::Unsupported`](crate::Reason::Unsupported) if the integrator gives up, and for robots of more than 60
+    /// coordinates and contacts.
     pub fn run(&self, ground: SoftGround, stiffness: f64, tolerance: f64) -> Result<Vec<f64>> {
         let dofs = self.position.len();
         let model = Equation::new(self, ground, stiffness);

@@ -1,5 +1,5 @@
-//! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary. What a single result says is
-//! checked in `cli`; tables and touchdowns have tests of their own.
+//! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary. What a single result
+//! says is checked in `cli`; tables and touchdowns have tests of their own.
 
 use super::{Run, file, heelstrike_reads, place};
 use serde_json::{Value, json};

@@ -1,5 +1,5 @@
-//! What is refused, as a person sees it: the line with the place marked, short also where the line is not; and inputs that
-//! are no lines and no tables.
+//! What is refused, as a person sees it: the line with the place marked, short also where the line is not; and inputs
+//! that are no lines and no tables.
 
 use super::*;
 

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// At friction 0.5, G = diag(0.75, 0.5) 1/kg: to hold a disc that strikes with c = [x, -1] takes L = [-x / 0.75, 2], and
-/// friction x / 1.5.
+/// At friction 0.5, G = diag(0.75, 0.5) 1/kg: to hold a disc that strikes with c = [x, -1] takes L = [-x / 0.75, 2],
+/// and friction x / 1.5.
 fn discs() -> String {
     let at_rest = json!({"id": "at rest", "position": {"base": {"z": 0.5}}});
     let aloft = json!({"position": {"base": {"z": 1}}});
@@ -22,8 +22,8 @@ fn the_summary_counts_and_names() {
         .iter_mut()
         .map(|near| near["margin"].take().as_f64().expect("a number"))
         .collect();
-    // The holding cone's (0.5 L_n - |L_t|) / (S sqrt(0.25 / G_nn + 1 / G_tt)) with S = 1 / sqrt(G_nn); then c_t+ = 0.75 of
-    // S = 1.5 / sqrt(G_tt); then L_n sqrt(G_nn) / S with S = 3 / sqrt(G_tt).
+    // The holding cone's (0.5 L_n - |L_t|) / (S sqrt(0.25 / G_nn + 1 / G_tt)) with S = 1 / sqrt(G_nn); then c_t+ = 0.75
+    // of S = 1.5 / sqrt(G_tt); then L_n sqrt(G_nn) / S with S = 3 / sqrt(G_tt).
     let expected = [0.6 / (2.0_f64.sqrt() * (11.0_f64 / 6.0).sqrt()), 2.0 * 0.375_f64.sqrt() / 3.0, 0.5];
     for (margin, expected) in margins.iter().zip(expected) {
         // A few roundings of numbers of order one.

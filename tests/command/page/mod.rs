@@ -1,5 +1,5 @@
-//! Interactive pages of `sweep` and `batch`: what stands in the file (here), and what it does in a browser (`live`, driven
-//! through `browser`).
+//! Interactive pages of `sweep` and `batch`: what stands in the file (here), and what it does in a browser (`live`,
+//! driven through `browser`).
 //!
 //! Where no Chromium is found the browser's tests say so and pass; HEELSTRIKE_BROWSER names one that must be there.
 

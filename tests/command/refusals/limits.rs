@@ -9,8 +9,8 @@ const MEMORY: u32 = 500_000;
 /// After so long it counts as hanging; a refusal takes some milliseconds, a second at most.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Checks that `heelstrike` with the `arguments` refuses `input` on standard input in short words, with status 1, within
-/// memory and time.
+/// Checks that `heelstrike` with the `arguments` refuses `input` on standard input in short words, with status 1,
+/// within memory and time.
 pub fn assert_refuses(case: &str, arguments: &[&str], input: &str) {
     let mut command = if cfg!(target_os = "linux") {
         let mut shell = Command::new("sh");

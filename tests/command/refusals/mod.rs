@@ -1,9 +1,9 @@
-//! Input that is wrong, broken, hostile or absurdly large. Each is refused with its place, reason and remedy, kept word for
-//! word as a snapshot, in bounded time and memory: the command has 500 MB for each, and some seconds, which no case comes
-//! near to.
+//! Input that is wrong, broken, hostile or absurdly large. Each is refused with its place, reason and remedy, kept word
+//! for word as a snapshot, in bounded time and memory: the command has 500 MB for each, and some seconds, which no case
+//! comes near to.
 //!
-//! A new case is a line of a table (`robots`, `states`, `studies`, `tables`). `files` holds what only the command meets:
-//! folders, devices, bytes that are no text. `people` holds how refusals look in a terminal.
+//! A new case is a line of a table (`robots`, `states`, `studies`, `tables`). `files` holds what only the command
+//! meets: folders, devices, bytes that are no text. `people` holds how refusals look in a terminal.
 
 use heelstrike::Error;
 use std::fmt::Write;
@@ -21,8 +21,8 @@ fn lines(table: &'static str, case: impl Fn(&str) -> String) -> impl Iterator<It
     table.trim().lines().map(move |line| case(&line.replace("\\n", "\n")))
 }
 
-/// Compares what `read` says of each case with the snapshot of that name, and checks that the command with the `arguments`
-/// refuses each within its limits.
+/// Compares what `read` says of each case with the snapshot of that name, and checks that the command with the
+/// `arguments` refuses each within its limits.
 fn assert_refused(
     name: &str,
     cases: impl Iterator<Item = String>,

@@ -1,7 +1,7 @@
 //! The schemas that `heelstrike schema` prints against what is really read and written.
 //!
-//! Inputs: a full sample is changed in every place and in every way; schema and reader must agree about each. Results: every
-//! form of result that the command writes must be valid, and not with a field more or less.
+//! Inputs: a full sample is changed in every place and in every way; schema and reader must agree about each. Results:
+//! every form of result that the command writes must be valid, and not with a field more or less.
 
 use super::heelstrike_reads;
 use heelstrike::read::Problem;

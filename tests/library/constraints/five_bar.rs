@@ -1,5 +1,5 @@
-//! A leg of five bars (torso, two thighs, two shanks) that the tree has to cut open, against the same leg without the loop:
-//! its dependent rates are solved for (implicit differentiation), v = T v_red with T = [1; -K_d^-1 K_i].
+//! A leg of five bars (torso, two thighs, two shanks) that the tree has to cut open, against the same leg without the
+//! loop: its dependent rates are solved for (implicit differentiation), v = T v_red with T = [1; -K_d^-1 K_i].
 
 use crate::constraints::mechanism::{Mechanism, Part, assert_near, flat, impact, matrix, part, point};
 use crate::support::after::{loop_impulses, velocities_after};
@@ -42,7 +42,8 @@ type Ends = [(&'static str, [f64; 2]); 2];
 const PIN: Ends = [("left_shank", [0.0, -SHANK]), ("right_shank", [0.0, -SHANK])];
 const KNEE: Ends = [("right_thigh", [0.0, -THIGH]), ("right_shank", [0.0, SHANK])];
 
-/// The coordinates of the tree that is cut at the pin, from pitch and the angles of both thighs: two circles about the knees.
+/// The coordinates of the tree that is cut at the pin, from pitch and the angles of both thighs: two circles about the
+/// knees.
 fn closed(pitch: f64, left: f64, right: f64) -> Vec<f64> {
     let down = |angle: f64, length: f64| [-length * f64::sin(angle), -length * f64::cos(angle)];
     let [a, b] = [(-0.5 * WIDTH, left), (0.5 * WIDTH, right)].map(|(x, angle)| {

@@ -1,15 +1,15 @@
-//! A four-bar by hand: a parallelogram of two cranks of length l and mass m on the ground, and a coupler of mass m_c that
-//! therefore does not turn. With both cranks at the angle q (positive: their ends swing back) the coupler moves at
+//! A four-bar by hand: a parallelogram of two cranks of length l and mass m on the ground, and a coupler of mass m_c
+//! that therefore does not turn. With both cranks at the angle q (positive: their ends swing back) the coupler moves at
 //! l q' (-cos q, sin q), so that
 //!
 //! ```text
 //!     M = (2/3 m + m_c) l^2        G = l^2 d d' / M,  d = (-cos q, sin q)
 //! ```
 //!
-//! (rods of moment m l^2 / 12 about their middle). At friction 0 a coupler that comes down stops: L_n = -M q' / (l sin q).
-//! The pin at crank 2 gives it f: the coupler's moments about its middle and its momentum along z are
-//! a_z + f_z = 0 and m_c dv_z = a_z - f_z + L_n (a from crank 1; L_n goes through the middle), so f_z = (L_n - m_c dv_z) / 2;
-//! the crank's moment about its pivot, m l^2 / 3 dq' = l f . d, gives f_x.
+//! (rods of moment m l^2 / 12 about their middle). At friction 0 a coupler that comes down stops: L_n = -M q' / (l sin
+//! q). The pin at crank 2 gives it f: the coupler's moments about its middle and its momentum along z are a_z + f_z = 0
+//! and m_c dv_z = a_z - f_z + L_n (a from crank 1; L_n goes through the middle), so f_z = (L_n - m_c dv_z) / 2; the
+//! crank's moment about its pivot, m l^2 / 3 dq' = l f . d, gives f_x.
 
 use crate::constraints::mechanism::{Joint, Mechanism, Part, impact, part, point};
 use crate::support::after::{loop_impulses, velocities_after};
@@ -93,8 +93,8 @@ fn a_parallelogram_strikes_the_ground_as_on_paper() {
 
 #[test]
 fn a_rod_pinned_to_the_ground_by_a_loop_is_a_pendulum() {
-    // Its joint is free to slide in the tree; the loop holds its upper end to the root. G at the free end, at the angle q:
-    // l^2 d d' / (m l^2 / 3), d as above.
+    // Its joint is free to slide in the tree; the loop holds its upper end to the root. G at the free end, at the angle
+    // q: l^2 d d' / (m l^2 / 3), d as above.
     let slide = |name, parent, direction| Part {
         joint: Joint::Slide(direction),
         mass: 0.0,

@@ -1,5 +1,5 @@
-//! A planar mechanism written down twice: as URDF, and as Jacobians of its CoGs by which M = sum m J'J + I w'w is summed up
-//! body by body, without recursion.
+//! A planar mechanism written down twice: as URDF, and as Jacobians of its CoGs by which M = sum m J'J + I w'w is
+//! summed up body by body, without recursion.
 
 use crate::support::urdf::{self, Axis};
 use heelstrike::pipeline::{Impact, Options, Pipeline};

@@ -12,8 +12,8 @@ use serde_json::json;
 /// Rounding of sums of some twenty products each, and of their inverses; conditions are below a few hundred.
 const ROUNDINGS: f64 = 1e4;
 
-/// A thigh whose shank follows it on the same branch, a toe that follows it too, a tail that leads a slide on the other leg,
-/// before which it does not stand.
+/// A thigh whose shank follows it on the same branch, a toe that follows it too, a tail that leads a slide on the other
+/// leg, before which it does not stand.
 fn mechanism() -> Mechanism {
     let follows = |part: Part, leader, multiplier, offset| Part { follows: Some((leader, multiplier, offset)), ..part };
     Mechanism {
@@ -89,10 +89,10 @@ fn tying_by_the_tool_s_own_free_matrices_gives_the_same() {
     assert_near(&matrix(&found.contact_jacobian), &(matrix(&free.contact_jacobian) * &map), ROUNDINGS);
 }
 
-/// A rod of mass m and length l on a floating hub of mass m, and a second rod on its end that follows with multiplier -2
-/// (a folding leg). By hand, at the posture q = 0 with both rods straight down, rods with their mass in the far end: with
-/// hip rate w, the first turns at w and the second at -w; their ends move forward at -l w and -l w + l w = 0.
-/// So M_qq = m l^2, M_xq = -m l, M_xx = 3 m.
+/// A rod of mass m and length l on a floating hub of mass m, and a second rod on its end that follows with multiplier
+/// -2 (a folding leg). By hand, at the posture q = 0 with both rods straight down, rods with their mass in the far end:
+/// with hip rate w, the first turns at w and the second at -w; their ends move forward at -l w and -l w + l w = 0. So
+/// M_qq = m l^2, M_xq = -m l, M_xx = 3 m.
 #[test]
 fn a_folding_leg_by_hand() {
     let (m, l) = (2.0, 0.5);
@@ -153,9 +153,10 @@ fn a_follower_has_no_coordinate() {
     );
 }
 
-/// Signs are proven for exactly multiplier q + offset, not for its rounding: one follower turns by 3 q, three on it turn back by
-/// q each, so that the last is level for every q. Its point, straight behind the CoG of all, then has no tangential velocity
-/// at all and, since nothing couples t and n there, neither has it after the impact: frictionless, it sticks.
+/// Signs are proven for exactly multiplier q + offset, not for its rounding: one follower turns by 3 q, three on it
+/// turn back by q each, so that the last is level for every q. Its point, straight behind the CoG of all, then has no
+/// tangential velocity at all and, since nothing couples t and n there, neither has it after the impact: frictionless,
+/// it sticks.
 #[test]
 fn the_angle_of_a_follower_is_exact() {
     let angle = 0.1_f64;

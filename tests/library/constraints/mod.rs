@@ -1,5 +1,5 @@
-//! What holds coordinates together: loops, and joints that follow others. Every expectation comes from `mechanism`, which
-//! knows nothing of the crate, or from paper.
+//! What holds coordinates together: loops, and joints that follow others. Every expectation comes from `mechanism`,
+//! which knows nothing of the crate, or from paper.
 
 mod command;
 mod five_bar;

@@ -54,8 +54,8 @@ fn a_rounded_pose_does_not_lock_redundant_loops() {
     assert!((moving - expected).abs() < 1e-5 * expected, "{moving} {expected}");
 }
 
-/// A rear crank of a millionth of a milligram guides the coupler as a heavy one does, although nearly all that its pin gives way
-/// is its own.
+/// A rear crank of a millionth of a milligram guides the coupler as a heavy one does, although nearly all that its pin
+/// gives way is its own.
 #[test]
 fn a_light_link_hides_no_loop() {
     let mut mechanism = parallelogram(&[("front", 0.0), ("rear", WIDTH)]);

@@ -8,8 +8,8 @@ fn a_sole_across_an_edge_stands_on_its_corner_and_on_the_edge() {
     let found = impact(&sole(), &state([0.0, 0.1, 0.0], FALLING, "0.5", &step_down(0.1, 0.2)));
     assert_touches(&found, &[[[-0.2, 0.0], [0.0, 1.0]], [[0.1, 0.0], [0.0, 1.0]]]);
     assert_close(&found.contacts[1].centre.components(), &[0.1, -0.1]);
-    // The CoG is between both: the box stops. L1 + L2 = 2 kg * 1 m/s, and 0.2 L1 = 0.1 L2 keeps it from turning. What both
-    // could squeeze along the ground is free, and least at none.
+    // The CoG is between both: the box stops. L1 + L2 = 2 kg * 1 m/s, and 0.2 L1 = 0.1 L2 keeps it from turning. What
+    // both could squeeze along the ground is free, and least at none.
     let (impulse, after) = only_outcome(&found);
     assert_close(impulse.as_flattened(), &[0.0, 2.0 / 3.0, 0.0, 4.0 / 3.0]);
     assert_close(&after, &[0.0; 3]);

@@ -12,16 +12,16 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     assert_eq!(found.contacts.len(), 1);
     let Vector { x, z } = found.contacts[0].normal();
     assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
-    // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over the
-    // void: all of the quarter between riser and tread.
+    // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over
+    // the void: all of the quarter between riser and tread.
     let flat = impact(&sole(), &state([-0.2, 0.1, 0.0], FALLING, "1", &edge));
     assert_touches(&flat, &[[[-0.4, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]]]);
     let hung = impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, "1", &edge));
     assert_eq!(hung.contacts.len(), 1);
     let Vector { x, z } = hung.contacts[0].normal();
     assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
-    // The heel of a sole that is pitched by -0.4 (nose up) allows -0.4 to pi/2 - 0.4 from upright toward +x; the edge 0 to
-    // pi/2. The middle of both is pi/4 - 0.2.
+    // The heel of a sole that is pitched by -0.4 (nose up) allows -0.4 to pi/2 - 0.4 from upright toward +x; the edge 0
+    // to pi/2. The middle of both is pi/4 - 0.2.
     let (sin, cos) = 0.4_f64.sin_cos();
     // The heel at (-0.2, -0.1) of the body, turned: (cos x + sin' z, cos z - sin' x) with sin' = sin(-0.4).
     let heel = [-0.2 * cos + 0.1 * sin, -0.1 * cos - 0.2 * sin];
@@ -34,8 +34,8 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
 
 #[test]
 fn a_spot_touches_once() {
-    // Whatever the overhang, from well beyond the tolerance to nothing and back, and whether the sole is a hair above or in
-    // the tread: two contacts with the tread's normal.
+    // Whatever the overhang, from well beyond the tolerance to nothing and back, and whether the sole is a hair above
+    // or in the tread: two contacts with the tread's normal.
     for overhang in [-1e-3, -1e-7, -1e-9, -1e-15, 0.0, 1e-15, 1e-9, 1e-7, 1e-3] {
         for height in [-1e-9, -1e-16, 0.0, 1e-16, 1e-9] {
             let text = state([-0.2 + overhang, 0.1 + height, 0.0], FALLING, "1", &step_down(0.0, 0.5));
@@ -59,8 +59,8 @@ fn a_plate_without_thickness_lies_on_an_edge() {
     }
 }
 
-/// A cylinder of radius 0.2 m and 0.5 m long whose axis is `yaw` off the plane's normal, toward x: its ends are ellipses,
-/// 0.2 cos(yaw) by 0.2 m, at 0.25 sin(yaw) before and behind the CoG.
+/// A cylinder of radius 0.2 m and 0.5 m long whose axis is `yaw` off the plane's normal, toward x: its ends are
+/// ellipses, 0.2 cos(yaw) by 0.2 m, at 0.25 sin(yaw) before and behind the CoG.
 fn oblique(yaw: f64) -> Robot {
     body(&format!(
         r#"<origin rpy="1.5707963267948966 0 {yaw:?}"/><geometry><cylinder radius="0.2" length="0.5"/></geometry>"#
@@ -89,8 +89,8 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
         &impact(&robot, &state([0.0, 0.2, 0.0], FALLING, "1", &step_down(0.0, 1.0))),
         &[[[-reach, 0.0], up], [[0.0, 0.0], up]],
     );
-    // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there is
-    // along (cos s / half, sin s / 0.2).
+    // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there
+    // is along (cos s / half, sin s / 0.2).
     let s = FRAC_1_SQRT_2;
     let out = [s / half, -s / 0.2];
     let size = f64::hypot(out[0], out[1]);
@@ -138,7 +138,8 @@ fn contacts_named_by_hand_take_the_nearest_ground() {
 fn a_circle_whose_lowest_point_is_exactly_a_corner_of_the_ground_touches_there() {
     let down = [[-2.0, 0.0], [0.0, 0.0], [2.0, -0.4]];
     let on = |profile: &[[f64; 2]], x: f64| impact(&disc(), &state([x, 0.5, 0.0], FALLING, "0.5", profile));
-    // At the edge of a step, where a slope begins, and at both ends of the ground; the normal is that of the level segment.
+    // At the edge of a step, where a slope begins, and at both ends of the ground; the normal is that of the level
+    // segment.
     for (profile, x) in [(&step_down(0.0, 1.0)[..], 0.0), (&down, 0.0), (&[[-2.0, 0.0], [0.25, 0.0]], 0.25)] {
         assert_touches(&on(profile, x), &[[[x, 0.0], [0.0, 1.0]]]);
     }

@@ -1,8 +1,8 @@
 //! Profiles: where feet touch steps, edges, notches and gaps, with which normals, and what comes of it, against cases
 //! worked by hand.
 //!
-//! Signs: x forward, z up, a positive pitch dips the nose; a body that turns at w moves its point at (x, z) from the CoG at
-//! w (z, -x), and an impulse (Lx, Lz) there turns it by I w = z Lx - x Lz.
+//! Signs: x forward, z up, a positive pitch dips the nose; a body that turns at w moves its point at (x, z) from the
+//! CoG at w (z, -x), and an impulse (Lx, Lz) there turns it by I w = z Lx - x Lz.
 
 mod by_hand;
 mod corners;

@@ -61,7 +61,8 @@ fn a_stance_stands_on_the_profile_at_x_0() {
     let raised = impact(&robot, &state("[[-1, 0.25], [1, 0.75]]", r#", "position": {"base": {"pitch": 0.1}}"#));
     assert_close(&raised.contacts[0].point.components(), &[0.0, 0.5]);
     assert_eq!(raised.velocity_before, [[0.0; 2]]);
-    // Of the two segments at the foot of a riser it is the tread; the rear end stands there, and the rest is in the step.
+    // Of the two segments at the foot of a riser it is the tread; the rear end stands there, and the rest is in the
+    // step.
     let error =
         try_impact(&robot, Options::default(), &state("[[-1, 0], [0, 0], [1e-6, 0.15], [1, 0.15]]", "")).unwrap_err();
     assert!(matches!(error.reason(), Reason::Penetration { depth, .. } if (depth - 0.15).abs() < 1e-6), "{error}");
@@ -72,7 +73,8 @@ fn a_stance_stands_on_the_profile_at_x_0() {
 
 #[test]
 fn a_circle_that_stands_in_a_notch_rests_on_one_side() {
-    // The notch is at (0.5 - 0.5 sin, ...) = where the disc that stands level at x = 0 touches a wall at 45 degrees, too.
+    // The notch is at (0.5 - 0.5 sin, ...) = where the disc that stands level at x = 0 touches a wall at 45 degrees,
+    // too.
     let away = 0.5 * (FRAC_1_SQRT_2 + FRAC_1_SQRT_2 - 1.0);
     let notch = 0.5 * FRAC_1_SQRT_2 - (0.5 - 0.5 * FRAC_1_SQRT_2);
     assert!(away > 0.0);

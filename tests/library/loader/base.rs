@@ -74,8 +74,8 @@ fn a_three_dimensional_chain_is_the_base_itself_too() {
 
 #[test]
 fn the_robot_keeps_the_axes_of_the_files_root_behind_a_turned_chain() {
-    // The last joint's frame is turned by a quarter about z, so that its own x axis is the root's y; the torso's CoG, at
-    // (0, -0.3, 0.2) there, lies at x = 0.3.
+    // The last joint's frame is turned by a quarter about z, so that its own x axis is the root's y; the torso's CoG,
+    // at (0, -0.3, 0.2) there, lies at x = 0.3.
     let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, ("continuous", "1 0 0")])
         .replace("<child link=\"d\"/>", &format!("<child link=\"d\"/><origin xyz=\"5 6 7\" rpy=\"0 0 {FRAC_PI_2}\"/>"))
         .replace("<origin xyz=\"0 0 0\"/><mass value=\"2\"/>", "<origin xyz=\"0 -0.3 0.2\"/><mass value=\"2\"/>");

@@ -7,7 +7,8 @@ fn in_plane(plane: Plane) -> Reduction {
     Reduction { plane: Some(plane), ..Reduction::default() }
 }
 
-/// Massive links a, b, c ... in a chain, each 1 m below the one before, with joints j, k, l ... of these types and axes.
+/// Massive links a, b, c ... in a chain, each 1 m below the one before, with joints j, k, l ... of these types and
+/// axes.
 fn chain(joints: &[(&str, &str)]) -> String {
     let inertial = inertial(1.0, "0 0 0", 1.0);
     let link = |k: usize| format!("<link name=\"{}\">{inertial}</link>\n", letter('a', k));
@@ -281,7 +282,8 @@ fn a_follower_of_a_held_joint_is_held_with_it() {
 #[test]
 fn names_change_nothing() {
     let text = chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0"), ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
-    // Each letter the one that stands opposite in the alphabet, so that their order turns round; joints named like links.
+    // Each letter the one that stands opposite in the alphabet, so that their order turns round; joints named like
+    // links.
     let opposite = |letter: char| char::from_u32('a' as u32 + 'z' as u32 - letter as u32).expect("a letter");
     let renamed: String = "abcdejklm".chars().fold(text.clone(), |text, letter| {
         text.replace(&format!("\"{letter}\""), &format!("\"*{}\"", opposite(letter)))

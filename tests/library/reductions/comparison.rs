@@ -41,8 +41,8 @@ pub fn answer(robot: &Robot, state: &serde_json::Value, reductions: Reductions) 
     Pipeline::new(robot, options).impact(&state)
 }
 
-/// What differs between two answers: contacts, verdict, modes, or numbers beyond 1e-12 of scale. Velocities by coordinate
-/// are compared where both have the same coordinates: `rate` is the largest of them before the impact.
+/// What differs between two answers: contacts, verdict, modes, or numbers beyond 1e-12 of scale. Velocities by
+/// coordinate are compared where both have the same coordinates: `rate` is the largest of them before the impact.
 pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(), String> {
     let names = |impact: &Impact| impact.contacts.iter().map(|contact| contact.name.clone()).collect::<Vec<_>>();
     if names(one) != names(other) {

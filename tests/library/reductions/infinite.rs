@@ -1,5 +1,5 @@
-//! Infinite friction has no cone to test: the pair (a, b) = (1, 0) of a L_n >= b |L_t| asks for pressure alone. No unreduced
-//! computation would be another; a huge finite coefficient must lead to the same modes.
+//! Infinite friction has no cone to test: the pair (a, b) = (1, 0) of a L_n >= b |L_t| asks for pressure alone. No
+//! unreduced computation would be another; a huge finite coefficient must lead to the same modes.
 
 use heelstrike::reductions::Reductions;
 use proptest::prelude::*;

@@ -36,7 +36,8 @@ struct Config {
     v: Vec<f64>,
 }
 
-/// The states that a robot's reference has, with one contact and with all, three kinds of friction, joints held and not.
+/// The states that a robot's reference has, with one contact and with all, three kinds of friction, joints held and
+/// not.
 fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
     let named = |values: &[f64]| {
         let entries = variant.coordinates.iter().zip(values).map(|(name, &value)| (name.clone(), json!(value)));

@@ -1,5 +1,5 @@
-//! Random trees with fixed joints, massless links, joints that leave the plane or are held, shapes high above the ground, and
-//! one contact or several with all kinds of friction.
+//! Random trees with fixed joints, massless links, joints that leave the plane or are held, shapes high above the
+//! ground, and one contact or several with all kinds of friction.
 
 use heelstrike::reductions::Reductions;
 use proptest::prelude::*;
@@ -104,7 +104,8 @@ proptest! {
         state["loops"] = json!([case.mechanism.meeting(0, &case.position, (link, point), other)]);
         let urdf = case.mechanism.urdf(0);
         let one = answer(&floating(&urdf, Reductions::ALL), &state, Reductions::ALL).expect("an answer");
-        // The same f64 numbers of the robot: what a loop holds may lie on a border, where one rounding leads to other modes.
+        // The same f64 numbers of the robot: what a loop holds may lie on a border, where one rounding leads to other
+        // modes.
         let reductions = Reductions { weld: true, massless: true, ..Reductions::NONE };
         let other = answer(&floating(&urdf, Reductions::ALL), &state, reductions).expect("an answer");
         prop_assert_eq!(difference(&one, &other, Some(largest_rate(&state))), Ok(()), "{}", state);

@@ -66,8 +66,8 @@ impl Region {
     }
 }
 
-/// Checks where the regions begin, the first one aside, to `within`, and the set of outcomes of each, in which a bar parts
-/// the outcomes.
+/// Checks where the regions begin, the first one aside, to `within`, and the set of outcomes of each, in which a bar
+/// parts the outcomes.
 pub fn assert_begins(place: &str, sweep: &Sweep, expected: &[(f64, &str)], within: f64) {
     let found = sweep.begins();
     let told: Vec<String> = found.iter().map(|(from, set)| format!("{from:?} {set:?}")).collect();

@@ -1,6 +1,7 @@
 //! Studies of one parameter: where their regions lie, what turns between them, and what is written of them.
 //!
-//! Borders that are known go to `paper`, `thin` and `turns`; `completeness` compares with dense scans of random studies.
+//! Borders that are known go to `paper`, `thin` and `turns`; `completeness` compares with dense scans of random
+//! studies.
 
 mod command;
 mod completeness;

@@ -1,5 +1,5 @@
-//! The borders of every model of the paper from 50 samples, against `data/paper.json` (40-digit values) and the bands that
-//! are printed.
+//! The borders of every model of the paper from 50 samples, against `data/paper.json` (40-digit values) and the bands
+//! that are printed.
 
 use crate::sweep::command::{Sweep, assert_begins, sweep};
 use crate::sweep::walkers::{kneed, straight};
@@ -62,8 +62,8 @@ fn bands_of_ramone_are_those_that_are_printed() {
     assert!(printed(&table, several).is_empty());
 }
 
-/// With the centre of percussion in the foot all outcomes touch at pi/4: one border, and whatever the result of the sample on
-/// it, no region of its own.
+/// With the centre of percussion in the foot all outcomes touch at pi/4: one border, and whatever the result of the
+/// sample on it, no region of its own.
 #[test]
 fn the_degenerate_place_of_the_walker_is_one_border() {
     let mut study = straight(Some(0.24));

@@ -1,5 +1,5 @@
-//! Random studies: robots of this repository, a pose and a velocity that are linear in the parameter, frictions of every
-//! kind, robots that vary.
+//! Random studies: robots of this repository, a pose and a velocity that are linear in the parameter, frictions of
+//! every kind, robots that vary.
 
 use crate::support::random::Random;
 use heelstrike::Robot;

@@ -7,9 +7,9 @@
 //!     stop is valid       where   u < (k - j) / (1 - a)
 //! ```
 //!
-//! By hand from M (v+ - v-) = J^T L with both feet down (stop: L_n = 0 of the trailing foot), and with the leading one alone
-//! (lift-off: c_n+ = 0 of the trailing foot). Where neither is valid the trailing foot slides, and where both are, it does as
-//! well: three outcomes.
+//! By hand from M (v+ - v-) = J^T L with both feet down (stop: L_n = 0 of the trailing foot), and with the leading one
+//! alone (lift-off: c_n+ = 0 of the trailing foot). Where neither is valid the trailing foot slides, and where both
+//! are, it does as well: three outcomes.
 
 use crate::sweep::command::{Sweep, assert_begins, run, sweep};
 use crate::sweep::walkers::{RANGE, straight};
@@ -79,8 +79,8 @@ fn a_thin_band_of_three_outcomes_is_found() {
     }
 }
 
-/// Lift-off stops being invalid anywhere where the two zeros of N meet: a band that opens by an extremum, as wide as the
-/// root of the distance from there.
+/// Lift-off stops being invalid anywhere where the two zeros of N meet: a band that opens by an extremum, as wide as
+/// the root of the distance from there.
 #[test]
 fn a_band_that_opens_by_an_extremum_is_found() {
     // 4 k^2 - k = c of N's discriminant (1 - 4 k) j^2 + (8 k^2 - 4 k) j + 4 k^2 - 4 k^3.
@@ -120,7 +120,8 @@ fn of_block(numbers: serde_json::Value) -> serde_json::Value {
     json!({"parameters": {"s": {"from": -1, "to": 1, "steps": 51}}, "state": state})
 }
 
-/// A foot that touches for a moment between two samples: (s - 0.42278)^2 is within the contact tolerance for |s - 0.42278| < h.
+/// A foot that touches for a moment between two samples: (s - 0.42278)^2 is within the contact tolerance for |s -
+/// 0.42278| < h.
 #[test]
 fn a_foot_that_grazes_the_ground_is_seen() {
     for half in [1e-5, 1e-4, 1e-3] {
@@ -140,7 +141,8 @@ fn a_foot_that_grazes_the_ground_is_seen() {
     }
 }
 
-/// A region that ends where rounding decides the sign at a sample: the velocity s (s + 0.001) + 1e-17 is negative between.
+/// A region that ends where rounding decides the sign at a sample: the velocity s (s + 0.001) + 1e-17 is negative
+/// between.
 #[test]
 fn a_region_that_ends_beside_a_sample_is_seen() {
     let study = of_block(json!({"velocity": {"base": {"x": 0.5, "z": "s*(s + 0.001) + 1e-17"}}}));

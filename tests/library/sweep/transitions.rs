@@ -16,9 +16,9 @@ fn turn(contact: &str, inequality: &str, modes: [&str; 2], valid: &str) -> Turn 
     Turn { contact, inequality, modes: modes.map(str::to_owned).into(), valid }
 }
 
-/// Of the trailing foot, the paper's three cases: lift-off needs c_n+ >= 0, stop L_n >= 0, and a slide without friction's
-/// limit has c_t+ of one sign and L_t of the other. c_n+ of lift-off and L_t of the slide turn together, and L_n of the stop
-/// and c_t+ of the slide.
+/// Of the trailing foot, the paper's three cases: lift-off needs c_n+ >= 0, stop L_n >= 0, and a slide without
+/// friction's limit has c_t+ of one sign and L_t of the other. c_n+ of lift-off and L_t of the slide turn together, and
+/// L_n of the stop and c_t+ of the slide.
 #[test]
 fn the_borders_of_the_minimalistic_biped_turn_by_the_trailing_foot() {
     let sweep = sweep("urdf/minimalistic.urdf", &straight(None));

@@ -1,6 +1,6 @@
-//! Touchdowns in recorded gaits: those of the rabbit, with states to the last digit and as the command prints them (here; all
-//! gaits through the binary are in `tests/gaits.rs`); what decides what is a touchdown, on a foot that moves up and down
-//! (`motion`); and how motions in three dimensions are projected (`sagittal`).
+//! Touchdowns in recorded gaits: those of the rabbit, with states to the last digit and as the command prints them
+//! (here; all gaits through the binary are in `tests/gaits.rs`); what decides what is a touchdown, on a foot that moves
+//! up and down (`motion`); and how motions in three dimensions are projected (`sagittal`).
 
 mod motion;
 mod sagittal;
@@ -159,7 +159,8 @@ fn velocities_from_the_time_stop_short_of_the_impact() {
             let (computed, recorded) = (computed.as_ref().unwrap(), recorded.as_ref().unwrap());
             assert_eq!(computed.source, recorded.source);
             for (computed_rate, rate) in computed.state.velocity.iter().zip(&recorded.state.velocity) {
-                // One-sided over 2 ms, of joints that speed up at up to 100 rad/s^2; across an impact it would be 5 rad/s.
+                // One-sided over 2 ms, of joints that speed up at up to 100 rad/s^2; across an impact it would be 5
+                // rad/s.
                 assert!((computed_rate - rate).abs() < 0.3, "line {}: {computed_rate} {rate}", computed.source);
             }
         }

@@ -201,7 +201,8 @@ const SOLE: &str = r#"<robot name="sole"><link name="foot">
 #[test]
 fn what_another_point_of_the_foot_keeps_from_the_ground_does_not_strike() {
     let robot = Robot::from_urdf(SOLE).unwrap();
-    // The heel stands where it was recorded, and the toe comes down from 60 mm until the sole is level or, as recorded, not.
+    // The heel stands where it was recorded, and the toe comes down from 60 mm until the sole is level or, as recorded,
+    // not.
     for rest in [-0.02, 0.0, 0.02_f64] {
         let mut table = "time,q_base_z,q_base_pitch\n".to_owned();
         let pitch = |row: u32| -(0.3 - 0.03 * f64::from(row)).max(rest);

@@ -19,8 +19,8 @@ pub fn impact(robot: &Robot, state: &State) -> Impact {
     Pipeline::new(robot, Options::default()).impact(state).expect("an answer")
 }
 
-/// Both feet on the ground, in any posture, with any velocities of order one and friction from 0.2 to 1.5, all half-widths
-/// `width`.
+/// Both feet on the ground, in any posture, with any velocities of order one and friction from 0.2 to 1.5, all
+/// half-widths `width`.
 pub fn on_both_feet(robot: &Robot, random: &mut Random, width: f64) -> State {
     let mut number = |scale: f64| random.between(-scale, scale);
     let joints = |value: &mut dyn FnMut() -> f64| -> Value {

@@ -233,8 +233,8 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     }
     let factor = Factor::new(mass_matrix, bits)?;
 
-    // The ground's tangent and normal; uphill toward +x is a turn against the pitch. Of a profile, here of one segment, they
-    // are the rounded numbers that the product works with.
+    // The ground's tangent and normal; uphill toward +x is a turn against the pitch. Of a profile, here of one segment,
+    // they are the rounded numbers that the product works with.
     let [cos, sin] = match &scene.ground {
         Ground::Slope(slope) => number(*slope).cos_sin(),
         Ground::Profile(profile) => {
@@ -267,8 +267,8 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
     let mut velocity: Vec<N> = state.velocity.iter().copied().map(number).collect();
     let stance = scene.stance.and_then(|link| contacts.iter().position(|contact| contact.link == link));
     if let Some(stance) = stance {
-        // x and z go along the world's axes, so that the tangent's and normal's share are to be turned back; both are as long
-        // as the ground's axes, which a profile's rounding leaves not quite at one.
+        // x and z go along the world's axes, so that the tangent's and normal's share are to be turned back; both are
+        // as long as the ground's axes, which a profile's rounding leaves not quite at one.
         let square = dot(axes[0].iter().zip(&axes[0]), bits);
         velocity[..2].fill(number(0.0));
         let [t, n] = rows[stance].each_ref().map(|row| dot(row.iter().zip(&velocity), bits).negative().over(&square));

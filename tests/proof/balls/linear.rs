@@ -173,8 +173,8 @@ const MOST: usize = 4000;
 
 /// Whether some choice of the free numbers, each of size `unit`, satisfies all inequalities; `None` if undecided.
 ///
-/// Fourier and Motzkin: a number may be eliminated by adding each inequality that bounds it from below to each that bounds
-/// it from above.
+/// Fourier and Motzkin: a number may be eliminated by adding each inequality that bounds it from below to each that
+/// bounds it from above.
 pub fn feasible<N: Number>(mut list: Vec<Inequality<N>>, zero: Zero, unit: f64) -> Option<bool> {
     let free = list.first().map_or(0, |first| first.value.factors.len());
     for _ in 0..free {

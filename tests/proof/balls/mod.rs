@@ -1,8 +1,9 @@
-//! What the product calls proven, against an oracle in balls of 256 bits and more: what is checked with more digits than
-//! f64 has belongs here.
+//! What the product calls proven, against an oracle in balls of 256 bits and more: what is checked with more digits
+//! than f64 has belongs here.
 //!
-//! The oracle (`dynamics`, `oracle`, `number`) shares no code with the product: absolute poses, a dense mass matrix, one
-//! linear solve per list of modes. It takes from the library only the numbers of the reduced robot and of the state.
+//! The oracle (`dynamics`, `oracle`, `number`) shares no code with the product: absolute poses, a dense mass matrix,
+//! one linear solve per list of modes. It takes from the library only the numbers of the reduced robot and of the
+//! state.
 //!
 //! A million states, a third of them beside a border, counted by robot:
 //!

@@ -1,7 +1,7 @@
 //! Every outcome of a state, by one dense linear solve for each of the 4^n lists of modes, in balls.
 //!
-//! A contact that separates has no unknown, one that slides one (L_n, or with infinite friction L_t), one that sticks two
-//! (one at friction 0). Where 256 bits leave a sign open it is tried with 832; a number that these hold below
+//! A contact that separates has no unknown, one that slides one (L_n, or with infinite friction L_t), one that sticks
+//! two (one at friction 0). Where 256 bits leave a sign open it is tried with 832; a number that these hold below
 //! 2^-150 of its scale is taken for zero, and the state for one on a border. Where that makes equations dependent, the
 //! impulses that are left free are eliminated from the inequalities one by one (Fourier and Motzkin).
 

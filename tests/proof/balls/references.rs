@@ -57,7 +57,8 @@ fn the_papers_outcomes_are_found() {
         for (alpha, at) in reference[name]["at"].as_object().expect("states by leg angle") {
             let angle: f64 = alpha.parse().expect("an angle");
             let (links, pitch, joints, foot) = if kneed {
-                // From the hip to the foot's centre: a thigh of 0.2 m and, bent back at right angles, a shank of 0.2385 m.
+                // From the hip to the foot's centre: a thigh of 0.2 m and, bent back at right angles, a shank of 0.2385
+                // m.
                 let bend = (0.2385_f64 / 0.2).atan();
                 let pose = &at["pose"];
                 let hips = pose["hip"].as_array().map(|_| numbers(&pose["hip"]));
@@ -136,7 +137,8 @@ fn matrices_are_those_of_pinocchio() {
     }
 }
 
-/// The block of the paper's section 4 has G = [[2, 1], [1, 2]] / kg, so that c- = -G L makes it stick with the impulse L.
+/// The block of the paper's section 4 has G = [[2, 1], [1, 2]] / kg, so that c- = -G L makes it stick with the impulse
+/// L.
 #[test]
 fn exact_borders_are_told() {
     let robot = Robot::from_urdf(&read("urdf/block.urdf")).expect("a robot of ours");

@@ -261,8 +261,8 @@ impl Parameter {
     }
 }
 
-/// States beside one border: both neighbouring f64 between which the outcomes change, and one further off on either side,
-/// 1e-15 to 1e-6 of the parameter away.
+/// States beside one border: both neighbouring f64 between which the outcomes change, and one further off on either
+/// side, 1e-15 to 1e-6 of the parameter away.
 pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
     loop {
         let state = model.random(random);

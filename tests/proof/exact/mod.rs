@@ -62,8 +62,8 @@ fn near(a: &[f64], b: &[f64], scale: f64) -> bool {
 
 /// Compares the crate's answers with all exact outcomes, or says what differs.
 ///
-/// All tolerances are those of the issue, 1e-9 of scale: eps times a condition, with numbers as short as these 3.5e-12 was
-/// the worst seen. The margin is free of units; its scale is 1.
+/// All tolerances are those of the issue, 1e-9 of scale: eps times a condition, with numbers as short as these 3.5e-12
+/// was the worst seen. The margin is free of units; its scale is 1.
 fn compare(problem: &Problem, all: &Enumeration, verdict: &str, answers: &Answers, count: usize) -> Result<(), String> {
     let expected: BTreeMap<Vec<String>, &Combination> = all.outcomes().map(|o| (modes(o), o)).collect();
     if !expected.keys().eq(answers.keys()) || count != expected.len() {
@@ -164,9 +164,9 @@ fn matrices_have_the_outcomes_of_exact_arithmetic() {
     assert!(compared > 7_000 && ambiguous > 300, "{compared} compared, {ambiguous} ambiguous");
 }
 
-/// A problem with a known outcome that lies on borders, by c- = c+ - G L in numbers that f64 holds: some contacts leave at
-/// no speed, rest without a load, need all of their friction, or slide at no speed. In two of three problems one number is
-/// then off by 2^-1 to 2^-52 of itself. `None` if G is singular.
+/// A problem with a known outcome that lies on borders, by c- = c+ - G L in numbers that f64 holds: some contacts leave
+/// at no speed, rest without a load, need all of their friction, or slide at no speed. In two of three problems one
+/// number is then off by 2^-1 to 2^-52 of itself. `None` if G is singular.
 fn beside_borders(random: &mut Random) -> Option<Problem> {
     let contacts = random.whole(1, 3) as usize;
     let columns = 2 * contacts + random.whole(0, 2) as usize;

@@ -85,8 +85,8 @@ fn the_block_as_a_tree_has_its_delassus_matrix() {
     assert_eq!(delassus, matrix(&[&[2, 1], &[1, 2]]));
 }
 
-/// Every column of a point's Jacobian is its central difference; the angles are turned by 2 atan(2^-20), the error of the
-/// difference is of the order of its square.
+/// Every column of a point's Jacobian is its central difference; the angles are turned by 2 atan(2^-20), the error of
+/// the difference is of the order of its square.
 #[test]
 fn jacobians_are_derivatives_of_positions() {
     let tangent = ratio(1, 1 << 20);

@@ -1,8 +1,8 @@
 //! Random planar trees of rigid bodies and their exact kinematics in absolute coordinates.
 //!
-//! The plane is x-z, angles turn right-handed about +y: [x, z] -> [c x + s z, -s x + c z]. Every body knows its turn, its
-//! origin and the Jacobians of both, written down from the root outward; the mass matrix is the plain sum over bodies of
-//! m Jc^T Jc + I w^T w.
+//! The plane is x-z, angles turn right-handed about +y: [x, z] -> [c x + s z, -s x + c z]. Every body knows its turn,
+//! its origin and the Jacobians of both, written down from the root outward; the mass matrix is the plain sum over
+//! bodies of m Jc^T Jc + I w^T w.
 
 use super::rational::{Matrix, dot, ratio, to_f64, zeros};
 use crate::support::random::Random;
@@ -43,7 +43,8 @@ pub struct Tree {
     pub joint_order: Vec<usize>,
 }
 
-/// q and v of a tree in the order x, z, pitch, joints of the file; of a turning coordinate q is held as cosine and sine.
+/// q and v of a tree in the order x, z, pitch, joints of the file; of a turning coordinate q is held as cosine and
+/// sine.
 #[derive(Debug, Clone)]
 pub struct Motions {
     pub cos: Vec<RBig>,
