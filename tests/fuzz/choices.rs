@@ -65,8 +65,20 @@ impl<'a> Choices<'a> {
         std::mem::take(&mut self.bytes)
     }
 
-    /// A text changed in a few places: pieces taken out, doubled, put elsewhere, and words of `dictionary` put in.
-    pub fn mutated(&mut self, text: &str, dictionary: &[&str]) -> Vec<u8> {
+    /// Any bytes, one of `samples` that is changed, or what `write` writes, changed or mostly not.
+    pub fn text(&mut self, samples: &[&str], words: &str, write: impl Fn(&mut Self) -> String) -> Vec<u8> {
+        let sample = match self.below(16) {
+            0 => return self.rest().to_vec(),
+            1..4 => self.pick(samples).to_owned(),
+            4..6 => write(self),
+            _ => return write(self).into_bytes(),
+        };
+        self.mutated(&sample, words)
+    }
+
+    /// A text changed in a few places: pieces taken out, doubled, put elsewhere, and some of these words put in.
+    fn mutated(&mut self, text: &str, words: &str) -> Vec<u8> {
+        let words: Vec<&str> = words.split_whitespace().collect();
         let mut bytes = text.as_bytes().to_vec();
         for _ in 0..=self.below(6) {
             let at = self.below(bytes.len() + 1);
@@ -101,8 +113,7 @@ impl<'a> Choices<'a> {
                     let inside = |byte: &u8| byte.is_ascii_alphanumeric() || b"._-+".contains(byte);
                     let start = at - bytes[..at].iter().rev().take_while(|byte| inside(byte)).count();
                     let end = at + bytes[at..].iter().take_while(|byte| inside(byte)).count();
-                    let word = self.pick(dictionary);
-                    bytes.splice(start..end, word.bytes());
+                    bytes.splice(start..end, self.pick(&words).bytes());
                 }
             }
         }

@@ -17,7 +17,11 @@ mod problem;
 mod robot;
 mod state;
 mod study;
+#[path = "../support/mod.rs"]
+mod support;
 mod watch;
+
+use support::random::Random;
 
 /// The longest input \[bytes\].
 const LONGEST: usize = 2048;
@@ -31,19 +35,11 @@ fn by_bolero() -> bool {
 /// Checks the bytes of each seed, and that at least a `share` of them were answered.
 fn check_seeds(count: u64, share: f64, check: fn(&[u8]) -> bool) {
     let answered = (0..count).filter(|&seed| {
-        let bytes: Vec<u8> = (0..LONGEST as u64 / 8).flat_map(|at| mixed(seed << 32 | at).to_le_bytes()).collect();
-        check(&bytes)
+        let mut random = Random::new(seed);
+        check(&(0..LONGEST / 8).flat_map(|_| random.bits().to_le_bytes()).collect::<Vec<u8>>())
     });
     let answered = answered.count() as f64;
     assert!(answered >= share * count as f64, "only {answered} of {count} were answered");
-}
-
-/// Bits that look random, of SplitMix64 (Steele, Lea and Flood 2014).
-fn mixed(number: u64) -> u64 {
-    let bits = number.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let bits = (bits ^ bits >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let bits = (bits ^ bits >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^ bits >> 31
 }
 
 /// A test that checks bytes by `$check`, which returns whether they were answered.

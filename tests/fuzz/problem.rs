@@ -1,14 +1,16 @@
 //! Contact problems: redundant, degenerate, of extreme numbers, by G and by the dynamics.
 
-use crate::answer::{ALL, check_analysis, check_json, check_refusal, keeps_index_theorem};
+use crate::answer::{ALL, accepted, check_analysis, check_json, keeps_index_theorem};
 use crate::choices::Choices;
 use crate::open;
+use crate::support::rational::{self, to_f64};
 use crate::watch::watched;
 use dashu::rational::RBig;
 use heelstrike::Error;
-use heelstrike::impact::{Analysis, AnalysisOptions, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
+use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
 use heelstrike::read::Problem;
 use heelstrike::write::Report;
+use serde_json::json;
 use std::cell::RefCell;
 
 crate::target!(any_contact_problem_is_answered_or_refused, 3_000, 0.6, check);
@@ -150,23 +152,21 @@ impl Case {
 
     /// As `heelstrike solve` reads it.
     fn json(&self) -> String {
-        let friction: Vec<serde_json::Value> = self
-            .friction
-            .iter()
-            .map(|friction| match friction {
-                Friction::Finite(mu) => (*mu).into(),
-                Friction::Infinite => "infinite".into(),
-            })
-            .collect();
-        let restitution = &self.restitution;
-        match &self.matrices {
-            Matrices::Delassus { delassus, velocity_before } => serde_json::json!({"delassus": delassus,
-                "velocity_before": velocity_before, "friction": friction, "restitution": restitution}),
-            Matrices::Dynamics { mass_matrix, contact_jacobian, velocity } => serde_json::json!({
-                "mass_matrix": mass_matrix, "contact_jacobian": contact_jacobian, "velocity": velocity,
-                "friction": friction, "restitution": restitution}),
-        }
-        .to_string()
+        let mut json = match &self.matrices {
+            Matrices::Delassus { delassus, velocity_before } => {
+                json!({"delassus": delassus, "velocity_before": velocity_before})
+            }
+            Matrices::Dynamics { mass_matrix, contact_jacobian, velocity } => {
+                json!({"mass_matrix": mass_matrix, "contact_jacobian": contact_jacobian, "velocity": velocity})
+            }
+        };
+        let friction = |friction: &Friction| match friction {
+            Friction::Finite(mu) => json!(mu),
+            Friction::Infinite => json!("infinite"),
+        };
+        json["friction"] = self.friction.iter().map(friction).collect();
+        json["restitution"] = json!(self.restitution);
+        json.to_string()
     }
 
     /// Whether G is positive definite to the last digit; one that was computed is as far as its rank is whole.
@@ -191,7 +191,11 @@ impl Case {
         match &self.matrices {
             Matrices::Delassus { delassus, velocity_before } => Some((delassus.clone(), velocity_before.concat())),
             Matrices::Dynamics { mass_matrix, contact_jacobian, velocity } => {
-                exact_delassus(mass_matrix, contact_jacobian, velocity)
+                let jacobian = rationals(contact_jacobian)?;
+                let velocity = rationals(std::slice::from_ref(velocity))?.concat();
+                let [_, delassus] = rational::delassus(&rationals(mass_matrix)?, &jacobian)?;
+                let rounded = |row: &Vec<RBig>| row.iter().map(to_f64).collect();
+                Some((delassus.iter().map(rounded).collect(), rounded(&rational::times(&jacobian, &velocity))))
             }
         }
     }
@@ -205,37 +209,8 @@ fn each<T: Clone>(choices: &mut Choices, count: usize, draw: impl Fn(&mut Choice
     (0..count).map(|_| draw(choices)).collect()
 }
 
-fn rationals(rows: &[Vec<f64>]) -> Option<Vec<Vec<RBig>>> {
+fn rationals(rows: &[Vec<f64>]) -> Option<rational::Matrix> {
     rows.iter().map(|row| row.iter().map(|&entry| RBig::try_from(entry).ok()).collect()).collect()
-}
-
-/// J M^-1 J^T and J v in rationals, rounded at the end.
-fn exact_delassus(mass: &[Vec<f64>], jacobian: &[Vec<f64>], velocity: &[f64]) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
-    let jacobian = rationals(jacobian)?;
-    let velocity = rationals(&[velocity.to_vec()])?.concat();
-    // [M | J^T], eliminated until M is the identity.
-    let mut rows = rationals(mass)?;
-    for (i, row) in rows.iter_mut().enumerate() {
-        row.extend(jacobian.iter().map(|of| of[i].clone()));
-    }
-    for k in 0..velocity.len() {
-        let pivot = rows[k][k].clone();
-        if pivot.is_zero() {
-            return None;
-        }
-        rows[k].iter_mut().for_each(|entry| *entry /= &pivot);
-        let own = rows[k].clone();
-        for row in rows.iter_mut().enumerate().filter(|(i, _)| *i != k).map(|(_, row)| row) {
-            let factor = row[k].clone();
-            row.iter_mut().zip(&own).for_each(|(entry, pivot)| *entry -= &factor * pivot);
-        }
-    }
-    let dot = |a: &[RBig], b: &[RBig]| a.iter().zip(b).fold(RBig::ZERO, |sum, (a, b)| sum + a * b).to_f64().value();
-    let dofs = velocity.len();
-    let solved: Vec<Vec<RBig>> =
-        (0..jacobian.len()).map(|j| rows.iter().map(|row| row[dofs + j].clone()).collect()).collect();
-    let delassus = jacobian.iter().map(|row| solved.iter().map(|column| dot(row, column)).collect()).collect();
-    Some((delassus, jacobian.iter().map(|row| dot(row, &velocity)).collect()))
 }
 
 fn check(bytes: &[u8]) -> bool {
@@ -249,21 +224,9 @@ thread_local! {
 }
 
 fn answer(case: &Case, json: &str) -> bool {
-    let problem = match case.problem() {
-        Ok(problem) => problem,
-        Err(error) => {
-            check_refusal(&error, json);
-            return false;
-        }
-    };
+    let Some(problem) = accepted(case.problem(), json) else { return false };
     let contacts = problem.contacts();
-    let analysis = match analyse(&problem, case.explain) {
-        Ok(analysis) => analysis,
-        Err(error) => {
-            check_refusal(&error, json);
-            return false;
-        }
-    };
+    let Some(analysis) = accepted(analyse(&problem, case.explain), json) else { return false };
     check_analysis(&analysis, contacts, json);
     let kept = keeps_index_theorem(&analysis, contacts) || open::is_far(json) || !case.is_definite();
     assert!(kept, "the indices do not sum to 1: {analysis:?}\n{json}");
@@ -278,16 +241,11 @@ fn answer(case: &Case, json: &str) -> bool {
             check_laws(case, &delassus, &before, outcome, json);
         }
     }
-    check_report(problem, &analysis, json);
-    true
-}
-
-fn check_report(contact: ContactProblem, analysis: &Analysis, json: &str) {
-    let names = (0..contact.contacts()).map(|contact| format!("contact/{contact}")).collect();
-    let problem = Problem { id: None, names, contact };
+    let names = (0..contacts).map(|contact| format!("contact/{contact}")).collect();
     let mut line = Vec::new();
-    Report::of_problem(&problem, analysis, ALL).append_json(ALL, &mut line);
+    Report::of_problem(&Problem { id: None, names, contact: problem }, &analysis, ALL).append_json(ALL, &mut line);
     check_json(&line, json);
+    true
 }
 
 /// What rounding may make of an outcome, in the problem's own scale.
@@ -327,24 +285,24 @@ fn check_laws(case: &Case, delassus: &[Vec<f64>], before: &[f64], outcome: &Outc
     for (contact, (&mode, &friction)) in outcome.modes.iter().zip(&case.friction).enumerate() {
         let (t, n) = (2 * contact, 2 * contact + 1);
         let xi = after[n] + case.restitution[contact] * before[n].min(0.0);
-        let told = || format!("contact {contact}: {}", context());
-        assert!(xi >= -speed(n) && l[n] >= -push(n), "{}", told());
+        let place = || format!("contact {contact}: {}", context());
+        assert!(xi >= -speed(n) && l[n] >= -push(n), "{}", place());
         match mode {
             // The end of a family may lie on the rim of its modes.
-            Mode::Separate => assert_eq!([l[t], l[n]], [0.0; 2], "{}", told()),
-            Mode::Stick => assert!(xi <= speed(n) && after[t] == 0.0, "{}", told()),
+            Mode::Separate => assert_eq!([l[t], l[n]], [0.0; 2], "{}", place()),
+            Mode::Stick => assert!(xi <= speed(n) && after[t] == 0.0, "{}", place()),
             Mode::SlidePlus | Mode::SlideMinus => {
                 let forward = mode.direction();
-                assert!(xi <= speed(n) && forward * after[t] >= 0.0 && forward * l[t] <= push(t), "{}", told());
+                assert!(xi <= speed(n) && forward * after[t] >= 0.0 && forward * l[t] <= push(t), "{}", place());
             }
         }
         match friction {
             Friction::Finite(mu) => {
                 let slack = push(t) + mu * push(n);
-                assert!(l[t].abs() <= mu * l[n] + slack, "outside its cone: {}", told());
-                assert!(!mode.slides() || l[t].abs() >= mu * l[n] - slack, "slips early: {}", told());
+                assert!(l[t].abs() <= mu * l[n] + slack, "outside its cone: {}", place());
+                assert!(!mode.slides() || l[t].abs() >= mu * l[n] - slack, "slips early: {}", place());
             }
-            Friction::Infinite => assert!(!mode.slides() || l[n].abs() <= push(n), "slips under load: {}", told()),
+            Friction::Infinite => assert!(!mode.slides() || l[n].abs() <= push(n), "slips under load: {}", place()),
         }
     }
     let work: f64 = (0..l.len()).map(|i| -0.5 * l[i] * (before[i] + after[i])).sum();

@@ -1,6 +1,6 @@
 //! Robots as text, and a state of each that is read.
 
-use crate::answer::{check_json, check_refusal, check_state};
+use crate::answer::{accepted, check_json, check_state};
 use crate::choices::Choices;
 use crate::state::{options, state_of};
 use crate::watch::watched;
@@ -13,62 +13,11 @@ use heelstrike::write::{Inspection, Palette, append_line};
 crate::target!(any_urdf_is_answered_or_refused, 2_000, 0.1, check);
 
 /// Words that mean something in a URDF.
-const WORDS: [&str; 54] = [
-    "robot",
-    "link",
-    "joint",
-    "inertial",
-    "origin",
-    "mass",
-    "inertia",
-    "collision",
-    "visual",
-    "geometry",
-    "sphere",
-    "box",
-    "cylinder",
-    "capsule",
-    "mesh",
-    "axis",
-    "parent",
-    "child",
-    "limit",
-    "mimic",
-    "name",
-    "type",
-    "value",
-    "xyz",
-    "rpy",
-    "ixx",
-    "iyy",
-    "izz",
-    "ixy",
-    "ixz",
-    "iyz",
-    "radius",
-    "size",
-    "length",
-    "fixed",
-    "revolute",
-    "continuous",
-    "prismatic",
-    "planar",
-    "floating",
-    "0",
-    "-1",
-    "NaN",
-    "inf",
-    "1e999",
-    "1e-320",
-    "1e308",
-    "1.5707963267948966",
-    "left_foot",
-    "torso",
-    "&amp;",
-    "&#0;",
-    "<!--",
-    "xmlns",
-];
+const WORDS: &str = "
+    robot link joint inertial origin mass inertia collision visual geometry sphere box cylinder capsule mesh axis
+    parent child limit mimic name type value xyz rpy ixx iyy izz ixy ixz iyz radius size length fixed revolute
+    continuous prismatic planar floating 0 -1 NaN inf 1e999 1e-320 1e308 1.5707963267948966 left_foot torso &amp;
+    &#0; <!-- xmlns";
 
 const ROBOTS: [&str; 5] = [
     include_str!("../../urdf/block.urdf"),
@@ -80,31 +29,14 @@ const ROBOTS: [&str; 5] = [
 
 fn check(bytes: &[u8]) -> bool {
     let mut choices = Choices::new(bytes);
-    let text = match choices.below(16) {
-        0 => choices.rest().to_vec(),
-        1..4 => {
-            let text = choices.pick(&ROBOTS);
-            choices.mutated(text, &WORDS)
-        }
-        4..6 => {
-            let text = robot_text(&mut choices);
-            choices.mutated(&text, &WORDS)
-        }
-        _ => robot_text(&mut choices).into_bytes(),
-    };
+    let text = choices.text(&ROBOTS, WORDS, robot_text);
     let case = String::from_utf8_lossy(&text).into_owned();
     let state = choices.rest();
     watched(&case, || answer(&text, state, &case))
 }
 
 fn answer(bytes: &[u8], state: &[u8], case: &str) -> bool {
-    let robot = match utf8(bytes).and_then(Robot::from_urdf) {
-        Ok(robot) => robot,
-        Err(error) => {
-            check_refusal(&error, case);
-            return false;
-        }
-    };
+    let Some(robot) = accepted(utf8(bytes).and_then(Robot::from_urdf), case) else { return false };
     let inspection = Inspection::new(&robot, &[]);
     let mut line = Vec::new();
     append_line(&mut line, &inspection);
@@ -113,12 +45,10 @@ fn answer(bytes: &[u8], state: &[u8], case: &str) -> bool {
 
     let state = state_of(&robot, &mut Choices::new(state));
     let case = format!("{state}\n{case}");
-    watched(&case, || match State::from_json(&state, &robot, &Defaults::default()) {
-        Ok(state) => check_state(&state, &robot, &mut Pipeline::new(&robot, options()), &options(), &case),
-        Err(error) => {
-            check_refusal(&error, &case);
-            false
-        }
+    watched(&case, || {
+        let state = accepted(State::from_json(&state, &robot, &Defaults::default()), &case);
+        let check = |state| check_state(&state, &robot, &mut Pipeline::new(&robot, options()), &options(), &case);
+        state.is_some_and(check)
     })
 }
 
@@ -155,16 +85,13 @@ fn robot_text(choices: &mut Choices) -> String {
                 choices.pick(&["continuous", "continuous", "revolute", "prismatic", "fixed"])
             };
             let parent = choices.below(link);
-            // Of the slides: forward or up; of the turns: along the normal.
+            // Of prismatic joints: forward or up; of others: along the normal.
             let axes = if kind == "prismatic" { ["1 0 0", "0 0 -1", "3 0 4"] } else { ["0 1 0", "0 -2 0", "0 1 1e-9"] };
             let axis =
                 if choices.once_in(16) { choices.pick(&["1 2 3", "1 0 0", "0 1 0.08"]) } else { choices.pick(&axes) };
-            let leader = choices.below(link + 1);
-            let mimic = if choices.once_in(16) {
-                format!("<mimic joint=\"j{leader}\" offset=\"0.1\"/>")
-            } else {
-                String::new()
-            };
+            let mimicked = choices.below(link + 1);
+            let mimic = format!("<mimic joint=\"j{mimicked}\" offset=\"0.1\"/>");
+            let mimic = if choices.once_in(16) { &mimic } else { "" };
             text += &format!(
                 "<joint name=\"j{link}\" type=\"{kind}\">{}<parent link=\"l{parent}\"/><child link=\"l{link}\"/>\
                  <axis xyz=\"{axis}\"/>{mimic}</joint>\n",

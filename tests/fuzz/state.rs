@@ -1,6 +1,6 @@
 //! States of one robot as text.
 
-use crate::answer::{ALL, check_refusal, check_state};
+use crate::answer::{ALL, accepted, check_state};
 use crate::choices::Choices;
 use crate::watch::watched;
 use heelstrike::Robot;
@@ -16,48 +16,10 @@ static RAMONE: LazyLock<Robot> =
     LazyLock::new(|| Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a robot"));
 
 /// Words that mean something in a state.
-const WORDS: [&str; 40] = [
-    "id",
-    "position",
-    "velocity",
-    "friction",
-    "restitution",
-    "ground",
-    "stance",
-    "held",
-    "rotor_inertia",
-    "contacts",
-    "loops",
-    "uncertainty",
-    "impulse",
-    "base",
-    "joints",
-    "x",
-    "z",
-    "pitch",
-    "slope",
-    "profile",
-    "default",
-    "link",
-    "offset",
-    "radius",
-    "vector",
-    "infinite",
-    "left_hip",
-    "left_knee",
-    "right_hip",
-    "right_knee",
-    "left_foot",
-    "right_foot",
-    "left_shank",
-    "torso",
-    "null",
-    "1e999",
-    "-0.0",
-    "1e-320",
-    "\\u0000",
-    "é",
-];
+const WORDS: &str = r"
+    id position velocity friction restitution ground stance held rotor_inertia contacts loops uncertainty impulse
+    base joints x z pitch slope profile default link offset radius vector infinite left_hip left_knee right_hip
+    right_knee left_foot right_foot left_shank torso null 1e999 -0.0 1e-320 \u0000 é";
 
 pub fn options() -> Options {
     Options { explain_up_to: 3, matrices: ALL.matrices, ..Options::default() }
@@ -69,25 +31,13 @@ thread_local! {
 
 fn check(bytes: &[u8]) -> bool {
     let mut choices = Choices::new(bytes);
-    let text = match choices.below(16) {
-        0 => choices.rest().to_vec(),
-        1..4 => {
-            let text = choices.pick(&[
-                include_str!("../../examples/ramone.json"),
-                include_str!("../../examples/ramone_paper.json"),
-                FULL,
-            ]);
-            choices.mutated(text, &WORDS)
-        }
-        4..6 => {
-            let text = state_of(&RAMONE, &mut choices);
-            choices.mutated(&text, &WORDS)
-        }
-        _ => state_of(&RAMONE, &mut choices).into_bytes(),
-    };
+    let text = choices.text(&STATES, WORDS, |choices| state_of(&RAMONE, choices));
     let case = String::from_utf8_lossy(&text);
     watched(&case, || KEPT.with_borrow_mut(|kept| answer(&text, kept, &case)))
 }
+
+const STATES: [&str; 3] =
+    [include_str!("../../examples/ramone.json"), include_str!("../../examples/ramone_paper.json"), FULL];
 
 /// A state with every field.
 const FULL: &str = r#"{"id": 17, "position": {"base": {"x": 0.1, "z": 0.44, "pitch": 0.2}, "joints": {"left_hip": 0.7, "left_knee": -1.5}},
@@ -98,23 +48,15 @@ const FULL: &str = r#"{"id": 17, "position": {"base": {"x": 0.1, "z": 0.44, "pit
  "impulse": [{"link": "torso", "offset": [0, 0, 0.1], "vector": [1, -2]}]}"#;
 
 fn answer(bytes: &[u8], kept: &mut Pipeline, case: &str) -> bool {
-    let text = match utf8(bytes) {
-        Ok(text) => text,
-        Err(error) => {
-            check_refusal(&error, case);
-            return false;
-        }
-    };
+    let Some(text) = accepted(utf8(bytes), case) else { return false };
+    let read = |text: &str| State::from_json(text, &RAMONE, &Defaults::default());
     let mut answered = false;
     for document in documents(text) {
-        match State::from_json(document.text, &RAMONE, &Defaults::default()) {
-            Ok(state) => {
-                let again = State::from_json(&state.to_json(&RAMONE), &RAMONE, &Defaults::default());
-                assert_eq!(again.ok().as_ref(), Some(&state), "written, it reads as another state\n{case}");
-                answered |= check_state(&state, &RAMONE, kept, &options(), case);
-            }
-            Err(error) => check_refusal(&document.locate(error), case),
-        }
+        let state = read(document.text).map_err(|error| document.locate(error));
+        let Some(state) = accepted(state, case) else { continue };
+        let again = read(&state.to_json(&RAMONE));
+        assert_eq!(again.ok().as_ref(), Some(&state), "written, it reads as another state\n{case}");
+        answered |= check_state(&state, &RAMONE, kept, &options(), case);
     }
     answered
 }
@@ -124,8 +66,7 @@ pub fn state_of(robot: &Robot, choices: &mut Choices) -> String {
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
     let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
     let shaped = robot.links.iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str()).collect();
-    let mut writer = Writer { choices, links, shaped, joints };
-    writer.state()
+    Writer { choices, links, shaped, joints }.state()
 }
 
 struct Writer<'c, 'a, 'b> {
@@ -143,14 +84,12 @@ impl Writer<'_, '_, '_> {
         for name in ["position", "velocity"] {
             let base = if stance { &["pitch"][..] } else { &["x", "z", "pitch"] };
             let base = self.some(base);
-            let joints = self.joints.clone();
-            let joints = self.some(&joints);
+            let joints = self.some(&self.joints.clone());
             fields.push(format!("\"{name}\": {{\"base\": {base}, \"joints\": {joints}}}"));
         }
         if stance {
-            let shaped: Vec<&str> = self.shaped.clone();
-            let mostly = !shaped.is_empty() && !self.choices.once_in(8);
-            let link = if mostly { quoted(self.choices.pick(&shaped)) } else { self.link() };
+            let mostly = !self.shaped.is_empty() && !self.choices.once_in(8);
+            let link = if mostly { quoted(self.choices.pick(&self.shaped)) } else { self.link() };
             fields.push(format!("\"stance\": {link}"));
         }
         if self.choices.once_in(3) {
@@ -160,12 +99,10 @@ impl Writer<'_, '_, '_> {
             fields.push(format!("\"ground\": {}", self.ground()));
         }
         if self.choices.once_in(4) && !self.joints.is_empty() {
-            let held = self.choices.pick(&self.joints);
-            fields.push(format!("\"held\": [{}]", quoted(held)));
+            fields.push(format!("\"held\": [{}]", quoted(self.choices.pick(&self.joints))));
         }
         if self.choices.once_in(4) {
-            let joints = self.joints.clone();
-            fields.push(format!("\"rotor_inertia\": {}", self.some(&joints).replace('-', "")));
+            fields.push(format!("\"rotor_inertia\": {}", self.some(&self.joints.clone()).replace('-', "")));
         }
         if !self.choices.once_in(3) {
             let most = self.choices.pick(&[2, 2, 3, 3, 4]);
@@ -182,7 +119,7 @@ impl Writer<'_, '_, '_> {
             fields.push(format!("\"loops\": [{{\"a\": {{\"link\": {a}}}, \"b\": {{\"link\": {b}}}}}]"));
         }
         if self.choices.once_in(16) {
-            let field = self.choices.pick(&WORDS);
+            let field = self.choices.pick(&WORDS.split_whitespace().collect::<Vec<_>>());
             let value = self.choices.pick(&["null", "[]", "{}", "true", "\"\"", "[[[]]]", "{\"a\": {}}", "1e999"]);
             fields.push(format!("{}: {value}", quoted(field)));
         }

@@ -1,6 +1,6 @@
 //! Studies of the minimalistic biped as text.
 
-use crate::answer::check_refusal;
+use crate::answer::{accepted, check_refusal};
 use crate::choices::Choices;
 use crate::state::state_of;
 use crate::watch::watched_for;
@@ -24,46 +24,10 @@ static BIPED: LazyLock<(Description, Robot)> = LazyLock::new(|| {
 });
 
 /// Words that mean something in a study.
-const WORDS: [&str; 38] = [
-    "parameters",
-    "constants",
-    "state",
-    "robot",
-    "from",
-    "to",
-    "steps",
-    "links",
-    "joints",
-    "mass",
-    "com",
-    "inertia",
-    "radius",
-    "origin",
-    "left_leg",
-    "hip",
-    "alpha",
-    "j",
-    "2",
-    "0.5",
-    "-1",
-    "1e999",
-    "1e-300",
-    "pi",
-    "e",
-    "sin(alpha)",
-    "sqrt(alpha)",
-    "1/alpha",
-    "alpha^2",
-    "atan2(alpha, j)",
-    "((((",
-    "----",
-    "infinite",
-    "base",
-    "z",
-    "friction",
-    "stance",
-    "é",
-];
+const WORDS: &str = "
+    parameters constants state robot from to steps links joints mass com inertia radius origin left_leg hip alpha j
+    2 0.5 -1 1e999 1e-300 pi e sin(alpha) sqrt(alpha) 1/alpha alpha^2 atan2(alpha,j) (((( ---- infinite base z
+    friction stance é";
 
 /// A study with every field.
 const FULL: &str = r#"{"parameters": {"alpha": {"from": "pi/20", "to": 1.5, "steps": 4}}, "constants": {"j": 0.04, "v": "-(1 + j)"},
@@ -108,32 +72,19 @@ const MOST_SAMPLES: usize = 20;
 
 fn check(bytes: &[u8]) -> bool {
     let mut choices = Choices::new(bytes);
-    let text = match choices.below(16) {
-        0 => choices.rest().to_vec(),
-        1..4 => choices.mutated(include_str!("../../examples/paper/figures_3_and_6.json"), &WORDS),
-        4 => choices.mutated(FULL, &WORDS),
-        _ => study_of(&BIPED.1, &mut choices).into_bytes(),
-    };
+    let studies = [include_str!("../../examples/paper/figures_3_and_6.json"), FULL];
+    let text = choices.text(&studies, WORDS, |choices| study_of(&BIPED.1, choices));
     let case = String::from_utf8_lossy(&text);
-    watched_for(SLOW, &case, || match utf8(&text).and_then(Study::from_json) {
-        Ok(study) => survey(&study, &case),
-        Err(error) => {
-            check_refusal(&error, &case);
-            false
-        }
-    })
+    let study = || accepted(utf8(&text).and_then(Study::from_json), &case);
+    watched_for(SLOW, &case, || study().is_some_and(|study| survey(&study, &case)))
 }
 
 fn survey(study: &Study, case: &str) -> bool {
     let (description, robot) = &*BIPED;
     let (options, defaults) = (Options::default(), Defaults::default());
     let model = RobotStudy { study, description, reduction: &Reduction::default(), robot, options, defaults };
-    if let Err(error) = model.readable() {
-        check_refusal(&error, case);
-        return false;
-    }
     let [parameter] = study.parameters() else { return false };
-    if parameter.steps > MOST_SAMPLES {
+    if accepted(model.readable(), case).is_none() || parameter.steps > MOST_SAMPLES {
         return false;
     }
     let Survey { regions, borders, .. } = Survey::of(&model, Workers { threads: 1, done: &|| () });

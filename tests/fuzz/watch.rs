@@ -34,7 +34,7 @@ fn running() -> MutexGuard<'static, Vec<Case>> {
     RUNNING.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Ends the process, telling what is under way, once a case does not end or the memory is too much.
+/// Prints what is under way and ends the process once a case does not end or the memory is too much.
 fn look() {
     let memory = resident();
     for case in running().iter() {
@@ -46,17 +46,17 @@ fn look() {
     }
 }
 
-/// Memory of the process \[bytes\]; 0 where the system does not tell.
+/// Memory of the process \[bytes\]; 0 where the system does not report it.
 fn resident() -> u64 {
-    let told = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
-    let pages = told.split(' ').nth(1).and_then(|pages| pages.parse::<u64>().ok());
+    let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let pages = text.split(' ').nth(1).and_then(|pages| pages.parse::<u64>().ok());
     4096 * pages.unwrap_or(0)
 }
 
 /// What this thread had of a processor, which other work on the machine does not change; else the time since `start`.
 fn spent(start: Instant) -> Duration {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let own = told.split(' ').next().and_then(|nanoseconds| nanoseconds.parse().ok());
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let own = text.split(' ').next().and_then(|nanoseconds| nanoseconds.parse().ok());
     own.map_or_else(|| start.elapsed(), Duration::from_nanos)
 }
 
@@ -70,13 +70,13 @@ pub fn watched_for<T>(slow: Duration, text: &str, run: impl FnOnce() -> T) -> T 
     let (thread, start) = (thread::current().id(), Instant::now());
     let before = spent(start);
     running().push(Case { thread, start, text: text.to_owned() });
-    let told = catch_unwind(AssertUnwindSafe(run));
+    let result = catch_unwind(AssertUnwindSafe(run));
     running().retain(|case| case.thread != thread);
     let taken = spent(start).saturating_sub(before);
-    let told = told.unwrap_or_else(|panic| {
+    let result = result.unwrap_or_else(|panic| {
         println!("this panics:\n{text}");
         resume_unwind(panic)
     });
     assert!(taken < slow, "takes {taken:?}:\n{text}");
-    told
+    result
 }

@@ -8,5 +8,6 @@ pub mod command;
 pub mod mechanism;
 pub mod parallel;
 pub mod random;
+pub mod rational;
 pub mod scaled;
 pub mod urdf;

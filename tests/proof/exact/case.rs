@@ -1,9 +1,9 @@
 //! A random tree in a random state with random contacts, and its exact impact.
 
 use super::enumeration::{Enumeration, Friction, Problem, enumerate};
-use super::rational::{Matrix, dot, rank, ratio, solve, times, to_f64, transposed};
 use super::tree::{Motion, Motions, Point, Tree, kinetic_energy};
 use crate::support::random::Random;
+use crate::support::rational::{Matrix, delassus, dot, rank, ratio, times, to_f64};
 use dashu::rational::RBig;
 use serde_json::{Value, json};
 
@@ -56,8 +56,7 @@ impl Case {
             motions.velocity[1] -= &at[1];
         }
         let mass_matrix = tree.mass_matrix(&placed);
-        let response = solve(&mass_matrix, &transposed(&jacobian))?;
-        let delassus: Matrix = jacobian.iter().map(|row| times(&transposed(&response), row)).collect();
+        let [response, delassus] = delassus(&mass_matrix, &jacobian)?;
         let velocity_before = times(&jacobian, &motions.velocity);
         if rank(&delassus) < delassus.len() || velocity_before.iter().all(RBig::is_zero) {
             return None;

@@ -1,6 +1,6 @@
 //! All outcomes of a contact problem in exact arithmetic, one list of modes after the other.
 
-use super::rational::{Matrix, common_denominator, cramer, quotient, rank, sign, to_f64, whole};
+use crate::support::rational::{Matrix, common_denominator, cramer, quotient, rank, sign, to_f64, whole};
 use dashu::base::Abs;
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;

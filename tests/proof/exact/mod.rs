@@ -2,7 +2,6 @@
 
 mod case;
 mod enumeration;
-mod rational;
 mod self_test;
 mod tree;
 
@@ -10,6 +9,7 @@ use crate::support::answers::{self, answers};
 use crate::support::command::place;
 use crate::support::parallel::{added, total};
 use crate::support::random::Random;
+use crate::support::rational::{self, ratio, to_f64};
 use case::Case;
 use dashu::rational::RBig;
 use enumeration::{Combination, Enumeration, Friction, Problem, enumerate};
@@ -18,7 +18,6 @@ use heelstrike::dynamics::plan::Configuration;
 use heelstrike::impact::{self, Analysis, ContactProblem, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::NamedContact;
-use rational::{ratio, to_f64};
 use std::collections::BTreeMap;
 use tree::Tree;
 

@@ -4,8 +4,8 @@
 //! its origin and the Jacobians of both, written down from the root outward; the mass matrix is the plain sum over
 //! bodies of m Jc^T Jc + I w^T w.
 
-use super::rational::{Matrix, dot, ratio, to_f64, zeros};
 use crate::support::random::Random;
+use crate::support::rational::{Matrix, dot, ratio, times, to_f64, zeros};
 use crate::support::urdf::{self, Axis};
 use dashu::rational::RBig;
 
@@ -263,5 +263,5 @@ fn random_angle(random: &mut Random) -> (RBig, RBig) {
 
 /// 1/2 v.M v.
 pub fn kinetic_energy(mass_matrix: &Matrix, velocity: &[RBig]) -> RBig {
-    dot(&super::rational::times(mass_matrix, velocity), velocity) / ratio(2, 1)
+    dot(&times(mass_matrix, velocity), velocity) / ratio(2, 1)
 }

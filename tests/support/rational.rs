@@ -75,6 +75,16 @@ pub fn solve(matrix: &Matrix, right: &Matrix) -> Option<Matrix> {
     Some(rows.into_iter().map(|row| row[n..].to_vec()).collect())
 }
 
+/// M^-1 J^T and G = J M^-1 J^T; `None` if M is singular.
+pub fn delassus(mass_matrix: &Matrix, jacobian: &Matrix) -> Option<[Matrix; 2]> {
+    let response = solve(mass_matrix, &transposed(jacobian))?;
+    // A robot that cannot move has a response without rows.
+    let column = |contact: usize| response.iter().map(|row| row[contact].clone()).collect();
+    let columns: Matrix = (0..jacobian.len()).map(column).collect();
+    let delassus = jacobian.iter().map(|row| times(&columns, row)).collect();
+    Some([response, delassus])
+}
+
 /// Rank of a matrix.
 pub fn rank(matrix: &Matrix) -> usize {
     let mut rows = matrix.clone();
