@@ -47,7 +47,7 @@ impl Number for DoubleDouble {
     }
 
     fn parts(self) -> [f64; 2] {
-        DoubleDouble::parts(self)
+        crate::scalar::Midpoint::parts(self)
     }
 }
 

@@ -147,16 +147,13 @@ pub trait Enclosure: Ordered {
     fn widened(self, by: Self) -> Self;
 }
 
-/// A floating-point number that can be the centre of a [`Ball`].
+/// A floating-point number that can be the center of a [`Ball`].
 pub trait Midpoint: Real {
     /// The greatest relative error of a product or a quotient.
     const ROUNDING: f64;
 
-    /// Whether it is exactly zero.
-    fn is_zero(self) -> bool;
-
-    /// Whether it is a number at all.
-    fn is_finite(self) -> bool;
+    /// The nearest f64 and the rest.
+    fn parts(self) -> [f64; 2];
 
     /// At least the absolute value.
     fn magnitude(self) -> f64;
@@ -169,9 +166,6 @@ pub trait Midpoint: Real {
 
     /// The sign of a number at most `radius` away.
     fn sign_within(self, radius: f64) -> Sign;
-
-    /// The nearest f64.
-    fn to_f64(self) -> f64;
 
     /// The greatest error of a product that was rounded to this number; its last part covers underflow.
     #[inline]
@@ -187,8 +181,12 @@ pub trait Midpoint: Real {
 }
 
 #[cfg(test)]
-mod exact {
+mod tests {
+    //! What all numbers promise; what only one of them does is tested beside it.
+
+    use super::*;
     use dashu::rational::RBig;
+    use proptest::prelude::*;
 
     /// The rational that a finite f64 is.
     pub fn exact(value: f64) -> RBig {
@@ -198,20 +196,118 @@ mod exact {
     pub fn magnitude(value: RBig) -> RBig {
         if value < RBig::ZERO { -value } else { value }
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+    pub trait Bounded: Ordered + Trigonometry {
+        /// Center and radius; `None` if nothing is known.
+        fn bounds(self) -> Option<[RBig; 2]>;
+    }
+
+    impl<M: Midpoint> Bounded for Ball<M>
+    where
+        Self: Trigonometry,
+    {
+        fn bounds(self) -> Option<[RBig; 2]> {
+            let [hi, lo] = self.mid.parts().map(exact);
+            self.radius.is_finite().then(|| [hi + lo, exact(self.radius)])
+        }
+    }
+
+    /// Checks what the operations make of three numbers, each the sum of two f64.
+    fn check<N: Bounded>(numbers: [[f64; 2]; 3]) -> Result<(), TestCaseError> {
+        let [x, y, z] = numbers.map(|[hi, lo]| N::from_f64(hi) + N::from_f64(lo));
+        let [p, q, r] = numbers.map(|[hi, lo]| exact(hi) + exact(lo));
+        let mut results = vec![
+            (x, p.clone()),
+            (x * y + z, &p * &q + &r),
+            (-(x + y) * (z - x), -(&p + &q) * (&r - &p)),
+            (x * y - y * z, &p * &q - &q * &r),
+        ];
+        if q != RBig::ZERO {
+            results.push((x * x / y, &p * &p / &q));
+            results.push(((x + y) * (x + y) / y, (&p + &q) * (&p + &q) / &q));
+        }
+        if p != RBig::ZERO && q != RBig::ZERO {
+            results.push((y / (x * y), RBig::ONE / &p));
+        }
+        if q != RBig::ZERO && r != RBig::ZERO && &p + &r != RBig::ZERO {
+            let (quotient, truth) = ((x + z) / y / z, (&p + &r) / &q / &r);
+            results.push((quotient * quotient - x, &truth * &truth - &p));
+            results.push(((quotient - x) / (quotient * y), (&truth - &p) / (&truth * &q)));
+            results.push((quotient, truth));
+        }
+        for (index, (found, truth)) in results.iter().enumerate() {
+            let encloses = found.bounds().is_none_or(|[mid, radius]| magnitude(mid - truth) <= radius);
+            prop_assert!(encloses, "result {index} of {numbers:?}");
+        }
+        Ok(())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1000))]
+        #[test]
+        fn operations_enclose_exact_results(
+            a in -1e3..1e3f64, b in -1e3..1e3f64, c in -1e-3..1e-3f64, d in -1e-15..1e-15f64,
+            k in -300..300i32, bits in 20..400usize,
+        ) {
+            let scale = f64::from(k).exp2();
+            check::<Ball>([[a, 0.0], [b * scale, 0.0], [c, 0.0]])?;
+            let wide = [[a, d], [b * scale, d * scale], [c, d / 1e3]];
+            check::<Ball<DoubleDouble>>(wide)?;
+            Interval::scope(bits, || check::<Interval>(wide))?;
+        }
+
+        #[test]
+        fn underflow_is_enclosed(a in 1.0..2.0f64, b in 1.0..2.0f64, i in -1074..100i32, j in -1074..100i32) {
+            let numbers = [[libm::scalbn(a, i), 0.0], [libm::scalbn(b, j), 0.0], [0.0; 2]];
+            check::<Ball>(numbers)?;
+            check::<Ball<DoubleDouble>>(numbers)?;
+        }
+    }
+
+    /// Asserts the signs that all numbers know or do not know, and gives those of identities and of a small number.
+    fn signs<N: Ordered + Trigonometry>() -> ([Sign; 3], Sign) {
+        let number = N::from_f64;
+        let [zero, one, two, three] = [0.0, 1.0, 2.0, 3.0].map(number);
+        let (third, [cos, sin]) = (one / three, N::cos_sin(0.7391));
+        let nothing = one / (third * three - one);
+        let [at_zero, at_infinity, at_nan] = [-0.0, f64::INFINITY, f64::NAN].map(N::cos_sin);
+        let known = [number(0.5) - number(0.5), number(-0.0), zero * third, zero / third, -third, cos - sin];
+        assert_eq!(
+            known.map(N::sign),
+            [Sign::Zero, Sign::Zero, Sign::Zero, Sign::Zero, Sign::Negative, Sign::Positive]
+        );
+        assert_eq!(at_zero.map(N::sign), [Sign::Positive, Sign::Zero]);
+        let unknown = [nothing, nothing + one, one / zero, number(f64::NAN), number(f64::INFINITY)];
+        assert!(unknown.iter().all(|number| number.to_f64().is_nan()));
+        assert!(unknown.into_iter().chain(at_infinity).chain(at_nan).all(|number| number.sign() == Sign::Undecided));
+        let identities =
+            [third * three - one, cos * cos + sin * sin - one, N::cos_sin(1.4782)[0] - (two * cos * cos - one)];
+        // The f64 next to a third of pi lies above it by 1e-16.
+        let small = N::cos_sin(std::f64::consts::FRAC_PI_3)[0] - number(0.5);
+        (identities.map(N::sign), small.sign())
+    }
+
+    #[test]
+    fn signs_are_known_or_undecided() {
+        use Sign::{Negative, Undecided, Zero};
+        assert_eq!(signs::<Ball>(), ([Undecided; 3], Undecided));
+        assert_eq!(signs::<Affine<1>>(), ([Undecided; 3], Undecided));
+        assert_eq!(signs::<Ball<DoubleDouble>>(), ([Undecided; 3], Negative));
+        assert_eq!(Interval::scope(40, signs::<Interval>), ([Undecided; 3], Undecided));
+        assert_eq!(Interval::scope(200, signs::<Interval>), ([Undecided; 3], Negative));
+        assert_eq!(signs::<Certified<Ball>>(), ([Zero; 3], Undecided));
+        assert_eq!(signs::<Certified<Ball<DoubleDouble>>>(), ([Zero; 3], Negative));
+        assert_eq!(Interval::scope(200, signs::<Certified<Interval>>), ([Zero; 3], Negative));
+        let huge = [1e305, f64::MAX].map(Ball::<DoubleDouble>::from_f64);
+        let overflown = [huge[0] * Real::one(), huge[1] + huge[1], huge[0] / huge[0]];
+        assert_eq!(overflown.map(Ordered::sign), [Undecided; 3]);
+    }
 
     #[test]
     fn sign_within_the_error_is_undecided() {
-        assert_eq!(Sign::within(1e-3, 1e-4), Sign::Positive);
-        assert_eq!(Sign::within(-1e-3, 1e-4), Sign::Negative);
-        assert_eq!(Sign::within(1e-5, 1e-4), Sign::Undecided);
-        assert_eq!(Sign::within(0.0, 1e-4), Sign::Undecided);
-        assert_eq!(Sign::within(0.0, 0.0), Sign::Zero);
-        assert_eq!(Sign::within(f64::NAN, 0.0), Sign::Undecided);
-        assert_eq!(Ball { mid: 1.0, radius: f64::INFINITY }.sign(), Sign::Undecided);
+        assert_eq!([1e-3, -1e-3].map(|number| Sign::within(number, 1e-4)), [Sign::Positive, Sign::Negative]);
+        assert_eq!([1e-5, 0.0, f64::NAN].map(|number| Sign::within(number, 1e-4)), [Sign::Undecided; 3]);
+        assert_eq!([0.0, f64::NAN].map(|number| Sign::within(number, 0.0)), [Sign::Zero, Sign::Undecided]);
+        assert_eq!(Sign::within(1.0, f64::INFINITY), Sign::Undecided);
     }
 }

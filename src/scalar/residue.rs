@@ -34,9 +34,25 @@ type SecondOrder = Modulus<59, { (SECOND - 1) / 4 }>;
 const NONE: u64 = u64::MAX;
 
 static FIRST_TABLES: Tables =
-    Tables::new::<61, FIRST, 59, { (FIRST - 1) / 4 }>(0x243F_6A88_85A3_08D3, 0x1319_8A2E_0370_7344);
+    FirstField::tables::<59, { (FIRST - 1) / 4 }>([0x243F_6A88_85A3_08D3, 0x1319_8A2E_0370_7344]);
 static SECOND_TABLES: Tables =
-    Tables::new::<61, SECOND, 59, { (SECOND - 1) / 4 }>(0xA409_3822_299F_31D0, 0x082E_FA98_EC4E_6C89);
+    SecondField::tables::<59, { (SECOND - 1) / 4 }>([0xA409_3822_299F_31D0, 0x082E_FA98_EC4E_6C89]);
+
+/// Exponents of two in f64, in steps of this many.
+const STEP: i32 = 32;
+const STEPS: usize = 65;
+/// The least exponent, below that of the least f64.
+const LEAST: i32 = -1088;
+/// Multiples of angles are taken by digits of four bits.
+const DIGITS: usize = 15;
+
+/// Constants of a prime.
+struct Tables {
+    /// 2^(LEAST + STEP i) modulo the prime and modulo the order of the circle's points.
+    powers: [[u64; 2]; STEPS],
+    /// The point of the angle 1 to the power of `j 16^i`.
+    turns: [[[u64; 2]; 16]; DIGITS],
+}
 
 /// Arithmetic modulo 2^BITS - C, with a small C.
 struct Modulus<const BITS: u32, const C: u64>;
@@ -103,86 +119,53 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
             Self::reduced(a as u128 * d as u128 + b as u128 * c as u128),
         ]
     }
-}
 
-/// Exponents of two in f64, in steps of this many.
-const STEP: i32 = 32;
-const STEPS: usize = 65;
-/// The least exponent, below that of the least f64.
-const LEAST: i32 = -1088;
-/// Multiples of angles are taken by digits of four bits.
-const DIGITS: usize = 15;
-
-/// Constants of a prime.
-struct Tables {
-    /// 2^(LEAST + STEP i) modulo the prime and modulo the order of the circle's points.
-    powers: [[u64; 2]; STEPS],
-    /// The point of the angle 1 to the power of `j 16^i`.
-    turns: [[[u64; 2]; 16]; DIGITS],
-}
-
-impl Tables {
     /// The point is ((a + ib)^2 / (a^2 + b^2))^4 of a fixed (a, b), here of digits of pi.
-    const fn new<const BITS: u32, const C: u64, const ORDER_BITS: u32, const ORDER_C: u64>(a: u64, b: u64) -> Self {
-        let mut powers = [[0; 2]; STEPS];
-        let mut power = [
-            Modulus::<BITS, C>::power(Modulus::<BITS, C>::HALF, LEAST.unsigned_abs() as u64),
-            Modulus::<ORDER_BITS, ORDER_C>::power(Modulus::<ORDER_BITS, ORDER_C>::HALF, LEAST.unsigned_abs() as u64),
-        ];
-        let mut i = 0;
+    const fn tables<const ORDER_BITS: u32, const ORDER_C: u64>([a, b]: [u64; 2]) -> Tables {
+        let least = LEAST.unsigned_abs() as u64;
+        let order = Modulus::<ORDER_BITS, ORDER_C>::power(Modulus::<ORDER_BITS, ORDER_C>::HALF, least);
+        let mut powers = [[Self::power(Self::HALF, least), order]; STEPS];
+        let mut i = 1;
         while i < STEPS {
-            powers[i] = power;
-            power = [
-                Modulus::<BITS, C>::times(power[0], 1 << STEP),
-                Modulus::<ORDER_BITS, ORDER_C>::times(power[1], 1 << STEP),
-            ];
+            let [last, order] = powers[i - 1];
+            powers[i] = [Self::times(last, 1 << STEP), Modulus::<ORDER_BITS, ORDER_C>::times(order, 1 << STEP)];
             i += 1;
         }
-        let (a, b) = (Modulus::<BITS, C>::reduced(a as u128), Modulus::<BITS, C>::reduced(b as u128));
-        let [x, y] = Modulus::<BITS, C>::turned([a, b], [a, b]);
-        let square = Modulus::<BITS, C>::reduced(a as u128 * a as u128 + b as u128 * b as u128);
-        let inverse = Modulus::<BITS, C>::power(square, Modulus::<BITS, C>::PRIME - 2);
-        let point = [Modulus::<BITS, C>::times(x, inverse), Modulus::<BITS, C>::times(y, inverse)];
-        let twice = Modulus::<BITS, C>::turned(point, point);
-        let mut point = Modulus::<BITS, C>::turned(twice, twice);
+        let (a, b) = (Self::reduced(a as u128), Self::reduced(b as u128));
+        let [x, y] = Self::turned([a, b], [a, b]);
+        let square = Self::reduced(a as u128 * a as u128 + b as u128 * b as u128);
+        let inverse = Self::power(square, Self::PRIME - 2);
+        let point = [Self::times(x, inverse), Self::times(y, inverse)];
+        let twice = Self::turned(point, point);
+        let mut point = Self::turned(twice, twice);
         let mut turns = [[[1, 0]; 16]; DIGITS];
         let mut i = 0;
         while i < DIGITS {
             let mut j = 1;
             while j < 16 {
-                turns[i][j] = Modulus::<BITS, C>::turned(turns[i][j - 1], point);
+                turns[i][j] = Self::turned(turns[i][j - 1], point);
                 j += 1;
             }
-            point = Modulus::<BITS, C>::turned(turns[i][15], point);
+            point = Self::turned(turns[i][15], point);
             i += 1;
         }
-        Self { powers, turns }
+        Tables { powers, turns }
     }
-}
 
-/// The integer and the exponent of a finite f64's magnitude.
-#[inline]
-fn decomposed(value: f64) -> (u64, i32) {
-    let bits = value.to_bits();
-    let (fraction, exponent) = (bits & ((1 << 52) - 1), ((bits >> 52) & 0x7FF) as i32);
-    if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
-}
-
-impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
     /// `value` modulo the prime, where `part` says which of the powers belong to it.
     #[inline]
-    fn of(value: f64, powers: &[[u64; 2]; STEPS], part: usize) -> u64 {
+    fn of(value: f64, tables: &Tables, part: usize) -> u64 {
         let (integer, exponent) = decomposed(value);
         let from_least = exponent - LEAST;
         let scaled = Self::reduced(u128::from(integer) << (from_least % STEP));
-        let residue = Self::times(scaled, powers[(from_least / STEP) as usize][part]);
+        let residue = Self::times(scaled, tables.powers[(from_least / STEP) as usize][part]);
         if value < 0.0 { Self::minus(0, residue) } else { residue }
     }
 
     /// The point of `multiple` times the angle 1.
-    fn point(multiple: u64, turns: &[[[u64; 2]; 16]; DIGITS]) -> [u64; 2] {
+    fn point(multiple: u64, tables: &Tables) -> [u64; 2] {
         let (mut point, mut rest) = ([1, 0], multiple);
-        for digit in turns {
+        for digit in &tables.turns {
             point = Self::turned(point, digit[(rest & 15) as usize]);
             rest >>= 4;
         }
@@ -192,6 +175,14 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
     fn over(a: u64, b: u64) -> u64 {
         if b == 0 { NONE } else { Self::times(a, Self::inverse(b)) }
     }
+}
+
+/// The integer and the exponent of a finite f64's magnitude.
+#[inline]
+fn decomposed(value: f64) -> (u64, i32) {
+    let bits = value.to_bits();
+    let (fraction, exponent) = (bits & ((1 << 52) - 1), ((bits >> 52) & 0x7FF) as i32);
+    if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
 }
 
 impl Residue {
@@ -220,7 +211,7 @@ impl Real for Residue {
         if !value.is_finite() {
             return Self::UNDEFINED;
         }
-        Self([FirstField::of(value, &FIRST_TABLES.powers, 0), SecondField::of(value, &SECOND_TABLES.powers, 0)])
+        Self([FirstField::of(value, &FIRST_TABLES, 0), SecondField::of(value, &SECOND_TABLES, 0)])
     }
 }
 
@@ -231,11 +222,9 @@ impl Trigonometry for Residue {
         if !angle.is_finite() {
             return [Self::UNDEFINED; 2];
         }
-        let first = FirstOrder::of(angle, &FIRST_TABLES.powers, 1);
-        let second = SecondOrder::of(angle, &SECOND_TABLES.powers, 1);
-        let first = FirstField::point(first, &FIRST_TABLES.turns);
-        let second = SecondField::point(second, &SECOND_TABLES.turns);
-        [Self([first[0], second[0]]), Self([first[1], second[1]])]
+        let first = FirstField::point(FirstOrder::of(angle, &FIRST_TABLES, 1), &FIRST_TABLES);
+        let second = SecondField::point(SecondOrder::of(angle, &SECOND_TABLES, 1), &SECOND_TABLES);
+        [0, 1].map(|at| Self([first[at], second[at]]))
     }
 }
 
@@ -277,31 +266,19 @@ operators!([] Residue);
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::exact;
     use super::*;
-    use dashu::integer::IBig;
+    use dashu::integer::fast_div::ConstDivisor;
     use dashu::rational::RBig;
     use proptest::prelude::*;
 
     /// The test of Miller and Rabin, which these bases decide below 2^64.
     fn is_prime(n: u64) -> bool {
-        let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(n)) as u64;
-        let twos = (n - 1).trailing_zeros();
-        [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37].into_iter().all(|base: u64| {
-            let (mut power, mut square, mut exponent) = (1, base, (n - 1) >> twos);
-            while exponent > 0 {
-                if exponent & 1 == 1 {
-                    power = times(power, square);
-                }
-                square = times(square, square);
-                exponent >>= 1;
-            }
-            if power == 1 || power == n - 1 {
-                return true;
-            }
-            (1..twos).any(|_| {
-                power = times(power, power);
-                power == n - 1
-            })
+        let (ring, twos) = (ConstDivisor::new(n.into()), (n - 1).trailing_zeros());
+        [2u8, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37].into_iter().all(|base| {
+            let first = ring.reduce(base).pow(&((n - 1) >> twos).into());
+            let mut powers = std::iter::successors(Some(first.clone()), |power| Some(power.sqr())).take(twos as usize);
+            first == ring.reduce(1) || powers.any(|power| power == ring.reduce(-1))
         })
     }
 
@@ -311,50 +288,30 @@ mod tests {
             assert!(is_prime(prime) && is_prime(order) && !is_prime(prime - 2));
             assert_eq!((prime % 8, prime + 1), (3, 4 * order));
         }
-        let turns = [FIRST_TABLES.turns[0][1], SECOND_TABLES.turns[0][1]];
-        assert!(turns.iter().all(|turn| *turn != [1, 0]));
-        assert_eq!(FirstField::point(FirstOrder::PRIME, &FIRST_TABLES.turns), [1, 0]);
-        assert_eq!(SecondField::point(SecondOrder::PRIME, &SECOND_TABLES.turns), [1, 0]);
-    }
-
-    fn remainder(number: &RBig, prime: u64) -> u64 {
-        let prime = IBig::from(prime);
-        let reduce = |value: IBig| ((value % &prime) + &prime) % &prime;
-        let power = |base: IBig, mut exponent: u64| {
-            let (mut result, mut square) = (IBig::ONE, base);
-            while exponent > 0 {
-                if exponent & 1 == 1 {
-                    result = reduce(result * &square);
-                }
-                square = reduce(&square * &square);
-                exponent >>= 1;
-            }
-            result
-        };
-        let exponent = u64::try_from(&prime - IBig::from(2)).expect("small");
-        let inverse = power(reduce(number.denominator().clone().into()), exponent);
-        u64::try_from(reduce(number.numerator().clone() * inverse)).expect("reduced")
+        assert!([&FIRST_TABLES, &SECOND_TABLES].iter().all(|tables| tables.turns[0][1] != [1, 0]));
+        assert_eq!(FirstField::point(FirstOrder::PRIME, &FIRST_TABLES), [1, 0]);
+        assert_eq!(SecondField::point(SecondOrder::PRIME, &SECOND_TABLES), [1, 0]);
     }
 
     fn residue(number: &RBig) -> Residue {
-        Residue([FirstField::PRIME, SecondField::PRIME].map(|prime| remainder(number, prime)))
-    }
-
-    /// f64 of all sizes.
-    fn number() -> impl Strategy<Value = f64> {
-        any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |value| value.is_finite())
+        Residue([FirstField::PRIME, SecondField::PRIME].map(|prime| {
+            let ring = ConstDivisor::new(prime.into());
+            let quotient = ring.reduce(number.numerator().clone()) / ring.reduce(number.denominator().clone());
+            u64::try_from(quotient.residue()).expect("reduced")
+        }))
     }
 
     proptest! {
         #[test]
-        fn every_f64_is_its_rational(value in number()) {
-            prop_assert_eq!(Residue::from_f64(value), residue(&RBig::try_from(value).expect("finite")));
+        fn every_f64_is_its_rational(value in any::<u64>().prop_map(f64::from_bits)) {
+            prop_assume!(value.is_finite());
+            prop_assert_eq!(Residue::from_f64(value), residue(&exact(value)));
         }
 
         #[test]
         fn operations_are_those_of_the_rationals(a in -1e9..1e9f64, b in -1e-9..1e-9f64) {
             let (x, y) = (Residue::from_f64(a), Residue::from_f64(b));
-            let (p, q) = (RBig::try_from(a).expect("finite"), RBig::try_from(b).expect("finite"));
+            let (p, q) = (exact(a), exact(b));
             prop_assert_eq!(x + y, residue(&(&p + &q)));
             prop_assert_eq!(x - y, residue(&(&p - &q)));
             prop_assert_eq!(-x, residue(&-&p));

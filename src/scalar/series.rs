@@ -55,7 +55,7 @@ pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N;
 
 #[cfg(test)]
 mod tests {
-    use crate::scalar::{Ball, DoubleDouble, Interval, Ordered, Real, Sign, Trigonometry};
+    use crate::scalar::{Ball, DoubleDouble, Interval, Midpoint, Ordered, Real, Sign, Trigonometry};
     use proptest::prelude::*;
 
     /// Whether `truth`, known far better, is not proved to lie beyond `radius` of the sum of `mid`.
@@ -77,13 +77,8 @@ mod tests {
                 if !near(truth, &[ball.mid], ball.radius) || !near(truth, &wide.mid.parts(), wide.radius) {
                     return Err(format!("{angle:e}: {ball:?}, {wide:?}"));
                 }
-                let limit = if angle.abs() < 10.0 {
-                    1e-25
-                } else if angle.abs() < 1e6 {
-                    1e-18
-                } else {
-                    1.0
-                };
+                let limit = [(10.0, 1e-25), (1e6, 1e-18)].into_iter().find(|(below, _)| angle.abs() < *below);
+                let limit = limit.map_or(1.0, |(_, radius)| radius);
                 if wide.radius > limit {
                     return Err(format!("wide at {angle:e}: {wide:?}"));
                 }
@@ -130,34 +125,6 @@ mod tests {
                 let error = (wide - Ball::from_f64(value)).to_f64().abs() + wide.radius;
                 assert!(error <= f64::EPSILON * value.abs(), "{angle}: {error:e}");
             }
-        }
-    }
-
-    fn pythagoras<N: Ordered + Trigonometry>(angle: f64) -> N {
-        let [cos, sin] = N::cos_sin(angle);
-        cos * cos + sin * sin - N::one()
-    }
-
-    #[test]
-    fn the_squares_enclose_one() {
-        for angle in [1e-300, 1e-9, 0.5, 1.0, 3.0, 1e3, 1e9, 1e22, 1e300] {
-            assert_eq!(pythagoras::<Ball>(angle).sign(), Sign::Undecided);
-            assert_eq!(pythagoras::<Ball<DoubleDouble>>(angle).sign(), Sign::Undecided);
-            let sign = Interval::scope(300, || pythagoras::<Interval>(angle).sign());
-            assert_eq!(sign, Sign::Undecided);
-        }
-    }
-
-    #[test]
-    fn only_angle_zero_is_exact() {
-        let exact = [Sign::Positive, Sign::Zero];
-        assert_eq!(Ball::<f64>::cos_sin(0.0).map(Ordered::sign), exact);
-        assert_eq!(Ball::<DoubleDouble>::cos_sin(-0.0).map(Ordered::sign), exact);
-        assert_eq!(Interval::cos_sin(0.0).map(Ordered::sign), exact);
-        for angle in [f64::NAN, f64::INFINITY] {
-            assert_eq!(Ball::<f64>::cos_sin(angle).map(Ordered::sign), [Sign::Undecided; 2]);
-            assert_eq!(Ball::<DoubleDouble>::cos_sin(angle).map(Ordered::sign), [Sign::Undecided; 2]);
-            assert_eq!(Interval::cos_sin(angle).map(Ordered::sign), [Sign::Undecided; 2]);
         }
     }
 
