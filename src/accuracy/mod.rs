@@ -1,7 +1,7 @@
 //! Error against run time, stiff and extreme cases, and compliant contact next to the rigid impact.
 //!
 //! ```text
-//!     state --[pose]--> M, G, c in f32, f64, double-double, by each factorization --[study]--> errors, times
+//!     state --[computation]--> M, G, c in f32, f64, double-double, by each factorization --[study]--> errors, times
 //!     state --[reference]--> the same, enclosed by 320 bits and more --[study]
 //!     [suite]: stiff and extreme cases by name            [compliant]: springs and dampers in place of rigid contact
 //! ```
@@ -9,7 +9,7 @@
 //! The rest of the crate does not use this module; it only compares.
 
 mod number;
-mod pose;
+mod computation;
 mod reference;
 mod condition;
 mod timing;
@@ -18,10 +18,7 @@ mod suite;
 mod study;
 pub mod compliant;
 
-pub use condition::mass_matrix_condition;
-pub use number::Number;
-pub use pose::{Computation, Factorization, Pose};
-pub use reference::{PRECISION, Reference, with_precision};
+pub use computation::Factorization;
 pub use study::{Answer, Condition, Errors, Method, Study, Work, of_problem, of_state, study};
 pub use suite::{Case, End, Subject, cases};
-pub use timing::{Budget, Spread, time};
+pub use timing::{Budget, Spread};

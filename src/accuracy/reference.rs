@@ -3,10 +3,12 @@
 //! Errors are free of units: of M and G relative to the geometric mean of both diagonal entries, of contact velocities
 //! and impulses by the scale of margins, S = max |c_i| / sqrt(G_ii).
 
+use super::computation::{Computation, Factorization};
 use super::number::Number;
-use super::pose::{Computation, Pose};
-use crate::dynamics::plan::Motion;
-use crate::planar::{Inertia, Pair, Vector};
+use crate::dynamics::plan::{Motion, Plan};
+use crate::pipeline::assembly::Elimination;
+use crate::pipeline::exact::{Contacts, ExactState};
+use crate::planar::{Inertia, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Interval, Ordered, Real};
 
@@ -20,18 +22,18 @@ pub fn with_precision<R>(robot: &Robot, work: impl FnOnce() -> R) -> R {
     Interval::scope(PRECISION + PRECISION_PER_BODY * robot.bodies.len(), work)
 }
 
-/// M, G and c of a pose in the reference's numbers; it must stay within one [`with_precision`].
-#[derive(Debug)]
-pub struct Reference {
-    computation: Computation<Interval>,
-    /// Each column's motion.
-    columns: Vec<Column>,
+/// M, G and c of a state in the reference's numbers; it must stay within one [`with_precision`].
+pub(super) struct Reference<'a> {
+    computation: Computation<'a, Interval>,
+    pub contacts: Contacts<Interval>,
+    /// The joints and the base's motions of each column.
+    columns: Vec<Vec<UnitMotion>>,
 }
 
-/// A coordinate's unit motion and all that it moves.
-#[derive(Debug, Clone, Copy)]
-struct Column {
-    axis: Axis,
+/// A joint's motion for a unit rate of its column, and all that it moves.
+struct UnitMotion {
+    body: usize,
+    axis: MotionAxis,
     /// The joint's origin from the root's \[m\].
     origin: Vector<Interval>,
     /// All bodies beyond the joint, about its origin.
@@ -39,31 +41,32 @@ struct Column {
     rotor: Interval,
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Axis {
+#[derive(Clone, Copy)]
+enum MotionAxis {
     Revolute(Interval),
     Prismatic(Vector<Interval>),
 }
 
-impl Reference {
+impl<'a> Reference<'a> {
     /// Computes G and c, and what M follows from.
-    pub fn new(pose: &Pose) -> Self {
-        let mut computation = Computation::new(pose);
-        computation.place(pose);
-        computation.velocities(pose);
-        computation.by_articulated_bodies();
-        let columns = columns(&computation);
-        Self { computation, columns }
+    pub fn new(state: &'a ExactState<'a>) -> Self {
+        let mut computation = Computation::new(state);
+        computation.place();
+        if computation.assembly.has_articulated_bodies() {
+            computation.delassus(Elimination::ArticulatedBodies);
+            computation.velocities();
+        } else {
+            computation.delassus(Elimination::Ltl);
+        }
+        Self { contacts: computation.collect(), columns: columns(&computation), computation }
     }
 
-    /// G, 2n x 2n by rows.
-    pub fn delassus(&self) -> &[Interval] {
-        &self.computation.workspace().delassus
-    }
-
-    /// c, one entry per contact.
-    pub fn velocity(&self) -> &[Pair<Interval>] {
-        &self.computation.workspace().contact_velocity
+    /// How G was found.
+    pub fn factorization(&self) -> Factorization {
+        match self.computation.assembly.elimination {
+            Elimination::Ltl => Factorization::SparseLtl,
+            Elimination::ArticulatedBodies => Factorization::ArticulatedBodies,
+        }
     }
 
     /// How well G itself is known.
@@ -77,7 +80,7 @@ impl Reference {
     }
 
     fn worst_of_delassus(&self, error: impl Fn(usize, Interval) -> f64) -> f64 {
-        let exact = self.delassus();
+        let exact = &self.contacts.delassus;
         let rows = exact.len().isqrt();
         let size = |row: usize| exact[row * rows + row].to_f64().sqrt();
         worst((0..exact.len()).map(|at| relative(error(at, exact[at]), size(at / rows) * size(at % rows))))
@@ -87,7 +90,7 @@ impl Reference {
     /// holds no number.
     pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
         let nv = self.columns.len();
-        let parents = &self.computation.plan().parents;
+        let parents = &self.computation.assembly.plan.parents;
         let size: Vec<f64> =
             (0..nv).map(|i| Interval::scope(PRECISION, || self.inertia(i, i).to_f64().sqrt())).collect();
         worst((0..nv).flat_map(|i| {
@@ -101,25 +104,46 @@ impl Reference {
     }
 
     /// Entry of M for two columns, the second one below the first or the same.
-    ///
-    /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.
     fn inertia(&self, upper: usize, lower: usize) -> Interval {
-        let (beyond, below) = (&self.columns[upper], &self.columns[lower]);
-        let Inertia { mass, first, second } = beyond.moved;
-        let (linear, angular) = match beyond.axis {
-            Axis::Revolute(sign) => (first.perpendicular() * sign, sign * second),
-            Axis::Prismatic(along) => (along * mass, first.perpendicular().dot(along)),
-        };
-        let entry = match below.axis {
-            Axis::Revolute(sign) => sign * (angular + (beyond.origin - below.origin).perpendicular().dot(linear)),
-            Axis::Prismatic(along) => along.dot(linear),
-        };
-        if upper == lower { entry + beyond.rotor } else { entry }
+        let plan = &self.computation.assembly.plan;
+        let pairs =
+            self.columns[upper].iter().flat_map(|one| self.columns[lower].iter().map(move |other| (one, other)));
+        let parts = pairs.filter_map(|(one, other)| {
+            if !plan.has_mimics || carries(plan, other.body, one.body) {
+                Some(one.inertia(other))
+            } else {
+                carries(plan, one.body, other.body).then(|| other.inertia(one))
+            }
+        });
+        parts.reduce(|sum, part| sum + part).unwrap_or(Interval::zero())
     }
 }
 
-fn columns(computation: &Computation<Interval>) -> Vec<Column> {
-    let (plan, workspace) = (computation.plan(), computation.workspace());
+/// Whether `outer` is `body` or beyond it.
+fn carries(plan: &Plan<Interval>, body: usize, outer: usize) -> bool {
+    std::iter::successors(Some(outer), |&at| plan.bodies[at].parent).any(|at| at == body)
+}
+
+impl UnitMotion {
+    /// What this motion and one `below` it, or itself, bring to M.
+    ///
+    /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.
+    fn inertia(&self, below: &Self) -> Interval {
+        let Inertia { mass, first, second } = self.moved;
+        let (linear, angular) = match self.axis {
+            MotionAxis::Revolute(rate) => (first.perpendicular() * rate, rate * second),
+            MotionAxis::Prismatic(rate) => (rate * mass, first.perpendicular().dot(rate)),
+        };
+        let entry = match below.axis {
+            MotionAxis::Revolute(rate) => rate * (angular + (self.origin - below.origin).perpendicular().dot(linear)),
+            MotionAxis::Prismatic(rate) => rate.dot(linear),
+        };
+        if std::ptr::eq(self, below) { entry + self.rotor } else { entry }
+    }
+}
+
+fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion>> {
+    let (plan, workspace) = (&computation.assembly.plan, &computation.assembly.workspace);
     let mut composite: Vec<Inertia<Interval>> = Vec::new();
     let mut origins: Vec<Vector<Interval>> = Vec::new();
     for (index, body) in plan.bodies.iter().enumerate() {
@@ -131,21 +155,27 @@ fn columns(computation: &Computation<Interval>) -> Vec<Column> {
             composite[parent] = composite[parent].with(composite[index].seen_from(workspace.arm[index]));
         }
     }
-    let column = |axis, index: usize| Column {
-        axis,
-        origin: origins[index],
-        moved: composite[index],
-        rotor: plan.bodies[index].rotor,
-    };
-    let mut columns = Vec::new();
-    for (index, body) in plan.bodies.iter().enumerate().filter(|(_, body)| body.column.is_some()) {
+    let mut columns: Vec<Vec<UnitMotion>> = (0..plan.columns()).map(|_| Vec::new()).collect();
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let Some(column) = body.column else { continue };
+        let mut add = |column: usize, axis| {
+            columns[column].push(UnitMotion {
+                body: index,
+                axis,
+                origin: origins[index],
+                moved: composite[index],
+                rotor: body.rotor,
+            });
+        };
         match body.motion {
             Motion::Root => {
-                columns.extend(Vector::axes().map(|axis| column(Axis::Prismatic(axis), index)));
-                columns.push(column(Axis::Revolute(Interval::one()), index));
+                for (axis, direction) in Vector::axes().into_iter().enumerate() {
+                    add(axis, MotionAxis::Prismatic(direction));
+                }
+                add(column, MotionAxis::Revolute(Interval::one()));
             }
-            Motion::Revolute { sign, .. } => columns.push(column(Axis::Revolute(sign), index)),
-            Motion::Prismatic { .. } => columns.push(column(Axis::Prismatic(workspace.direction[index]), index)),
+            Motion::Revolute { rate, .. } => add(column, MotionAxis::Revolute(rate)),
+            Motion::Prismatic { .. } => add(column, MotionAxis::Prismatic(workspace.direction[index])),
             Motion::Fixed => {}
         }
     }

@@ -1,22 +1,28 @@
 //! Runs every method on a case: error against the reference, and run time.
 
+use super::computation::{Computation, Factorization};
 use super::condition::mass_matrix_condition;
 use super::number::Number;
-use super::pose::{Computation, Factorization, Pose};
 use super::reference::{PRECISION, Reference, distance, relative, with_precision, worst};
 use super::suite::Subject;
 use super::timing::{Budget, Spread, time};
+use crate::Error;
 use crate::impact::enumerate::Tableau;
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Scratch, Verdict};
+use crate::pipeline::assembly::{Assembly, Elimination};
+use crate::pipeline::exact::{Contacts, ExactState};
 use crate::pipeline::{Options, Pipeline};
 use crate::planar::Pair;
 use crate::robot::Robot;
 use crate::scalar::{DoubleDouble, Interval, Ordered, Real};
 use crate::state::State;
-use crate::{Error, Reason};
 use serde::{Serialize, Serializer};
 use std::cell::RefCell;
 
+/// Why articulated bodies are not tried.
+const NOT_ARTICULATED: &str = "mimic joints and loops need M";
+/// Why a dense factorization is not tried.
+const NOT_DENSE: &str = "loops are eliminated by the sparse factorization";
 /// With more coordinates double-doubles do not factorize M.
 const LONGEST_FACTORIZED: usize = 300;
 /// Why.
@@ -134,18 +140,13 @@ pub fn study(name: &str, subject: &Subject, options: &Options, budget: Budget) -
 /// Studies a robot's state.
 pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> Study {
     let mut study = Study::of(name, Some(robot.dofs()));
-    if !robot.mimic_joints.is_empty() || !state.scene.loops.is_empty() {
-        let reason = Reason::Unsupported("the methods compared here know neither loops nor mimic joints".into());
-        return study.refuse(
-            Error::new(reason).hint("leave the loops out; remove <mimic> to let a joint move freely, or make it fixed"),
-        );
-    }
     let mut pipeline = Pipeline::new(robot, options.clone());
-    let impact = match pipeline.impact(state) {
-        Ok(impact) => impact,
+    let found = pipeline.impact(state).and_then(|impact| Ok((impact, pipeline.prepare(state)?)));
+    let (impact, prepared) = match found {
+        Ok(found) => found,
         Err(error) => return study.refuse(error),
     };
-    let pose = Pose::new(robot, state, &impact);
+    let exact = pipeline.exact(state, &prepared);
     study.contacts = impact.contacts.len();
     let analysis = match impact.analysed() {
         Ok(analysis) => study.answered(analysis),
@@ -155,9 +156,13 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
         }
     };
     with_precision(robot, || {
-        let mut bench = Bench { pose: &pose, reference: Reference::new(&pose), analysis, budget, methods: Vec::new() };
-        let computation = pose.computed();
-        study.condition.mass_matrix = Some(mass_matrix_condition(computation.plan(), computation.workspace()));
+        let (problem, reference) = (&impact.problem, Reference::new(&exact));
+        let mut bench = Bench { state: &exact, problem, reference, analysis, budget, methods: Vec::new() };
+        let mut computation = Computation::<f64>::new(&exact);
+        computation.place();
+        computation.delassus(Elimination::Ltl);
+        let Assembly { plan, workspace, .. } = &computation.assembly;
+        study.condition.mass_matrix = Some(mass_matrix_condition(plan, workspace));
         bench.every_method();
         study.methods = bench.methods;
     });
@@ -249,10 +254,11 @@ impl Method {
     }
 }
 
-/// A pose on which one method after the other is run.
+/// A state on which one method after the other is run.
 struct Bench<'a> {
-    pose: &'a Pose<'a>,
-    reference: Reference,
+    state: &'a ExactState<'a>,
+    problem: &'a ContactProblem,
+    reference: Reference<'a>,
     analysis: Option<&'a Analysis>,
     budget: Budget,
     methods: Vec<Method>,
@@ -266,45 +272,56 @@ impl Bench<'_> {
         self.method::<f64>("f64", SparseLtl);
         self.dense_cholesky();
         self.method::<f64>("f64", ArticulatedBodies);
-        if self.pose.robot.dofs() <= LONGEST_FACTORIZED {
+        if self.state.position.len() <= LONGEST_FACTORIZED {
             self.method::<DoubleDouble>("double-double", SparseLtl);
         } else {
-            let method = Method::delassus("double-double", SparseLtl, None);
-            self.methods.push(Method { left_out: Some(TOO_LONG), ..method });
+            self.leave_out("double-double", SparseLtl, TOO_LONG);
         }
         self.method::<DoubleDouble>("double-double", ArticulatedBodies);
         let reference = time(Budget { samples: 5, ..self.budget }, || {
-            with_precision(self.pose.robot, || {
-                std::hint::black_box(&Reference::new(self.pose));
+            with_precision(self.state.robot, || {
+                std::hint::black_box(&Reference::new(self.state).contacts.delassus);
             })
         });
         let error = Errors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None };
-        let method = Method::delassus("reference", ArticulatedBodies, Some(reference));
+        let method = Method::delassus("reference", self.reference.factorization(), Some(reference));
         self.methods.push(Method { error: Some(error), ..method });
     }
 
+    fn leave_out(&mut self, number: &'static str, factorization: Factorization, why: &'static str) {
+        let method = Method::delassus(number, factorization, None);
+        self.methods.push(Method { left_out: Some(why), ..method });
+    }
+
     fn method<T: Number>(&mut self, number: &'static str, factorization: Factorization) {
-        let mut computation = Computation::<T>::new(self.pose);
+        let mut computation = Computation::<T>::new(self.state);
+        let by = match factorization {
+            Factorization::ArticulatedBodies => Elimination::ArticulatedBodies,
+            Factorization::SparseLtl | Factorization::DenseCholesky => Elimination::Ltl,
+        };
+        if by == Elimination::ArticulatedBodies && !computation.assembly.has_articulated_bodies() {
+            return self.leave_out(number, factorization, NOT_ARTICULATED);
+        }
         let spread = time(self.budget, || {
-            computation.place(self.pose);
-            match factorization {
-                Factorization::ArticulatedBodies => computation.by_articulated_bodies(),
-                Factorization::SparseLtl | Factorization::DenseCholesky => computation.by_ltl(self.pose),
-            }
-            std::hint::black_box(computation.workspace());
+            computation.place();
+            computation.delassus(by);
+            std::hint::black_box(&computation.assembly.workspace);
         });
-        self.take(number, factorization, spread, &mut computation);
+        self.take(number, factorization, spread, computation);
     }
 
     fn dense_cholesky(&mut self) {
-        let mut computation = Computation::<f64>::new(self.pose);
+        let mut computation = Computation::<f64>::new(self.state);
+        if computation.assembly.is_constrained() {
+            return self.leave_out("f64", Factorization::DenseCholesky, NOT_DENSE);
+        }
         let mut succeeds = true;
         let spread = time(self.budget, || {
-            computation.place(self.pose);
-            succeeds &= computation.by_cholesky(self.pose);
+            computation.place();
+            succeeds &= computation.delassus_by_cholesky();
         });
         if succeeds {
-            return self.take("f64", Factorization::DenseCholesky, spread, &mut computation);
+            return self.take("f64", Factorization::DenseCholesky, spread, computation);
         }
         self.methods.push(Method::delassus("f64", Factorization::DenseCholesky, Some(spread)));
     }
@@ -314,39 +331,39 @@ impl Bench<'_> {
         number: &'static str,
         factorization: Factorization,
         time: Spread,
-        computation: &mut Computation<T>,
+        mut computation: Computation<T>,
     ) {
-        let delassus = self.reference.delassus_error(&computation.workspace().delassus);
+        let delassus = self.reference.delassus_error(&computation.assembly.workspace.delassus);
         let mass_matrix = match factorization {
             Factorization::ArticulatedBodies => None,
-            Factorization::SparseLtl => Some(self.reference.mass_matrix_error(&computation.workspace().mass_matrix)),
+            Factorization::SparseLtl => {
+                Some(self.reference.mass_matrix_error(&computation.assembly.workspace.mass_matrix))
+            }
             // The same M.
             Factorization::DenseCholesky => {
                 self.methods.iter().find(|method| method.number == number).and_then(|method| method.error?.mass_matrix)
             }
         };
-        computation.velocities(self.pose);
-        let outcome = self.outcome_error(computation);
+        if factorization == Factorization::ArticulatedBodies {
+            computation.velocities();
+        }
+        let outcome = self.analysis.and_then(|analysis| {
+            let problem = filled(self.problem, &computation.collect());
+            outcome_error(analysis, &problem, &filled(self.problem, &self.reference.contacts))
+        });
         let error = Some(Errors { mass_matrix, delassus: Some(delassus), outcome });
         self.methods.push(Method { error, ..Method::delassus(number, factorization, Some(time)) });
     }
-
-    /// The error of the outcomes; `None` with applied impulses, which need more than G, or with restitution.
-    fn outcome_error<T: Number>(&self, computation: &Computation<T>) -> Option<f64> {
-        let analysis = self.analysis.filter(|_| self.pose.state.scene.impulses.is_empty())?;
-        let shape = Some(self.pose.problem).filter(|shape| shape.restitution().iter().all(|&e| e == 0.0))?;
-        let problem = filled(shape, &computation.workspace().delassus, &computation.workspace().contact_velocity);
-        let exact = filled(shape, self.reference.delassus(), self.reference.velocity());
-        outcome_error(analysis, &problem, &exact)
-    }
 }
 
-/// A problem of the friction of `shape` with these matrices.
-fn filled<T: Number>(shape: &ContactProblem, delassus: &[T], velocity: &[Pair<T>]) -> ContactProblem<T> {
-    let speeds = velocity.iter().flatten();
-    // `map` takes G by rows, the velocities with and without applied impulses, and their normal parts.
-    let normal = velocity.iter().map(|c| &c[1]);
-    let numbers = RefCell::new(delassus.iter().chain(speeds.clone()).chain(speeds).chain(normal));
+/// The problem `shape` with these numbers.
+fn filled<T: Number>(shape: &ContactProblem, contacts: &Contacts<T>) -> ContactProblem<T> {
+    let Contacts { delassus, before, free } = contacts;
+    // `map` takes G by rows, the velocities without and with applied impulses, and the normal parts that approach.
+    let approach = |(c, given): (&Pair<T>, &Pair<f64>)| if given[1] < 0.0 { c[1] } else { T::zero() };
+    let approach: Vec<T> = before.iter().zip(shape.velocity_before()).map(approach).collect();
+    let numbers =
+        RefCell::new(delassus.iter().chain(before.iter().flatten()).chain(free.iter().flatten()).chain(&approach));
     shape.map(|zero| numbers.borrow_mut().next().copied().unwrap_or(T::from_f64(zero)))
 }
 

@@ -8,8 +8,8 @@ use super::robot::RobotOptions;
 use super::stream::only_document;
 use super::{Completion, Failure};
 use heelstrike::accuracy::compliant::compare;
-use heelstrike::accuracy::{Budget, Case, Pose, Study, Subject, cases, of_state, study};
-use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::accuracy::{Budget, Case, Study, Subject, cases, of_state, study};
+use heelstrike::pipeline::Options;
 use heelstrike::state::State;
 use heelstrike::write::{Accuracy, Compliant};
 use heelstrike::{Error, Reason, Robot};
@@ -117,13 +117,6 @@ fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure
 
 /// Compliant contact compared with the outcomes of a state; `None` if there is nothing to compare.
 fn compliant(name: &str, robot: &Robot, state: &State, options: &Options) -> Result<Option<Compliant>, Failure> {
-    let Ok(impact) = Pipeline::new(robot, options.clone()).impact(state) else { return Ok(None) };
-    let pose = Pose::new(robot, state, &impact);
-    let (Some(analysis), problem) = (&impact.analysis, impact.problem.without_impulses()) else { return Ok(None) };
-    let compared = !analysis.outcomes.is_empty() && problem.contacts() > 0 && impact.kinetic_energy > 0.0;
-    if !compared {
-        return Ok(None);
-    }
-    let comparison = compare(&pose, &problem, analysis, impact.kinetic_energy)?;
-    Ok(Some(Compliant { name: name.to_owned(), comparison }))
+    let comparison = compare(robot, state, options)?;
+    Ok(comparison.map(|comparison| Compliant { name: name.to_owned(), comparison }))
 }

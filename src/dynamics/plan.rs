@@ -136,6 +136,12 @@ impl<T: Real> Configuration<T> {
     pub(crate) fn turn(&self, place: usize) -> Rotation<T> {
         Rotation { cos: self.cos[place], sin: self.sin[place] }
     }
+
+    /// Turns one angle on `by` another.
+    pub(crate) fn turn_on(&mut self, place: usize, by: Rotation<T>) {
+        let Rotation { cos, sin } = self.turn(place).then(by);
+        (self.cos[place], self.sin[place]) = (cos, sin);
+    }
 }
 
 impl MimicRatio {

@@ -93,6 +93,11 @@ impl<T: Real> Assembly<T> {
         velocity[..2].copy_from_slice(&(-moving).components());
     }
 
+    /// Whether articulated bodies, which know neither mimic joints nor constraints, can apply M^-1.
+    pub fn has_articulated_bodies(&self) -> bool {
+        !self.plan.has_mimics && !self.is_constrained()
+    }
+
     /// Whether something other than the contacts gives impulses.
     pub fn is_constrained(&self) -> bool {
         !(self.loops.is_empty() && self.kept.is_empty())

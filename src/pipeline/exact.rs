@@ -8,7 +8,7 @@ use crate::impact::{ContactProblem, Errors, Source};
 use crate::law::Law;
 use crate::planar::Pair;
 use crate::robot::Robot;
-use crate::scalar::{Ordered, Trigonometry};
+use crate::scalar::{Ordered, Real, Trigonometry};
 use crate::state::Scene;
 
 /// A state with its contacts, every f64 of which is meant as the number that it is.
@@ -51,54 +51,86 @@ pub struct Contacts<T> {
 }
 
 impl ExactState<'_> {
-    /// The state's own numbers, exactly.
-    fn inputs<T: Trigonometry>(&self) -> Inputs<T> {
+    /// The robot in numbers of any kind.
+    pub fn plan<T: Real>(&self) -> Plan<T> {
         let held = if self.constraints.kept.is_empty() { &self.scene.held[..] } else { &[] };
-        let plan = Plan::new(self.robot, held, &self.scene.rotor_inertia);
-        let mut configuration = Configuration::default();
-        configuration.set(&plan, self.position);
-        Inputs { configuration, velocity: self.velocity.iter().map(|&entry| T::from_f64(entry)).collect(), plan }
+        Plan::new(self.robot, held, &self.scene.rotor_inertia)
+    }
+
+    /// The robot with its constraints, to be taken through the steps of the assembly.
+    pub fn assembly<T: Real>(&self, plan: Plan<T>) -> Assembly<T> {
+        let mut assembly = Assembly::new(plan);
+        assembly.kept.extend(self.constraints.kept);
+        assembly.loops.extend(self.scene.loops.iter().map(|own| own.points(self.robot)));
+        assembly.rows.extend(self.constraints.rows);
+        assembly
+    }
+
+    fn point<T: Trigonometry>(&self, contact: &Contact) -> ContactPoint<T> {
+        contact.exact_point(self.robot, self.scene.ground.axes(contact.ground))
+    }
+
+    /// The poses of the bodies and the contact points, from the configuration.
+    pub fn place<T: Trigonometry>(&self, assembly: &mut Assembly<T>) {
+        assembly.place();
+        assembly.points.clear();
+        assembly.points.extend(self.contacts.iter().map(|contact| self.point(contact)));
+    }
+
+    /// J and c, with a `velocity` that keeps the stance and the loops, once M^-1 is prepared.
+    pub fn contact_velocities<T: Trigonometry>(&self, assembly: &mut Assembly<T>, velocity: &mut [T]) {
+        let foot: Option<ContactPoint<T>> = self.foot.map(|foot| self.point(foot));
+        if let Some(foot) = &foot {
+            assembly.rest(foot, velocity);
+        }
+        assembly.constrain(foot);
+        assembly.close(velocity);
+        assembly.contact_jacobian(velocity, self.stance);
+    }
+
+    /// What the applied impulses change in v, by coordinate, once M^-1 is prepared.
+    pub fn change<T: Real>(&self, assembly: &mut Assembly<T>) -> Vec<T> {
+        let mut change = assembly.applied(self.robot, self.scene, self.position.len());
+        assembly.answer(&mut change);
+        change
+    }
+
+    /// G, which leaves the assembly, and both c, once all steps are done.
+    pub fn collect<T: Real>(&self, assembly: &mut Assembly<T>) -> Contacts<T> {
+        let speeds = assembly.workspace.contact_velocity.iter().zip(self.resting);
+        let before = speeds.map(|(&speed, &rests)| if rests { [T::zero(); 2] } else { speed }).collect::<Vec<_>>();
+        let free = match self.scene.impulses.is_empty() {
+            true => before.clone(),
+            false => {
+                let change = self.change(assembly);
+                assembly.free(&before, &change)
+            }
+        };
+        Contacts { delassus: std::mem::take(&mut assembly.workspace.delassus), before, free }
     }
 
     /// G and c for these `inputs`, with the contacts as they are.
     pub fn contacts<T: Trigonometry>(&self, inputs: Inputs<T>) -> Contacts<T> {
-        let Self { robot, scene, .. } = *self;
         let Inputs { configuration, mut velocity, plan } = inputs;
-        let point = |contact: &Contact| contact.exact_point(robot, scene.ground.axes(contact.ground));
-        let foot: Option<ContactPoint<T>> = self.foot.map(point);
-        let mut assembly = Assembly::new(plan);
+        let mut assembly = self.assembly(plan);
         assembly.configuration = configuration;
-        assembly.points.extend(self.contacts.iter().map(point));
-        assembly.kept.extend(self.constraints.kept);
-        assembly.loops.extend(scene.loops.iter().map(|own| own.points(robot)));
-        assembly.rows.extend(self.constraints.rows);
-        if !assembly.plan.has_mimics && !assembly.is_constrained() {
+        if assembly.has_articulated_bodies() {
             assembly.elimination = Elimination::ArticulatedBodies;
         }
-        assembly.place();
+        self.place(&mut assembly);
         assembly.factorize();
-        if let Some(foot) = &foot {
-            assembly.rest(foot, &mut velocity);
-        }
-        assembly.constrain(foot);
-        assembly.close(&mut velocity);
-        assembly.contact_jacobian(&velocity, self.stance);
+        self.contact_velocities(&mut assembly, &mut velocity);
         assembly.delassus();
-        let speeds = assembly.workspace.contact_velocity.iter().zip(self.resting);
-        let before = speeds.map(|(&speed, &rests)| if rests { [T::zero(); 2] } else { speed }).collect::<Vec<_>>();
-        let mut free = before.clone();
-        if !scene.impulses.is_empty() {
-            let mut change = assembly.applied(robot, scene, velocity.len());
-            assembly.answer(&mut change);
-            free = assembly.free(&before, &change);
-        }
-        Contacts { delassus: assembly.workspace.delassus, before, free }
+        self.collect(&mut assembly)
     }
 }
 
 impl Source for ExactState<'_> {
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
-        let Contacts { delassus, before, free } = self.contacts(self.inputs());
+        let (plan, mut configuration) = (self.plan(), Configuration::default());
+        configuration.set(&plan, self.position);
+        let velocity = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
+        let Contacts { delassus, before, free } = self.contacts(Inputs { configuration, velocity, plan });
         ContactProblem::of_parts(delassus, before, free, self.laws.to_vec(), self.restitution.to_vec())
     }
 

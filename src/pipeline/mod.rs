@@ -5,20 +5,20 @@
 //! ```
 
 pub(crate) mod assembly;
-mod exact;
+pub(crate) mod exact;
 mod left_out;
 mod loops;
 mod prepared;
 pub mod robust;
 
 use self::assembly::{Assembly, Elimination};
-use self::exact::ExactState;
 pub use self::left_out::LeftOut;
+pub(crate) use self::prepared::Prepared;
 pub use self::prepared::Unsolved;
-use self::prepared::{Prepared, check_length};
+use self::prepared::check_length;
 use crate::contact::{Contact, Feet, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{Bounds, Constraints, ContactPoint, articulated_inertias};
+use crate::dynamics::{Bounds, ContactPoint, articulated_inertias};
 use crate::error::{Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, too_many_contacts,
@@ -130,6 +130,8 @@ struct Answer {
     foot: Option<Contact>,
     /// Contacts that were taken as exactly at rest.
     resting: Vec<bool>,
+    /// The rows of the loops that count.
+    rows: Vec<usize>,
 }
 
 /// The matrices behind an answer.
@@ -224,51 +226,39 @@ impl<'r> Pipeline<'r> {
     /// they are.
     fn answer(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
+        let prepared = self.prepare(state)?;
+        let Prepared { velocity, applied, change, contacts, problem, .. } = &prepared;
+        let free: Vec<f64> = velocity.iter().zip(change).map(|(before, change)| before + change).collect();
+        for &entry in &free {
+            finite(entry, || "a velocity after the applied impulses".into())?;
+        }
+        let errors = Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) };
+        let source = prepared.exact(self.robot, state, &self.assembly, errors);
+        let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
+        let Options { no_proof, reductions, .. } = self.options;
+        let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
+        let asked = AnalysisOptions { rejections, prove: !no_proof, reductions };
+        // More contacts than are enumerated are all that it refuses.
+        let mut analysis = self.scratch.analyse(problem, &source, asked).ok();
+        let outcomes = analysis.as_mut().map_or(&mut [][..], |analysis| &mut analysis.outcomes);
+        if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+            articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
+        }
+        for outcome in outcomes {
+            self.set_velocity(outcome, velocity, applied, &free);
+        }
         let Prepared {
             placement,
-            velocity,
             foot,
             contacts,
             out_of_reach,
             stance,
             resting,
             kinetic_energy,
-            applied,
-            change,
             problem,
             mut notes,
-        } = self.prepare(state)?;
-        let free: Vec<f64> = velocity.iter().zip(&change).map(|(before, change)| before + change).collect();
-        for &entry in &free {
-            finite(entry, || "a velocity after the applied impulses".into())?;
-        }
-        let source = ExactState {
-            robot: self.robot,
-            scene,
-            position: &state.position,
-            velocity: &velocity,
-            foot: foot.as_ref(),
-            stance,
-            contacts: &contacts,
-            resting: &resting,
-            constraints: Constraints { kept: &self.assembly.kept, rows: &self.assembly.rows },
-            laws: problem.laws(),
-            restitution: problem.restitution(),
-            errors: Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) },
-        };
-        let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
-        let Options { no_proof, reductions, .. } = self.options;
-        let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
-        let asked = AnalysisOptions { rejections, prove: !no_proof, reductions };
-        // More contacts than are enumerated are all that it refuses.
-        let mut analysis = self.scratch.analyse(&problem, &source, asked).ok();
-        let outcomes = analysis.as_mut().map_or(&mut [][..], |analysis| &mut analysis.outcomes);
-        if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
-            articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
-        }
-        for outcome in outcomes {
-            self.set_velocity(outcome, &velocity, &applied, &free);
-        }
+            ..
+        } = prepared;
         notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
         let impact = Impact {
             velocity_before: problem.velocity_before().to_vec(),
@@ -283,7 +273,7 @@ impl<'r> Pipeline<'r> {
             contacts,
             notes,
         };
-        Ok(Answer { impact, foot, resting })
+        Ok(Answer { impact, foot, resting, rows: self.assembly.rows.clone() })
     }
 
     /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows

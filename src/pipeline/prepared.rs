@@ -7,14 +7,16 @@
 //! ```
 
 use super::assembly::Assembly;
+use super::exact::ExactState;
 use super::{CONTACT_TOLERANCE, Pipeline};
 use crate::contact::{self, Contact, Placement, Surface};
 use crate::dynamics::plan::Plan;
-use crate::dynamics::{Arm, kinetic_energy};
+use crate::dynamics::{Arm, Constraints, kinetic_energy};
 use crate::error::{Error, Reason, Result, finite};
-use crate::impact::ContactProblem;
 use crate::impact::problem::check_matrix_size;
+use crate::impact::{ContactProblem, Errors};
 use crate::planar::Vector;
+use crate::robot::Robot;
 use crate::state::State;
 use crate::state::{Ground, Scene};
 
@@ -52,7 +54,38 @@ pub struct Prepared {
     pub notes: Vec<String>,
 }
 
+impl Prepared {
+    /// The `state` that was prepared in this `assembly`, for numbers of any kind.
+    pub fn exact<'a>(
+        &'a self,
+        robot: &'a Robot,
+        state: &'a State,
+        assembly: &'a Assembly,
+        errors: Errors<'a>,
+    ) -> ExactState<'a> {
+        ExactState {
+            robot,
+            scene: &state.scene,
+            position: &state.position,
+            velocity: &self.velocity,
+            foot: self.foot.as_ref(),
+            stance: self.stance,
+            contacts: &self.contacts,
+            resting: &self.resting,
+            constraints: Constraints { kept: &assembly.kept, rows: &assembly.rows },
+            laws: self.problem.laws(),
+            restitution: self.problem.restitution(),
+            errors,
+        }
+    }
+}
+
 impl Pipeline<'_> {
+    /// The `state` that was just `prepared`, for numbers of any kind.
+    pub(crate) fn exact<'a>(&'a self, state: &'a State, prepared: &'a Prepared) -> ExactState<'a> {
+        prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN)
+    }
+
     /// The contact problem of a state as f64 has it, without its analysis.
     ///
     /// # Errors
@@ -67,7 +100,7 @@ impl Pipeline<'_> {
     }
 
     /// Everything up to the contact problem.
-    pub(super) fn prepare(&mut self, state: &State) -> Result<Prepared> {
+    pub(crate) fn prepare(&mut self, state: &State) -> Result<Prepared> {
         let scene = &state.scene;
         self.check_lengths(state)?;
         self.compile(scene);

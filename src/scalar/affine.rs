@@ -54,20 +54,16 @@ impl<const N: usize> Affine<N> {
         if centre.is_finite() && radius.is_finite() { Self { centre, slopes, error: own } } else { Self::unknown() }
     }
 
-    /// Cosine and sine of any angle at most `radius` from `centre` \[rad\], with the cause `symbol` as in
-    /// [`Affine::varying`].
-    pub fn cos_sin_varying(centre: f64, radius: f64, symbol: usize) -> [Self; 2] {
-        let [cos, sin] = Self::cos_sin(centre);
-        if radius == 0.0 {
-            return [cos, sin];
-        }
+    /// Cosine and sine of this angle \[rad\], narrow for angles near zero.
+    pub fn cos_sin_near_zero(self) -> [Self; 2] {
         // cos d is within r^2 / 4 of 1 - r^2 / 4, sin d within r^3 / 6 of d, for every |d| <= r.
+        let radius = self.centre.abs() + self.radius();
         let square = radius * radius;
-        let mut cos_d = Self::from_f64(1.0 - square / 4.0);
-        cos_d.error = (square / 4.0 + f64::EPSILON) * Self::BLOW_UP;
-        let mut sin_d = Self::varying(0.0, radius, symbol);
-        sin_d.error += (square * radius / 6.0 + f64::MIN_POSITIVE) * Self::BLOW_UP;
-        [cos * cos_d - sin * sin_d, sin * cos_d + cos * sin_d]
+        let mut cos = Self::from_f64(1.0 - square / 4.0);
+        cos.error = (square / 4.0 + f64::EPSILON) * Self::BLOW_UP;
+        let mut sin = self;
+        sin.error += (square * radius / 6.0 + f64::MIN_POSITIVE) * Self::BLOW_UP;
+        [cos, sin]
     }
 
     /// How it moves with each cause, to first order.
@@ -270,7 +266,9 @@ mod tests {
 
         #[test]
         fn cosine_and_sine_enclose_every_angle(angle in -7.0..7.0f64, radius in 0.0..2.0f64, at in cause()) {
-            let [cos, sin] = Affine::<1>::cos_sin_varying(angle, radius, 0);
+            let [cos, sin] = Affine::<1>::cos_sin(angle);
+            let [cos_d, sin_d] = Affine::varying(0.0, radius, 0).cos_sin_near_zero();
+            let [cos, sin] = [cos * cos_d - sin * sin_d, sin * cos_d + cos * sin_d];
             let turned = angle + radius * at;
             for (number, value) in [(cos, turned.cos()), (sin, turned.sin())] {
                 let distance = (number.centre + number.slopes[0] * at - value).abs();

@@ -4,11 +4,16 @@ use super::frozen::{CompliantRun, TOLERANCE, run};
 use super::ground::SoftGround;
 use super::moving::Moving;
 use crate::Result;
-use crate::accuracy::pose::Pose;
+use crate::accuracy::computation::Computation;
 use crate::dynamics::{add_impulse, kinetic_energy};
-use crate::impact::{Analysis, ContactProblem, Outcome};
+use crate::impact::{ContactProblem, Outcome};
 use crate::law::Mode;
+use crate::pipeline::assembly::{Assembly, Elimination};
+use crate::pipeline::exact::ExactState;
+use crate::pipeline::{Options, Pipeline};
 use crate::planar::Pair;
+use crate::robot::Robot;
+use crate::state::State;
 use serde::Serialize;
 
 /// A run that ends within this distance of an outcome is near it, in parts of the speed before.
@@ -32,7 +37,7 @@ pub struct Comparison {
     pub groups: Vec<Group>,
     /// The effect of the integrator's tolerance, on a ground of damping ratio 1 with equal springs and dampers.
     pub tolerances: Vec<ByTolerance>,
-    /// The effect of stiffness while the robot moves, on the same ground.
+    /// The effect of stiffness while the robot moves, on the same ground; empty for a robot with loops.
     pub stiffnesses: Vec<ByStiffness>,
 }
 
@@ -127,12 +132,20 @@ pub fn landing(
     nearest.map(|(outcome, distance)| NearestOutcome { outcome, distance })
 }
 
-/// Runs through every combination of the parameters.
+/// Runs a robot's state through every combination of the parameters; `None` if it has no outcome to be compared with.
 ///
 /// # Errors
-/// More contacts than a run takes, and refusals of the runs of the finest tolerance.
-pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energy: f64) -> Result<Comparison> {
-    let outcomes = &analysis.outcomes;
+/// As [`Pipeline::impact`], more contacts than a run takes, and refusals of the runs of the finest tolerance.
+pub fn compare(robot: &Robot, state: &State, options: &Options) -> Result<Option<Comparison>> {
+    let mut pipeline = Pipeline::new(robot, options.clone());
+    let impact = pipeline.impact(state)?;
+    let (problem, energy) = (&impact.problem, impact.kinetic_energy);
+    let outcomes = impact.analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes);
+    if outcomes.is_empty() || problem.contacts() == 0 || energy <= 0.0 {
+        return Ok(None);
+    }
+    let prepared = pipeline.prepare(state)?;
+    let exact = pipeline.exact(state, &prepared);
     let (mut landings, mut unsettled) = (Vec::new(), 0);
     for &damping_ratio in &DAMPING_RATIOS {
         for &stiffness_ratio in &STIFFNESS_RATIOS {
@@ -169,13 +182,13 @@ pub fn compare(pose: &Pose, problem: &ContactProblem, analysis: &Analysis, energ
         nearest: all.map_or(0, |all| all.nearest[at]),
         near: landings.iter().filter(|(_, landing)| landing.outcome == at && landing.distance <= NEAR).count(),
     });
-    Ok(Comparison {
+    Ok(Some(Comparison {
         outcomes: targets.collect(),
         unsettled,
         tolerances: by_tolerance(problem, outcomes, energy)?,
-        stiffnesses: by_stiffness_of_moving(pose, problem, outcomes, energy)?,
+        stiffnesses: by_stiffness_of_moving(&exact, problem, outcomes, energy)?,
         groups,
-    })
+    }))
 }
 
 fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[NearestOutcome], outcomes: usize) -> Group {
@@ -211,17 +224,27 @@ fn by_tolerance(problem: &ContactProblem, outcomes: &[Outcome], energy: f64) -> 
 }
 
 fn by_stiffness_of_moving(
-    pose: &Pose,
+    state: &ExactState,
     problem: &ContactProblem,
     outcomes: &[Outcome],
     energy: f64,
 ) -> Result<Vec<ByStiffness>> {
-    let (computation, friction) = (pose.computed(), problem.friction().collect::<Vec<_>>());
-    let (plan, workspace) = (computation.plan(), computation.workspace());
-    let before = computation.velocity();
+    let mut computation = Computation::<f64>::new(state);
+    if computation.assembly.is_constrained() {
+        // A loop is kept closed by impulses alone, which say nothing of the forces that do so in motion.
+        return Ok(Vec::new());
+    }
+    computation.place();
+    computation.delassus(Elimination::Ltl);
+    let Computation { mut assembly, velocity: mut before, .. } = computation;
+    for (before, change) in before.iter_mut().zip(state.change(&mut assembly)) {
+        *before += change;
+    }
+    let Assembly { plan, workspace, points, .. } = &assembly;
+    let friction = problem.friction().collect::<Vec<_>>();
     let after = |impulse: &[Pair<f64>]| {
-        let mut velocity = before.to_vec();
-        for (point, &[tangential, normal]) in pose.points.iter().zip(impulse) {
+        let mut velocity = before.clone();
+        for (point, &[tangential, normal]) in points.iter().zip(impulse) {
             let [t, n] = point.axes();
             let vector = t * tangential + n * normal;
             add_impulse(plan, workspace, (point.body, point.arm(workspace)), vector, &mut Vec::new(), &mut velocity);
@@ -234,8 +257,7 @@ fn by_stiffness_of_moving(
     };
     let frozen = after(&run(problem, PLAIN, TOLERANCE)?.impulse);
     let outcomes: Vec<Vec<f64>> = outcomes.iter().map(|outcome| after(&outcome.impulse)).collect();
-    let moving =
-        Moving { plan, position: &pose.state.position, velocity: before, contacts: &pose.points, friction: &friction };
+    let moving = Moving { plan, position: state.position, velocity: &before, contacts: points, friction: &friction };
     let mut rows = Vec::new();
     for stiffness in STIFFNESSES {
         // If the integrator gives up, the row is empty and the study goes on.

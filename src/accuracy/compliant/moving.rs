@@ -75,16 +75,16 @@ struct Equation<'a> {
 #[derive(Debug, Default)]
 struct Memory {
     workspace: Workspace,
-    posture: Configuration,
+    configuration: Configuration,
     column: Vec<f64>,
 }
 
 impl Memory {
     /// Everything that the equation of motion needs at q and v.
     fn move_to(&mut self, robot: &Moving, position: &[f64], velocity: &[f64]) {
-        let Self { workspace, posture, .. } = self;
-        posture.set(robot.plan, position);
-        kinematics(robot.plan, posture, workspace);
+        let Self { workspace, configuration, .. } = self;
+        configuration.set(robot.plan, position);
+        kinematics(robot.plan, configuration, workspace);
         mass_matrix(robot.plan, workspace);
         factorize(robot.plan, workspace);
         contact_jacobian(robot.plan, robot.contacts, velocity, None, workspace);
@@ -191,7 +191,7 @@ fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<
                 let (spin, rate) = (spins[parent], velocity[body.coordinate]);
                 let carried = origins[parent] - workspace.arm[index] * (spin * spin);
                 match motion {
-                    Motion::Revolute { sign, .. } => (spin + sign * rate, carried),
+                    Motion::Revolute { rate: unit, .. } => (spin + unit * rate, carried),
                     // Coriolis: twice the turn of the direction of sliding.
                     Motion::Prismatic { .. } => {
                         (spin, carried + workspace.direction[index].perpendicular() * (2.0 * spin * rate))

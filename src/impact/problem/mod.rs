@@ -178,11 +178,6 @@ impl ContactProblem {
         Ok(Self { delassus: rows.delassus(), origin: Origin::Repaired(rows), ..problem })
     }
 
-    /// The same problem without applied impulses.
-    pub fn without_impulses(&self) -> Self {
-        Self { velocity_free: self.velocity_before.clone(), ..self.clone() }
-    }
-
     /// Whether G and c- themselves were given, and every digit of them is meant.
     pub fn is_given(&self) -> bool {
         matches!(self.origin, Origin::Given)

@@ -38,7 +38,8 @@ impl KeptContacts<'_, '_> {
                     state.scene.friction.links.insert(link, Friction::Finite(value));
                 }
                 Quantity::RotorInertia(joint) => {
-                    state.scene.rotor_inertia.resize(self.pipeline.robot.joints.len(), 0.0);
+                    let robot = self.pipeline.robot;
+                    state.scene.rotor_inertia.resize(robot.joints.len() + robot.mimic_joints.len(), 0.0);
                     state.scene.rotor_inertia[joint] = value;
                 }
             }
@@ -49,7 +50,7 @@ impl KeptContacts<'_, '_> {
     /// The proven answer at a point, if its contacts are the same.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let Answer { impact, foot, resting } = self.pipeline.answer(&state, None).ok()?;
+        let Answer { impact, foot, resting, rows } = self.pipeline.answer(&state, None).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
                 let far = one.centre - other.centre;
@@ -60,8 +61,8 @@ impl KeptContacts<'_, '_> {
         // Elsewhere on a profile a named contact may have another normal.
         let mut contacts = impact.contacts.iter().zip(&self.answer.impact.contacts);
         let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
-        (same_foot && same_axes && impact.stance == self.answer.impact.stance && resting == self.answer.resting)
-            .then_some((state, impact.analysis?))
+        let same_rests = impact.stance == self.answer.impact.stance && resting == self.answer.resting;
+        (same_foot && same_axes && same_rests && rows == self.answer.rows).then_some((state, impact.analysis?))
     }
 
     /// The square of how far a foot that is named may lie from the same foot as it was found \[m^2\].
@@ -92,7 +93,7 @@ impl KeptContacts<'_, '_> {
 
     /// The contact problems of all states of the box.
     pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
-        let Answer { impact, foot, resting } = self.answer;
+        let Answer { impact, foot, resting, rows } = self.answer;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
         let exact = ExactState {
             robot,
@@ -103,15 +104,16 @@ impl KeptContacts<'_, '_> {
             stance: impact.stance,
             contacts: &impact.contacts,
             resting,
-            constraints: Constraints::default(),
+            constraints: Constraints { kept: &[], rows },
             laws: &[],
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,
         };
+        let plan = whole.plan::<N>(robot, &scene.held, &scene.rotor_inertia);
         let Contacts { delassus, before, free } = exact.contacts(Inputs {
-            configuration: whole.posture::<N>(robot, &self.state.position),
+            configuration: whole.configuration(&plan, &self.state.position),
             velocity: whole.velocity(&self.state.velocity),
-            plan: whole.plan(robot, &scene.held, &scene.rotor_inertia),
+            plan,
         });
         let row = |(contact, link): (usize, &usize)| {
             let restitution = Affine::from_f64(scene.restitution.of(*link).unwrap_or(0.0));

@@ -33,8 +33,7 @@ impl Pipeline<'_> {
         if links.is_empty() {
             return Robustness::Everywhere;
         }
-        let tied = !self.robot.mimic_joints.is_empty() || !state.scene.loops.is_empty();
-        if links.len() > CONTACT_LIMIT || tied {
+        if links.len() > CONTACT_LIMIT {
             return Robustness::Unknown;
         }
         let whole = StateBox::new(self.robot, state, uncertainty, &links);

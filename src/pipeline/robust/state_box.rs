@@ -1,9 +1,10 @@
 //! Boxes of states.
 
-use crate::dynamics::plan::{Configuration, Plan};
+use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::law::Friction;
-use crate::robot::{Axis, Base, ParentJoint, Robot};
-use crate::scalar::{Affine, Real, Trigonometry};
+use crate::planar::Rotation;
+use crate::robot::{Base, ParentJoint, Robot};
+use crate::scalar::{Affine, Real};
 use crate::state::{State, Uncertainty};
 
 /// An uncertain number of a state.
@@ -133,26 +134,34 @@ impl StateBox {
         }
     }
 
-    /// Cosines, sines and displacements of all positions in the box.
-    pub fn posture<const N: usize>(&self, robot: &Robot, position: &[f64]) -> Configuration<Affine<N>> {
-        let base = robot.base_dofs();
-        let mut posture = Configuration::default();
-        for (coordinate, &entry) in position.iter().enumerate() {
-            let turns = match coordinate.checked_sub(base) {
-                Some(joint) => matches!(robot.joints[joint].axis, Axis::Revolute { .. }),
-                None => coordinate == 2,
-            };
-            let quantity = Quantity::Position(coordinate);
-            let [cos, sin] = match self.find(quantity) {
-                _ if !turns => [Affine::one(), Affine::zero()],
-                Some((index, middle, radius)) => Affine::cos_sin_varying(middle, radius, index),
-                None => Affine::cos_sin(entry),
-            };
-            posture.cos.push(cos);
-            posture.sin.push(sin);
-            posture.displacement.push(self.number(quantity, entry));
+    /// Cosines, sines and displacements of all positions in the box, by a motion from its middle.
+    pub fn configuration<const N: usize>(&self, plan: &Plan<Affine<N>>, position: &[f64]) -> Configuration<Affine<N>> {
+        let mut middle = position.to_vec();
+        for (index, quantity) in self.quantities.iter().enumerate() {
+            if let Quantity::Position(coordinate) = *quantity {
+                middle[coordinate] = self.middle(index);
+            }
         }
-        posture
+        let mut configuration = Configuration::default();
+        configuration.set(plan, &middle);
+        for body in &plan.bodies {
+            let Some((index, _, radius)) = self.find(Quantity::Position(body.coordinate)) else { continue };
+            let unit = Affine::varying(0.0, radius, index);
+            let by = body.mimic.map_or(unit, |mimic| unit * Affine::from_f64(mimic.multiplier));
+            match body.motion {
+                Motion::Root if !plan.floating => {}
+                Motion::Root | Motion::Revolute { .. } => {
+                    let [cos, sin] = by.cos_sin_near_zero();
+                    configuration.turn_on(body.place, Rotation { cos, sin });
+                }
+                Motion::Prismatic { .. } => {
+                    let displacement = &mut configuration.displacement[body.place];
+                    *displacement = *displacement + by;
+                }
+                Motion::Fixed => {}
+            }
+        }
+        configuration
     }
 
     /// All velocities in the box.
@@ -165,9 +174,14 @@ impl StateBox {
     pub fn plan<const N: usize>(&self, robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
         let mut plan = Plan::new(robot, held, rotor_inertia);
         for (body, own) in plan.bodies.iter_mut().zip(&robot.bodies) {
-            let Some(ParentJoint::Joint(joint)) = own.joint else { continue };
+            let joint = match own.joint {
+                Some(ParentJoint::Joint(joint)) => joint,
+                Some(ParentJoint::Mimic(joint)) => robot.joints.len() + joint,
+                Some(ParentJoint::Fixed { .. }) | None => continue,
+            };
             if let Some((index, middle, radius)) = self.find(Quantity::RotorInertia(joint)) {
-                body.rotor = Affine::varying(middle, radius, index);
+                let ratio = Affine::from_f64(body.mimic.map_or(1.0, |mimic| mimic.multiplier));
+                body.rotor = ratio * ratio * Affine::varying(middle, radius, index);
             }
         }
         plan

@@ -196,7 +196,7 @@ fn span(time: Spread) -> String {
 
 fn compare(out: &mut String, compliant: &Compliant, Palette { strong, plain, .. }: &Palette) {
     let Compliant { name, comparison } = compliant;
-    let _ = writeln!(out, "\n{strong}Compliant contact{plain} beside the rigid outcomes of {name}:\n");
+    let _ = writeln!(out, "\n{strong}Compliant contact{plain} next to the rigid outcomes of {name}:\n");
     for (at, outcome) in comparison.outcomes.iter().enumerate() {
         let modes: Vec<String> = outcome.modes.iter().map(ToString::to_string).collect();
         let index = outcome.index.map_or("none".into(), |index| format!("{index:+}"));
@@ -236,11 +236,15 @@ fn compare(out: &mut String, compliant: &Compliant, Palette { strong, plain, .. 
         .write(out);
     out.push('\n');
     let rows = &comparison.stiffnesses;
-    Table::default()
-        .text("k_n of the moving robot", rows.iter().map(|row| format!("{:e} N/m", row.stiffness)))
-        .text("change", rows.iter().map(|row| row.change.map_or("-".into(), share)))
-        .text("distance", rows.iter().map(|row| row.distance.map_or("-".into(), share)))
-        .write(out);
+    if rows.is_empty() {
+        out.push_str("  the moving robot is left out: its loops are closed by impulses alone\n");
+    } else {
+        Table::default()
+            .text("k_n of the moving robot", rows.iter().map(|row| format!("{:e} N/m", row.stiffness)))
+            .text("change", rows.iter().map(|row| row.change.map_or("-".into(), share)))
+            .text("distance", rows.iter().map(|row| row.distance.map_or("-".into(), share)))
+            .write(out);
+    }
     let _ = writeln!(
         out,
         "  distance: to the nearest outcome, change: from the finest tolerance, or from the configuration frozen;\n  \

@@ -83,6 +83,19 @@ fn stances_slopes_restitution_rotors_and_held_joints_take_part() {
     assert!(shares.holds >= 100 && 10 * shares.unknown <= 200, "{shares:?}");
 }
 
+#[test]
+fn mimic_joints_and_loops_take_part() {
+    for scene in [states::with_coupled_knees, states::five_bar] {
+        let mut shares = Shares::default();
+        for seed in 0..60 {
+            let mut random = Random::new(seed);
+            let (robot, state) = scene(&mut random);
+            count(&robot, &state, &mut random, &mut shares);
+        }
+        assert!(shares.holds >= 40 && 10 * shares.unknown <= 60, "{shares:?}");
+    }
+}
+
 /// `HEELSTRIKE_STATES=2000 cargo test --release --test library -- --nocapture shares` prints the figures of
 /// `docs/states.md`.
 #[test]

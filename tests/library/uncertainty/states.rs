@@ -63,6 +63,36 @@ pub fn walking(robot: &Robot, random: &mut Random) -> State {
     read(robot, &state).expect("a good state")
 }
 
+/// RAMone whose right knee bends with the left one, and a rotor there.
+pub fn with_coupled_knees(random: &mut Random) -> (Robot, State) {
+    let urdf = include_str!("../../../urdf/ramone.urdf");
+    let knee = urdf.find(r#"<joint name="right_knee""#).expect("a right knee");
+    let end = knee + urdf[knee..].find("</joint>").expect("its end");
+    let mimic = r#"<mimic joint="left_knee" multiplier="-0.7" offset="0.2"/>"#;
+    let robot = Robot::from_urdf(&[&urdf[..end], mimic, &urdf[end..]].concat()).expect("a good robot");
+    let mut state = on_both_feet(&robot, random, 1e-3);
+    state.scene.rotor_inertia = vec![0.0, 0.0, 0.0, 0.02];
+    state.uncertainty.as_mut().expect("an uncertain state").rotor_inertia = vec![0.0, 0.0, 0.0, 1e-3];
+    (robot, state)
+}
+
+/// A closed chain of five links whose joint touches, and a point of a shank; any motion that keeps it closed, and an
+/// impulse on its torso.
+pub fn five_bar(random: &mut Random) -> (Robot, State) {
+    let robot = Robot::from_urdf(include_str!("../../../urdf/five_bar.urdf")).expect("a good robot");
+    let mut state: Value = serde_json::from_str(include_str!("../../../examples/five_bar.json")).expect("an example");
+    state["position"]["base"]["pitch"] = json!(random.between(-0.5, 0.5));
+    state["velocity"]["base"] =
+        json!({"x": random.between(-1.0, 1.0), "z": random.between(-1.0, 1.0), "pitch": random.between(-2.0, 2.0)});
+    state["friction"] = json!(random.between(0.2, 1.5));
+    state["contacts"] =
+        json!([{"link": "left_shank", "offset": [0, 0, -0.5]}, {"link": "torso", "offset": [0.3, 0, -0.6]}]);
+    state["impulse"] = json!([{"link": "torso", "vector": [random.between(-0.1, 0.1), random.between(-0.1, 0.1)]}]);
+    state["uncertainty"] = json!({"position": {"base": {"pitch": 1e-3}}, "velocity": {"base": {"x": 1e-3, "pitch": 1e-3}}, "friction": 1e-2});
+    let state = read(&robot, &state).expect("a good state");
+    (robot, state)
+}
+
 /// The lists of modes of a proven answer, sorted.
 pub fn modes(impact: &Impact) -> Vec<Vec<Mode>> {
     let analysis = impact.analysis.as_ref().expect("outcomes");
@@ -96,7 +126,7 @@ pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) 
         }
     }
     for (joint, width) in known.rotor_inertia.iter().enumerate().filter(|(_, width)| **width > 0.0) {
-        other.scene.rotor_inertia.resize(robot.joints.len(), 0.0);
+        other.scene.rotor_inertia.resize(robot.joints.len() + robot.mimic_joints.len(), 0.0);
         other.scene.rotor_inertia[joint] = (other.scene.rotor_inertia[joint] + width * place()).max(0.0);
     }
     other

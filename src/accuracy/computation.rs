@@ -1,0 +1,95 @@
+//! A state's contact problem in any number, step by step, so that every step can be timed.
+//!
+//! ```text
+//!     state --trigonometry--> configuration --> Assembly: kinematics, M, L^T D L | articulated bodies, J, G
+//!                                                                          └── Cholesky ──────────────> G
+//! ```
+
+use super::number::Number;
+use crate::dynamics::mass_matrix;
+use crate::pipeline::assembly::{Assembly, Elimination};
+use crate::pipeline::exact::{Contacts, ExactState};
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+/// How G = J M^-1 J^T is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Factorization {
+    /// M = L^T D L along the tree's branches.
+    SparseLtl,
+    /// M = L L^T without regard to zeros, by nalgebra.
+    DenseCholesky,
+    /// No M at all: articulated bodies.
+    ArticulatedBodies,
+}
+
+/// A state compiled in numbers of kind `T`, and the memory of its computation.
+pub(super) struct Computation<'a, T> {
+    state: &'a ExactState<'a>,
+    pub assembly: Assembly<T>,
+    /// v, by coordinate; such that the stance and the loops are kept.
+    pub velocity: Vec<T>,
+}
+
+impl<'a, T: Number> Computation<'a, T> {
+    /// Compiles the robot; nothing that depends on the state is computed yet.
+    pub fn new(state: &'a ExactState<'a>) -> Self {
+        Self { state, assembly: state.assembly(state.plan()), velocity: Vec::new() }
+    }
+
+    /// Positions of all bodies, from the f64 state on.
+    pub fn place(&mut self) {
+        let Self { state, assembly, velocity } = self;
+        assembly.configuration.set(&assembly.plan, state.position);
+        state.place(assembly);
+        velocity.clear();
+        velocity.extend(state.velocity.iter().map(|&entry| T::from_f64(entry)));
+    }
+
+    /// G by the sparse factorization of M, or without M; with loops J and c, too, since they are eliminated from both.
+    pub fn delassus(&mut self, by: Elimination) {
+        self.assembly.elimination = by;
+        self.assembly.factorize();
+        if by == Elimination::Ltl {
+            self.velocities();
+        }
+        self.assembly.delassus();
+    }
+
+    /// J, and the contact velocities c = J v.
+    pub fn velocities(&mut self) {
+        self.state.contact_velocities(&mut self.assembly, &mut self.velocity);
+    }
+
+    /// G, which leaves the memory, and c with and without the applied impulses.
+    pub fn collect(&mut self) -> Contacts<T> {
+        if !self.state.scene.impulses.is_empty() {
+            // Not every way to G leaves a factor behind.
+            self.assembly.factorize();
+        }
+        self.state.collect(&mut self.assembly)
+    }
+}
+
+impl Computation<'_, f64> {
+    /// G by a dense Cholesky factorization of M; false if M is not positive definite to it.
+    pub fn delassus_by_cholesky(&mut self) -> bool {
+        mass_matrix(&self.assembly.plan, &mut self.assembly.workspace);
+        self.velocities();
+        let nv = self.assembly.plan.columns();
+        let rows = 2 * self.assembly.points.len();
+        let workspace = &mut self.assembly.workspace;
+        // Only the lower triangle is read.
+        let Some(factor) = DMatrix::from_row_slice(nv, nv, &workspace.mass_matrix).cholesky() else { return false };
+        let mut half = DMatrix::from_row_slice(rows, nv, &workspace.contact_jacobian).transpose();
+        if !factor.l_dirty().solve_lower_triangular_mut(&mut half) {
+            return false;
+        }
+        let found = half.transpose() * &half;
+        workspace.delassus.clear();
+        workspace.delassus.extend((0..rows * rows).map(|entry| found[(entry / rows, entry % rows)]));
+        true
+    }
+}
