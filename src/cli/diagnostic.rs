@@ -51,13 +51,13 @@ pub(super) fn report_with(error: &Error, excerpt: Option<&Excerpt>) {
     let (Some(Location { line, .. }), Some(excerpt)) = (error.location(), excerpt) else {
         return report(error);
     };
-    let mut mark = AnnotationKind::Primary.span(excerpt.mark());
+    let mut mark = AnnotationKind::Primary.span(excerpt.mark.clone());
     if let Some(place) = error.place() {
         mark = mark.label(normalize_untrusted_str(place));
     }
-    let snippet = Snippet::source(excerpt.text()).line_start(line).annotation(mark);
+    let snippet = Snippet::source(&excerpt.text).line_start(line).annotation(mark);
     let title = |text: String| Level::ERROR.primary_title(text);
-    let mut groups = vec![if excerpt.starts_later() {
+    let mut groups = vec![if excerpt.starts_later {
         // The renderer would count the columns from the cut.
         title(error.to_string()).element(snippet)
     } else {

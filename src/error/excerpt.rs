@@ -3,34 +3,31 @@
 use crate::error::Location;
 use std::ops::Range;
 
-/// A line of so many bytes is shown whole.
+/// The most bytes of a line that is shown whole.
 const WHOLE: usize = 160;
-
-/// So many characters of a longer one are kept before the place.
+/// The characters of a longer one that are kept before the place.
 const BEFORE: usize = 50;
-
-/// So many are kept from the place on.
+/// Those that are kept from the place on.
 const AFTER: usize = 70;
-
 /// The most bytes of one character.
 const WIDEST: usize = 4;
-
 /// What stands where a line is cut.
 const CUT: &str = "...";
 
 /// A line, or what is near a place in a long one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Excerpt {
-    text: String,
-    mark: Range<usize>,
-    starts_later: bool,
+    /// The line, with `...` where it is cut.
+    pub text: String,
+    /// The bytes of `text` that hold the word, string or tag at the place; empty at the line's end.
+    pub mark: Range<usize>,
+    /// Whether the line's beginning is cut away.
+    pub starts_later: bool,
 }
 
 impl Excerpt {
     /// The line of `text` that holds `place`, where `text` begins on line `first`; bytes that are no UTF-8 are
-    /// replaced.
-    ///
-    /// `None` if `text` does not have that line, or if the line is empty.
+    /// replaced. `None` if there is no such line, or if it is empty.
     pub fn around(text: &[u8], first: usize, place: Location) -> Option<Self> {
         let line = text.split(|&byte| byte == b'\n').nth(place.line.checked_sub(first)?)?;
         let line = line.strip_suffix(b"\r").unwrap_or(line);
@@ -46,21 +43,6 @@ impl Excerpt {
         let marked = token(&middle, ahead.saturating_sub(left));
         let mark = before.len() + marked.start..before.len() + marked.end;
         Some(Self { text: format!("{before}{middle}{after}"), mark, starts_later: kept.start > 0 })
-    }
-
-    /// The line, with `...` where it is cut.
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// Whether the line's beginning is cut away.
-    pub fn starts_later(&self) -> bool {
-        self.starts_later
-    }
-
-    /// The bytes of [`Self::text`] that hold the word, string or tag at the place; empty at the line's end.
-    pub fn mark(&self) -> Range<usize> {
-        self.mark.clone()
     }
 }
 
@@ -113,7 +95,8 @@ mod tests {
 
     fn around(text: &[u8], first: usize, line: usize, column: usize) -> Option<(String, String)> {
         let excerpt = Excerpt::around(text, first, Location { line, column })?;
-        Some((excerpt.text().to_owned(), excerpt.text()[excerpt.mark()].to_owned()))
+        let marked = excerpt.text[excerpt.mark].to_owned();
+        Some((excerpt.text, marked))
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::fmt;
 /// Shorthand for results of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why an input was refused.
+/// Why an input was refused; `what` is the kind of thing or the quantity, as in `joint`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
@@ -23,49 +23,22 @@ pub enum Reason {
     UnknownField(String),
     /// A link, joint or other thing that the robot does not have.
     #[error("the robot has no {what} named \"{}\"", short(.name))]
-    UnknownName {
-        /// The kind of thing, such as `link`.
-        what: &'static str,
-        /// The name as given.
-        name: String,
-    },
+    UnknownName { what: &'static str, name: String },
     /// A name or key that stands twice.
     #[error("{what} \"{}\" is given twice", short(.name))]
-    Duplicate {
-        /// The kind of thing, such as `joint`.
-        what: &'static str,
-        /// The name that is given twice.
-        name: String,
-    },
-    /// A value of the wrong kind, such as a string for a number.
+    Duplicate { what: &'static str, name: String },
+    /// A value of the wrong kind, such as `a string` where `a number` is expected.
     #[error("expected {expected}, found {found}")]
-    WrongKind {
-        /// What would be accepted, as in `a number`.
-        expected: &'static str,
-        /// What stands there, as in `a string`.
-        found: &'static str,
-    },
+    WrongKind { expected: &'static str, found: &'static str },
     /// Something required is not there.
     #[error("{} is missing", short(.0))]
     Missing(String),
     /// A number that is NaN or infinite.
     #[error("{what} must be a finite number, not {value}")]
-    NotFinite {
-        /// The quantity.
-        what: String,
-        /// The value as given.
-        value: f64,
-    },
-    /// A number outside its range.
+    NotFinite { what: String, value: f64 },
+    /// A number outside its range, which is `allowed`, as in `between 0 and 1`.
     #[error("{what} must be {allowed}, not {}", brief(*.value))]
-    OutOfRange {
-        /// The quantity.
-        what: String,
-        /// What would be accepted, as in `between 0 and 1`.
-        allowed: &'static str,
-        /// The value as given.
-        value: f64,
-    },
+    OutOfRange { what: String, allowed: &'static str, value: f64 },
     /// Two inputs that contradict each other, or an array of the wrong shape.
     #[error("{}", short(.0))]
     Inconsistent(String),
@@ -78,54 +51,30 @@ pub enum Reason {
     /// A coordinate without inertia, so that the mass matrix is singular.
     #[error("the mass matrix is singular: nothing resists a motion of {}", short(.0))]
     Singular(String),
-    /// A shape that is deeper in the ground than the tolerance.
+    /// A shape of a URDF link that is deeper in the ground than the tolerance, both in m.
     #[error(
         "link \"{}\" is {depth:.3e} m deep in the ground, more than the contact tolerance of {tolerance:.3e} m",
         short(.link)
     )]
-    Penetration {
-        /// The URDF link.
-        link: String,
-        /// The depth \[m\].
-        depth: f64,
-        /// The tolerance \[m\].
-        tolerance: f64,
-    },
-    /// More contacts than the enumeration of all modes serves.
+    Penetration { link: String, depth: f64, tolerance: f64 },
+    /// More closed contacts than the enumeration of all modes serves.
     #[error("{contacts} contacts are closed, and every combination of modes is tried for {limit} at most")]
-    TooManyContacts {
-        /// The number of closed contacts.
-        contacts: usize,
-        /// The most that is accepted.
-        limit: usize,
-    },
-    /// More contacts than matrices are formed for.
+    TooManyContacts { contacts: usize, limit: usize },
+    /// More closed contacts than matrices are formed for.
     #[error("{contacts} contacts are closed, and matrices are formed for {limit} at most")]
-    MatricesTooLarge {
-        /// The number of closed contacts.
-        contacts: usize,
-        /// The most that is accepted.
-        limit: usize,
-    },
-    /// More of a thing than a robot may have.
+    MatricesTooLarge { contacts: usize, limit: usize },
+    /// More of a thing, such as `links`, than is accepted.
     #[error("more than {limit} {what} are not accepted")]
-    TooMany {
-        /// The kind of thing, such as `links`.
-        what: &'static str,
-        /// The most that is accepted.
-        limit: usize,
-    },
+    TooMany { what: &'static str, limit: usize },
     /// A file that could not be read or written.
     #[error("{0}")]
     Io(String),
 }
 
-/// A line and column of a text, both counted from 1.
+/// A line and a column of a text \[characters\], both counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Location {
-    /// Line, from 1.
     pub line: usize,
-    /// Column in characters, from 1.
     pub column: usize,
 }
 
@@ -157,9 +106,9 @@ impl Error {
         Self(Box::new(Refusal { reason, file: None, location: None, place: None, hint: None }))
     }
 
-    /// Names the place inside the input, as in `position.joints.left_hip` or `link "shank"`.
+    /// Names the place inside the input, as in `position.joints.left_hip` or `link "shank"`; empty for the whole.
     pub fn at(mut self, place: impl Into<String>) -> Self {
-        self.0.place = Some(short(&place.into()).into_owned());
+        self.0.place = Some(short(&place.into()).into_owned()).filter(|place| !place.is_empty());
         self
     }
 
@@ -219,14 +168,11 @@ impl fmt::Display for Error {
     /// `file:line:column: place: reason`, as far as known, without the remedy.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Refusal { reason, file, location, place, .. } = &*self.0;
-        if let Some(file) = file {
-            write!(f, "{file}:")?;
-        }
-        if let Some(Location { line, column }) = location {
-            write!(f, "{line}:{column}:")?;
-        }
-        if file.is_some() || location.is_some() {
-            f.write_str(" ")?;
+        match (file, location) {
+            (Some(file), Some(Location { line, column })) => write!(f, "{file}:{line}:{column}: ")?,
+            (Some(file), None) => write!(f, "{file}: ")?,
+            (None, Some(Location { line, column })) => write!(f, "{line}:{column}: ")?,
+            (None, None) => {}
         }
         if let Some(place) = place {
             write!(f, "{place}: ")?;
@@ -252,14 +198,10 @@ const LONGEST_NAME: usize = 200;
 
 /// The known name most like `name`, if any is like it at all.
 fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let comparable = |name: &str| name.len() <= LONGEST_NAME;
-    known
-        .into_iter()
-        .filter(|candidate| comparable(name) && comparable(candidate))
-        .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
-        .filter(|(likeness, _)| *likeness > 0.8)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
+    let comparable = |candidate: &&str| name.len().max(candidate.len()) <= LONGEST_NAME;
+    let likeness = |candidate: &'a str| (strsim::jaro_winkler(name, candidate), candidate);
+    let near = known.into_iter().filter(comparable).map(likeness).filter(|(likeness, _)| *likeness > 0.8);
+    near.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
 }
 
 /// The text, without its middle if a hostile name makes it long: a refusal of a line of 1 MB stays short.

@@ -46,7 +46,7 @@ pub fn utf8(bytes: &[u8]) -> Result<&str> {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
         Err(broken) => {
             let valid = String::from_utf8_lossy(&bytes[..broken.valid_up_to()]);
-            let (line, column) = line_and_column(&valid, valid.len());
+            let (line, column) = line_and_column(valid.as_bytes(), valid.len());
             Err(Error::new(Reason::Syntax("the text is not UTF-8".into()))
                 .hint("save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote")
                 .on(line, column))
@@ -118,7 +118,7 @@ impl<'t> Documents<'t> {
 
     fn take(&mut self, end: usize) -> Document<'t> {
         // Counting goes on from the last document, so that many in one line take linear time.
-        let (lines, column) = line_and_column(&self.text[self.counted..], self.at - self.counted);
+        let (lines, column) = line_and_column(&self.text.as_bytes()[self.counted..], self.at - self.counted);
         self.line += lines - 1;
         self.column = if lines == 1 { self.column + column - 1 } else { column };
         self.counted = self.at;

@@ -2,7 +2,6 @@
 
 pub mod expression;
 pub(crate) mod json;
-pub(crate) mod format;
 pub mod documents;
 pub(crate) mod state;
 mod problem;

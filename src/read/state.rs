@@ -1,6 +1,5 @@
 //! The fields of a state, one function for each shape of value.
 
-use super::format::fields_of;
 use super::json::{Node, Value, id_in};
 use crate::law::Friction;
 use crate::planar::Vector;
@@ -8,7 +7,7 @@ use crate::robot::Base;
 use crate::state::{
     AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, State, Uncertainty,
 };
-use crate::{Error, Reason, Result, Robot};
+use crate::{Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
 
 /// The entries of a floating base in the order of q.
@@ -23,21 +22,18 @@ const LOOP_LIMIT: usize = 256;
 /// Anything else than such a list; the error has place, line and column in `text`.
 pub fn loops_from_json(text: &str, robot: &Robot) -> Result<Vec<NamedLoop>> {
     let tree = Value::parse(text)?;
-    loops(Node::root(&tree, text), robot)
+    loops(Node::root(&tree, text, None), robot)
 }
 
 impl State {
     /// Reads a state of `robot` from one JSON object; what it omits is 0, and its friction that of `defaults`.
     ///
-    /// Whether every contact ends up with a friction is not known before the contacts are.
-    ///
     /// # Errors
     /// Whatever is not a state of this robot: broken JSON, unknown or doubled fields and names, values of the wrong
-    /// kind or outside their range, a base that is both placed and given. The error has place, line and column in
-    /// `text`.
+    /// kind or outside their range, a base that is both placed and given; with place, line and column in `text`.
     pub fn from_json(text: &str, robot: &Robot, defaults: &Defaults) -> Result<Self> {
         let tree = Value::parse(text)?;
-        read(Node::root(&tree, text), robot, defaults)
+        read(Node::root(&tree, text, None), robot, defaults)
     }
 
     /// The `id` in the text of a state that may be refused; `None` if there is none.
@@ -55,8 +51,8 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
     for field in root.fields("field")? {
         match field.key() {
             "id" => state.id = Some(field.id()?),
-            "position" => coordinates(field, robot, &mut state.position, number)?,
-            "velocity" => coordinates(field, robot, &mut state.velocity, number)?,
+            "position" => coordinates(field, robot, &mut state.position, |entry| entry.number())?,
+            "velocity" => coordinates(field, robot, &mut state.velocity, |entry| entry.number())?,
             "friction" => scene.friction = by_link(field, robot, friction)?,
             "restitution" => scene.restitution = by_link(field, robot, restitution)?,
             "ground" => scene.ground = ground(field)?,
@@ -67,20 +63,20 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
             "impulse" => scene.impulses = impulses(field, robot)?,
             "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
-            _ => return Err(field.unknown_field(&fields_of("State"))),
+            _ => return Err(field.unknown_field("State")),
         }
     }
     if scene.stance.is_some() {
-        refuse_a_placed_base(root)?;
+        let hint = "leave out either the stance or the base's x and z";
+        refuse_base(root, |name| format!("the stance already gives the base's {name}"), hint)?;
+        if let Some(field) = root.field("uncertainty")? {
+            let hint = "leave out either the stance or this half-width";
+            refuse_base(field, |name| format!("the stance gives the base's {name} from the rest"), hint)?;
+        }
     }
     scene.friction.default = scene.friction.default.or(defaults.friction);
     scene.loops = own_loops.unwrap_or_else(|| defaults.loops.clone());
     Ok(state)
-}
-
-/// Any number.
-fn number(node: Node) -> Result<f64> {
-    node.number()
 }
 
 /// `{"base": {"x", "z", "pitch"}, "joints": {name: number}}` into the order of q.
@@ -97,7 +93,7 @@ fn coordinates(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Nod
                 for entry in part.fields("base entry")? {
                     match BASE.iter().position(|name| *name == entry.key()) {
                         Some(at) => base[at] = number(entry)?,
-                        None => return Err(entry.unknown_field(&fields_of("Base"))),
+                        None => return Err(entry.unknown_field("Base")),
                     }
                 }
             }
@@ -106,37 +102,31 @@ fn coordinates(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Nod
                     joints[joint(entry, entry.key(), robot)?] = number(entry)?;
                 }
             }
-            _ => return Err(part.unknown_field(&fields_of("Coordinates"))),
+            _ => return Err(part.unknown_field("Coordinates")),
         }
     }
     Ok(())
 }
 
-/// A stance places the base and gives its velocity: both given is one too many.
-fn refuse_a_placed_base(root: Node) -> Result<()> {
-    for field in root.fields("field")?.filter(|field| matches!(field.key(), "position" | "velocity")) {
-        for base in field.fields("field")?.filter(|part| part.key() == "base") {
-            if let Some(entry) = base.fields("base entry")?.find(|entry| matches!(entry.key(), "x" | "z")) {
-                let reason = Reason::Inconsistent(format!("the stance already gives the base's {}", entry.key()));
-                return Err(entry.refuse(reason).hint("leave out either the stance or the base's x and z"));
-            }
+/// Refuses x and z of the base in `position` and `velocity`, or their half-widths: a stance gives them.
+fn refuse_base(object: Node, reason: impl Fn(&str) -> String, hint: &str) -> Result<()> {
+    let given = |field: &Node| matches!(field.key(), "position" | "velocity") && field.is_object();
+    for field in object.fields("field")?.filter(given) {
+        let Some(base) = field.field("base")? else { continue };
+        if let Some(entry) = base.fields("base entry")?.find(|entry| matches!(entry.key(), "x" | "z")) {
+            return Err(entry.refuse(Reason::Inconsistent(reason(entry.key()))).hint(hint));
         }
-    }
-    for field in root.fields("field")?.filter(|field| field.key() == "uncertainty") {
-        refuse_half_widths_of_a_placed_base(field)?;
     }
     Ok(())
 }
 
 fn stance(field: Node, robot: &Robot) -> Result<usize> {
-    let link = link(field, field.text()?, robot)?;
-    match robot.base {
-        Base::Floating => Ok(link),
-        Base::Fixed => {
-            let reason = Reason::Inconsistent("the robot is bolted to the world, a stance cannot place it".into());
-            Err(field.refuse(reason).hint("leave it out, or give `base: floating`"))
-        }
+    let link = link(field, robot)?;
+    if robot.base == Base::Fixed {
+        let reason = Reason::Inconsistent("the robot is bolted to the world, a stance cannot place it".into());
+        return Err(field.refuse(reason).hint("leave it out, or give `base: floating`"));
     }
+    Ok(link)
 }
 
 /// A value for all links, or an object of values by link with an optional `default`.
@@ -146,11 +136,10 @@ fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>
     }
     let mut values = ByLink::default();
     for entry in field.fields("link")? {
-        match entry.key() {
-            "default" => values.default = Some(read(entry)?),
-            name => {
-                values.links.insert(link(entry, name, robot)?, read(entry)?);
-            }
+        if entry.key() == "default" {
+            values.default = Some(read(entry)?);
+        } else {
+            values.links.insert(named_link(entry, entry.key(), robot)?, read(entry)?);
         }
     }
     Ok(values)
@@ -160,14 +149,13 @@ fn by_link<T: Copy>(field: Node, robot: &Robot, read: impl Fn(Node) -> Result<T>
 pub(crate) fn friction(node: Node) -> Result<Friction> {
     match node.as_text() {
         Some("infinite") => Ok(Friction::Infinite),
-        Some(_) if !node.takes_expressions() => {
-            Err(node.expected("a number or \"infinite\"").did_you_mean(node.text()?, ["infinite"]))
+        Some(text) if node.names().is_none() => {
+            Err(node.expected("a number or \"infinite\"").did_you_mean(text, ["infinite"]))
         }
-        Some(text) => {
-            let number = node.number_from_zero("friction").map_err(|error| error.did_you_mean(text, ["infinite"]));
-            number.map(Friction::Finite)
+        text => {
+            let number = node.number_from_zero("friction");
+            number.map(Friction::Finite).map_err(|error| error.did_you_mean(text.unwrap_or_default(), ["infinite"]))
         }
-        None => node.number_from_zero("friction").map(Friction::Finite),
     }
 }
 
@@ -182,28 +170,23 @@ pub(crate) fn restitution(node: Node) -> Result<f64> {
 
 /// `{"slope": radians}` or `{"profile": [[x, z], ...]}`.
 fn ground(field: Node) -> Result<Ground> {
-    let mut ground = None;
-    for entry in field.fields("field")? {
-        let read = match entry.key() {
-            "slope" => Ground::Slope(slope(entry)?),
-            "profile" => Ground::Profile(profile(entry)?),
-            _ => return Err(entry.unknown_field(&fields_of("Ground"))),
-        };
-        if ground.replace(read).is_some() {
+    match field.object("Ground", ["slope", "profile"])? {
+        [None, None] => Ok(Ground::default()),
+        [Some(entry), None] => slope(entry).map(Ground::Slope),
+        [None, Some(entry)] => profile(entry).map(Ground::Profile),
+        [Some(_), Some(entry)] => {
             let reason = Reason::Inconsistent("the ground has either a slope or a profile".into());
-            return Err(entry.refuse(reason).hint("leave one of them out: a profile of two points is a slope, too"));
+            Err(entry.refuse(reason).hint("leave one of them out: a profile of two points is a slope, too"))
         }
     }
-    Ok(ground.unwrap_or_default())
 }
 
 fn slope(entry: Node) -> Result<f64> {
     let value = entry.number()?;
-    if value.abs() >= FRAC_PI_2 {
-        let what = "slope".into();
-        return Err(entry.refuse(Reason::OutOfRange { what, allowed: "between -pi/2 and pi/2", value }));
+    if value.abs() < FRAC_PI_2 {
+        return Ok(value);
     }
-    Ok(value)
+    Err(entry.refuse(Reason::OutOfRange { what: "slope".into(), allowed: "between -pi/2 and pi/2", value }))
 }
 
 /// A list of `[x, z]`.
@@ -226,13 +209,13 @@ fn held(field: Node, robot: &Robot) -> Result<Vec<usize>> {
     Ok(held)
 }
 
-/// An object of inertias by joint, for every joint and then every follower of the robot.
+/// An object of inertias by joint, for every joint and then every mimic joint of the robot.
 fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
     let mut inertia = vec![0.0; robot.joints.len() + robot.mimic_joints.len()];
     for entry in field.fields("joint")? {
         let name = entry.key();
-        let place = match robot.mimic_joints.iter().position(|follower| follower.name == name) {
-            Some(follower) => robot.joints.len() + follower,
+        let place = match robot.mimic_joints.iter().position(|mimic| mimic.name == name) {
+            Some(mimic) => robot.joints.len() + mimic,
             None => joint(entry, name, robot)?,
         };
         inertia[place] = entry.number_from_zero("rotor inertia")?;
@@ -242,119 +225,84 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
 
 /// A list of `{"link", "offset", "radius"}`.
 fn contacts(field: Node, robot: &Robot) -> Result<Vec<NamedContact>> {
-    let mut contacts = Vec::new();
-    for entry in field.entries()? {
-        let (mut named, mut offset, mut radius) = (None, [0.0; 3], 0.0);
-        for part in entry.fields("field")? {
-            match part.key() {
-                "link" => named = Some(link(part, part.text()?, robot)?),
-                "offset" => offset = part.numbers("a list of 3 numbers")?,
-                "radius" => radius = part.number_from_zero("radius")?,
-                _ => return Err(part.unknown_field(&fields_of("Contact"))),
-            }
-        }
-        let link = named.ok_or_else(|| missing(entry, "link"))?;
-        contacts.push(NamedContact { link, offset, radius });
-    }
-    Ok(contacts)
+    let contact = |entry: Node| {
+        let [link, offset, radius] = entry.object("Contact", ["link", "offset", "radius"])?;
+        let LinkPoint { link, offset } = link_point(entry, link, offset, robot)?;
+        let radius = radius.map_or(Ok(0.0), |radius| radius.number_from_zero("radius"))?;
+        Ok(NamedContact { link, offset, radius })
+    };
+    field.entries()?.map(contact).collect()
 }
 
 /// A list of `{"a": {"link", "offset"}, "b": {"link", "offset"}}`.
-pub(super) fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
-    let mut loops = Vec::new();
+fn loops(field: Node, robot: &Robot) -> Result<Vec<NamedLoop>> {
     let entries = field.entries()?;
     if entries.len() > LOOP_LIMIT {
         return Err(field.refuse(Reason::TooMany { what: "loops", limit: LOOP_LIMIT }));
     }
-    for entry in entries {
-        let (mut a, mut b) = (None, None);
-        for part in entry.fields("field")? {
-            match part.key() {
-                "a" => a = Some(link_point(part, robot)?),
-                "b" => b = Some(link_point(part, robot)?),
-                _ => return Err(part.unknown_field(&fields_of("Loop"))),
-            }
-        }
-        let a = a.ok_or_else(|| missing(entry, "a"))?;
-        let b = b.ok_or_else(|| missing(entry, "b"))?;
-        loops.push(NamedLoop { a, b });
-    }
-    Ok(loops)
-}
-
-/// `{"link", "offset"}`.
-fn link_point(field: Node, robot: &Robot) -> Result<LinkPoint> {
-    let (mut named, mut offset) = (None, [0.0; 3]);
-    for part in field.fields("field")? {
-        match part.key() {
-            "link" => named = Some(link(part, part.text()?, robot)?),
-            "offset" => offset = part.numbers("a list of 3 numbers")?,
-            _ => return Err(part.unknown_field(&fields_of("LinkPoint"))),
-        }
-    }
-    let link = named.ok_or_else(|| missing(field, "link"))?;
-    Ok(LinkPoint { link, offset })
+    let end = |entry: Node, name: &str, end: Option<Node>| {
+        let end = end.ok_or_else(|| entry.missing(name))?;
+        let [link, offset] = end.object("LinkPoint", ["link", "offset"])?;
+        link_point(end, link, offset, robot)
+    };
+    let pair = |entry: Node| {
+        let [a, b] = entry.object("Loop", ["a", "b"])?;
+        Ok(NamedLoop { a: end(entry, "a", a)?, b: end(entry, "b", b)? })
+    };
+    entries.map(pair).collect()
 }
 
 /// A list of `{"link", "offset", "vector"}`.
 fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
-    let mut impulses = Vec::new();
-    for entry in field.entries()? {
-        let (mut named, mut offset, mut applied) = (None, [0.0; 3], None);
-        for part in entry.fields("field")? {
-            match part.key() {
-                "link" => named = Some(link(part, part.text()?, robot)?),
-                "offset" => offset = part.numbers("a list of 3 numbers")?,
-                "vector" => applied = Some(Vector::from(part.numbers("a list of 2 numbers, [x, z]")?)),
-                _ => return Err(part.unknown_field(&fields_of("AppliedImpulse"))),
-            }
-        }
-        let link = named.ok_or_else(|| missing(entry, "link"))?;
-        let vector = applied.ok_or_else(|| missing(entry, "vector"))?;
-        impulses.push(AppliedImpulse { link, offset, vector });
-    }
-    Ok(impulses)
+    let impulse = |entry: Node| {
+        let [link, offset, vector] = entry.object("AppliedImpulse", ["link", "offset", "vector"])?;
+        let LinkPoint { link, offset } = link_point(entry, link, offset, robot)?;
+        let vector = vector.ok_or_else(|| entry.missing("vector"))?.numbers("a list of 2 numbers, [x, z]")?;
+        Ok(AppliedImpulse { link, offset, vector: vector.into() })
+    };
+    field.entries()?.map(impulse).collect()
 }
 
-fn link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
+/// The point of `object` with these fields.
+fn link_point(object: Node, named: Option<Node>, offset: Option<Node>, robot: &Robot) -> Result<LinkPoint> {
+    let link = link(named.ok_or_else(|| object.missing("link"))?, robot)?;
+    let offset = offset.map_or(Ok([0.0; 3]), |offset| offset.numbers("a list of 3 numbers"))?;
+    Ok(LinkPoint { link, offset })
+}
+
+/// The link that a string names.
+fn link(node: Node, robot: &Robot) -> Result<usize> {
+    named_link(node, node.text()?, robot)
+}
+
+/// The link of that name, the node's value or key.
+fn named_link(node: Node, name: &str, robot: &Robot) -> Result<usize> {
     let known = || robot.links.iter().map(|link| link.name.as_str());
     robot.link(name).ok_or_else(|| node.refuse_name(name, robot.no_link(name)).did_you_mean(name, known()))
 }
 
+/// The joint of that name, the node's value or key.
 fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
-    let known = || robot.joints.iter().map(|joint| joint.name.as_str());
     robot.joint(name).ok_or_else(|| {
-        let what = format!("joint \"{name}\"");
-        if let Some(follower) = robot.mimic_joints.iter().find(|follower| follower.name == name) {
-            let leader = &robot.joints[follower.mimicked].name;
-            let reason = format!("{what} has no coordinate: it follows joint \"{leader}\"");
-            return node.refuse_name(name, Reason::Inconsistent(reason)).hint(format!("name {leader} instead"));
+        let no_coordinate = |why: String| {
+            node.refuse_name(name, Reason::Inconsistent(format!("joint \"{name}\" has no coordinate: {why}")))
+        };
+        if let Some(mimic) = robot.mimic_joints.iter().find(|mimic| mimic.name == name) {
+            let mimicked = &robot.joints[mimic.mimicked].name;
+            return no_coordinate(format!("it follows joint \"{mimicked}\"")).hint(format!("name {mimicked} instead"));
         }
-        match robot.frozen(name) {
-            Some(held) => {
-                node.refuse_name(name, Reason::Inconsistent(format!("{what} has no coordinate: {}", held.why())))
-            }
-            None => {
-                let unknown = Reason::UnknownName { what: "joint", name: name.to_owned() };
-                node.refuse_name(name, unknown).did_you_mean(name, known())
-            }
+        if let Some(frozen) = robot.frozen(name) {
+            return no_coordinate(frozen.why());
         }
+        let unknown = Reason::UnknownName { what: "joint", name: name.to_owned() };
+        node.refuse_name(name, unknown).did_you_mean(name, robot.joints.iter().map(|joint| joint.name.as_str()))
     })
-}
-
-fn missing(node: Node, what: &str) -> Error {
-    node.refuse(Reason::Missing(format!("\"{what}\"")))
 }
 
 /// `{"position", "velocity", "friction", "rotor_inertia"}`, each one number or by name.
 fn uncertainty(field: Node, robot: &Robot) -> Result<Uncertainty> {
-    let (dofs, joints) = (robot.dofs(), robot.joints.len());
-    let mut read = Uncertainty {
-        position: vec![0.0; dofs],
-        velocity: vec![0.0; dofs],
-        friction: ByLink::default(),
-        rotor_inertia: vec![0.0; joints],
-    };
+    let (zero, rotor_inertia) = (vec![0.0; robot.dofs()], vec![0.0; robot.joints.len()]);
+    let mut read = Uncertainty { position: zero.clone(), velocity: zero, friction: ByLink::default(), rotor_inertia };
     for part in field.fields("field")? {
         match part.key() {
             "position" if part.is_object() => coordinates(part, robot, &mut read.position, half_width)?,
@@ -368,24 +316,10 @@ fn uncertainty(field: Node, robot: &Robot) -> Result<Uncertainty> {
                 }
             }
             "rotor_inertia" => read.rotor_inertia.fill(half_width(part)?),
-            _ => return Err(part.unknown_field(&fields_of("Uncertainty"))),
+            _ => return Err(part.unknown_field("Uncertainty")),
         }
     }
     Ok(read)
-}
-
-/// The base's x and z follow the stance's foot: a half-width of their own would be read in vain.
-fn refuse_half_widths_of_a_placed_base(field: Node) -> Result<()> {
-    for part in field.fields("field")?.filter(|part| matches!(part.key(), "position" | "velocity") && part.is_object())
-    {
-        for base in part.fields("field")?.filter(|entry| entry.key() == "base") {
-            if let Some(entry) = base.fields("base entry")?.find(|entry| matches!(entry.key(), "x" | "z")) {
-                let reason = Reason::Inconsistent(format!("the stance gives the base's {} from the rest", entry.key()));
-                return Err(entry.refuse(reason).hint("leave out either the stance or this half-width"));
-            }
-        }
-    }
-    Ok(())
 }
 
 fn half_width(node: Node) -> Result<f64> {

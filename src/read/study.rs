@@ -1,6 +1,5 @@
 //! Reads studies: parameters, and a state and a robot whose numbers are expressions of them.
 
-use super::format::fields_of;
 use super::state as read;
 use super::variation;
 use crate::description::Description;
@@ -73,22 +72,16 @@ impl<'t> Study<'t> {
     /// `text`.
     pub fn from_json(text: &'t str) -> Result<Self> {
         let tree = Value::parse(text)?;
-        let root = Node::root(&tree, text);
-        let mut constants = Names::default();
-        for field in root.fields("field")? {
-            match field.key() {
-                "constants" => read_constants(&tree, text, &mut constants)?,
-                "parameters" | "state" | "robot" => {}
-                _ => return Err(field.unknown_field(&fields_of("Study"))),
-            }
-        }
-        let with_constants = Node::root_with(&tree, text, &constants);
-        let field = with_constants.fields("field")?.find(|field| field.key() == "parameters");
-        let field = field.ok_or_else(|| {
-            missing(root, "parameters", "as in \"parameters\": {\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}")
+        let root = Node::root(&tree, text, None);
+        let [_, _, state, _] = root.object("Study", ["parameters", "constants", "state", "robot"])?;
+        let constants = constants(&tree, text)?;
+        let with_constants = Node::root(&tree, text, Some(&constants));
+        let field = with_constants.field("parameters")?.ok_or_else(|| {
+            let example = "as in \"parameters\": {\"alpha\": {\"from\": 0, \"to\": 1, \"steps\": 50}}";
+            root.missing("parameters").hint(example)
         })?;
-        let parameters =
-            field.fields("parameter")?.map(|entry| parameter(entry, &constants)).collect::<Result<Vec<_>>>()?;
+        let parameters: Vec<_> =
+            field.fields("parameter")?.map(|entry| parameter(entry, &constants)).collect::<Result<_>>()?;
         if !(1..=2).contains(&parameters.len()) {
             let reason = format!("a study varies one or two parameters, not {}", parameters.len());
             return Err(field.refuse(Reason::Inconsistent(reason)).hint("make the others constants"));
@@ -97,8 +90,8 @@ impl<'t> Study<'t> {
         if samples.is_none_or(|samples| samples > SAMPLE_LIMIT) {
             return Err(field.refuse(Reason::TooMany { what: "samples", limit: SAMPLE_LIMIT }));
         }
-        if !root.fields("field")?.any(|field| field.key() == "state") {
-            return Err(missing(root, "state", "as in `impact`, with expressions where numbers stand"));
+        if state.is_none() {
+            return Err(root.missing("state").hint("as in `impact`, with expressions where numbers stand"));
         }
         Ok(Self { text, parameters, constants, tree: tree.clone() })
     }
@@ -111,18 +104,14 @@ impl<'t> Study<'t> {
     /// Parameters that no expression of the state or the robot uses.
     pub fn unused(&self) -> Vec<&str> {
         let mut texts = Vec::new();
-        if let Value::Object(fields) = &self.tree {
-            let read = fields.iter().filter(|(key, _)| matches!(key.as_ref(), "state" | "robot"));
-            read.for_each(|(_, value)| texts_in(value, &mut texts));
-        }
+        ["state", "robot"].iter().filter_map(|name| self.tree.get(name)).for_each(|part| texts_in(part, &mut texts));
         let names = self.parameters.iter().map(|parameter| parameter.name.as_str());
         names.filter(|name| !texts.iter().any(|text| names_in(text).any(|used| used == *name))).collect()
     }
 
     /// Whether the robot itself is varied.
     pub fn varies_the_robot(&self) -> bool {
-        let root = Node::root(&self.tree, self.text);
-        root.fields("field").is_ok_and(|mut fields| fields.any(|field| field.key() == "robot"))
+        self.tree.get("robot").is_some()
     }
 
     /// The values of parameters and constants at a point.
@@ -135,23 +124,15 @@ impl<'t> Study<'t> {
     }
 
     /// The state at a point.
-    ///
-    /// # Errors
-    /// As [`State::from_json`], and expressions without a value.
     pub(crate) fn state(&self, names: &Names, robot: &Robot, defaults: &Defaults) -> Result<State> {
-        let root = Node::root_with(&self.tree, self.text, names);
-        let field = root.fields("field")?.find(|field| field.key() == "state");
-        let field = field.ok_or_else(|| missing(root, "state", "as in `impact`"))?;
+        let root = Node::root(&self.tree, self.text, Some(names));
+        let field = root.field("state")?.ok_or_else(|| root.missing("state").hint("as in `impact`"))?;
         read::read(field, robot, defaults)
     }
 
     /// The robot's description at a point.
-    ///
-    /// # Errors
-    /// Unknown links, joints and fields, numbers that no body can have, and expressions without a value.
     pub(crate) fn describe<'d>(&self, names: &Names, description: &'d Description) -> Result<Cow<'d, Description>> {
-        let root = Node::root_with(&self.tree, self.text, names);
-        match root.fields("field")?.find(|field| field.key() == "robot") {
+        match Node::root(&self.tree, self.text, Some(names)).field("robot")? {
             Some(field) => variation::applied(field, description).map(Cow::Owned),
             None => Ok(Cow::Borrowed(description)),
         }
@@ -159,27 +140,25 @@ impl<'t> Study<'t> {
 }
 
 /// Each constant may be an expression of the others, in any order, because many JSON writers sort names.
-fn read_constants(tree: &Value, text: &str, constants: &mut Names) -> Result<()> {
-    let plain = Node::root(tree, text);
-    let Some(field) = plain.fields("field")?.find(|field| field.key() == "constants") else { return Ok(()) };
+fn constants(tree: &Value, text: &str) -> Result<Names> {
+    let (mut constants, plain) = (Names::default(), Node::root(tree, text, None));
+    let Some(field) = plain.field("constants")? else { return Ok(constants) };
     let mut open: Vec<String> = field.fields("constant")?.map(name).collect::<Result<_>>()?;
     if open.len() > CONSTANT_LIMIT {
         return Err(field.refuse(Reason::TooMany { what: "constants", limit: CONSTANT_LIMIT }));
     }
     while !open.is_empty() {
         let known = constants.clone();
-        let root = Node::root_with(tree, text, &known);
-        let Some(field) = root.fields("field")?.find(|field| field.key() == "constants") else { break };
-        let needs = |entry: &Node, names: &[String]| {
-            entry.as_text().is_some_and(|text| names_in(text).any(|used| names.iter().any(|name| name == used)))
-        };
+        let root = Node::root(tree, text, Some(&known));
+        let Some(field) = root.field("constants")? else { break };
+        let is_open = |name: &str| open.iter().any(|open| open == name);
         let mut later = Vec::new();
-        for entry in field.fields("constant")?.filter(|entry| open.iter().any(|name| name == entry.key())) {
-            match needs(&entry, &open) {
-                true => later.push(entry.key().to_owned()),
-                false => {
-                    constants.set(entry.key(), entry.number().map_err(|error| beside_parameters(plain, entry, error))?)
-                }
+        for entry in field.fields("constant")?.filter(|entry| is_open(entry.key())) {
+            if entry.as_text().is_some_and(|text| names_in(text).any(is_open)) {
+                later.push(entry.key().to_owned());
+            } else {
+                let value = entry.number().map_err(|error| beside_parameters(plain, entry, error))?;
+                constants.set(entry.key(), value);
             }
         }
         if later.len() == open.len() {
@@ -188,18 +167,16 @@ fn read_constants(tree: &Value, text: &str, constants: &mut Names) -> Result<()>
         }
         open = later;
     }
-    Ok(())
+    Ok(constants)
 }
 
 /// The refusal of a constant, with a hint if it uses a parameter.
 fn beside_parameters(root: Node, entry: Node, error: Error) -> Error {
-    let parameters = root.fields("field").ok().and_then(|mut fields| fields.find(|field| field.key() == "parameters"));
-    let Some(field) = parameters else { return error };
-    let Ok(mut parameters) = field.fields("parameter") else { return error };
-    let text = entry.as_text().unwrap_or_default();
-    match parameters.find(|parameter| names_in(text).any(|used| used == parameter.key())) {
-        Some(parameter) => error
-            .hint(format!("{} is a parameter, and constants do not vary: write it into the state", parameter.key())),
+    let used = |name: &&str| names_in(entry.as_text().unwrap_or_default()).any(|used| used == *name);
+    let parameters = root.field("parameters").ok().flatten();
+    let parameters = parameters.iter().flat_map(|field| field.fields("parameter").into_iter().flatten());
+    match parameters.map(|parameter| parameter.key()).find(used) {
+        Some(name) => error.hint(format!("{name} is a parameter, and constants do not vary: write it into the state")),
         None => error,
     }
 }
@@ -208,23 +185,14 @@ fn beside_parameters(root: Node, entry: Node, error: Error) -> Error {
 fn parameter(entry: Node, constants: &Names) -> Result<Parameter> {
     let name = name(entry)?;
     if constants.iter().any(|constant| constant == name) {
-        return Err(entry
-            .refuse_name(entry.key(), Reason::Duplicate { what: "name", name })
-            .hint("it is a constant already"));
+        let error = entry.refuse_name(entry.key(), Reason::Duplicate { what: "name", name });
+        return Err(error.hint("it is a constant already"));
     }
-    let (mut from, mut to, mut steps) = (None, None, None);
-    for part in entry.fields("field")? {
-        match part.key() {
-            "from" => from = Some(part.number()?),
-            "to" => to = Some(part.number()?),
-            "steps" => steps = Some(samples(part)?),
-            _ => return Err(part.unknown_field(&fields_of("Parameter"))),
-        }
-    }
+    let [from, to, steps] = entry.object("Parameter", ["from", "to", "steps"])?;
     let example = "a parameter is {\"from\": 0, \"to\": 1, \"steps\": 50}";
-    let from = from.ok_or_else(|| missing(entry, "from", example))?;
-    let to = to.ok_or_else(|| missing(entry, "to", example))?;
-    let steps = steps.ok_or_else(|| missing(entry, "steps", example))?;
+    let given = |field: Option<_>, name| field.ok_or_else(|| entry.missing(name).hint(example));
+    let (from, to) = (given(from, "from")?.number()?, given(to, "to")?.number()?);
+    let steps = samples(given(steps, "steps")?)?;
     if from >= to || !(to - from).is_finite() {
         let reason = Reason::Inconsistent(format!("the range from {from:?} to {to:?} is empty or endless"));
         return Err(entry.refuse(reason).hint("\"from\" has to be less than \"to\""));
@@ -265,16 +233,12 @@ fn texts_in<'v>(value: &'v Value, texts: &mut Vec<&'v str>) {
     }
 }
 
-fn missing(node: Node, what: &str, hint: &str) -> Error {
-    node.refuse(Reason::Missing(format!("\"{what}\""))).hint(hint)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_parameter_that_nothing_names_is_told() {
+    fn an_unused_parameter_is_listed() {
         let text = r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 2}, "b": {"from": 0, "to": 1, "steps": 2}},
             "state": {"position": {"base": {"z": "sin(2*a)"}}, "stance": "leg_b"}}"#;
         assert_eq!(Study::from_json(text).expect("a study").unused(), ["b"]);

@@ -1,42 +1,29 @@
 //! Reads the numbers of a robot that a study varies.
 
 use crate::description::{Collision, Description, Geometry, Inertial, Pose};
-use crate::read::format::fields_of;
 use crate::read::json::Node;
 use crate::{Error, Reason, Result};
 
 /// `description` with the numbers of `{"links": {name: {"mass", "com", "inertia", "radius"}}, "joints": {name:
-/// {"origin"}}}`.
-///
-/// The mass \[kg\]; the CoG in the link's frame \[m\]; the moment of inertia about the CoG and the plane's normal \[kg
-/// m^2\], taken for every axis; the radius of the link's round collision shapes \[m\]; the place of the joint's frame
-/// in its parent's \[m\].
+/// {"origin"}}}`: mass \[kg\], CoG in the link's frame \[m\], moment about the CoG and the plane's normal \[kg m^2\],
+/// taken for every axis, radius of the link's round collision shapes \[m\], joint's frame in its parent's \[m\].
 ///
 /// # Errors
 /// Unknown links, joints and fields; negative masses, moments and radii; a radius for a link without round shapes.
 pub fn applied(field: Node, description: &Description) -> Result<Description> {
     let mut varied = description.clone();
-    for part in field.fields("field")? {
-        match part.key() {
-            "links" => {
-                for entry in part.fields("link")? {
-                    link(entry, &mut varied)?;
-                }
-            }
-            "joints" => {
-                for entry in part.fields("joint")? {
-                    joint(entry, &mut varied)?;
-                }
-            }
-            _ => return Err(part.unknown_field(&fields_of("Variation"))),
-        }
+    let [links, joints] = field.object("Variation", ["links", "joints"])?;
+    if let Some(links) = links {
+        links.fields("link")?.try_for_each(|entry| link(entry, &mut varied))?;
+    }
+    if let Some(joints) = joints {
+        joints.fields("joint")?.try_for_each(|entry| joint(entry, &mut varied))?;
     }
     Ok(varied)
 }
 
 fn link(entry: Node, varied: &mut Description) -> Result<()> {
-    let name = entry.key();
-    let Some(at) = varied.links.iter().position(|link| link.name == name) else {
+    let Some(at) = varied.links.iter().position(|link| link.name == entry.key()) else {
         return Err(unknown(entry, "link", varied.links.iter().map(|link| link.name.as_str())));
     };
     let link = &mut varied.links[at];
@@ -51,7 +38,7 @@ fn link(entry: Node, varied: &mut Description) -> Result<()> {
                 link.inertial.get_or_insert_with(massless).inertia = Some(inertia);
             }
             "radius" => radius(part, &mut link.collisions)?,
-            _ => return Err(part.unknown_field(&fields_of("LinkVariation"))),
+            _ => return Err(part.unknown_field("LinkVariation")),
         }
     }
     Ok(())
@@ -68,23 +55,19 @@ fn radius(part: Node, collisions: &mut [Collision]) -> Result<()> {
             Geometry::Box { .. } | Geometry::Mesh { .. } | Geometry::Unknown { .. } => {}
         }
     }
-    match any {
-        true => Ok(()),
-        false => Err(part
-            .refuse(Reason::Inconsistent("the link has no round collision shape".into()))
-            .hint("a radius belongs to spheres, cylinders and capsules; name the link that carries the foot")),
+    if any {
+        return Ok(());
     }
+    let refused = part.refuse(Reason::Inconsistent("the link has no round collision shape".into()));
+    Err(refused.hint("a radius belongs to spheres, cylinders and capsules; name the link that carries the foot"))
 }
 
 fn joint(entry: Node, varied: &mut Description) -> Result<()> {
     let Some(at) = varied.joint(entry.key()) else {
         return Err(unknown(entry, "joint", varied.joints.iter().map(|joint| joint.name.as_str())));
     };
-    for part in entry.fields("field")? {
-        match part.key() {
-            "origin" => varied.joints[at].origin.xyz = part.numbers("a list of 3 numbers")?,
-            _ => return Err(part.unknown_field(&fields_of("JointVariation"))),
-        }
+    if let [Some(origin)] = entry.object("JointVariation", ["origin"])? {
+        varied.joints[at].origin.xyz = origin.numbers("a list of 3 numbers")?;
     }
     Ok(())
 }

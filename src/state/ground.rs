@@ -5,7 +5,7 @@
 //!     solid below the profile        (x_0, z_0) -- (x_1, z_1) -- ... -- (x_n, z_n), x rising; no ground beyond the ends
 //! ```
 
-use crate::error::{Error, Reason, Result};
+use crate::error::{Error, Reason, Result, finite};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::{Real, Trigonometry};
 
@@ -52,6 +52,7 @@ impl Ground {
 /// void.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
+    /// At least two, by rising x \[m\].
     points: Vec<Vector<f64>>,
 }
 
@@ -68,11 +69,7 @@ impl Profile {
         }
         for (at, value) in points.iter().enumerate().flat_map(|(at, point)| point.components().map(|entry| (at, entry)))
         {
-            if !value.is_finite() {
-                return Err(
-                    Error::new(Reason::NotFinite { what: "a profile's point".into(), value }).at(format!("[{at}]"))
-                );
-            }
+            finite(value, || "a profile's point".into()).map_err(|error| error.at(format!("[{at}]")))?;
         }
         for (at, pair) in points.windows(2).enumerate() {
             let [from, to] = [pair[0].x, pair[1].x];
@@ -89,7 +86,6 @@ impl Profile {
         Ok(Self { points })
     }
 
-    /// The points, at least two, by rising x \[m\].
     pub fn points(&self) -> &[Vector<f64>] {
         &self.points
     }

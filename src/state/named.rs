@@ -14,17 +14,11 @@ pub struct Named<T = f64> {
 }
 
 impl<T> Named<T> {
-    /// Values and as many names.
+    /// As many values as names.
     pub fn new(names: Arc<[String]>, values: Vec<T>) -> Self {
         Self { names, values }
     }
 
-    /// The names.
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// The values.
     pub fn values(&self) -> &[T] {
         &self.values
     }

@@ -30,8 +30,8 @@ pub struct Scene {
     pub stance: Option<usize>,
     /// Joints that keep their velocity through the impact.
     pub held: Vec<usize>,
-    /// Rotor inertia at each joint and then at each follower \[kg m^2\]; empty for none. It is added to the mass
-    /// matrix's diagonal, that of a follower times multiplier^2.
+    /// Rotor inertia at each joint and then at each mimic joint \[kg m^2\]; empty for none. It is added to the mass
+    /// matrix's diagonal, that of a mimic joint times multiplier^2.
     pub rotor_inertia: Vec<f64>,
     /// Contacts named by hand; `None` if they are detected.
     pub contacts: Option<Vec<NamedContact>>,
@@ -41,21 +41,18 @@ pub struct Scene {
     pub impulses: Vec<AppliedImpulse>,
 }
 
-/// A value per link with a default.
+/// A value per link, with a default for links that are not named.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ByLink<T> {
-    /// For links that are not named.
     pub default: Option<T>,
-    /// By link.
     pub links: BTreeMap<usize, T>,
 }
 
-/// A contact point that the user names.
+/// A contact point of a link that the user names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedContact {
-    /// The link.
     pub link: usize,
-    /// Point (or centre of the circle) in the link's 3-D frame \[m\].
+    /// Point (or center of the circle) in the link's 3-D frame \[m\].
     pub offset: [f64; 3],
     /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
     pub radius: f64,
@@ -70,21 +67,17 @@ pub struct NamedLoop {
     pub b: LinkPoint,
 }
 
-/// A point of a link.
+/// A point of a link, in its 3-D frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkPoint {
-    /// The link.
     pub link: usize,
-    /// The point in the link's 3-D frame \[m\].
     pub offset: [f64; 3],
 }
 
-/// An impulse that acts on the robot while it strikes the ground.
+/// An impulse that acts on a point of a link, in its 3-D frame \[m\], while the robot strikes the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AppliedImpulse {
-    /// The link it acts on.
     pub link: usize,
-    /// Its point in the link's 3-D frame \[m\].
     pub offset: [f64; 3],
     /// The impulse `[x, z]` in the world's axes \[N s\].
     pub vector: Vector<f64>,
@@ -97,12 +90,10 @@ impl<T> Default for ByLink<T> {
 }
 
 impl<T: Copy> ByLink<T> {
-    /// The same value for every link.
     pub fn everywhere(value: T) -> Self {
         Self { default: Some(value), links: BTreeMap::new() }
     }
 
-    /// The value of a link.
     pub fn of(&self, link: usize) -> Option<T> {
         self.links.get(&link).copied().or(self.default)
     }

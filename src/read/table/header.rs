@@ -1,18 +1,22 @@
 //! Reads the header of a table: the meaning of each column, resolved once against the robot.
 
 use super::records::place_of;
+use crate::read::json::line_and_column;
 use crate::robot::{Base, FreezeReason, Plane};
 use crate::{Error, Reason, Result, Robot};
 use std::collections::HashSet;
 
 /// The entries of a floating base in the order of q.
 const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
-
 /// The orientation of a base in three dimensions, instead of the pitch.
 const QUATERNION: [&str; 4] = ["base_qw", "base_qx", "base_qy", "base_qz"];
-
 /// Its lateral position.
 const SIDEWAYS: &str = "base_y";
+/// Why velocities of a base in three dimensions are refused: engines give them in the world's axes, the body's, or both.
+const SPATIAL_VELOCITY: &str = "velocities of a robot whose base is in three dimensions are not read";
+/// The remedy.
+const WITHOUT_VELOCITY: &str =
+    "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
 
 /// Where the velocities of a table come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -75,31 +79,19 @@ impl Header {
     pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
         let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let names = names(record)?;
-        let mut header = Self {
-            columns: Vec::with_capacity(names.len()),
-            carried: vec![],
-            id: None,
-            time: None,
-            spatial: None,
-            names,
-        };
+        let mut columns = Vec::with_capacity(names.len());
         let mut seen = HashSet::new();
-        for (at, name) in header.names.iter().enumerate() {
-            let refused = |error: Error| in_column(error, record, at);
-            if !seen.insert(name.as_str()) {
-                return Err(refused(Reason::Duplicate { what: "column", name: short(name) }.into()));
-            }
-            let column = column(name, robot).map_err(refused)?;
-            match column {
-                Column::Id => header.id = Some(at),
-                Column::Carried => header.carried.push(at),
-                _ => {}
-            }
-            if name == "time" {
-                header.time = Some(at);
-            }
-            header.columns.push(column);
+        for (at, name) in names.iter().enumerate() {
+            let column = match seen.insert(name.as_str()) {
+                true => column(name, robot),
+                false => Err(Reason::Duplicate { what: "column", name: short(name) }.into()),
+            };
+            columns.push(column.map_err(|error| in_column(error, record, at))?);
         }
+        let carried = (0..columns.len()).filter(|&at| columns[at] == Column::Carried).collect();
+        let time = names.iter().position(|name| name == "time");
+        let mut header = Self { names, columns, carried, id: None, time, spatial: None };
+        header.id = header.place(Column::Id);
         header.spatial = header.spatial(record, robot)?;
         header.check(record, robot, rates)?;
         Ok(header)
@@ -129,7 +121,7 @@ impl Header {
     }
 
     /// The first column of a kind.
-    fn place(&self, wanted: Column) -> Option<usize> {
+    pub(super) fn place(&self, wanted: Column) -> Option<usize> {
         self.columns.iter().position(|column| *column == wanted)
     }
 
@@ -139,15 +131,14 @@ impl Header {
         let sideways = self.place(Column::Sideways);
         let Some(first) = components.into_iter().flatten().chain(sideways).min() else { return Ok(None) };
         if let Some(missing) = components.iter().position(Option::is_none) {
-            let missing = Reason::Missing(format!("column q_{}", QUATERNION[missing]));
+            let missing = Error::new(Reason::Missing(format!("column q_{}", QUATERNION[missing])));
             let hint = "a base in three dimensions has all of q_base_qw, q_base_qx, q_base_qy, q_base_qz; one in the plane \
                         q_base_x, q_base_z, q_base_pitch alone";
-            return Err(in_column(missing.into(), record, first).hint(hint));
+            return Err(in_column(missing.hint(hint), record, first));
         }
         if let Some(pitch) = self.place(Column::Position(2)) {
-            let reason = "the base is turned by a quaternion, and by a pitch besides".to_owned();
-            let error = in_column(Error::new(Reason::Inconsistent(reason)), record, pitch);
-            return Err(error.hint("leave out the one or the other"));
+            let reason = Reason::Inconsistent("the base is turned by a quaternion, and by a pitch besides".into());
+            return Err(in_column(Error::new(reason).hint("leave out the one or the other"), record, pitch));
         }
         let quaternion = components.map(Option::unwrap_or_default);
         let origin = [self.place(Column::Position(0)), sideways];
@@ -158,42 +149,35 @@ impl Header {
     fn check(&self, record: &[u8], robot: &Robot, rates: Rates) -> Result<()> {
         let first = |wanted: fn(&Column) -> bool| self.columns.iter().position(wanted);
         let velocity = first(|column| matches!(column, Column::Velocity(_)));
-        let example = robot.coordinates().next().map_or("base_x".to_owned(), |name| prefixed(robot, name));
+        let position = first(|column| matches!(column, Column::Position(_) | Column::Quaternion(_)));
         let missing = |what: &str, prefix: &str, hint: &str| {
-            let what = format!("a column of {what}, such as {prefix}{example},");
-            Err(Error::new(Reason::Missing(what)).on(1, 1).hint(hint))
+            let example = robot.coordinates().next().map_or("base_x".to_owned(), |name| prefixed(robot, name));
+            Err(in_table(Reason::Missing(format!("a column of {what}, such as {prefix}{example},")), hint))
         };
-        if first(|column| matches!(column, Column::Position(_) | Column::Quaternion(_))).is_none() && velocity.is_none()
-        {
-            return missing("positions", "q_", "the first line must name the columns");
-        }
-        if let (true, Some(at)) = (self.is_spatial(), velocity) {
-            let error = in_column(Error::new(spatial_velocity()), record, at);
-            return Err(error.hint(SPATIAL_VELOCITY));
-        }
+        let has_time = self.has_time();
         match (rates, velocity) {
-            (Rates::Columns, None) if self.is_spatial() && self.has_time() => {
-                let hint =
-                    "give `velocity: central` or backward: those of a base in three dimensions are taken from the time";
-                Err(Error::new(Reason::Missing("a source of velocities".into())).on(1, 1).hint(hint))
-            }
-            (Rates::Columns, None) if self.has_time() => missing(
-                "velocities",
-                "v_",
-                "add the columns, or give `velocity: central` or backward to take them from the time",
-            ),
+            (_, None) if position.is_none() => missing("positions", "q_", "the first line must name the columns"),
+            (_, Some(at)) if self.is_spatial() => Err(in_column(spatial_velocity(), record, at)),
+            (Rates::Columns, None) if self.is_spatial() && has_time => Err(in_table(
+                Reason::Missing("a source of velocities".into()),
+                "give `velocity: central` or backward: those of a base in three dimensions are taken from the time",
+            )),
             (Rates::Columns, None) => {
-                missing("velocities", "v_", "add the columns; with a column time they can be computed")
+                let hint = match has_time {
+                    true => "add the columns, or give `velocity: central` or backward to take them from the time",
+                    false => "add the columns; with a column time they can be computed",
+                };
+                missing("velocities", "v_", hint)
             }
             (Rates::Time, Some(at)) => {
                 let reason = "the table has velocities, and they were to be computed from the time".to_owned();
-                let error = in_column(Error::new(Reason::Inconsistent(reason)), record, at);
-                Err(error.hint("leave out `velocity`, or the columns v_..."))
+                let error = Error::new(Reason::Inconsistent(reason));
+                Err(in_column(error.hint("leave out `velocity`, or the columns v_..."), record, at))
             }
-            (Rates::Time, None) if !self.has_time() => {
-                let error = Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
-                Err(error.hint("velocities are computed over the time; add the column, or columns v_..."))
-            }
+            (Rates::Time, None) if !has_time => Err(in_table(
+                Reason::Missing("a column \"time\"".into()),
+                "velocities are computed over the time; add the column, or columns v_...",
+            )),
             _ => Ok(()),
         }
     }
@@ -205,6 +189,15 @@ fn in_column(error: Error, record: &[u8], at: usize) -> Error {
     error.at(format!("column {}", at + 1)).on(1 + lines, column)
 }
 
+/// An error about the whole table.
+fn in_table(reason: Reason, hint: &str) -> Error {
+    Error::new(reason).on(1, 1).hint(hint)
+}
+
+fn spatial_velocity() -> Error {
+    Error::new(Reason::Unsupported(SPATIAL_VELOCITY.into())).hint(WITHOUT_VELOCITY)
+}
+
 /// The names in the first record, without the space around them.
 fn names(record: &[u8]) -> Result<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(record);
@@ -212,22 +205,19 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
     let read =
         reader.read_byte_record(&mut fields).map_err(|error| Error::new(Reason::Syntax(error.to_string())).on(1, 1))?;
     if !read {
-        return Err(Error::new(Reason::Missing("the line that names the columns".into()))
-            .on(1, 1)
-            .hint("the table is empty"));
+        return Err(in_table(Reason::Missing("the line that names the columns".into()), "the table is empty"));
     }
-    let whole = record.trim_ascii_end().len() as u64;
-    if reader.position().byte() < whole {
-        let (lines, column) = line_and_column_after(record, reader.position().byte());
-        return Err(Error::new(Reason::Syntax("a line break that is not one of this table".into()))
-            .on(lines, column)
-            .hint("save the table with line ends \\n or \\r\\n"));
+    let end = usize::try_from(reader.position().byte()).unwrap_or(usize::MAX);
+    if end < record.trim_ascii_end().len() {
+        let (line, column) = line_and_column(record, end);
+        let error = Error::new(Reason::Syntax("a line break that is not one of this table".into())).on(line, column);
+        return Err(error.hint("save the table with line ends \\n or \\r\\n"));
     }
     let name = |(at, field): (usize, &[u8])| match std::str::from_utf8(field) {
         Ok(name) => Ok(name.trim().to_owned()),
         Err(_) => {
             let error = Error::new(Reason::Syntax("the column's name is not UTF-8".into()));
-            Err(in_column(error, record, at).hint("save the table as UTF-8"))
+            Err(in_column(error.hint("save the table as UTF-8"), record, at))
         }
     };
     let names: Vec<String> = fields.iter().enumerate().map(name).collect::<Result<_>>()?;
@@ -235,22 +225,14 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
         [only] if only.contains([';', '\t']) => {
             let by = if only.contains(';') { "semicolons" } else { "tabs" };
             let reason = Reason::Syntax(format!("the columns are parted by {by}, not by commas"));
-            Err(Error::new(reason).on(1, 1).hint("save the table with commas between columns and points in numbers"))
+            Err(in_table(reason, "save the table with commas between columns and points in numbers"))
         }
-        [first, ..] if first.starts_with('{') => {
-            let reason = Reason::Syntax("expected the names of the columns, found JSON".into());
-            Err(Error::new(reason).on(1, 1).hint("are these lines of JSON? then say `input_format: ndjson`"))
-        }
+        [first, ..] if first.starts_with('{') => Err(in_table(
+            Reason::Syntax("expected the names of the columns, found JSON".into()),
+            "are these lines of JSON? then say `input_format: ndjson`",
+        )),
         _ => Ok(names),
     }
-}
-
-/// Line and column of the byte at `offset` of the first record.
-fn line_and_column_after(record: &[u8], offset: u64) -> (usize, usize) {
-    let before = &record[..usize::try_from(offset).map_or(record.len(), |offset| offset.min(record.len()))];
-    let lines = before.iter().filter(|&&byte| byte == b'\n').count();
-    let start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
-    (lines + 1, before.len() - start + 1)
 }
 
 /// The meaning of the column `name`.
@@ -270,15 +252,6 @@ fn column(name: &str, robot: &Robot) -> Result<Column> {
     })
 }
 
-/// Why velocities of a base in three dimensions are refused, and the remedy: engines give them in the world's axes, the
-/// body's, or both.
-fn spatial_velocity() -> Reason {
-    Reason::Unsupported("velocities of a robot whose base is in three dimensions are not read".into())
-}
-
-const SPATIAL_VELOCITY: &str =
-    "leave out the columns v_..., and give `velocity: central` to take velocities from the time";
-
 /// The meaning of a coordinate's column: `moving` of its index in q if the robot has it.
 fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Column) -> Result<Column> {
     if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
@@ -296,7 +269,7 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
     }
     match spatial {
         Some(column) if prefix == "q_" => return Ok(column),
-        Some(_) => return Err(Error::new(spatial_velocity()).hint(SPATIAL_VELOCITY)),
+        Some(_) => return Err(spatial_velocity()),
         None => {}
     }
     match robot.frozen(name) {
@@ -306,12 +279,12 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
             return Err(Error::new(reason).hint(hint));
         }
         Some(_) => return Ok(Column::Ignored),
-        None if robot.mimic_joints.iter().any(|follower| follower.name == name) => return Ok(Column::Ignored),
+        None if robot.mimic_joints.iter().any(|mimic| mimic.name == name) => return Ok(Column::Ignored),
         None => {}
     }
     let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();
-    let reason = Reason::UnknownName { what: "coordinate", name: short(name) };
-    Err(Error::new(reason).did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
+    let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
+    Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
 }
 
 /// A coordinate's name in columns, after `q_` and `v_`.

@@ -94,17 +94,15 @@ impl<'h> Rows<'h> {
         let start = self.reader.position().byte();
         let read = self.reader.read_byte_record(&mut self.record);
         let whole = self.reader.position().byte() - start > raw.len() as u64;
-        if self.reader.get_ref().ended || !whole {
-            let unclosed = self.reader.get_ref().ended;
+        let unclosed = self.reader.get_ref().ended;
+        let syntax = |reason: String| Error::new(Reason::Syntax(reason)).on(line, 1);
+        if unclosed || !whole {
             self.reader = reader();
-            let reason =
-                if unclosed { "a quote is not closed" } else { "a line break of another kind stands in the row" };
-            return Err(Error::new(Reason::Syntax(reason.into())).on(line, 1));
+            let row = if unclosed { "a quote is not closed" } else { "a line break of another kind stands in the row" };
+            return Err(syntax(row.into()));
         }
-        match read {
-            Ok(_) => Ok(Some(Row { header: self.header, record: &self.record, raw, line })),
-            Err(error) => Err(Error::new(Reason::Syntax(error.to_string())).on(line, 1)),
-        }
+        read.map_err(|error| syntax(error.to_string()))?;
+        Ok(Some(Row { header: self.header, record: &self.record, raw, line }))
     }
 }
 
@@ -151,18 +149,13 @@ impl Row<'_> {
     pub fn state(&self, robot: &Robot, defaults: &Defaults) -> Result<State> {
         let (fields, columns) = (self.record.len(), self.header.columns.len());
         if fields != columns {
-            let reason =
-                format!("the row has {fields} field{}, the header {columns}", if fields == 1 { "" } else { "s" });
-            return Err(Error::new(Reason::Inconsistent(reason)).on(self.line, 1));
+            let plural = if fields == 1 { "" } else { "s" };
+            let reason = Reason::Inconsistent(format!("the row has {fields} field{plural}, the header {columns}"));
+            return Err(Error::new(reason).on(self.line, 1));
         }
         let stance = self.stance(robot)?;
-        let mut state = State {
-            id: self.id(),
-            position: vec![0.0; robot.dofs()],
-            velocity: vec![0.0; robot.dofs()],
-            scene: Scene { stance, loops: defaults.loops.clone(), ..Scene::default() },
-            uncertainty: None,
-        };
+        let scene = Scene { stance, loops: defaults.loops.clone(), ..Scene::default() };
+        let mut state = State { id: self.id(), scene, ..State::zero(robot) };
         let mut friction = None;
         for (at, &column) in self.header.columns.iter().enumerate() {
             match column {
@@ -214,12 +207,8 @@ impl Row<'_> {
     }
 
     fn stance(&self, robot: &Robot) -> Result<Option<usize>> {
-        let Some(at) = self.header.columns.iter().position(|column| *column == Column::Stance) else {
-            return Ok(None);
-        };
-        let Some(name) = self.given(at)? else {
-            return Ok(None);
-        };
+        let Some(at) = self.header.place(Column::Stance) else { return Ok(None) };
+        let Some(name) = self.given(at)? else { return Ok(None) };
         if robot.base == Base::Fixed {
             let reason = "the robot is bolted to the world, a stance cannot place it".to_owned();
             let error = self.refuse(at, Reason::Inconsistent(reason));
@@ -245,19 +234,16 @@ impl Row<'_> {
         if text == "infinite" {
             return Ok(Friction::Infinite);
         }
-        match text.parse::<f64>() {
-            Ok(value) if value.is_finite() && value >= 0.0 => Ok(Friction::Finite(value)),
-            Ok(value) if value < 0.0 => {
-                Err(self.refuse(at, Reason::OutOfRange { what: "friction".into(), allowed: "0 or more", value }))
-            }
-            Ok(value) if value.is_infinite() => Err(self
-                .refuse(at, Reason::NotFinite { what: "friction".into(), value })
-                .hint("did you mean infinite?")),
-            Ok(value) => Err(self.refuse(at, Reason::NotFinite { what: "friction".into(), value })),
-            Err(_) => {
-                let reason = Reason::Syntax(format!("expected a number or infinite, found \"{}\"", short(text)));
-                Err(self.refuse(at, reason).did_you_mean(text, ["infinite"]))
-            }
+        let value: f64 = text.parse().map_err(|_| {
+            let reason = Reason::Syntax(format!("expected a number or infinite, found \"{}\"", short(text)));
+            self.refuse(at, reason).did_you_mean(text, ["infinite"])
+        })?;
+        let what = "friction".to_owned();
+        match value {
+            0.0..=f64::MAX => Ok(Friction::Finite(value)),
+            f64::INFINITY => Err(self.refuse(at, Reason::NotFinite { what, value }).hint("did you mean infinite?")),
+            _ if value.is_nan() => Err(self.refuse(at, Reason::NotFinite { what, value })),
+            _ => Err(self.refuse(at, Reason::OutOfRange { what, allowed: "0 or more", value })),
         }
     }
 

@@ -4,7 +4,7 @@
 //!     {"type": "number", ...} --> {"anyOf": [{"type": "number", ...}, {"$ref": "#/$defs/Expression"}]}
 //! ```
 
-use crate::read::format::FORMAT;
+use crate::read::json::FORMAT;
 use serde_json::{Map, Value, json};
 
 /// The schema of one document, with the definitions that it refers to.

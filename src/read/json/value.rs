@@ -1,0 +1,170 @@
+//! From text to [`Value`] through serde_json, and its errors with place and hint.
+
+use super::line_and_column;
+use crate::{Error, Reason};
+use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::Number;
+use serde_path_to_error::Segment;
+use std::borrow::Cow;
+use std::fmt;
+
+/// A JSON value that borrows its text.
+#[derive(Debug, Clone)]
+pub(crate) enum Value<'t> {
+    Null,
+    Bool,
+    Number(Number),
+    Text(Cow<'t, str>),
+    List(Vec<Value<'t>>),
+    Object(Vec<(Cow<'t, str>, Value<'t>)>),
+}
+
+impl<'t> Value<'t> {
+    /// Reads the one value of `text`.
+    ///
+    /// # Errors
+    /// [`Reason::Syntax`] with place, line and column, also for numbers beyond f64's range such as 1e999.
+    pub(crate) fn parse(text: &'t str) -> crate::Result<Self> {
+        serde_json::from_str(text).map_err(|error| refusal(text, &error))
+    }
+
+    /// The kind of value, as in `found a string`.
+    pub(super) fn kind(&self) -> &'static str {
+        match self {
+            Value::Null => "null",
+            Value::Bool => "true or false",
+            Value::Number(_) => "a number",
+            Value::Text(_) => "a string",
+            Value::List(_) => "a list",
+            Value::Object(_) => "an object",
+        }
+    }
+
+    /// The field of that name, if it is an object that has one.
+    pub(crate) fn get(&self, name: &str) -> Option<&Self> {
+        let Value::Object(fields) = self else { return None };
+        fields.iter().find(|(key, _)| key == name).map(|(_, value)| value)
+    }
+}
+
+/// A key, borrowed where it has no escapes.
+#[derive(Deserialize)]
+#[serde(transparent)]
+struct Key<'t>(#[serde(borrow)] Cow<'t, str>);
+
+impl<'de> Deserialize<'de> for Value<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(AnyValue)
+    }
+}
+
+struct AnyValue;
+
+impl<'de> Visitor<'de> for AnyValue {
+    type Value = Value<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+    fn visit_unit<E>(self) -> Result<Self::Value, E> {
+        Ok(Value::Null)
+    }
+    fn visit_bool<E>(self, _: bool) -> Result<Self::Value, E> {
+        Ok(Value::Bool)
+    }
+    fn visit_u64<E>(self, number: u64) -> Result<Self::Value, E> {
+        Ok(Value::Number(number.into()))
+    }
+    fn visit_i64<E>(self, number: i64) -> Result<Self::Value, E> {
+        Ok(Value::Number(number.into()))
+    }
+    fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<Self::Value, E> {
+        Number::from_f64(number).map(Value::Number).ok_or_else(|| E::custom("number out of range"))
+    }
+    fn visit_borrowed_str<E>(self, text: &'de str) -> Result<Self::Value, E> {
+        Ok(Value::Text(Cow::Borrowed(text)))
+    }
+    fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
+        Ok(Value::Text(Cow::Owned(text.to_owned())))
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
+        std::iter::from_fn(|| list.next_element().transpose()).collect::<Result<_, _>>().map(Value::List)
+    }
+    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Self::Value, A::Error> {
+        let entries = std::iter::from_fn(|| object.next_entry().transpose());
+        entries.map(|entry| entry.map(|(Key(key), value)| (key, value))).collect::<Result<_, _>>().map(Value::Object)
+    }
+}
+
+/// The `id` of an object that may be malformed after it; `None` if none can be read.
+pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
+    struct IdVisitor<'a>(&'a mut Option<serde_json::Value>);
+
+    impl<'de> Visitor<'de> for IdVisitor<'_> {
+        type Value = ();
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            f.write_str("an object")
+        }
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+            while let Some(Key(key)) = map.next_key()? {
+                if key == "id" {
+                    *self.0 = map.next_value()?;
+                    return Err(A::Error::custom("the rest is not needed"));
+                }
+                map.next_value::<IgnoredAny>()?;
+            }
+            Ok(())
+        }
+    }
+
+    let mut id = None;
+    // Whether the rest can be read does not matter here.
+    let _ = serde_json::Deserializer::from_str(text).deserialize_map(IdVisitor(&mut id));
+    id.filter(|id| id.is_string() || id.is_number())
+}
+
+/// serde_json's error in our words; the place is looked for only now, by reading once more.
+fn refusal(text: &str, error: &serde_json::Error) -> Error {
+    let start: usize = text.split_inclusive('\n').take(error.line().max(1) - 1).map(str::len).sum();
+    let offset = start + error.column().saturating_sub(1);
+    let location = line_and_column(text.as_bytes(), offset);
+    let syntax = |message: &str| Error::new(Reason::Syntax(message.to_owned())).on(location.0, location.1);
+    let whole = error.to_string();
+    let refused = match whole.split(" at line ").next().unwrap_or_default() {
+        "recursion limit exceeded" => return syntax("brackets are nested too deep"),
+        // What begins with t, f or n is taken for true, false or null.
+        "expected ident" => syntax("expected value"),
+        message => syntax(message),
+    };
+    let rest = text.as_bytes().get(offset..).unwrap_or_default();
+    let begins = |words: &[&str]| words.iter().any(|word| rest.starts_with(word.as_bytes()));
+    let refused = if error.is_eof() {
+        refused.hint("the text ends too early: is it whole?")
+    } else if begins(&["NaN", "Infinity", "-Infinity"]) {
+        refused.hint("JSON has no NaN and no infinity; numbers are finite")
+    } else if begins(&["//", "/*", "#"]) {
+        refused.hint("JSON has no comments: leave it out")
+    } else {
+        refused
+    };
+    match serde_path_to_error::deserialize::<_, Value>(&mut serde_json::Deserializer::from_str(text)) {
+        Err(error) => refused.at(known_part(error.path())),
+        Ok(_) => refused,
+    }
+}
+
+/// The path as far as its keys were read.
+fn known_part(path: &serde_path_to_error::Path) -> String {
+    let mut place = String::new();
+    for segment in path {
+        match segment {
+            Segment::Seq { index } => place.push_str(&format!("[{index}]")),
+            Segment::Map { key } if place.is_empty() => place.push_str(key),
+            Segment::Map { key } => place.extend([".", key]),
+            Segment::Enum { .. } | Segment::Unknown => break,
+        }
+    }
+    place
+}
