@@ -24,23 +24,7 @@ pub use surface::Surface;
 
 use crate::planar::{Rotation, Vector};
 
-/// A closed contact of one state.
-///
-/// ```
-/// # fn main() -> heelstrike::Result<()> {
-/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
-/// use heelstrike::{Defaults, Options, Pipeline, Robot, State};
-///
-/// let robot = Robot::from_urdf(urdf)?;
-/// let text = r#"{"position": {"base": {"pitch": -0.4}, "joints": {"hip": -0.8}}, "velocity": {"base": {"pitch": -1}},
-///                "stance": "left_leg", "friction": "infinite"}"#;
-/// let state = State::from_json(text, &robot, &Defaults::default())?;
-/// let impact = Pipeline::new(&robot, Options { explain_up_to: 2, ..Options::default() }).impact(&state)?;
-/// assert_eq!(impact.contacts[0].name, "left_leg");
-/// assert!(impact.contacts.iter().all(|contact| contact.gap.abs() < 1e-12));
-/// # Ok(())
-/// # }
-/// ```
+/// A closed contact of one state; [`Pipeline`](crate::Pipeline) has an example.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// The URDF link that carries the shape, also after welding (an index into [`Robot::links`](crate::Robot)).

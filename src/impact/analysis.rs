@@ -148,16 +148,10 @@ mod tests {
 
     #[test]
     fn more_contacts_than_are_tried_are_refused() {
-        let contacts = CONTACT_LIMIT + 1;
-        let rows = 2 * contacts;
+        let (contacts, rows) = (CONTACT_LIMIT + 1, 2 * (CONTACT_LIMIT + 1));
         let identity = (0..rows * rows).map(|k| f64::from(u8::from(k % (rows + 1) == 0))).collect();
-        let problem = ContactProblem::new(
-            identity,
-            vec![[0.0, -1.0]; contacts],
-            vec![Friction::Infinite; contacts],
-            vec![0.0; contacts],
-        )
-        .unwrap();
+        let (friction, restitution) = (vec![Friction::Infinite; contacts], vec![0.0; contacts]);
+        let problem = ContactProblem::new(identity, vec![[0.0, -1.0]; contacts], friction, restitution).unwrap();
         let refused = analyse(&problem, false).unwrap_err();
         assert_eq!(refused.reason(), &Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT });
     }

@@ -37,33 +37,30 @@ mod tests {
     use super::*;
     use crate::law::Friction;
 
-    fn name(contact: usize) -> String {
-        contact.to_string()
-    }
-
-    fn zeros(border: &Border) -> Vec<(&str, Inequality)> {
-        border.at_zero.iter().map(|zero| (&*zero.contact, zero.inequality)).collect()
-    }
-
     #[test]
-    fn a_cone_s_edge_leads_to_the_slide_that_its_friction_resists() {
-        let motion = Motion { impulse: vec![[0.5, 1.0]], velocity_after: vec![[0.0, 0.0]] };
-        let friction = [Friction::Finite(0.5).into()];
-        let found = border(&[Mode::Stick], &friction, &[(0, Inequality::FrictionCone)], &motion, name).unwrap();
-        assert_eq!(zeros(&found), [("0", Inequality::FrictionCone)]);
-        assert_eq!(found.neighbours, [[Mode::SlideMinus]]);
-        assert_eq!(border(&[Mode::Stick], &friction, &[], &motion, name), None);
-    }
-
-    #[test]
-    fn a_contact_without_pressure_may_do_anything_next() {
-        let motion = Motion { impulse: vec![[0.0, 0.0]; 2], velocity_after: vec![[0.0, 0.0]; 2] };
-        let friction = [Friction::Finite(0.5), Friction::ZERO].map(Law::from);
-        let at_zero = [(0, Inequality::NormalImpulse), (0, Inequality::FrictionCone), (1, Inequality::NormalImpulse)];
-        let found = border(&[Mode::Stick; 2], &friction, &at_zero, &motion, name).unwrap();
-        assert_eq!(zeros(&found), [("0", Inequality::NormalImpulse), ("1", Inequality::NormalImpulse)]);
-        let first = [Mode::Separate, Mode::SlidePlus, Mode::SlideMinus].map(|mode| vec![mode, Mode::Stick]);
-        assert_eq!(found.neighbours[..3], first);
-        assert_eq!(found.neighbours[3..], [vec![Mode::Stick, Mode::Separate]]);
+    fn border_leads_to_the_modes_beside_it() {
+        use Inequality::{FrictionCone, NormalImpulse};
+        let laws = [Friction::Finite(0.5), Friction::ZERO].map(Law::from);
+        for (tangential, at_zero, expected, neighbours) in [
+            // A cone's edge leads to the slide that its friction resists.
+            (0.5, vec![(0, FrictionCone)], vec![("0", FrictionCone)], vec![[Mode::SlideMinus, Mode::Stick]]),
+            // A contact without pressure may do anything next.
+            (
+                0.0,
+                vec![(0, NormalImpulse), (0, FrictionCone), (1, NormalImpulse)],
+                vec![("0", NormalImpulse), ("1", NormalImpulse)],
+                vec![
+                    [Mode::Separate, Mode::Stick],
+                    [Mode::SlidePlus, Mode::Stick],
+                    [Mode::SlideMinus, Mode::Stick],
+                    [Mode::Stick, Mode::Separate],
+                ],
+            ),
+        ] {
+            let motion = Motion { impulse: vec![[tangential, 1.0]; 2], velocity_after: vec![[0.0, 0.0]; 2] };
+            let found = border(&[Mode::Stick; 2], &laws, &at_zero, &motion, |contact| contact.to_string()).unwrap();
+            let zeros: Vec<_> = found.at_zero.iter().map(|zero| (&*zero.contact, zero.inequality)).collect();
+            assert_eq!((zeros, found.neighbours), (expected, neighbours.iter().map(|modes| modes.to_vec()).collect()));
+        }
     }
 }

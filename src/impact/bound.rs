@@ -236,7 +236,6 @@ mod tests {
         bounds: Bounds,
         scale: &'a Scale,
         problem: &'a ContactProblem,
-        worst: f64,
     }
 
     impl super::super::enumerate::Visitor<f64> for Watch<'_> {
@@ -259,10 +258,7 @@ mod tests {
                         (velocity / (mobility * self.scale.speed), bound.velocity_error()),
                         (impulse * mobility / self.scale.speed, bound.impulse_error()),
                     ] {
-                        if !error.is_nan() {
-                            assert!(error <= allowed, "{:?}: {error:e} > {allowed:e}", leaf.modes);
-                            self.worst = self.worst.max(error / allowed);
-                        }
+                        assert!(error.is_nan() || error <= allowed, "{:?}: {error:e} > {allowed:e}", leaf.modes);
                     }
                 }
             });
@@ -272,7 +268,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_number_is_farther_from_the_exact_one_than_its_bound(
-            rows in prop::collection::vec(prop::collection::vec(-1.0..1.0f64, 7), 6),
+            mut rows in prop::collection::vec(prop::collection::vec(-1.0..1.0f64, 7), 6),
             before in prop::collection::vec(prop::array::uniform2(-1.0..1.0f64), 3),
             friction in prop::collection::vec(
                 prop_oneof![Just(Friction::ZERO), Just(Friction::Infinite), (0.01..10.0f64).prop_map(Friction::Finite)],
@@ -280,14 +276,9 @@ mod tests {
             ),
             light in -8..8i32,
         ) {
-            let mut rows = rows;
-            for entry in &mut rows[2] {
-                *entry *= 10f64.powi(light);
-            }
-            let delassus = rows
-                .iter()
-                .flat_map(|a| rows.iter().map(|b| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>()))
-                .collect();
+            rows[2].iter_mut().for_each(|entry| *entry *= 10f64.powi(light));
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+            let delassus = rows.iter().flat_map(|a| rows.iter().map(|b| dot(a, b))).collect();
             let problem = ContactProblem::new(delassus, before, friction, vec![0.5, 0.0, 0.0]).unwrap();
             let mut scale = Scale::default();
             scale.measure(&problem, Errors::NONE);
@@ -295,7 +286,7 @@ mod tests {
             tableau.load(&problem);
             let mut bounds = Bounds::default();
             bounds.load(&tableau, &scale, 0.0, 0.0);
-            tableau.visit(&mut Watch { bounds, scale: &scale, problem: &problem, worst: 0.0 });
+            tableau.visit(&mut Watch { bounds, scale: &scale, problem: &problem });
         }
     }
 }

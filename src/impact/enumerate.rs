@@ -255,32 +255,3 @@ impl<T: Real> Leaf<'_, T> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_single_leaf_equals_the_visited_one() {
-        let delassus = vec![3.0, 0.5, 0.25, 0.0, 0.5, 2.0, 0.0, -0.5, 0.25, 0.0, 4.0, 1.0, 0.0, -0.5, 1.0, 3.0];
-        let problem = ContactProblem::new(
-            delassus,
-            vec![[0.5, -1.0], [-0.25, -0.5]],
-            vec![Friction::ZERO, Friction::Finite(0.5)],
-            vec![0.0, 0.5],
-        )
-        .unwrap();
-        let (mut all, mut one) = (Tableau::<f64>::new(), Tableau::<f64>::new());
-        all.load(&problem);
-        one.load(&problem);
-        let mut visited = 0;
-        all.visit(&mut |leaf: &Leaf<'_, f64>| {
-            visited += 1;
-            let single = one.leaf(leaf.modes);
-            for contact in 0..2 {
-                assert_eq!(leaf.numbers(contact), single.numbers(contact));
-            }
-        });
-        assert_eq!(visited, 2 * 4);
-    }
-}

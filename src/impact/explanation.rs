@@ -63,22 +63,11 @@ mod tests {
     use crate::impact::Errors;
     use crate::law::Friction;
 
-    /// The paper's body: m = 1, CoG at (-1, 1), j = 1; beta = -26.565 degrees.
-    fn explain(taken: [f64; 2]) -> (f64, f64, ImpulseRegion) {
-        // c = G X.
-        let before = [2.0 * taken[0] + taken[1], taken[0] + 2.0 * taken[1]];
-        let problem =
-            ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![before], vec![Friction::Infinite], vec![0.0]).unwrap();
-        let mut scale = Scale::default();
-        scale.measure(&problem, Errors::NONE);
-        let found = explanation(&problem, &scale).unwrap();
-        (found.beta[0], found.gamma[0], found.region[0])
-    }
-
     #[test]
     fn the_paper_s_body_has_its_regions() {
+        // m = 1, CoG at (-1, 1), j = 1.
         let beta = (-0.5_f64).atan();
-        for (gamma, expected) in [
+        for (gamma, region) in [
             (beta / 2.0, ImpulseRegion::E),
             (beta - 0.1, ImpulseRegion::C),
             (1.0, ImpulseRegion::A),
@@ -86,10 +75,16 @@ mod tests {
             (PI + beta + 0.01, ImpulseRegion::B),
             (-PI + 0.1, ImpulseRegion::C),
         ] {
-            let (found_beta, found_gamma, region) = explain([gamma.cos(), gamma.sin()]);
-            assert_eq!(region, expected, "gamma {gamma}");
+            // c = G X.
+            let before = [2.0 * gamma.cos() + gamma.sin(), gamma.cos() + 2.0 * gamma.sin()];
+            let delassus = vec![2.0, 1.0, 1.0, 2.0];
+            let problem = ContactProblem::new(delassus, vec![before], vec![Friction::Infinite], vec![0.0]).unwrap();
+            let mut scale = Scale::default();
+            scale.measure(&problem, Errors::NONE);
+            let found = explanation(&problem, &scale).unwrap();
+            assert_eq!(found.region, [region], "gamma {gamma}");
             // A few roundings of numbers of order one.
-            assert!((found_beta - beta).abs() < 1e-14 && (found_gamma - gamma).abs() < 1e-14);
+            assert!((found.beta[0] - beta).abs() < 1e-14 && (found.gamma[0] - gamma).abs() < 1e-14);
         }
     }
 }

@@ -89,9 +89,8 @@ mod tests {
         let rows = [[1.0, 0.0, -1.0], [0.0, 1.0, 1.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0]];
         let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let delassus = rows.iter().flat_map(|a| rows.iter().map(|b| dot(a, b)).collect::<Vec<_>>()).collect();
-        let problem =
-            ContactProblem::new(delassus, vec![[0.5, -1.0], [0.5, -2.0]], vec![Friction::Infinite; 2], vec![0.0; 2])
-                .unwrap();
+        let before = vec![[0.5, -1.0], [0.5, -2.0]];
+        let problem = ContactProblem::new(delassus, before, vec![Friction::Infinite; 2], vec![0.0; 2]).unwrap();
         let kernel = Kernel::of(&problem.map(Certified::<Ball>::from_f64)).unwrap();
         use Mode::{Separate, SlideMinus, SlidePlus, Stick};
         for (modes, excluded) in [

@@ -308,32 +308,28 @@ pub fn widest<T: Ordered>(functions: &[Affine<T>], dimension: usize, cap: T) -> 
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::scalar::{Ball, Certified, DoubleDouble};
 
-    type Number = Certified<Ball<DoubleDouble>>;
+    pub type Number = Certified<Ball<DoubleDouble>>;
 
-    fn numbers(entries: &[f64]) -> Vec<Number> {
+    pub fn numbers(entries: &[f64]) -> Vec<Number> {
         entries.iter().map(|&entry| Number::from_f64(entry)).collect()
     }
 
-    fn affine(constant: f64, coefficients: &[f64]) -> Affine<Number> {
+    pub fn affine(constant: f64, coefficients: &[f64]) -> Affine<Number> {
         Affine { constant: Number::from_f64(constant), coefficients: numbers(coefficients) }
     }
 
     #[test]
     fn a_degenerate_program_does_not_cycle() {
         // Beale's example, which cycles under the largest-coefficient rule; x >= 0 are rows here. Greatest 1/20.
-        let rows = [
-            affine(0.0, &[-0.25, 60.0, 0.04, -9.0]),
-            affine(0.0, &[-0.5, 90.0, 0.02, -3.0]),
-            affine(1.0, &[0.0, 0.0, -1.0, 0.0]),
-            affine(0.0, &[1.0, 0.0, 0.0, 0.0]),
-            affine(0.0, &[0.0, 1.0, 0.0, 0.0]),
-            affine(0.0, &[0.0, 0.0, 1.0, 0.0]),
-            affine(0.0, &[0.0, 0.0, 0.0, 1.0]),
-        ];
+        let unit = |own: usize| std::array::from_fn(|entry| f64::from(u8::from(entry == own)));
+        let mut rows: Vec<Affine<Number>> = (0..4).map(|own| affine(0.0, &unit(own) as &[f64; 4])).collect();
+        rows.push(affine(0.0, &[-0.25, 60.0, 0.04, -9.0]));
+        rows.push(affine(0.0, &[-0.5, 90.0, 0.02, -3.0]));
+        rows.push(affine(1.0, &[0.0, 0.0, -1.0, 0.0]));
         let objective = numbers(&[0.75, -150.0, 0.02, -6.0]);
         let y = maximize(&rows, &objective).unwrap().unwrap();
         let value = affine(0.0, &[0.75, -150.0, 0.02, -6.0]).at(&y).to_f64();

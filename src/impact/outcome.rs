@@ -6,19 +6,7 @@ use crate::state::Named;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The answer in one word.
-///
-/// ```
-/// # fn main() -> heelstrike::Result<()> {
-/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
-///
-/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
-/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
-/// let analysis = analyse(&problem, true)?;
-/// assert_eq!(analysis.verdict, Verdict::Unique);
-/// # Ok(())
-/// # }
-/// ```
+/// The answer in one word; [`Analysis`] has an example.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -40,31 +28,11 @@ pub enum Verdict {
 impl fmt::Display for Verdict {
     /// As it is written in results.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Unique => "unique",
-            Self::Ambiguous => "ambiguous",
-            Self::None => "none",
-            Self::Undecided => "undecided",
-            Self::NoImpact => "no_impact",
-            Self::NoContact => "no_contact",
-        })
+        self.serialize(f)
     }
 }
 
-/// A consistent combination of modes. It is written as a JSON object with these fields.
-///
-/// ```
-/// # fn main() -> heelstrike::Result<()> {
-/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
-///
-/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
-/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
-/// let analysis = analyse(&problem, true)?;
-/// let outcome = &analysis.outcomes[0];
-/// assert!(outcome.impulse[0][1] > 0.0 && outcome.energy_loss > 0.0);
-/// # Ok(())
-/// # }
-/// ```
+/// A consistent combination of modes, written as a JSON object with these fields; [`Analysis`] has an example.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Outcome {
@@ -101,12 +69,12 @@ pub struct Outcome {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub border: Option<Border>,
     /// True, and only then present, of an end of a family: every velocity between both ends is an outcome.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub family: bool,
     /// Every sign is shown by an error bound.
     pub proven: bool,
     /// False, and only then present, if no precision settled a sign: the combination is neither shown nor excluded.
-    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub decided: bool,
 }
 
@@ -156,14 +124,6 @@ impl schemars::JsonSchema for ZeroImpulse {
     }
 }
 
-fn is_true(flag: &bool) -> bool {
-    *flag
-}
-
-fn is_false(flag: &bool) -> bool {
-    !*flag
-}
-
 fn yes() -> bool {
     true
 }
@@ -205,19 +165,7 @@ impl Motion {
     }
 }
 
-/// A combination of modes that is not an outcome, and what it would have been.
-///
-/// ```
-/// # fn main() -> heelstrike::Result<()> {
-/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
-///
-/// let delassus = vec![2.0, 1.0, 1.0, 2.0];
-/// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
-/// let analysis = analyse(&problem, true)?;
-/// assert!(analysis.rejected.iter().any(|rejection| rejection.modes == [Mode::Separate]));
-/// # Ok(())
-/// # }
-/// ```
+/// A combination of modes that is not an outcome, and what it would have been; [`Analysis`] has an example.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rejection {
     /// One mode per contact.
@@ -317,16 +265,15 @@ pub struct Effort {
 /// Everything that is known about a contact problem.
 ///
 /// ```
-/// # fn main() -> heelstrike::Result<()> {
 /// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
 ///
 /// let delassus = vec![2.0, 1.0, 1.0, 2.0];
 /// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
 /// let analysis = analyse(&problem, true)?;
-/// assert!(analysis.proven);
-/// assert_eq!(analysis.outcomes.len() + analysis.rejected.len(), 4);
-/// # Ok(())
-/// # }
+/// assert!(analysis.verdict == Verdict::Unique && analysis.proven);
+/// assert!(analysis.outcomes[0].impulse[0][1] > 0.0 && analysis.outcomes[0].energy_loss > 0.0);
+/// assert!(analysis.rejected.iter().any(|rejection| rejection.modes == [Mode::Separate]));
+/// # Ok::<(), heelstrike::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {

@@ -99,17 +99,7 @@ fn first_reached<T: Ordered>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::{Ball, Certified, Real};
-
-    type Number = Certified<Ball>;
-
-    fn numbers(entries: &[f64]) -> Vec<Number> {
-        entries.iter().map(|&entry| Number::from_f64(entry)).collect()
-    }
-
-    fn affine(constant: f64, coefficients: &[f64]) -> Affine<Number> {
-        Affine { constant: Number::from_f64(constant), coefficients: numbers(coefficients) }
-    }
+    use crate::impact::linear::tests::{Number, affine, numbers};
 
     fn least(origin: &[f64], directions: &[&[f64]], functions: &[Affine<Number>]) -> Vec<f64> {
         let directions: Vec<Vec<Number>> = directions.iter().map(|direction| numbers(direction)).collect();

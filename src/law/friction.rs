@@ -6,13 +6,10 @@ use std::str::FromStr;
 /// Coulomb friction of a contact.
 ///
 /// ```
-/// # fn main() -> heelstrike::Result<()> {
 /// use heelstrike::Friction;
 ///
 /// assert_eq!("0.8".parse(), Ok(Friction::from(0.8)));
 /// assert_eq!("infinite".parse(), Ok(Friction::Infinite));
-/// # Ok(())
-/// # }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction<T = f64> {

@@ -6,10 +6,7 @@ use std::fmt;
 /// An inequality of a contact's mode.
 ///
 /// ```
-/// # fn main() -> heelstrike::Result<()> {
 /// assert!(heelstrike::Inequality::NormalImpulse.violated_by("left_foot").contains("left_foot"));
-/// # Ok(())
-/// # }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -6,14 +6,10 @@ use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
 
-/// How a contact ends; strict, so that every velocity after the impact has exactly one list of modes (paper, section
-/// 2).
+/// How a contact ends; strict, so that every velocity after it has exactly one list of modes (paper, section 2).
 ///
 /// ```
-/// # fn main() -> heelstrike::Result<()> {
 /// assert_eq!(heelstrike::Mode::SlidePlus.to_string(), "slide+");
-/// # Ok(())
-/// # }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -84,11 +80,6 @@ impl Mode {
 
 impl fmt::Display for Mode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Mode::Separate => "separate",
-            Mode::Stick => "stick",
-            Mode::SlidePlus => "slide+",
-            Mode::SlideMinus => "slide-",
-        })
+        self.serialize(f)
     }
 }
