@@ -1,7 +1,9 @@
 //! Errors against run time as a picture: a panel for G and one for the outcomes.
 
-use crate::accuracy::{Errors, Factorization, Method, Study};
-use crate::draw::plot::{Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape};
+use crate::accuracy::{Errors, Factorization, Method};
+use crate::draw::plot::{
+    Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, range,
+};
 use crate::write::accuracy::{Accuracy, name_of};
 
 /// Marks that distinguish cases, if there are not more cases than marks.
@@ -19,38 +21,36 @@ impl Accuracy {
             studies => format!("Error against run time: each mark is one of {} cases by one method", studies.len()),
         };
         let mark = |case: usize| if named { MARKS[case] } else { Mark::Circle };
-        let methods = || self.studies.iter().flat_map(|study| &study.methods).filter(|method| is_drawn(method));
+        let drawn = || {
+            let cases = self.studies.iter().enumerate();
+            cases.flat_map(|(case, study)| study.methods.iter().filter(is_drawn).map(move |method| (case, method)))
+        };
         let mut legend: Vec<LegendEntry> = Vec::new();
-        for method in methods() {
+        for (_, method) in drawn() {
             let name = name_of(method);
             if !legend.iter().any(|entry| entry.name == name) {
-                legend.push(LegendEntry { name, key: LegendKey::Mark(Mark::Circle, color(method)) });
+                legend.push(LegendEntry::new(name, LegendKey::Mark(Mark::Circle, color(method))));
             }
         }
         if named && self.studies.len() > 1 {
-            let cases = self.studies.iter().enumerate().filter(|(_, study)| study.methods.iter().any(is_drawn));
-            let entry = |(at, study): (usize, &Study)| LegendEntry {
-                name: study.name.clone(),
-                // A mark of any method.
-                key: LegendKey::Mark(mark(at), Color::Gray),
-            };
-            legend.extend(cases.map(entry));
+            let cases = self.studies.iter().enumerate().filter(|(_, study)| study.methods.iter().any(|m| is_drawn(&m)));
+            // A mark of any method.
+            let key = |case| LegendKey::Mark(mark(case), Color::Gray);
+            legend.extend(cases.map(|(case, study)| LegendEntry::new(&study.name, key(case))));
         }
         let panel = |what: &str, pick: fn(&Errors) -> Option<f64>| {
             let mut series: Vec<(Mark, Color, Vec<PlotPoint>)> = Vec::new();
-            for (case, study) in self.studies.iter().enumerate() {
-                for method in study.methods.iter().filter(|method| is_drawn(method)) {
-                    let error = method.error.as_ref().and_then(pick);
-                    let (Some(time), Some(error)) = (method.time, error) else { continue };
-                    let (mark, color, point) = (mark(case), color(method), (time.median, error));
-                    match series.iter_mut().find(|series| (series.0, series.1) == (mark, color)) {
-                        Some((_, _, points)) => points.push(point),
-                        None => series.push((mark, color, vec![point])),
-                    }
+            for (case, method) in drawn() {
+                let error = method.error.as_ref().and_then(pick);
+                let (Some(time), Some(error)) = (method.time, error) else { continue };
+                let (mark, color, point) = (mark(case), color(method), (time.median, error));
+                match series.iter_mut().find(|series| (series.0, series.1) == (mark, color)) {
+                    Some((_, _, points)) => points.push(point),
+                    None => series.push((mark, color, vec![point])),
                 }
             }
             let marks = |(mark, color, points)| PlotShape::Marks { points, mark, color, size: MARK };
-            let axis = |label: &str| PlotAxis { label: label.into(), logarithmic: true, ..PlotAxis::default() };
+            let axis = |label: &str| PlotAxis { logarithmic: true, ..PlotAxis::new(label) };
             let shapes = series.into_iter().map(marks).collect();
             Panel { shapes, ..Panel::new(axis("time from state to G [s]"), axis(what)) }
         };
@@ -58,28 +58,17 @@ impl Accuracy {
             panel("largest error of G", |error| error.delassus),
             panel("largest error of impulses and velocities after", |error| error.outcome),
         ];
-        let range = span_of(&panels);
+        // All panels have one axis of errors.
+        let shapes = panels.iter().flat_map(|panel| &panel.shapes);
+        let errors = shapes.flat_map(PlotShape::extent).map(|(_, error)| error);
+        let range = range(errors.filter(|error| error.is_finite() && *error > 0.0));
         panels.iter_mut().for_each(|panel| panel.y.range = range);
         Picture { title, rows: vec![panels], legend }
     }
 }
 
-/// The least and the greatest error of all panels, so that their axes are the same.
-fn span_of(panels: &[Panel]) -> Option<(f64, f64)> {
-    let marks = |shape: &PlotShape| match shape {
-        PlotShape::Marks { points, .. } => points.clone(),
-        _ => Vec::new(),
-    };
-    let errors = panels.iter().flat_map(|panel| &panel.shapes).flat_map(marks).map(|(_, error)| error);
-    let drawn = errors.filter(|error| error.is_finite() && *error > 0.0);
-    drawn.fold(None, |span, error| {
-        let (least, most) = span.unwrap_or((error, error));
-        Some((least.min(error), most.max(error)))
-    })
-}
-
 /// Whether the method is in the picture.
-fn is_drawn(method: &Method) -> bool {
+fn is_drawn(method: &&Method) -> bool {
     method.number != "reference" && method.factorization.is_some() && method.time.is_some() && method.error.is_some()
 }
 

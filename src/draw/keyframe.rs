@@ -22,11 +22,9 @@ pub struct Keyframe {
 /// The outcomes of an impact.
 #[derive(Debug, Clone)]
 pub struct KeyframeAnswer {
-    /// In one word.
     pub verdict: Verdict,
     /// Whether the list of outcomes is proven to be complete and right.
     pub proven: bool,
-    /// Every outcome.
     pub outcomes: Vec<Outcome>,
 }
 
@@ -37,9 +35,8 @@ pub struct ListedKeyframe {
     pub line: usize,
     /// Its name in the input.
     pub id: Option<Value>,
-    /// Its time \[s\].
+    /// In s.
     pub time: Option<f64>,
-    /// What is shown of it.
     pub keyframe: Keyframe,
 }
 

@@ -4,7 +4,7 @@ use crate::contact::Feet;
 use crate::impact::Outcome;
 use crate::read::table::{Carried, Header, prefixed};
 use crate::state::NamedContact;
-use crate::write::{ErrorObject, Refused, Report, Touchdown};
+use crate::write::{ErrorObject, Refused, Report, Touchdown, words};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
@@ -164,11 +164,7 @@ impl Columns {
     /// A row with the id and what is carried through.
     fn cells(&self, id: Option<&Value>, carried: Option<&Carried>) -> Cells {
         let mut cells = Cells(vec![Vec::new(); self.names.len()]);
-        match id {
-            Some(Value::String(text)) => cells.text(0, text),
-            Some(id) => cells.text(0, id.to_string()),
-            None => {}
-        }
+        cells.text(0, id.map_or(String::new(), words::id));
         let start = self.last() - self.carried;
         for (at, field) in carried.into_iter().flat_map(Carried::fields).take(self.carried).enumerate() {
             cells.text(start + at, field);

@@ -7,11 +7,12 @@ use serde_json::Value;
 
 /// `ramone (k17)`.
 pub(crate) fn titled(name: &str, id: &Option<Value>) -> String {
-    match id {
-        Some(Value::String(id)) => format!("{name} ({id})"),
-        Some(id) => format!("{name} ({id})"),
-        None => name.to_owned(),
-    }
+    id.as_ref().map_or(name.to_owned(), |own| format!("{name} ({})", self::id(own)))
+}
+
+/// An id without quotes.
+pub(crate) fn id(id: &Value) -> String {
+    id.as_str().map_or_else(|| id.to_string(), str::to_owned)
 }
 
 /// `margin 0.0130, index +1`, as far as there are any.

@@ -86,17 +86,15 @@ pub(super) struct PageScale {
     #[serde(skip)]
     pub unit: f64,
     /// The lower left corner of the view, from the middle of the robot along an axis on which the view follows it
-    /// \[m\].
+    /// \[m\], and the upper right one.
     low: Vector<f64>,
-    /// The upper right one \[m\].
     high: Vector<f64>,
     /// Along which axes the view follows the robot.
     follows: [bool; 2],
-    /// The mass of the heaviest body \[kg\].
+    /// Of the heaviest body \[kg\].
     mass: f64,
-    /// An impulse whose arrow has the usual length \[N s\].
+    /// An impulse \[N s\] and a velocity \[m/s\] whose arrows have the usual length.
     impulse: f64,
-    /// A velocity whose arrow has the usual length \[m/s\].
     velocity: f64,
 }
 
@@ -114,16 +112,16 @@ impl PageScale {
         let whole = Extent::of(extents.iter().flat_map(|extent| [extent.low, extent.high]));
         let widest = extents.iter().map(|extent| extent.high - extent.low).fold(Vector::zero(), Vector::greatest);
         let follows = (whole.high - whole.low).components().map(|span| span > FIXED * size);
+        let unit = unit(size);
         let side = |way: f64, whole: Vector<f64>| {
             let x = if follows[0] { 0.5 * way * widest.x } else { whole.x };
-            Vector::new(x, if follows[1] { 0.5 * way * widest.z } else { whole.z })
+            place(Vector::new(x, if follows[1] { 0.5 * way * widest.z } else { whole.z }), unit)
         };
         let masses = drawings.iter().flat_map(|drawing| &drawing.bodies).map(|body| body.mass);
-        let unit = unit(size);
         Self {
             unit,
-            low: place(side(-1.0, whole.low), unit),
-            high: place(side(1.0, whole.high), unit),
+            low: side(-1.0, whole.low),
+            high: side(1.0, whole.high),
             follows,
             mass: significant(masses.fold(0.0, f64::max), 5),
             impulse: usual(drawings.iter().map(|drawing| drawing.greatest_impulse())),
@@ -145,20 +143,18 @@ impl PageFrame {
     pub fn new(state: &PageState, unit: f64, parts: &mut Interned, texts: &mut Interned) -> Self {
         let PageState { keyframe, region, name } = state;
         let answer = keyframe.answer.as_ref();
-        let (verdict, proven) = (answer.ok().map(|answer| answer.verdict), answer.ok().map(|answer| answer.proven));
-        let sentence = match answer {
-            Ok(answer) => words::verdict(answer.verdict, answer.outcomes.len()),
-            Err(error) => refusal(error),
-        };
         let contacts = keyframe.drawing.as_ref().map_or(&[][..], |drawing| &drawing.contacts);
         Self {
             region: *region,
             name: name.clone(),
-            verdict,
-            proven,
-            sentence: texts.number(sentence),
-            notes: keyframe.notes.iter().map(|note| texts.number(note.clone())).collect(),
-            outcomes: answer.map_or_else(|_| Vec::new(), |answer| outcomes(answer, contacts, texts)),
+            verdict: answer.ok().map(|answer| answer.verdict),
+            proven: answer.ok().map(|answer| answer.proven),
+            sentence: texts.number(match answer {
+                Ok(answer) => words::verdict(answer.verdict, answer.outcomes.len()),
+                Err(error) => refusal(error),
+            }),
+            notes: keyframe.notes.iter().map(|note| texts.number(note)).collect(),
+            outcomes: answer.iter().flat_map(|answer| outcomes(answer, contacts, texts)).collect(),
             pose: keyframe.drawing.as_ref().map(|drawing| PageDrawing::new(drawing, unit, parts, texts)),
         }
     }
@@ -192,12 +188,12 @@ impl PageDrawing {
         let bodies = drawing.bodies.iter().map(|body| {
             // Writing into memory cannot fail.
             let part = parts.number(serde_json::to_string(&BodyPart::new(body, unit)).unwrap_or_default());
-            let (Vector { x, z }, Vector { x: cos, z: sin }) = (at(&body.origin), vector(&body.x_axis));
-            (part, x, z, cos, sin)
+            let (origin, axis) = (at(&body.origin), vector(&body.x_axis));
+            (part, origin.x, origin.z, axis.x, axis.z)
         });
         let bones = drawing.bodies.iter().flat_map(|body| body.bones.iter().map(|end| [at(&body.origin), at(end)]));
         let contacts = drawing.contacts.iter().map(|contact| PageContact {
-            name: texts.number(contact.name.clone()),
+            name: texts.number(&contact.name),
             point: at(&contact.point),
             normal: vector(&contact.normal),
             before: vector(&contact.velocity_before),
@@ -218,17 +214,16 @@ impl PageDrawing {
 
 impl BodyPart {
     fn new(body: &DrawnBody, unit: f64) -> Self {
+        let at = |point: &Vector<f64>| place(*point, unit);
         let outline = |shape: &DrawnShape| match shape {
             DrawnShape::Disc { center, radius } => {
-                DrawnShape::Disc { center: place(*center, unit), radius: to_unit(*radius, unit) }
+                DrawnShape::Disc { center: at(center), radius: to_unit(*radius, unit) }
             }
-            DrawnShape::Polygon(corners) => {
-                DrawnShape::Polygon(corners.iter().map(|&corner| place(corner, unit)).collect())
-            }
+            DrawnShape::Polygon(corners) => DrawnShape::Polygon(corners.iter().map(at).collect()),
         };
         Self {
             outlines: body.shapes.iter().map(outline).collect(),
-            com: body.com.map(|com| place(com, unit)),
+            com: body.com.as_ref().map(at),
             mass: significant(body.mass, 5),
             last: body.is_last,
         }

@@ -2,10 +2,12 @@
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState};
 use crate::draw::ListedKeyframe;
-use crate::draw::plot::{self, Band, Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotShape, Rendered, Stroke};
+use crate::draw::plot::{
+    self, Band, Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Rendered, Stroke,
+};
 use crate::impact::Verdict;
 use crate::law::Mode;
-use serde_json::Value;
+use crate::write::words;
 
 /// States in their order, at most [`MOST`] of them: of more every second, third ... one is kept.
 #[derive(Debug, Clone)]
@@ -21,10 +23,9 @@ impl Default for Gait {
     }
 }
 
-/// Successive states with the same outcomes.
+/// Successive states with the same outcomes, and their values on the axis.
 struct GaitRun<'g> {
     states: &'g [ListedKeyframe],
-    /// Their values on the axis.
     at: &'g [f64],
 }
 
@@ -67,18 +68,14 @@ impl Gait {
     pub fn picture(&self, robot: &str) -> Picture {
         let (name, order) = self.order();
         let runs = self.runs(&order);
-        let axis = |label: &str| plot::PlotAxis { label: label.into(), ..plot::PlotAxis::default() };
         let label = if name == "time" { "time [s]" } else { name };
         let shapes = runs.iter().flat_map(GaitRun::shapes).collect();
-        let bands = bands(&runs);
-        let panel = Panel { size: (640.0, 260.0), bands, shapes, ..Panel::new(axis(label), axis("margin")) };
-        let occurs = |kind: &StateKind| runs.iter().any(|run| run.kind() == *kind);
-        let entry =
-            |kind: StateKind| LegendEntry { name: kind.look().words.into(), key: LegendKey::Fill(kind.look().fill) };
+        let axes = Panel::new(PlotAxis::new(label), PlotAxis::new("margin"));
+        let looks = LOOKS.iter().filter(|look| runs.iter().any(|run| run.look().answer == look.answer));
         Picture {
             title: format!("{robot}: margins of all outcomes"),
-            rows: vec![vec![panel]],
-            legend: StateKind::ALL.into_iter().filter(occurs).map(entry).collect(),
+            rows: vec![vec![Panel { size: (640.0, 260.0), bands: bands(&runs), shapes, ..axes }]],
+            legend: looks.map(|look| LegendEntry::new(look.words, LegendKey::Fill(look.fill))).collect(),
         }
     }
 
@@ -87,18 +84,14 @@ impl Gait {
         let (name, order) = self.order();
         let runs = self.runs(&order);
         let region = |run: &GaitRun| PageRegion {
-            name: run.kind().look().words.into(),
-            fill: run.kind().look().fill.hex(),
+            name: run.look().words.into(),
+            fill: run.look().fill.hex(),
             borders: Vec::new(),
         };
         let numbers = runs.iter().enumerate().flat_map(|(number, run)| vec![number; run.states.len()]);
         let page_state = |(state, region): (&ListedKeyframe, usize)| {
             let line = format!("line {}", state.line);
-            let name = match &state.id {
-                Some(Value::String(id)) => format!("{id}, {line}"),
-                Some(id) => format!("{id}, {line}"),
-                None => line,
-            };
+            let name = state.id.as_ref().map_or(line.clone(), |id| format!("{}, {line}", words::id(id)));
             PageState { keyframe: state.keyframe.clone(), region: Some(region), name: Some(name) }
         };
         let states: Vec<PageState> = self.states.iter().zip(numbers).map(page_state).collect();
@@ -115,22 +108,25 @@ const BANDS: usize = 400;
 
 /// A band for all neighboring runs of one kind; no bands if they are not distinguishable.
 fn bands(runs: &[GaitRun]) -> Vec<Band> {
-    let mut bands: Vec<(StateKind, Band)> = Vec::new();
+    let mut bands: Vec<Band> = Vec::new();
+    let mut last = None;
     for run in runs {
         let [Some(&from), Some(&to)] = [run.at.first(), run.at.last()] else { continue };
+        let look = run.look();
         match bands.last_mut() {
-            Some((kind, band)) if *kind == run.kind() => band.to = to,
-            last => {
+            Some(band) if last == Some(look.answer) => band.to = to,
+            before => {
                 // Neighbours meet half way.
-                let from = last.map_or(from, |(_, band)| {
+                let from = before.map_or(from, |band| {
                     band.to = 0.5 * (band.to + from);
                     band.to
                 });
-                bands.push((run.kind(), Band { from, to, letter: String::new(), fill: run.kind().look().fill }));
+                bands.push(Band { from, to, letter: String::new(), fill: look.fill });
             }
         }
+        last = Some(look.answer);
     }
-    if bands.len() > BANDS { Vec::new() } else { bands.into_iter().map(|(_, band)| band).collect() }
+    if bands.len() > BANDS { Vec::new() } else { bands }
 }
 
 /// The verdict, and the modes of all outcomes; `None` if the state is refused.
@@ -140,36 +136,36 @@ fn happening(state: &ListedKeyframe) -> Option<(Verdict, Vec<&[Mode]>)> {
 }
 
 impl GaitRun<'_> {
-    fn kind(&self) -> StateKind {
-        let verdict = self.states.first().and_then(|state| state.keyframe.answer.as_ref().ok());
-        verdict.map_or(StateKind::Refused, |answer| StateKind::Answered(answer.verdict))
+    fn look(&self) -> &'static StateLook {
+        let answer = self.states.first().and_then(|state| state.keyframe.answer.as_ref().ok());
+        let answer = answer.map(|answer| answer.verdict);
+        LOOKS.iter().find(|look| look.answer == answer).unwrap_or(&LOOKS[0])
     }
 
     /// A line for each outcome, or a mark for a single state.
     fn shapes(&self) -> Vec<PlotShape> {
-        let kind = self.kind();
-        let marks =
-            |points| PlotShape::Marks { points, mark: kind.look().mark, color: kind.look().color, size: plot::MARK };
-        let outcomes =
-            |state: &ListedKeyframe| state.keyframe.answer.as_ref().map_or(0, |answer| answer.outcomes.len());
-        if kind == StateKind::Refused {
+        let StateLook { answer, color, mark, .. } = *self.look();
+        let marks = |points| PlotShape::Marks { points, mark, color, size: plot::MARK };
+        if answer.is_none() {
             return vec![marks(self.at.iter().map(|&at| (at, 0.0)).collect())];
         }
         let curve = |outcome: usize| -> Vec<plot::PlotPoint> {
             let margin = |state: &ListedKeyframe| state.keyframe.answer.as_ref().ok()?.outcomes.get(outcome)?.margin;
             self.at.iter().zip(self.states).map(|(&at, state)| (at, margin(state).unwrap_or(f64::NAN))).collect()
         };
-        let count = self.states.first().map_or(0, outcomes);
+        let outcomes = self.states[0].keyframe.answer.as_ref().map_or(0, |answer| answer.outcomes.len());
         let shape = |outcome: usize| match self.states {
             [_] => marks(curve(outcome)),
-            _ => PlotShape::Line { points: curve(outcome), stroke: Stroke::solid(kind.look().color, 1.6) },
+            _ => PlotShape::Line { points: curve(outcome), stroke: Stroke::solid(color, 1.6) },
         };
-        (0..count).map(shape).collect()
+        (0..outcomes).map(shape).collect()
     }
 }
 
-/// How the states of a kind are drawn.
+/// How states with one answer are drawn.
 struct StateLook {
+    /// `None` if they are refused.
+    answer: Option<Verdict>,
     words: &'static str,
     /// Of lines and marks.
     color: Color,
@@ -178,34 +174,17 @@ struct StateLook {
     mark: Mark,
 }
 
-/// The answer for a state, in brief.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum StateKind {
-    Answered(Verdict),
-    Refused,
-}
-
-impl StateKind {
-    const ALL: [Self; 7] = [
-        Self::Answered(Verdict::Unique),
-        Self::Answered(Verdict::Ambiguous),
-        Self::Answered(Verdict::None),
-        Self::Answered(Verdict::Undecided),
-        Self::Answered(Verdict::NoImpact),
-        Self::Answered(Verdict::NoContact),
-        Self::Refused,
-    ];
-
-    fn look(self) -> StateLook {
-        let look = |words, color, fill, mark| StateLook { words, color, fill, mark };
-        match self {
-            Self::Answered(Verdict::Unique) => look("unique", Color::Blue, Color::Tint(3), Mark::Circle),
-            Self::Answered(Verdict::Ambiguous) => look("ambiguous", Color::Vermilion, Color::Tint(1), Mark::Diamond),
-            Self::Answered(Verdict::None) => look("none", Color::Black, Color::Tint(5), Mark::Star),
-            Self::Answered(Verdict::Undecided) => look("undecided", Color::Purple, Color::Tint(5), Mark::Triangle),
-            Self::Answered(Verdict::NoImpact) => look("no impact", Color::Green, Color::Tint(2), Mark::Circle),
-            Self::Answered(Verdict::NoContact) => look("no contact", Color::Gray, Color::White, Mark::Ring),
-            Self::Refused => look("refused", Color::Black, Color::Pale, Mark::Cross),
-        }
+static LOOKS: [StateLook; 7] = {
+    const fn look(answer: Option<Verdict>, words: &'static str, color: Color, fill: Color, mark: Mark) -> StateLook {
+        StateLook { answer, words, color, fill, mark }
     }
-}
+    [
+        look(Some(Verdict::Unique), "unique", Color::Blue, Color::Tint(3), Mark::Circle),
+        look(Some(Verdict::Ambiguous), "ambiguous", Color::Vermilion, Color::Tint(1), Mark::Diamond),
+        look(Some(Verdict::None), "none", Color::Black, Color::Tint(5), Mark::Star),
+        look(Some(Verdict::Undecided), "undecided", Color::Purple, Color::Tint(5), Mark::Triangle),
+        look(Some(Verdict::NoImpact), "no impact", Color::Green, Color::Tint(2), Mark::Circle),
+        look(Some(Verdict::NoContact), "no contact", Color::Gray, Color::White, Mark::Ring),
+        look(None, "refused", Color::Black, Color::Pale, Mark::Cross),
+    ]
+};

@@ -16,10 +16,12 @@ const PROGRAM: [&str; 5] = [
 impl Page {
     /// One file that needs nothing else.
     pub fn html(&self) -> String {
+        // As text of HTML.
+        let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
         let parts: [(&str, &str); 6] = [
-            ("{title}", &escaped(&self.title)),
+            ("{title}", &title),
             ("{style}", STYLE),
-            ("{heading}", &escaped(&self.title)),
+            ("{heading}", &title),
             ("{plots}", &self.svg),
             ("{data}", &self.data()),
             ("{program}", &PROGRAM.concat()),
@@ -28,8 +30,7 @@ impl Page {
         for (place, content) in parts {
             // Inserted text is never searched for further places.
             let (before, after) = rest.split_once(place).unwrap_or((rest, ""));
-            html += before;
-            html += content;
+            html.extend([before, content]);
             rest = after;
         }
         html + rest
@@ -41,9 +42,4 @@ impl Page {
         let json = serde_json::to_string(self).unwrap_or_default();
         json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
     }
-}
-
-/// As text of HTML.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -64,13 +64,11 @@ struct PageRegion {
     borders: Vec<[String; 2]>,
 }
 
-/// A state that the page stops at.
+/// A state that the page stops at, the number of its region and its name in the input.
 #[derive(Debug, Clone)]
 struct PageState {
     keyframe: Keyframe,
-    /// The region it is in, if any.
     region: Option<usize>,
-    /// Its name in the input.
     name: Option<String>,
 }
 
@@ -82,8 +80,8 @@ struct Interned {
 }
 
 impl Interned {
-    fn number(&mut self, text: String) -> usize {
-        *self.known.entry(text).or_insert_with_key(|text| {
+    fn number(&mut self, text: impl Into<String>) -> usize {
+        *self.known.entry(text.into()).or_insert_with_key(|text| {
             self.all.push(text.clone());
             self.all.len() - 1
         })

@@ -6,11 +6,11 @@
 
 use super::{MOST, Page, PageAxis, PageRegion, PageState};
 use crate::draw::Keyframe;
-use crate::draw::plot::Rendered;
+use crate::draw::plot::{Color, Rendered};
 use crate::draw::sweep::{fills_along, fills_of_map};
 use crate::state::State;
-use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, RobotStudy, Solver, Survey, Workers, letter};
-use crate::write::sweep::{MapSweep, Sweep};
+use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers, letter};
+use crate::write::sweep::{MapRegion, MapSweep, RegionRecord, Sweep};
 
 /// How far the sides of a region lie from its borders, as part of the parameter's range.
 const AWAY: f64 = 4.0 * RESOLUTION;
@@ -39,8 +39,12 @@ impl Stops {
             every[longest] += 1;
             counts = stops(&every);
         }
-        let samples = parameters.iter().zip(&every).map(|(parameter, &every)| samples(parameter, every));
-        let mut values: Vec<Vec<f64>> = samples.collect();
+        // And the last one.
+        let samples = |(parameter, &every): (&Parameter, &usize)| {
+            let last = parameter.steps - 1;
+            (0..last).step_by(every).chain([last]).map(|index| parameter.sample(index)).collect()
+        };
+        let mut values: Vec<Vec<f64>> = parameters.iter().zip(&every).map(samples).collect();
         if let (Findings::Along(survey), [parameter], [values]) = (findings, parameters, &mut values[..]) {
             values.extend(special(parameter, survey));
             values.sort_unstable_by(f64::total_cmp);
@@ -56,17 +60,11 @@ impl Stops {
 
     /// The values of the parameters at a stop; the last parameter changes fastest.
     fn point(&self, mut index: usize) -> Vec<f64> {
-        let mut point: Vec<f64> = self
-            .values
-            .iter()
-            .rev()
-            .map(|values| {
-                let value = values[index % values.len()];
-                index /= values.len();
-                value
-            })
-            .collect();
-        point.reverse();
+        let mut point = vec![0.0; self.values.len()];
+        for (value, values) in point.iter_mut().zip(&self.values).rev() {
+            *value = values[index % values.len()];
+            index /= values.len();
+        }
         point
     }
 
@@ -79,16 +77,10 @@ impl Stops {
     }
 }
 
-/// One of so many samples, and the last one.
-fn samples(parameter: &Parameter, every: usize) -> Vec<f64> {
-    let last = parameter.steps - 1;
-    (0..last).step_by(every).chain([last]).map(|index| parameter.sample(index)).collect()
-}
-
 /// Both sides and the middle of every region.
 fn special(parameter: &Parameter, survey: &Survey) -> Vec<f64> {
     let away = AWAY * parameter.range();
-    let of_region = |region: &crate::sweep::Region| {
+    let of_region = |region: &Region| {
         let (from, to) = (region.from, region.to);
         let sides = [from + away, 0.5 * (from + to), to - away];
         sides.into_iter().filter(move |side| from < *side && *side < to)
@@ -106,34 +98,28 @@ impl Page {
         workers: Workers,
     ) -> Self {
         let parameters = model.study.parameters();
-        let begin = || Solver::new(model);
-        let seen = workers.map(stops.count(), begin, |solver, index| look(model, solver, &stops.point(index)));
+        let look = |solver: &mut _, index| look(model, solver, &stops.point(index));
+        let seen = workers.map(stops.count(), || Solver::new(model), look);
         let (regions, notes) = match findings {
-            Findings::Along(survey) => along(&Sweep::new(&parameters[0], survey), survey),
-            Findings::Map(map) => areas(&MapSweep::new(parameters, map), map),
+            Findings::Along(survey) => along(Sweep::new(&parameters[0], survey), survey),
+            Findings::Map(map) => areas(MapSweep::new(parameters, map), map),
         };
-        let region = |index: usize, regime: &Regime| match findings {
-            Findings::Along(survey) => {
-                let at = stops.point(index)[0];
-                Some(
-                    survey
-                        .regions
-                        .partition_point(|region| region.to <= at)
-                        .min(survey.regions.len().saturating_sub(1)),
-                )
-            }
-            Findings::Map(map) => map.areas.iter().position(|area| *area.regime == *regime),
-        };
-        let state = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| PageState {
-            region: region(index, &regime),
-            keyframe,
-            name: None,
+        let state = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| {
+            let region = match findings {
+                Findings::Along(survey) => {
+                    let at = stops.point(index)[0];
+                    let region = survey.regions.partition_point(|region| region.to <= at);
+                    Some(region.min(survey.regions.len().saturating_sub(1)))
+                }
+                Findings::Map(map) => map.areas.iter().position(|area| *area.regime == regime),
+            };
+            PageState { region, keyframe, name: None }
         };
         let states: Vec<PageState> = seen.into_iter().enumerate().map(state).collect();
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let title = format!("{} against {}", model.robot.name, names.join(" and "));
-        let axis = |(name, values): (&&str, &Vec<f64>)| PageAxis { name: (*name).to_owned(), values: values.clone() };
-        let axes = names.iter().zip(&stops.values).map(axis).collect();
+        let axis = |(name, values): (&str, &Vec<f64>)| PageAxis { name: name.to_owned(), values: values.clone() };
+        let axes = names.into_iter().zip(&stops.values).map(axis).collect();
         Self::new(title, axes, regions, &states, rendered, stops.note(parameters).into_iter().chain(notes).collect())
     }
 }
@@ -154,31 +140,24 @@ fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Re
 }
 
 /// Regions along a parameter.
-fn along(sweep: &Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
-    let border = |at: usize, side: &str| {
-        let border = &sweep.borders[at];
-        let sides = [&sweep.regions[at].letter, &sweep.regions[at + 1].letter];
-        [format!("{side}, at {:?}", border.at), border.transition.in_words(sides)]
+fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
+    let border = |at: Option<usize>, side: &str| {
+        let border = sweep.borders.get(at?)?;
+        let sides = [&sweep.regions[at?].letter, &sweep.regions[at? + 1].letter];
+        Some([format!("{side}, at {:?}", border.at), border.transition.in_words(sides)])
     };
     let fills = fills_along(survey);
-    let region = |(at, region): (usize, &crate::write::sweep::RegionRecord)| PageRegion {
+    let region = |(at, region): (usize, &RegionRecord)| PageRegion {
         name: region.letter.clone(),
-        fill: fills.get(survey.regions[at].kind).map_or("", |fill| fill.hex()),
-        borders: [
-            at.checked_sub(1).map(|below| border(below, "below")),
-            (at < sweep.borders.len()).then(|| border(at, "above")),
-        ]
-        .into_iter()
-        .flatten()
-        .collect(),
+        fill: fills[survey.regions[at].kind].hex(),
+        borders: [border(at.checked_sub(1), "below"), border(Some(at), "above")].into_iter().flatten().collect(),
     };
-    (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes.clone())
+    (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes)
 }
 
 /// Regions of two parameters.
-fn areas(sweep: &MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
-    let fills = fills_of_map(map);
-    let region = |(at, region): (usize, &crate::write::sweep::MapRegion)| {
+fn areas(sweep: MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
+    let region = |(region, fill): (&MapRegion, Color)| {
         let mut borders: Vec<[String; 2]> = Vec::new();
         for border in sweep.borders {
             let [left, right] = &border.sides.map(letter);
@@ -192,8 +171,7 @@ fn areas(sweep: &MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
                 borders.push(entry);
             }
         }
-        let fill = fills.get(at).map_or("", |fill| fill.hex());
-        PageRegion { name: region.letter.clone(), fill, borders }
+        PageRegion { name: region.letter.clone(), fill: fill.hex(), borders }
     };
-    (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes.clone())
+    (sweep.regions.iter().zip(fills_of_map(map)).map(region).collect(), sweep.notes)
 }

@@ -20,17 +20,26 @@ pub struct PlotAxis {
     pub in_pi: bool,
 }
 
+impl PlotAxis {
+    /// An axis with this label that spans all that is drawn.
+    pub fn new(label: impl Into<String>) -> Self {
+        Self { label: label.into(), ..Self::default() }
+    }
+}
+
 /// What an axis spans, in the numbers at its ticks: exponents, or multiples of a power of ten.
 #[derive(Debug, Clone)]
 pub(super) struct Span {
-    pub low: f64,
-    pub high: f64,
+    low: f64,
+    high: f64,
     /// Between ticks.
-    pub step: f64,
+    step: f64,
     logarithmic: bool,
     in_pi: bool,
     /// A value is the number at its tick times ten to this.
     power: i32,
+    /// On the screen \[px\].
+    pub length: f64,
 }
 
 /// A tick of an axis.
@@ -46,30 +55,27 @@ pub(super) struct Tick {
 pub(super) struct PlotArea {
     pub x: Span,
     pub y: Span,
-    /// Inside of the axes.
-    pub size: Pixel,
 }
 
 impl PlotArea {
+    pub fn size(&self) -> Pixel {
+        (self.x.length, self.y.length)
+    }
+
     /// Where a point is, from the upper left corner of the axes; `None` if it has no place on them.
     pub fn place(&self, (x, y): PlotPoint) -> Option<Pixel> {
-        let at = (self.size.0 * self.x.share(x), self.size.1 * (1.0 - self.y.share(y)));
+        let at = (self.x.length * self.x.share(x), self.y.length * (1.0 - self.y.share(y)));
         (at.0.is_finite() && at.1.is_finite()).then_some(at)
     }
 
     /// The inside of the axes, with its upper left corner there.
     pub fn window(&self, corner: Pixel) -> PlotWindow {
-        PlotWindow { corner, size: self.size, x: self.x.ends(), y: self.y.ends() }
+        PlotWindow { corner, size: self.size(), x: self.x.ends(), y: self.y.ends() }
     }
 
     /// Whether a pixel is inside of the axes.
     pub fn holds(&self, (x, y): Pixel) -> bool {
-        (0.0..=self.size.0).contains(&x) && (0.0..=self.size.1).contains(&y)
-    }
-
-    /// The pixels of one unit of the x axis.
-    pub fn scale(&self) -> f64 {
-        self.x.scale(self.size.0)
+        (0.0..=self.x.length).contains(&x) && (0.0..=self.y.length).contains(&y)
     }
 }
 
@@ -83,17 +89,20 @@ const ROUNDING: f64 = 1e-10;
 const PITCH: f64 = 75.0;
 const PARTS: f64 = 4.0;
 
+/// The least and the greatest value; `None` without any.
+pub fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.map(|value| (value, value)).reduce(|(low, high), (least, most)| (low.min(least), high.max(most)))
+}
+
 impl Span {
     /// Of an axis of this `length` \[px\] along which `values` lie.
     pub fn new(axis: &PlotAxis, values: impl Iterator<Item = f64>, length: f64) -> Self {
         let usable = values.filter(|value| value.is_finite() && (!axis.logarithmic || *value > 0.0));
         let (lowest, highest) = axis.within.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-        let usable = usable.map(|value| value.max(lowest).min(highest));
-        let extent = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
-        let (least, most) = axis.range.unwrap_or_else(|| usable.fold((f64::INFINITY, f64::NEG_INFINITY), extent));
-        let (least, most) = if least <= most { (least, most) } else { (1.0, 1.0) };
+        let spanned = axis.range.or_else(|| range(usable.map(|value| value.max(lowest).min(highest))));
+        let (least, most) = spanned.filter(|(least, most)| least <= most).unwrap_or((1.0, 1.0));
         if axis.logarithmic {
-            return Self::of_powers(libm::log10(least), libm::log10(most));
+            return Self::of_powers(libm::log10(least), libm::log10(most), length);
         }
         let room = if axis.range.is_some() { 0.0 } else { ROOM * (most - least) };
         let (mut low, mut high) = (least - room, most + room);
@@ -104,24 +113,16 @@ impl Span {
             (low, high) = (low - room, high + room);
         }
         let largest = low.abs().max(high.abs());
-        let power =
-            if axis.in_pi || (1e-2..1e5).contains(&largest) { 0 } else { libm::floor(libm::log10(largest)) as i32 };
-        let mut span = Self { low, high, step: 1.0, logarithmic: false, in_pi: axis.in_pi, power };
+        let is_plain = axis.in_pi || (1e-2..1e5).contains(&largest);
+        let power = if is_plain { 0 } else { libm::floor(libm::log10(largest)) as i32 };
+        let mut span = Self { low, high, step: 1.0, logarithmic: false, in_pi: axis.in_pi, power, length };
         (span.low, span.high) = (span.shown(low), span.shown(high));
-        span.set_step(length);
+        span.extend(0.0, 0.0);
         span
     }
 
-    fn set_step(&mut self, length: f64) {
-        if !self.logarithmic {
-            let least = (self.high - self.low) * PITCH.min(length / PARTS) / length;
-            // Halves of pi, or whole multiples.
-            self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
-        }
-    }
-
     /// Of a logarithmic axis, in exponents.
-    fn of_powers(least: f64, most: f64) -> Self {
+    fn of_powers(least: f64, most: f64, length: f64) -> Self {
         // No mark lies on an axis.
         let room = MARK * (most - least);
         let low = (least - room).floor();
@@ -132,22 +133,22 @@ impl Span {
             span => (span / 40.0).ceil() * 5.0,
         };
         let (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
-        Self { low, high, step, logarithmic: true, in_pi: false, power: 0 }
+        Self { low, high, step, logarithmic: true, in_pi: false, power: 0, length }
     }
 
     /// The number at a value's tick.
     fn shown(&self, value: f64) -> f64 {
-        match (self.logarithmic, self.power) {
-            (true, _) => libm::log10(value),
+        match self.power {
+            _ if self.logarithmic => libm::log10(value),
             _ if self.in_pi => value / PI,
-            (false, 0) => value,
-            (false, power) if power < -300 => value * 1e300 * libm::pow(10.0, f64::from(-power - 300)),
-            (false, power) => value * libm::pow(10.0, f64::from(-power)),
+            0 => value,
+            power if power < -300 => value * 1e300 * libm::pow(10.0, f64::from(-power - 300)),
+            power => value * libm::pow(10.0, f64::from(-power)),
         }
     }
 
     /// The values at its beginning and at its end.
-    pub fn ends(&self) -> (f64, f64) {
+    fn ends(&self) -> (f64, f64) {
         let value = |shown: f64| match self.logarithmic {
             true => libm::pow(10.0, shown),
             false => shown * libm::pow(10.0, f64::from(self.power)),
@@ -160,36 +161,39 @@ impl Span {
         (self.shown(value) - self.low) / (self.high - self.low)
     }
 
-    /// The pixels of one unit on an axis of this `length` \[px\].
-    pub fn scale(&self, length: f64) -> f64 {
-        length * (self.share(1.0) - self.share(0.0))
+    /// The pixels of one unit.
+    pub fn scale(&self) -> f64 {
+        self.length * (self.share(1.0) - self.share(0.0))
     }
 
-    /// Makes the axis, of this `length` \[px\], span so many times as much about its middle.
-    pub fn widen(&mut self, factor: f64, length: f64) {
+    /// Makes the axis span so many times as much about its middle.
+    pub fn widen(&mut self, factor: f64) {
         let more = 0.5 * (factor - 1.0) * (self.high - self.low);
-        self.extend(more, more, length);
+        self.extend(more, more);
     }
 
-    /// Leaves `room` \[px\] free at the end of the axis, of this `length` \[px\].
-    pub fn leave(&mut self, room: f64, length: f64) {
-        self.extend(0.0, (self.high - self.low) * room / (length - room), length);
+    /// Leaves `room` \[px\] free at the end of the axis.
+    pub fn leave(&mut self, room: f64) {
+        self.extend(0.0, (self.high - self.low) * room / (self.length - room));
     }
 
-    fn extend(&mut self, below: f64, above: f64, length: f64) {
+    fn extend(&mut self, below: f64, above: f64) {
         (self.low, self.high) = (self.low - below, self.high + above);
-        self.set_step(length);
+        if !self.logarithmic {
+            let least = (self.high - self.low) * PITCH.min(self.length / PARTS) / self.length;
+            // Halves of pi, or whole multiples.
+            self.step = if self.in_pi && least <= 0.5 { 0.5 } else { step(least) };
+        }
     }
 
     /// The ticks, from its beginning to its end.
-    pub fn ticks(&self) -> Vec<Tick> {
+    pub fn ticks(&self) -> impl Iterator<Item = Tick> {
         let first = (self.low / self.step - ROUNDING).ceil() as i64;
         let last = (self.high / self.step + ROUNDING).floor() as i64;
-        let tick = |count: i64| {
+        (first..=last).map(|count| {
             let at = count as f64 * self.step;
             Tick { share: (at - self.low) / (self.high - self.low), text: self.text(at) }
-        };
-        (first..=last).map(tick).collect()
+        })
     }
 
     /// The text at a tick.
@@ -197,17 +201,15 @@ impl Span {
         match (self.logarithmic, self.in_pi) {
             (true, _) => power_of_ten(at),
             (_, true) => multiple_of_pi(at),
-            _ => fixed(at, decimals(self.step)),
+            _ => fixed(at, (-libm::floor(libm::log10(self.step) + 1e-9)).clamp(0.0, 17.0) as usize),
         }
     }
 
     /// The label, with the power of ten that the ticks leave out in its unit.
     pub fn label(&self, label: &str) -> String {
-        if self.power == 0 {
-            return label.to_owned();
-        }
         let power = power_of_ten(f64::from(self.power));
         match label.rsplit_once('[') {
+            _ if self.power == 0 => label.to_owned(),
             Some((name, unit)) => format!("{name}[{power} {unit}"),
             None => format!("{label} [{power}]"),
         }
@@ -216,18 +218,9 @@ impl Span {
 
 /// The first of 1, 2, 5, 10 ... that is not less.
 fn step(least: f64) -> f64 {
-    let power = libm::floor(libm::log10(least));
-    let unit = libm::pow(10.0, power);
-    [1.0, 2.0, 5.0]
-        .into_iter()
-        .map(|times| times * unit)
-        .find(|step| *step >= least * (1.0 - 1e-9))
-        .unwrap_or(10.0 * unit)
-}
-
-/// The decimals that distinguish ticks.
-fn decimals(step: f64) -> usize {
-    (-libm::floor(libm::log10(step) + 1e-9)).clamp(0.0, 17.0) as usize
+    let unit = libm::pow(10.0, libm::floor(libm::log10(least)));
+    let steps = [1.0, 2.0, 5.0].map(|times| times * unit);
+    steps.into_iter().find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * unit)
 }
 
 /// A number with so many decimals, and zero without a sign.
@@ -254,25 +247,16 @@ fn multiple_of_pi(share: f64) -> String {
 
 /// The power of ten of an exponent, as in 10⁻⁶.
 fn power_of_ten(exponent: f64) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let exponent = exponent.round();
-    let digits = format!("{}", exponent.abs()).chars().filter_map(|digit| digit.to_digit(10)).collect::<Vec<_>>();
-    let sign = if exponent < 0.0 { "⁻" } else { "" };
-    format!("10{sign}{}", digits.into_iter().map(|digit| DIGITS[digit as usize]).collect::<String>())
+    let digit = |sign: char| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(sign.to_digit(10)? as usize);
+    format!("10{}", format!("{exponent:.0}").chars().map(|sign| digit(sign).unwrap_or('⁻')).collect::<String>())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn span(range: (f64, f64)) -> Span {
-        Span::new(&PlotAxis { range: Some(range), ..PlotAxis::default() }, std::iter::empty(), 400.0)
-    }
-
-    #[test]
-    fn powers_are_written_as_such() {
-        assert_eq!(power_of_ten(-16.0), "10⁻¹⁶");
-        assert_eq!(power_of_ten(2.0), "10²");
+    fn span(range: (f64, f64), in_pi: bool) -> Span {
+        Span::new(&PlotAxis { range: Some(range), in_pi, ..PlotAxis::default() }, std::iter::empty(), 400.0)
     }
 
     #[test]
@@ -283,7 +267,7 @@ mod tests {
             ((0.4700, 0.4712), 0.0005, 0.47, "0.4700"),
             ((-300.0, 20.0), 100.0, -200.0, "−200"),
         ] {
-            let span = span(range);
+            let span = span(range, false);
             assert_eq!(span.step, step, "{range:?}");
             assert_eq!(span.text(at), text, "{range:?}");
             assert_eq!(span.label("a [m]"), "a [m]");
@@ -293,9 +277,8 @@ mod tests {
     #[test]
     fn powers_of_ten_move_into_the_label() {
         for (scale, power) in [(1e-7, "10⁻⁷"), (1e9, "10⁹"), (1e-310, "10⁻³¹⁰")] {
-            let span = span((0.0, 4.0 * scale));
-            assert_eq!(span.label("p [N s]"), format!("p [{power} N s]"));
-            assert_eq!(span.label("p"), format!("p [{power}]"));
+            let span = span((0.0, 4.0 * scale), false);
+            assert_eq!([span.label("p [N s]"), span.label("p")], [format!("p [{power} N s]"), format!("p [{power}]")]);
             assert_eq!(span.step, 1.0);
             assert!((span.share(scale) - 0.25).abs() < 1e-9);
         }
@@ -303,25 +286,21 @@ mod tests {
 
     #[test]
     fn angles_are_multiples_of_pi() {
-        let axis = PlotAxis { range: Some((-PI, PI)), in_pi: true, ..PlotAxis::default() };
-        let span = Span::new(&axis, std::iter::empty(), 320.0);
+        let span = span((-PI, PI), true);
         assert_eq!((span.low, span.high, span.step), (-1.0, 1.0, 0.5));
         let ticks = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|at| span.text(at));
         assert_eq!(ticks, ["−π", "−π/2", "0", "π/2", "π", "3π/2", "2π"]);
     }
 
     #[test]
-    fn a_spike_beyond_the_limits_widens_nothing() {
-        let axis = PlotAxis { within: Some((-1.0, 1.0)), ..PlotAxis::default() };
-        let span = Span::new(&axis, [-0.5, 0.5, 1e6].into_iter(), 400.0);
-        assert!((span.share(0.25) - 0.5).abs() < 1e-9 && span.share(1e6) > 1.0);
-    }
-
-    #[test]
-    fn a_single_value_has_room_about_it() {
+    fn an_axis_without_a_range_has_room_about_its_values() {
         for value in [0.0, -3.0, 1e-200] {
             let span = Span::new(&PlotAxis::default(), [value, value * (1.0 + 1e-15)].into_iter(), 400.0);
             assert!((span.share(value) - 0.5).abs() < 1e-9);
         }
+        // A spike beyond the limits widens nothing.
+        let axis = PlotAxis { within: Some((-1.0, 1.0)), ..PlotAxis::default() };
+        let span = Span::new(&axis, [-0.5, 0.5, 1e6].into_iter(), 400.0);
+        assert!((span.share(0.25) - 0.5).abs() < 1e-9 && span.share(1e6) > 1.0);
     }
 }

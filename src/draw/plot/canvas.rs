@@ -2,7 +2,7 @@
 
 use super::color::Color;
 use super::font;
-use std::fmt;
+use std::fmt::{self, Display};
 
 /// A point or a distance on the screen: right and down \[px\].
 pub type Pixel = (f64, f64);
@@ -10,52 +10,31 @@ pub type Pixel = (f64, f64);
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// Its color.
     pub color: Color,
-    /// Its width \[px\].
+    /// In px.
     pub width: f64,
-    /// Its dashes.
     pub dash: Dash,
 }
 
-/// Dashes of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dash {
-    /// No gaps.
-    Solid,
-    /// Long dashes.
-    Dashed,
-    /// Dots.
-    Dotted,
-    /// A dash and a dot.
-    DashDot,
-    /// Very long dashes.
-    Long,
-    /// A dash and two dots.
-    DashDotDot,
-}
+/// Lengths of a line's dashes and gaps in turn \[px\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dash(pub(super) &'static [f32]);
 
 impl Dash {
-    /// All, the most different ones first.
-    pub const ALL: [Self; 6] = [Self::Solid, Self::Dashed, Self::Dotted, Self::DashDot, Self::Long, Self::DashDotDot];
-
-    /// Lengths of dashes and gaps in turn \[px\].
-    pub(super) const fn lengths(self) -> &'static [f32] {
-        match self {
-            Self::Solid => &[],
-            Self::Dashed => &[8.0, 4.0],
-            Self::Dotted => &[2.0, 3.0],
-            Self::DashDot => &[9.0, 3.0, 2.0, 3.0],
-            Self::Long => &[18.0, 4.0],
-            Self::DashDotDot => &[9.0, 3.0, 2.0, 3.0, 2.0, 3.0],
-        }
-    }
+    pub const SOLID: Self = Self(&[]);
+    pub const DASHED: Self = Self(&[8.0, 4.0]);
+    pub const DOTTED: Self = Self(&[2.0, 3.0]);
+    const DASH_DOT: Self = Self(&[9.0, 3.0, 2.0, 3.0]);
+    const LONG: Self = Self(&[18.0, 4.0]);
+    const DASH_DOT_DOT: Self = Self(&[9.0, 3.0, 2.0, 3.0, 2.0, 3.0]);
+    /// The most different ones first.
+    pub const ALL: [Self; 6] =
+        [Self::SOLID, Self::DASHED, Self::DOTTED, Self::DASH_DOT, Self::LONG, Self::DASH_DOT_DOT];
 }
 
 impl Stroke {
-    /// A solid line.
     pub const fn solid(color: Color, width: f64) -> Self {
-        Self { color, width, dash: Dash::Solid }
+        Self { color, width, dash: Dash::SOLID }
     }
 }
 
@@ -71,28 +50,19 @@ pub(super) struct Canvas {
 #[derive(Debug, Default)]
 pub(super) struct PlotLayer(pub Vec<Element>);
 
+/// A window is a layer that is cut at a rectangle, whose upper left corner is the layer's origin.
 #[derive(Debug)]
 pub(super) enum Element {
-    /// Lines from corner to corner; what lies in an odd number of closed loops is filled.
-    Path {
-        pieces: Vec<Vec<Pixel>>,
-        closed: bool,
-        fill: Option<Color>,
-        stroke: Option<Stroke>,
-    },
-    Circle {
-        center: Pixel,
-        radius: f64,
-        fill: Option<Color>,
-        stroke: Option<Stroke>,
-    },
+    Shape { outline: Outline, fill: Option<Color>, stroke: Option<Stroke> },
     Text(TextLine),
-    /// A layer that is cut at a rectangle, whose upper left corner is the layer's origin.
-    Window {
-        corner: Pixel,
-        size: Pixel,
-        layer: PlotLayer,
-    },
+    Window { corner: Pixel, size: Pixel, layer: PlotLayer },
+}
+
+/// A path is lines from corner to corner; what lies in an odd number of closed ones is filled.
+#[derive(Debug)]
+pub(super) enum Outline {
+    Path { pieces: Vec<Vec<Pixel>>, closed: bool },
+    Circle { center: Pixel, radius: f64 },
 }
 
 /// A line of text.
@@ -112,7 +82,7 @@ pub(super) struct TextLine {
 }
 
 /// The part of a text that is at its place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Anchor {
     Start,
     Middle,
@@ -142,11 +112,12 @@ impl PlotLayer {
     }
 
     pub fn lines(&mut self, pieces: Vec<Vec<Pixel>>, stroke: Stroke) {
-        self.0.push(Element::Path { pieces, closed: false, fill: None, stroke: Some(stroke) });
+        let outline = Outline::Path { pieces, closed: false };
+        self.0.push(Element::Shape { outline, fill: None, stroke: Some(stroke) });
     }
 
-    pub fn area(&mut self, loops: Vec<Vec<Pixel>>, fill: Option<Color>, stroke: Option<Stroke>) {
-        self.0.push(Element::Path { pieces: loops, closed: true, fill, stroke });
+    pub fn area(&mut self, pieces: Vec<Vec<Pixel>>, fill: Option<Color>, stroke: Option<Stroke>) {
+        self.0.push(Element::Shape { outline: Outline::Path { pieces, closed: true }, fill, stroke });
     }
 
     /// A rectangle from its upper left corner.
@@ -155,49 +126,31 @@ impl PlotLayer {
     }
 
     pub fn circle(&mut self, center: Pixel, radius: f64, fill: Option<Color>, stroke: Option<Stroke>) {
-        self.0.push(Element::Circle { center, radius, fill, stroke });
+        self.0.push(Element::Shape { outline: Outline::Circle { center, radius }, fill, stroke });
     }
 
     pub fn text(&mut self, text: TextLine) {
         self.0.push(Element::Text(text));
-    }
-
-    pub fn window(&mut self, corner: Pixel, size: Pixel, layer: Self) {
-        self.0.push(Element::Window { corner, size, layer });
-    }
-
-    fn write(&self, svg: &mut String) {
-        for element in &self.0 {
-            *svg += &element.to_string();
-        }
     }
 }
 
 impl Canvas {
     /// The picture as SVG; texts stay texts.
     pub fn svg(&self) -> String {
-        let (width, height) = (Short(self.size.0), Short(self.size.1));
-        let mut svg = format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="{}""#,
-            font::FAMILY
-        );
-        let white = Color::White.hex();
-        svg += &format!(r#" stroke-linejoin="round"><rect width="100%" height="100%" fill="{white}"/>"#);
-        let mut sizes: Vec<Pixel> = Vec::new();
+        let mut clips: Vec<String> = Vec::new();
         for element in &self.layer.0 {
-            if let Element::Window { size, .. } = element
-                && !sizes.contains(size)
-            {
-                sizes.push(*size);
+            let &Element::Window { size: (width, height), .. } = element else { continue };
+            let (id, width, height) = (clip((width, height)), Short(width), Short(height));
+            let clip = format!(r#"<clipPath id="{id}"><rect width="{width}" height="{height}"/></clipPath>"#);
+            if !clips.contains(&clip) {
+                clips.push(clip);
             }
         }
-        for size in sizes {
-            let (width, height) = (Short(size.0), Short(size.1));
-            let id = clip(size);
-            svg += &format!(r#"<clipPath id="{id}"><rect width="{width}" height="{height}"/></clipPath>"#);
-        }
-        self.layer.write(&mut svg);
-        svg + "</svg>"
+        let (width, height, white) = (Short(self.size.0), Short(self.size.1), Color::White.hex());
+        let size = format!(r#"xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}""#);
+        let head = format!(r#"<svg {size} font-family="{}" stroke-linejoin="round">"#, font::FAMILY);
+        let paper = format!(r#"<rect width="100%" height="100%" fill="{white}"/>"#);
+        format!("{head}{paper}{}{}</svg>", clips.concat(), self.layer)
     }
 }
 
@@ -206,43 +159,61 @@ fn clip((width, height): Pixel) -> String {
     format!("clip{}x{}", Short(width), Short(height))
 }
 
-impl fmt::Display for Element {
+/// As SVG.
+impl Display for PlotLayer {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|element| match element {
+            Element::Shape { outline, fill, stroke } => {
+                write!(out, r#"<{outline} fill="{}""#, fill.map_or("none", Color::hex))?;
+                if let Some(Stroke { color, width, dash }) = stroke {
+                    write!(out, r#" stroke="{}" stroke-width="{}""#, color.hex(), Short(*width))?;
+                    if *dash != Dash::SOLID {
+                        let lengths: Vec<String> = dash.0.iter().map(f32::to_string).collect();
+                        write!(out, r#" stroke-dasharray="{}""#, lengths.join(" "))?;
+                    }
+                }
+                out.write_str("/>")
+            }
+            Element::Text(text) => text.fmt(out),
+            Element::Window { corner: (x, y), size, layer } => {
+                let (x, y, clip) = (Short(*x), Short(*y), clip(*size));
+                write!(out, r#"<g transform="translate({x},{y})" clip-path="url(#{clip})" fill-rule="evenodd">"#)?;
+                write!(out, "{layer}</g>")
+            }
+        })
+    }
+}
+
+/// As the beginning of an SVG element.
+impl Display for Outline {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Path { pieces, closed, fill, stroke } => {
-                write!(out, r#"<path d=""#)?;
+            Self::Circle { center: (x, y), radius } => {
+                write!(out, r#"circle cx="{}" cy="{}" r="{}""#, Short(*x), Short(*y), Short(*radius))
+            }
+            Self::Path { pieces, closed } => {
+                out.write_str(r#"path d=""#)?;
                 for piece in pieces.iter().filter(|piece| !piece.is_empty()) {
                     for (at, &(x, y)) in piece.iter().enumerate() {
                         write!(out, "{}{} {}", if at == 0 { 'M' } else { 'L' }, Short(x), Short(y))?;
                     }
                     out.write_str(if *closed { "Z" } else { "" })?;
                 }
-                write!(out, r#""{}/>"#, Painted(*fill, *stroke))
-            }
-            Self::Circle { center: (x, y), radius, fill, stroke } => {
-                let (cx, cy, r) = (Short(*x), Short(*y), Short(*radius));
-                write!(out, r#"<circle cx="{cx}" cy="{cy}" r="{r}"{}/>"#, Painted(*fill, *stroke))
-            }
-            Self::Text(text) => text.fmt(out),
-            Self::Window { corner: (x, y), size, layer } => {
-                let (x, y, clip) = (Short(*x), Short(*y), clip(*size));
-                write!(out, r#"<g transform="translate({x},{y})" clip-path="url(#{clip})" fill-rule="evenodd">"#)?;
-                layer.0.iter().try_for_each(|element| element.fmt(out))?;
-                out.write_str("</g>")
+                out.write_str("\"")
             }
         }
     }
 }
 
-impl fmt::Display for TextLine {
+impl Display for TextLine {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = (Short(self.at.0), Short(self.at.1));
         write!(out, r#"<text x="{x}" y="{y}" font-size="{}" fill="{}""#, self.size, self.color.hex())?;
-        match self.anchor {
-            Anchor::Start => {}
-            Anchor::Middle => out.write_str(r#" text-anchor="middle""#)?,
-            Anchor::End => out.write_str(r#" text-anchor="end""#)?,
-        }
+        out.write_str(match self.anchor {
+            Anchor::Start => "",
+            Anchor::Middle => r#" text-anchor="middle""#,
+            Anchor::End => r#" text-anchor="end""#,
+        })?;
         if self.upward {
             write!(out, r#" transform="rotate(-90,{x},{y})""#)?;
         }
@@ -255,26 +226,10 @@ impl fmt::Display for TextLine {
     }
 }
 
-/// The attributes for a fill and a stroke.
-struct Painted(Option<Color>, Option<Stroke>);
-
-impl fmt::Display for Painted {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, r#" fill="{}""#, self.0.map_or("none", Color::hex))?;
-        let Some(Stroke { color, width, dash }) = self.1 else { return Ok(()) };
-        write!(out, r#" stroke="{}" stroke-width="{}""#, color.hex(), Short(width))?;
-        if dash != Dash::Solid {
-            let lengths: Vec<String> = dash.lengths().iter().map(f32::to_string).collect();
-            write!(out, r#" stroke-dasharray="{}""#, lengths.join(" "))?;
-        }
-        Ok(())
-    }
-}
-
 /// A number with two decimals at most: nobody sees a hundredth of a pixel.
 struct Short(f64);
 
-impl fmt::Display for Short {
+impl Display for Short {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let text = format!("{:.2}", self.0);
         let short = text.trim_end_matches('0').trim_end_matches('.');
@@ -287,13 +242,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_short_and_never_minus_zero() {
+    fn numbers_are_short_and_texts_without_markup() {
         let texts = [-0.001, 2.0, 2.5, -7.126, 100.0].map(|value| Short(value).to_string());
         assert_eq!(texts, ["0", "2", "2.5", "-7.13", "100"]);
-    }
-
-    #[test]
-    fn control_characters_and_markup_do_not_break_a_picture() {
         let text = TextLine::new((0.0, 0.0), "a\u{1}<b> & \"c\" $d$\u{ffff}", 12, Anchor::Start);
         assert!(text.to_string().ends_with(">a&lt;b&gt; &amp; \"c\" $d$</text>"), "{text}");
     }

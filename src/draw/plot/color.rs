@@ -3,27 +3,15 @@
 /// A color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Color {
-    /// For text and outlines.
     Black,
-    /// Bluish green.
     Green,
-    /// Deep blue.
     Blue,
-    /// Light blue.
     SkyBlue,
-    /// Light orange.
     Orange,
-    /// Reddish orange.
     Vermilion,
-    /// Reddish purple.
     Purple,
-    /// Yellow.
-    Yellow,
-    /// For what is in the background.
     Gray,
-    /// For what is far in the background.
     Pale,
-    /// The color of paper.
     White,
     /// A pale fill under lines; neighbors differ in hue and in lightness.
     Tint(usize),
@@ -39,19 +27,7 @@ impl Color {
     /// How many different tints there are; those of even numbers are lighter than those of odd ones.
     pub const TINTS: usize = TINTS.len();
 
-    /// Colors for lines and marks, the most different ones first (Okabe and Ito 2008).
-    pub const SERIES: [Self; 8] = [
-        Self::Blue,
-        Self::Vermilion,
-        Self::Green,
-        Self::Purple,
-        Self::Orange,
-        Self::SkyBlue,
-        Self::Black,
-        Self::Yellow,
-    ];
-
-    /// The notation of SVG and CSS.
+    /// The notation of SVG and CSS; for lines and marks the colors of Okabe and Ito (2008).
     pub const fn hex(self) -> &'static str {
         match self {
             Self::Black => "#000000",
@@ -61,7 +37,6 @@ impl Color {
             Self::Orange => "#e69f00",
             Self::Vermilion => "#d55e00",
             Self::Purple => "#cc79a7",
-            Self::Yellow => "#f0e442",
             Self::Gray => "#808080",
             Self::Pale => "#e4e4e4",
             Self::White => "#ffffff",
@@ -81,22 +56,17 @@ mod tests {
 
     /// Lightness CIE L* of a color, 0 to 100.
     fn lightness(color: Color) -> f64 {
-        let channel = |value: u8| {
+        let [red, green, blue] = color.rgb().map(|value| {
             let value = f64::from(value) / 255.0;
             if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
-        };
-        let [red, green, blue] = color.rgb().map(channel);
-        let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-        116.0 * libm::cbrt(luminance) - 16.0
+        });
+        116.0 * libm::cbrt(0.2126 * red + 0.7152 * green + 0.0722 * blue) - 16.0
     }
 
     #[test]
     fn neighboring_tints_differ_in_gray_print() {
         let tints: Vec<f64> = (0..=TINTS.len()).map(|at| lightness(Color::Tint(at))).collect();
-        for pair in tints.windows(2) {
-            assert!((pair[0] - pair[1]).abs() > 6.0, "{pair:?}");
-        }
-        let darkest = tints.iter().copied().fold(f64::INFINITY, f64::min);
-        assert!(darkest > lightness(Color::SkyBlue));
+        assert!(tints.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 6.0), "{tints:?}");
+        assert!(tints.iter().all(|&tint| tint > lightness(Color::SkyBlue)));
     }
 }

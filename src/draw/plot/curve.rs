@@ -109,9 +109,7 @@ fn thinned(points: &[Pixel]) -> Vec<Pixel> {
 /// Corners so that no point is farther than `tolerance` from the line through them.
 fn corners(points: &[Pixel], tolerance: f64) -> Vec<Pixel> {
     let Some(end) = points.len().checked_sub(1) else { return Vec::new() };
-    let mut kept = vec![false; points.len()];
-    kept[0] = true;
-    kept[end] = true;
+    let mut kept: Vec<bool> = (0..=end).map(|at| at == 0 || at == end).collect();
     let mut spans = vec![(0, end)];
     while let Some((first, last)) = spans.pop() {
         let distances = (first + 1..last).map(|at| (at, distance(points[at], points[first], points[last])));

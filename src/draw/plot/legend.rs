@@ -10,26 +10,22 @@ use super::{Pixel, font};
 pub struct LegendEntry {
     /// In words; on several lines if it has line breaks, or is too long for one.
     pub name: String,
-    /// The sign.
     pub key: LegendKey,
 }
 
-/// A sign.
+/// The sign of a line, a mark, an area or an arrow, whose length is in units of the first panel's x axis.
 #[derive(Debug, Clone, Copy)]
 pub enum LegendKey {
-    /// A line.
     Line(Stroke),
-    /// A mark.
     Mark(Mark, Color),
-    /// An area or a band.
     Fill(Color),
-    /// An arrow.
-    Arrow {
-        /// Its shaft.
-        stroke: Stroke,
-        /// Its length, in units of the first panel's x axis.
-        length: f64,
-    },
+    Arrow { stroke: Stroke, length: f64 },
+}
+
+impl LegendEntry {
+    pub fn new(name: impl Into<String>, key: LegendKey) -> Self {
+        Self { name: name.into(), key }
+    }
 }
 
 /// Height of the font, from one row to the next, and from one line of an entry to the next \[px\].

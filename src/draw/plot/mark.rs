@@ -8,19 +8,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// A mark at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
-    /// A disc.
     Circle,
-    /// A disc with a hole.
     Ring,
-    /// A square on its side.
     Square,
-    /// A triangle, upright.
     Triangle,
     /// A square on its corner.
     Diamond,
-    /// A star with five points.
     Star,
-    /// A cross of two bars.
     Cross,
     /// The sign of a center of gravity.
     Center,
@@ -90,7 +84,7 @@ pub(super) fn arrow(from: Pixel, to: Pixel, stroke: Stroke, out: &mut PlotLayer)
     let side = |sign: f64| (base.0 + sign * half * across.0, base.1 + sign * half * across.1);
     let (shaft, tip) = (vec![from, end], vec![vec![to, side(1.0), side(-1.0)]]);
     // A white rim sets it off from the background; between dashes it would be visible.
-    if stroke.dash == Dash::Solid {
+    if stroke.dash == Dash::SOLID {
         out.line(shaft.clone(), Stroke::solid(Color::White, stroke.width + 2.0 * RIM));
     }
     out.area(tip.clone(), None, Some(Stroke::solid(Color::White, 2.0 * RIM)));

@@ -23,7 +23,7 @@ mod shape;
 mod panel;
 mod legend;
 
-pub use axis::PlotAxis;
+pub use axis::{PlotAxis, range};
 pub use canvas::{Dash, Pixel, Stroke};
 pub use color::Color;
 pub use legend::{LegendEntry, LegendKey};
@@ -35,7 +35,7 @@ pub use text_box::TextBox;
 use crate::Result;
 use canvas::{Anchor, Canvas, PlotLayer, TextLine};
 use legend::Legend;
-use panel::{Margins, PlacedPanel};
+use panel::{PlacedPanel, Track};
 use serde::Serialize;
 
 /// A point in the coordinates of a panel's axes.
@@ -68,9 +68,8 @@ pub struct PlotWindow {
     pub corner: Pixel,
     /// Its width and height \[px\].
     pub size: Pixel,
-    /// The values at the left and right end of its x axis.
+    /// The values at the left and right end of its x axis, and at the lower and upper end of its y axis.
     pub x: (f64, f64),
-    /// The values at the lower and upper end of its y axis.
     pub y: (f64, f64),
 }
 
@@ -102,15 +101,15 @@ impl Picture {
     }
 
     fn layout(&self) -> Option<(Canvas, Vec<PlotWindow>)> {
-        let rows: Vec<Vec<PlacedPanel>> =
-            self.rows.iter().map(|row| row.iter().filter_map(PlacedPanel::new).collect()).collect();
-        let rows: Vec<Vec<PlacedPanel>> = rows.into_iter().filter(|row| !row.is_empty()).collect();
-        let scale = rows.first()?.first()?.area.scale();
-        let columns = rows.iter().map(Vec::len).max().unwrap_or_default();
-        let columns: Vec<Track> =
-            (0..columns).map(|column| Track::of(rows.iter().filter_map(|row| row.get(column)))).collect();
-        let lines: Vec<Track> = rows.iter().map(|row| Track::of(row.iter())).collect();
-        let width = columns.iter().map(Track::width).sum::<f64>() + GAP * (columns.len() - 1) as f64;
+        let rows = self.rows.iter().map(|row| row.iter().filter_map(PlacedPanel::new).collect::<Vec<_>>());
+        let rows: Vec<Vec<PlacedPanel>> = rows.filter(|row| !row.is_empty()).collect();
+        let scale = rows.first()?.first()?.area.x.scale();
+        let columns = (0..rows.iter().map(Vec::len).max()?).map(|column| {
+            let panels = rows.iter().filter_map(|row| row.get(column));
+            Track::most(panels.map(|panel| panel.tracks()[0]))
+        });
+        let columns: Vec<Track> = columns.collect();
+        let width = columns.iter().map(Track::whole).sum::<f64>() + GAP * (columns.len() - 1) as f64;
 
         let mut layer = PlotLayer::default();
         let title = font::lines(&self.title, TITLE, width);
@@ -120,56 +119,23 @@ impl Picture {
         }
         let mut windows = Vec::new();
         let mut top = EDGE + title.len() as f64 * 1.4 * f64::from(TITLE);
-        for (row, line) in rows.iter().zip(&lines) {
-            let mut left = EDGE;
+        for row in &rows {
+            let (line, mut left) = (Track::most(row.iter().map(|panel| panel.tracks()[1])), EDGE);
             for (panel, column) in row.iter().zip(&columns) {
-                let corner = (left + column.margins.left, top + line.margins.top);
-                panel.draw(corner, column.margins.left, &mut layer);
+                let corner = (left + column.before, top + line.before);
+                panel.draw(corner, column.before, &mut layer);
                 windows.push(panel.area.window(corner));
-                left += column.width() + GAP;
+                left += column.whole() + GAP;
             }
-            top += line.height() + GAP;
+            top += line.whole() + GAP;
         }
 
         let legend = Legend::new(&self.legend, width, scale);
         let (legend_width, height) = if self.legend.is_empty() { (0.0, 0.0) } else { legend.size() };
-        let indent = columns.first().map_or(0.0, |column| column.margins.left);
-        let indent = if legend_width + indent <= width { indent } else { 0.0 };
+        let indent = if legend_width + columns[0].before <= width { columns[0].before } else { 0.0 };
         legend.draw((EDGE + indent, top), &mut layer);
         let size = ((width.max(legend_width) + 2.0 * EDGE).ceil(), (top + height + EDGE).ceil());
         Some((Canvas { size, layer }, windows))
-    }
-}
-
-/// A row or a column of panels: the most that they need around their axes and inside of them.
-struct Track {
-    margins: Margins,
-    size: Pixel,
-}
-
-impl Track {
-    fn of<'p>(panels: impl Iterator<Item = &'p PlacedPanel<'p>>) -> Self {
-        let empty = Self { margins: Margins::default(), size: (0.0, 0.0) };
-        panels.fold(empty, |Self { margins: most, size }, panel| {
-            let margins = panel.margins();
-            Self {
-                margins: Margins {
-                    left: most.left.max(margins.left),
-                    right: most.right.max(margins.right),
-                    top: most.top.max(margins.top),
-                    bottom: most.bottom.max(margins.bottom),
-                },
-                size: (size.0.max(panel.area.size.0), size.1.max(panel.area.size.1)),
-            }
-        })
-    }
-
-    fn width(&self) -> f64 {
-        self.margins.left + self.size.0 + self.margins.right
-    }
-
-    fn height(&self) -> f64 {
-        self.margins.top + self.size.1 + self.margins.bottom
     }
 }
 
@@ -177,23 +143,19 @@ impl Track {
 mod tests {
     use super::*;
 
-    fn axis(label: &str, logarithmic: bool) -> PlotAxis {
-        PlotAxis { label: label.into(), logarithmic, ..PlotAxis::default() }
-    }
-
     fn marks(points: Vec<PlotPoint>) -> Picture {
+        let axis = |label| PlotAxis { logarithmic: true, ..PlotAxis::new(label) };
         let shapes = vec![PlotShape::Marks { points, mark: Mark::Circle, color: Color::Blue, size: MARK }];
-        let panel = Panel { shapes, ..Panel::new(axis("time [s]", true), axis("error", true)) };
-        let entry = LegendEntry { name: "f64".into(), key: LegendKey::Mark(Mark::Circle, Color::Blue) };
-        Picture { title: "title".into(), rows: vec![vec![panel]], legend: vec![entry] }
+        let panel = Panel { shapes, ..Panel::new(axis("time [s]"), axis("error")) };
+        let legend = vec![LegendEntry::new("f64", LegendKey::Mark(Mark::Circle, Color::Blue))];
+        Picture { title: "title".into(), rows: vec![vec![panel]], legend }
     }
 
     #[test]
     fn points_off_the_axes_are_left_out() {
         assert_eq!(marks(vec![(0.0, 1.0), (1.0, f64::NAN)]).svg(), None);
         let svg = marks(vec![(1e-6, 1e-15), (1e-3, 1e-7), (1.0, 0.0)]).svg().unwrap();
-        assert!(svg.starts_with("<svg"));
-        assert!(!svg.contains("NaN"));
+        assert!(svg.starts_with("<svg") && !svg.contains("NaN"));
         assert_eq!(svg.matches("<circle").count(), 3, "two points and the key");
     }
 

@@ -33,7 +33,7 @@ pub(super) fn draw(
     for (point, name) in names {
         let Some(at) = area.place(*point) else { continue };
         let width = font::width(name, SIZE);
-        let is_free = |place: &TextBox| place.is_within(area.size) && !taken.iter().any(|other| other.meets(place));
+        let is_free = |place: &TextBox| place.is_within(area.size()) && !taken.iter().any(|other| other.meets(place));
         let free = places(at, width, below).find(is_free);
         let Some(place) = free.or_else(|| places(at, width, below).next()) else { continue };
         taken.push(place);
@@ -71,15 +71,13 @@ mod tests {
     fn names_of_one_point_do_not_cover_each_other() {
         let axis = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
         let span = || Span::new(&axis, std::iter::empty(), 300.0);
-        let area = PlotArea { x: span(), y: span(), size: (300.0, 300.0) };
+        let area = PlotArea { x: span(), y: span() };
         let names: Vec<(PlotPoint, String)> = (0..12).map(|at| ((0.5, 0.5), format!("link_{at}"))).collect();
-        let mark = TextBox::around((150.0, 150.0), 4.0);
-        let mut taken = vec![mark];
+        let mut taken = vec![TextBox::around((150.0, 150.0), 4.0)];
         draw(&names, false, &area, &mut taken, &mut PlotLayer::default());
         assert_eq!(taken.len(), 13);
         for (at, place) in taken.iter().enumerate() {
-            assert!(place.is_within(area.size), "{place:?}");
-            assert!(!taken[..at].iter().any(|other| other.meets(place)), "{place:?}");
+            assert!(place.is_within(area.size()) && !taken[..at].iter().any(|other| other.meets(place)), "{place:?}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A panel: its axes on the screen, and shapes within them.
 
-use super::axis::{PlotArea, PlotAxis, Span};
-use super::canvas::{Anchor, PlotLayer, Stroke, TextLine};
+use super::axis::{PlotArea, PlotAxis, Span, Tick};
+use super::canvas::{Anchor, Element, PlotLayer, Stroke, TextLine};
 use super::color::Color;
 use super::shape::PlotShape;
 use super::{Pixel, PlotPoint, font};
@@ -11,9 +11,7 @@ use super::{Pixel, PlotPoint, font};
 pub struct Panel {
     /// Above it; lines after the first are smaller.
     pub title: String,
-    /// The axis below it.
     pub x: PlotAxis,
-    /// The axis to its left.
     pub y: PlotAxis,
     /// Width and height inside of the axes \[px\].
     pub size: Pixel,
@@ -27,26 +25,36 @@ pub struct Panel {
     pub shapes: Vec<PlotShape>,
 }
 
-/// An interval of x that is shaded; a narrow one is a line.
+/// An interval of x that is shaded with a pale color, and a letter at its upper end; a narrow one is a line.
 #[derive(Debug, Clone)]
 pub struct Band {
-    /// Its beginning.
     pub from: f64,
-    /// Its end.
     pub to: f64,
-    /// The letter at its upper end.
     pub letter: String,
-    /// Its color, a pale one.
     pub fill: Color,
 }
 
-/// The room that a panel needs around its axes \[px\].
+/// A row or a column of panels: its length inside of the axes, and what it needs before and after them \[px\].
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Margins {
-    pub left: f64,
-    pub right: f64,
-    pub top: f64,
-    pub bottom: f64,
+pub(super) struct Track {
+    pub before: f64,
+    pub inside: f64,
+    pub after: f64,
+}
+
+impl Track {
+    /// The most that any of these needs.
+    pub fn most(tracks: impl Iterator<Item = Self>) -> Self {
+        tracks.fold(Self::default(), |most, track| Self {
+            before: most.before.max(track.before),
+            inside: most.inside.max(track.inside),
+            after: most.after.max(track.after),
+        })
+    }
+
+    pub fn whole(&self) -> f64 {
+        self.before + self.inside + self.after
+    }
 }
 
 /// Heights of fonts \[px\].
@@ -115,33 +123,34 @@ impl<'p> PlacedPanel<'p> {
         let mut x = Span::new(&panel.x, along, width);
         let mut y = Span::new(&panel.y, points.iter().map(|point| point.1), height);
         if panel.equal {
-            let ratio = x.scale(width) / y.scale(height);
-            if ratio > 1.0 { x.widen(ratio, width) } else { y.widen(1.0 / ratio, height) }
+            let ratio = x.scale() / y.scale();
+            if ratio > 1.0 { x.widen(ratio) } else { y.widen(1.0 / ratio) }
         }
-        let mut placed = Self { panel, area: PlotArea { x, y, size: panel.size } };
+        let mut placed = Self { panel, area: PlotArea { x, y } };
         let stories = placed.letters().iter().map(|letter| letter.story + 1).max();
         if let (Some(stories), None) = (stories, panel.y.range) {
             // No curve runs through the letters.
-            placed.area.y.leave(MARGIN + stories as f64 * STORY, height);
+            placed.area.y.leave(MARGIN + stories as f64 * STORY);
         }
         panel.is_drawn().then_some(placed)
     }
 
-    /// The room that it needs around its axes.
-    pub fn margins(&self) -> Margins {
-        let Panel { x, y, framed, .. } = self.panel;
+    /// The room that it needs across and down.
+    pub fn tracks(&self) -> [Track; 2] {
+        let Panel { x, y, framed, size: (width, height), .. } = self.panel;
         let title = self.panel.title_lines().len() as f64 * LINE;
         let top = if title > 0.0 { title + ABOVE } else { ABOVE };
-        if !framed {
-            return Margins { left: BARE, right: BARE, top, bottom: BARE };
+        let (mut left, mut right, mut bottom) = (BARE, BARE, BARE);
+        if *framed {
+            let label = |axis: &PlotAxis, room: f64| if axis.label.is_empty() { 0.0 } else { room };
+            bottom = if x.bare { 4.0 } else { TICK + NEAR + f64::from(NUMBER) + BARE + label(x, BELOW) };
+            let width = |tick: Tick| font::width(&tick.text, NUMBER);
+            let widest = self.area.y.ticks().map(width).fold(0.0, f64::max);
+            left = if y.bare { ABOVE } else { widest + TICK + NEAR + label(y, LEFT) };
+            // Half the last number may stand beyond the axis.
+            right = self.area.x.ticks().last().map_or(0.0, |tick| 0.5 * width(tick)).max(ABOVE);
         }
-        let label = |axis: &PlotAxis, room: f64| if axis.label.is_empty() { 0.0 } else { room };
-        let bottom = if x.bare { 4.0 } else { TICK + NEAR + f64::from(NUMBER) + BARE + label(x, BELOW) };
-        let widths = self.area.y.ticks().into_iter().map(|tick| font::width(&tick.text, NUMBER));
-        let left = if y.bare { ABOVE } else { widths.fold(0.0, f64::max) + TICK + NEAR + label(y, LEFT) };
-        // Half the last number may stand beyond the axis.
-        let last = self.area.x.ticks().last().map_or(0.0, |tick| 0.5 * font::width(&tick.text, NUMBER));
-        Margins { left, right: last.max(ABOVE), top, bottom }
+        [Track { before: left, inside: *width, after: right }, Track { before: top, inside: *height, after: bottom }]
     }
 
     /// Draws it with the upper left corner inside of its axes at `corner`; its label is so far to the `left` of them.
@@ -161,8 +170,11 @@ impl<'p> PlacedPanel<'p> {
         panel.bands.iter().for_each(|band| self.band(band, &mut inside));
         let mut taken = panel.shapes.iter().flat_map(|shape| shape.marked(&self.area)).collect();
         panel.shapes.iter().for_each(|shape| shape.draw(&self.area, &mut taken, &mut inside));
-        self.letters().iter().for_each(|letter| letter.draw(&mut inside));
-        out.window(corner, panel.size, inside);
+        for BandLetter { text, middle, story, is_wide } in self.letters() {
+            let baseline = MARGIN + font::CAPITAL * f64::from(LETTER) + story as f64 * STORY;
+            inside.text(TextLine { rim: is_wide, ..TextLine::new((middle, baseline), text, LETTER, Anchor::Middle) });
+        }
+        out.0.push(Element::Window { corner, size: panel.size, layer: inside });
         if panel.framed {
             self.axes(corner, left, out);
         }
@@ -170,14 +182,14 @@ impl<'p> PlacedPanel<'p> {
 
     /// Lines at the ticks.
     fn grid(&self, out: &mut PlotLayer) {
-        let (width, height) = self.area.size;
-        if self.panel.framed && !self.panel.x.bare {
-            let lines = self.area.x.ticks().into_iter().map(|tick| width * tick.share);
-            lines.for_each(|x| out.line(vec![(x, 0.0), (x, height)], GRID));
+        let Panel { x, y, framed, size: (width, height), .. } = self.panel;
+        if *framed && !x.bare {
+            let lines = self.area.x.ticks().map(|tick| width * tick.share);
+            lines.for_each(|x| out.line(vec![(x, 0.0), (x, *height)], GRID));
         }
-        if self.panel.framed && !self.panel.y.bare {
-            let lines = self.area.y.ticks().into_iter().map(|tick| height * (1.0 - tick.share));
-            lines.for_each(|y| out.line(vec![(0.0, y), (width, y)], GRID));
+        if *framed && !y.bare {
+            let lines = self.area.y.ticks().map(|tick| height * (1.0 - tick.share));
+            lines.for_each(|y| out.line(vec![(0.0, y), (*width, y)], GRID));
         }
     }
 
@@ -211,14 +223,14 @@ impl<'p> PlacedPanel<'p> {
 
     /// Where a band begins and ends \[px\].
     fn sides(&self, band: &Band) -> Option<(f64, f64)> {
-        let side = |value| Some(self.area.size.0 * self.area.x.share(value)).filter(|side| side.is_finite());
+        let side = |value| Some(self.panel.size.0 * self.area.x.share(value)).filter(|side| side.is_finite());
         let (from, to) = (side(band.from)?, side(band.to)?);
         Some((from.min(to), from.max(to)))
     }
 
     fn band(&self, band: &Band, out: &mut PlotLayer) {
         let Some((from, to)) = self.sides(band) else { return };
-        let height = self.area.size.1;
+        let height = self.panel.size.1;
         let edge = |x: f64| vec![(x, 0.0), (x, height)];
         if to - from < EDGE.width {
             return out.line(edge(0.5 * (from + to)), EDGE);
@@ -229,7 +241,7 @@ impl<'p> PlacedPanel<'p> {
 
     /// The letters of bands; those of narrow bands stand below each other.
     fn letters(&self) -> Vec<BandLetter<'p>> {
-        let width = self.area.size.0;
+        let width = self.panel.size.0;
         let mut ends = [f64::NEG_INFINITY; STORIES];
         let mut letters = Vec::new();
         for band in self.panel.bands.iter().filter(|band| !band.letter.is_empty()) {
@@ -259,14 +271,6 @@ struct BandLetter<'a> {
     is_wide: bool,
 }
 
-impl BandLetter<'_> {
-    fn draw(&self, out: &mut PlotLayer) {
-        let baseline = MARGIN + font::CAPITAL * f64::from(LETTER) + self.story as f64 * STORY;
-        let text = TextLine::new((self.middle, baseline), self.text, LETTER, Anchor::Middle);
-        out.text(TextLine { rim: self.is_wide, ..text });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,8 +278,8 @@ mod tests {
     #[test]
     fn equal_axes_have_units_of_one_length() {
         let corners = PlotShape::Line { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke: AXIS };
-        let axes = || PlotAxis::default();
-        let panel = Panel { equal: true, size: (300.0, 200.0), shapes: vec![corners], ..Panel::new(axes(), axes()) };
+        let panel = Panel::new(PlotAxis::default(), PlotAxis::default());
+        let panel = Panel { equal: true, size: (300.0, 200.0), shapes: vec![corners], ..panel };
         let area = PlacedPanel::new(&panel).unwrap().area;
         let [origin, right, up] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|point| area.place(point).unwrap());
         assert!(((right.0 - origin.0) - (origin.1 - up.1)).abs() < 1e-9);

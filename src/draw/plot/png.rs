@@ -1,6 +1,6 @@
 //! A picture as pixels (the only user of tiny-skia).
 
-use super::canvas::{Anchor, Canvas, Element, PlotLayer, RIM, Stroke, TextLine};
+use super::canvas::{Anchor, Canvas, Element, Outline, PlotLayer, RIM, Stroke, TextLine};
 use super::color::Color;
 use super::font;
 use crate::{Error, Reason, Result};
@@ -35,22 +35,7 @@ impl Brush<'_> {
     fn layer(&mut self, layer: &PlotLayer) {
         for element in &layer.0 {
             match element {
-                Element::Path { pieces, closed, fill, stroke } => {
-                    let mut path = PathBuilder::new();
-                    for piece in pieces {
-                        for (at, &(x, y)) in piece.iter().enumerate() {
-                            let (x, y) = (x as f32, y as f32);
-                            if at == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
-                        }
-                        if *closed {
-                            path.close();
-                        }
-                    }
-                    self.shape(path.finish(), *fill, *stroke);
-                }
-                &Element::Circle { center: (x, y), radius, fill, stroke } => {
-                    self.shape(PathBuilder::from_circle(x as f32, y as f32, radius as f32), fill, stroke);
-                }
+                Element::Shape { outline, fill, stroke } => self.shape(outline, *fill, *stroke),
                 Element::Text(text) => self.text(text),
                 Element::Window { corner, size, layer } => self.window(*corner, *size, layer),
             }
@@ -66,31 +51,52 @@ impl Brush<'_> {
         Brush { pixels: self.pixels, place, clip: Some(mask) }.layer(layer);
     }
 
-    fn shape(&mut self, path: Option<Path>, fill: Option<Color>, stroke: Option<Stroke>) {
+    fn shape(&mut self, outline: &Outline, fill: Option<Color>, stroke: Option<Stroke>) {
+        let path = match outline {
+            &Outline::Circle { center: (x, y), radius } => PathBuilder::from_circle(x as f32, y as f32, radius as f32),
+            Outline::Path { pieces, closed } => {
+                let mut path = PathBuilder::new();
+                for piece in pieces {
+                    for (at, &(x, y)) in piece.iter().enumerate() {
+                        let (x, y) = (x as f32, y as f32);
+                        if at == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+                    }
+                    if *closed {
+                        path.close();
+                    }
+                }
+                path.finish()
+            }
+        };
         let Some(path) = path else { return };
         if let Some(color) = fill {
             self.fill(&path, color, FillRule::EvenOdd, self.place);
         }
         if let Some(Stroke { color, width, dash }) = stroke {
-            let dash = StrokeDash::new(dash.lengths().to_vec(), 0.0);
-            self.stroke(&path, color, width as f32, dash, self.place);
+            self.stroke(&path, color, width as f32, StrokeDash::new(dash.0.to_vec(), 0.0), self.place);
         }
     }
 
     fn text(&mut self, text: &TextLine) {
         let Some(face) = font::face() else { return };
         let scale = text.size as f32 / f32::from(face.units_per_em());
-        let mut outline = GlyphOutline { path: PathBuilder::new(), left: 0.0, scale };
+        let (mut line, mut width) = (PathBuilder::new(), 0.0);
         for (glyph, advance) in font::glyphs(&face, &text.content) {
+            let mut outline = GlyphOutline(PathBuilder::new());
             face.outline_glyph(glyph, &mut outline);
-            outline.left += scale * advance as f32;
+            // Glyphs have their y axis upward.
+            let place = Transform::from_row(scale, 0.0, 0.0, -scale, width, 0.0);
+            if let Some(path) = outline.0.finish().and_then(|path| path.transform(place)) {
+                line.push_path(&path);
+            }
+            width += scale * advance as f32;
         }
         let before = match text.anchor {
             Anchor::Start => 0.0,
-            Anchor::Middle => 0.5 * outline.left,
-            Anchor::End => outline.left,
+            Anchor::Middle => 0.5 * width,
+            Anchor::End => width,
         };
-        let Some(path) = outline.path.finish() else { return };
+        let Some(path) = line.finish() else { return };
         let place = self.place.pre_translate(text.at.0 as f32, text.at.1 as f32);
         let place = if text.upward { place.pre_rotate(-90.0) } else { place }.pre_translate(-before, 0.0);
         if text.rim {
@@ -116,42 +122,27 @@ fn paint(color: Color) -> Paint<'static> {
     paint
 }
 
-/// The outline of a line of text; glyphs have their y axis upward.
-struct GlyphOutline {
-    path: PathBuilder,
-    /// Where the next glyph begins.
-    left: f32,
-    scale: f32,
-}
-
-impl GlyphOutline {
-    fn at(&self, x: f32, y: f32) -> (f32, f32) {
-        (self.left + self.scale * x, -self.scale * y)
-    }
-}
+/// The outline of a glyph in the font's units.
+struct GlyphOutline(PathBuilder);
 
 impl OutlineBuilder for GlyphOutline {
     fn move_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.at(x, y);
-        self.path.move_to(x, y);
+        self.0.move_to(x, y);
     }
 
     fn line_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.at(x, y);
-        self.path.line_to(x, y);
+        self.0.line_to(x, y);
     }
 
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        let ((x1, y1), (x, y)) = (self.at(x1, y1), self.at(x, y));
-        self.path.quad_to(x1, y1, x, y);
+        self.0.quad_to(x1, y1, x, y);
     }
 
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        let ((x1, y1), (x2, y2), (x, y)) = (self.at(x1, y1), self.at(x2, y2), self.at(x, y));
-        self.path.cubic_to(x1, y1, x2, y2, x, y);
+        self.0.cubic_to(x1, y1, x2, y2, x, y);
     }
 
     fn close(&mut self) {
-        self.path.close();
+        self.0.close();
     }
 }

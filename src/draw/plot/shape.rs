@@ -9,77 +9,28 @@ use super::text_box::TextBox;
 use super::{Pixel, PlotPoint, curve};
 use std::collections::BTreeSet;
 
-/// Something that is drawn, in the coordinates of its panel's axes.
+/// Something that is drawn, in the coordinates of its panel's axes; fonts, marks and strokes are in px.
 #[derive(Debug, Clone)]
 pub enum PlotShape {
     /// A line through all points; a point that has no place on the axes interrupts it.
-    Line {
-        /// From one to the next.
-        points: Vec<PlotPoint>,
-        /// How it is drawn.
-        stroke: Stroke,
-    },
-    /// A mark at each point.
-    Marks {
-        /// Where.
-        points: Vec<PlotPoint>,
-        /// What.
-        mark: Mark,
-        /// Its color.
-        color: Color,
-        /// Half its width \[px\].
-        size: f64,
-    },
-    /// Closed loops; what lies within an odd number of them is filled.
-    Area {
-        /// The corners of each.
-        loops: Vec<Vec<PlotPoint>>,
-        /// Its inside.
-        fill: Option<Color>,
-        /// Its outline.
-        stroke: Option<Stroke>,
-    },
-    /// A circle; round if both axes have one scale.
-    Circle {
-        /// Its center.
-        center: PlotPoint,
-        /// Its radius, in units of the x axis.
-        radius: f64,
-        /// Its inside.
-        fill: Option<Color>,
-        /// Its outline.
-        stroke: Option<Stroke>,
-    },
-    /// An arrow; a short one has a smaller head.
-    Arrow {
-        /// Its tail.
-        from: PlotPoint,
-        /// Its tip.
-        to: PlotPoint,
-        /// Its shaft.
-        stroke: Stroke,
-    },
+    Line { points: Vec<PlotPoint>, stroke: Stroke },
+    /// A mark of half this width at each point.
+    Marks { points: Vec<PlotPoint>, mark: Mark, color: Color, size: f64 },
+    /// Closed loops of corners; what lies within an odd number of them is filled.
+    Area { loops: Vec<Vec<PlotPoint>>, fill: Option<Color>, stroke: Option<Stroke> },
+    /// A circle, its radius in units of the x axis; round if both axes have one scale.
+    Circle { center: PlotPoint, radius: f64, fill: Option<Color>, stroke: Option<Stroke> },
+    /// An arrow to its tip; a short one has a smaller head.
+    Arrow { from: PlotPoint, to: PlotPoint, stroke: Stroke },
     /// A line of text with its middle at a point, with a white rim that keeps it readable over lines.
-    Text {
-        /// The point.
-        at: PlotPoint,
-        /// What it says.
-        text: String,
-        /// Height of the font \[px\].
-        size: u32,
-    },
-    /// Names of points, which keep clear of each other.
-    Names {
-        /// Each point and its name.
-        names: Vec<(PlotPoint, String)>,
-        /// Whether a name stands rather below its point than above.
-        below: bool,
-    },
+    Text { at: PlotPoint, text: String, size: u32 },
+    /// Names of points, which keep clear of each other, and may stand rather below their points than above.
+    Names { names: Vec<(PlotPoint, String)>, below: bool },
 }
 
 impl PlotShape {
     /// The points that its panel's axes must span.
-    pub(super) fn extent(&self) -> Vec<PlotPoint> {
+    pub(in crate::draw) fn extent(&self) -> Vec<PlotPoint> {
         match self {
             Self::Line { points, .. } | Self::Marks { points, .. } => points.clone(),
             Self::Area { loops, .. } => loops.concat(),
@@ -103,7 +54,7 @@ impl PlotShape {
                 let placed: Vec<Option<Pixel>> = points.iter().map(|&point| area.place(point)).collect();
                 for part in placed.split(Option::is_none) {
                     let part: Vec<Pixel> = part.iter().copied().flatten().collect();
-                    curve::visible(&part, area.size).into_iter().for_each(|piece| out.line(piece, *stroke));
+                    curve::visible(&part, area.size()).into_iter().for_each(|piece| out.line(piece, *stroke));
                 }
             }
             Self::Marks { points, mark, color, size } => {
@@ -117,13 +68,13 @@ impl PlotShape {
             Self::Area { loops, fill, stroke } => {
                 let enclosed = |corners: &Vec<PlotPoint>| {
                     let placed: Vec<Pixel> = corners.iter().filter_map(|&corner| area.place(corner)).collect();
-                    curve::enclosed(&placed, area.size)
+                    curve::enclosed(&placed, area.size())
                 };
                 out.area(loops.iter().map(enclosed).collect(), *fill, *stroke);
             }
             &Self::Circle { center, radius, fill, stroke } => {
                 let Some(center) = area.place(center) else { return };
-                out.circle(center, radius * area.scale(), fill, stroke);
+                out.circle(center, radius * area.x.scale(), fill, stroke);
             }
             &Self::Arrow { from, to, stroke } => {
                 if let (Some(from), Some(to)) = (area.place(from), area.place(to)) {

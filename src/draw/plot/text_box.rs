@@ -2,10 +2,9 @@
 
 use super::{Pixel, font};
 
-/// The rectangle that a text takes \[px\].
+/// \[px\].
 #[derive(Debug, Clone, Copy)]
 pub struct TextBox {
-    /// Its middle.
     pub middle: Pixel,
     /// Half its width and height.
     pub half: Pixel,

@@ -6,9 +6,7 @@ use crate::state::Ground;
 /// The smallest upright rectangle around some points \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Its lower left corner.
     pub low: Vector<f64>,
-    /// Its upper right corner.
     pub high: Vector<f64>,
 }
 

@@ -18,15 +18,16 @@ pub mod picture;
 pub use extent::Extent;
 pub use shape::DrawnShape;
 
-use crate::contact::{Feet, Placement};
+use crate::contact::{Contact, Feet, Placement};
+use crate::impact::Outcome;
 use crate::pipeline::Impact;
 use crate::planar::{Pair, Vector};
-use crate::robot::Robot;
+use crate::robot::{Body, Robot};
 use crate::state::{NamedContact, State};
 use serde::Serialize;
 
 /// A robot in its configuration, its contacts and the outcomes of its impact.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Drawing {
     /// Rigid bodies, in the robot's order.
     pub bodies: Vec<DrawnBody>,
@@ -38,14 +39,12 @@ pub struct Drawing {
     pub contacts: Vec<DrawnContact>,
     /// Impulses that the state applies \[N s\].
     pub applied: Vec<Arrow>,
-    /// Every outcome.
     pub outcomes: Vec<DrawnOutcome>,
 }
 
-/// A rigid body.
+/// A rigid body; its frame's origin is where its joint is.
 #[derive(Debug, Clone)]
 pub struct DrawnBody {
-    /// Its frame's origin, where its joint is.
     pub origin: Vector<f64>,
     /// The x axis of its frame.
     pub x_axis: Vector<f64>,
@@ -58,38 +57,32 @@ pub struct DrawnBody {
     pub bones: Vec<Vector<f64>>,
     /// Whether it has no children.
     pub is_last: bool,
-    /// Its mass \[kg\].
+    /// In kg.
     pub mass: f64,
 }
 
 /// A closed contact.
 #[derive(Debug, Clone)]
 pub struct DrawnContact {
-    /// Its name.
     pub name: String,
-    /// Where it is.
     pub point: Vector<f64>,
     /// Unit normal of the ground, toward the robot.
     pub normal: Vector<f64>,
-    /// Its velocity before the impact \[m/s\].
+    /// In m/s.
     pub velocity_before: Vector<f64>,
 }
 
-/// The effect of an outcome on each contact.
+/// The impulse of the ground on each contact \[N s\], and its velocity after the impact \[m/s\].
 #[derive(Debug, Clone)]
 pub struct DrawnOutcome {
-    /// The impulse of the ground \[N s\].
     pub impulse: Vec<Vector<f64>>,
-    /// The velocity after the impact \[m/s\].
     pub velocity_after: Vec<Vector<f64>>,
 }
 
-/// A vector at a point.
+/// A vector, in its own unit, at the point where it acts \[m\].
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Arrow {
-    /// Where it acts \[m\].
     pub point: Vector<f64>,
-    /// The vector, in its own unit.
     pub vector: Vector<f64>,
 }
 
@@ -99,35 +92,26 @@ const SHORT: f64 = 0.02;
 impl Drawing {
     /// A robot with its bodies at `placement` and the feet that are `named` in addition to its own shapes.
     pub fn of_robot(robot: &Robot, placement: &Placement, named: &[NamedContact]) -> Self {
-        let mut bodies: Vec<DrawnBody> = robot
-            .bodies
-            .iter()
-            .enumerate()
-            .map(|(at, body)| DrawnBody {
-                origin: placement.world(at, Vector::zero()),
-                x_axis: placement.turned(at, Vector::new(1.0, 0.0)),
-                shapes: Vec::new(),
-                com: (body.mass > 0.0).then_some(body.com),
-                bones: Vec::new(),
-                is_last: true,
-                mass: body.mass,
-            })
-            .collect();
+        let body = |(at, body): (usize, &Body)| DrawnBody {
+            origin: placement.world(at, Vector::zero()),
+            x_axis: placement.turned(at, Vector::new(1.0, 0.0)),
+            shapes: Vec::new(),
+            com: (body.mass > 0.0).then_some(body.com),
+            bones: Vec::new(),
+            is_last: true,
+            mass: body.mass,
+        };
+        let mut drawing = Self { bodies: robot.bodies.iter().enumerate().map(body).collect(), ..Self::default() };
         for foot in Feet::new(robot, named).iter() {
-            bodies[foot.body].shapes.push(DrawnShape::new(&foot.outline));
+            drawing.bodies[foot.body].shapes.push(DrawnShape::new(&foot.outline));
         }
-        let mut joints = Vec::new();
         for (at, body) in robot.bodies.iter().enumerate() {
             let Some((parent, _, axis)) = body.joint.map(|mover| robot.hinge(mover)) else { continue };
-            let origin = bodies[at].origin;
-            bodies[parent].bones.push(origin);
-            bodies[parent].is_last = false;
-            if axis.is_some() {
-                joints.push(origin);
-            }
+            let origin = drawing.bodies[at].origin;
+            drawing.bodies[parent].bones.push(origin);
+            drawing.bodies[parent].is_last = false;
+            drawing.joints.extend(axis.map(|_| origin));
         }
-        let (ground, contacts, applied, outcomes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut drawing = Self { bodies, joints, ground, contacts, applied, outcomes };
         let size = drawing.extent().size();
         drawing.bodies.iter_mut().for_each(|body| body.grow_bones(SHORT * size));
         drawing
@@ -136,51 +120,45 @@ impl Drawing {
     /// A state of the robot and every outcome of its impact; `feet` are those in addition to its own shapes.
     pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
         let State { scene, .. } = state;
-        let placement = &impact.placement;
         let named: Vec<NamedContact> = feet.iter().chain(scene.contacts.iter().flatten()).copied().collect();
-        let mut drawing = Self::of_robot(robot, placement, &named);
+        let mut drawing = Self::of_robot(robot, &impact.placement, &named);
+        let in_world = |link: usize, offset| {
+            let link = &robot.links[link];
+            impact.placement.world(link.body, link.point(offset))
+        };
         for pin in &scene.loops {
-            let ends = [pin.a, pin.b].map(|end| {
-                let link = &robot.links[end.link];
-                let point = placement.world(link.body, link.point(end.offset));
-                drawing.bodies[link.body].bones.push(point);
-                point
-            });
-            drawing.joints.push(ends[0]);
+            let ends = [pin.a, pin.b].map(|end| (robot.links[end.link].body, in_world(end.link, end.offset)));
+            ends.into_iter().for_each(|(body, point)| drawing.bodies[body].bones.push(point));
+            drawing.joints.push(ends[0].1);
         }
-        let in_world = |pairs: &[Pair<f64>]| -> Vec<Vector<f64>> {
+        let turned = |pairs: &[Pair<f64>]| -> Vec<Vector<f64>> {
             impact.contacts.iter().zip(pairs).map(|(contact, &pair)| contact.ground.apply(pair.into())).collect()
         };
-        let contacts = impact.contacts.iter().zip(in_world(&impact.velocity_before));
-        let contacts = contacts.map(|(contact, velocity_before)| DrawnContact {
+        let contacts = impact.contacts.iter().zip(turned(&impact.velocity_before));
+        let contact = |(contact, velocity_before): (&Contact, _)| DrawnContact {
             name: contact.name.clone(),
             point: contact.point,
             normal: contact.normal(),
             velocity_before,
-        });
-        drawing.contacts = contacts.collect();
-        let outcomes = impact.analysis.as_ref().map_or(&[][..], |analysis| &analysis.outcomes).iter();
-        let outcomes = outcomes.map(|outcome| DrawnOutcome {
-            impulse: in_world(&outcome.impulse),
-            velocity_after: in_world(&outcome.velocity_after),
-        });
-        drawing.outcomes = outcomes.collect();
-        let applied = scene.impulses.iter().map(|applied| {
-            let link = &robot.links[applied.link];
-            let point = placement.world(link.body, link.point(applied.offset));
-            Arrow { point, vector: applied.vector }
-        });
-        drawing.applied = applied.collect();
+        };
+        drawing.contacts = contacts.map(contact).collect();
+        let outcome = |outcome: &Outcome| DrawnOutcome {
+            impulse: turned(&outcome.impulse),
+            velocity_after: turned(&outcome.velocity_after),
+        };
+        let outcomes = impact.analysis.iter().flat_map(|analysis| &analysis.outcomes);
+        drawing.outcomes = outcomes.map(outcome).collect();
+        let applied = scene.impulses.iter();
+        drawing.applied = applied
+            .map(|applied| Arrow { point: in_world(applied.link, applied.offset), vector: applied.vector })
+            .collect();
         drawing.ground = drawing.extent().surface(&scene.ground, drawing.size());
         drawing
     }
 
     /// Everything except the ground and the arrows.
     pub fn extent(&self) -> Extent {
-        let bodies = self.bodies.iter().flat_map(|body| {
-            let com = body.com.map(|com| body.world(com));
-            body.bones.iter().copied().chain([body.origin]).chain(com).chain(body.corners())
-        });
+        let bodies = self.bodies.iter().flat_map(|body| body.drawn().chain(body.com.map(|com| body.world(com))));
         let contacts = self.contacts.iter().map(|contact| contact.point);
         Extent::of(bodies.chain(contacts))
     }
@@ -213,15 +191,16 @@ impl DrawnBody {
         self.origin + self.x_axis * local.x - self.x_axis.perpendicular() * local.z
     }
 
-    /// Points in the world that its shapes lie between.
-    fn corners(&self) -> impl Iterator<Item = Vector<f64>> {
-        self.shapes.iter().flat_map(|shape| match shape {
+    /// Points in the world that its bones and shapes lie between.
+    fn drawn(&self) -> impl Iterator<Item = Vector<f64>> {
+        let corners = self.shapes.iter().flat_map(|shape| match shape {
             &DrawnShape::Disc { center, radius } => {
                 let [right, up] = Vector::axes().map(|axis| axis * radius);
                 [-right, right, -up, up].map(|side| self.world(center) + side).to_vec()
             }
             DrawnShape::Polygon(corners) => corners.iter().map(|&corner| self.world(corner)).collect(),
-        })
+        });
+        self.bones.iter().copied().chain([self.origin]).chain(corners)
     }
 
     /// Adds bones to the shapes of a body without children, and to a CoG that lies on nothing that is drawn. A bone
@@ -234,7 +213,7 @@ impl DrawnBody {
             let ends: Vec<Vector<f64>> = self.shapes.iter().map(|shape| self.world(shape.center())).collect();
             self.bones.extend(ends.into_iter().filter(is_long));
         }
-        let drawn = Extent::of(self.bones.iter().copied().chain([origin]).chain(self.corners())).widened(short);
+        let drawn = Extent::of(self.drawn()).widened(short);
         let com = self.com.map(|com| self.world(com));
         self.bones.extend(com.filter(|&com| !drawn.holds(com)));
     }

@@ -1,6 +1,6 @@
 //! A robot in its pose as a picture: one panel per outcome, or the robot alone with its names.
 
-use super::{Drawing, DrawnBody, DrawnOutcome, DrawnShape, Extent};
+use super::{Drawing, DrawnBody, DrawnContact, DrawnOutcome, DrawnShape, Extent};
 use crate::contact::Placement;
 use crate::draw::caption;
 use crate::draw::plot::{
@@ -10,19 +10,18 @@ use crate::impact::Outcome;
 use crate::pipeline::Impact;
 use crate::planar::Vector;
 use crate::robot::Robot;
-use crate::state::NamedContact;
-use crate::state::State;
+use crate::state::{NamedContact, State};
 use crate::write::table::number;
 use crate::write::words;
 
 const IMPULSE: Stroke = Stroke::solid(Color::Vermilion, 3.0);
-const APPLIED: Stroke = Stroke { dash: Dash::Dotted, ..Stroke::solid(Color::Purple, 3.0) };
+const APPLIED: Stroke = Stroke { dash: Dash::DOTTED, ..Stroke::solid(Color::Purple, 3.0) };
 const AFTER: Stroke = Stroke::solid(Color::Blue, 2.2);
-const BEFORE: Stroke = Stroke { dash: Dash::Dashed, ..Stroke::solid(Color::Black, 1.4) };
+const BEFORE: Stroke = Stroke { dash: Dash::DASHED, ..Stroke::solid(Color::Black, 1.4) };
 const BONE: Stroke = Stroke::solid(Color::Gray, 4.0);
 const EDGE: Stroke = Stroke::solid(Color::Gray, 0.8);
 const SURFACE: Stroke = Stroke::solid(Color::Black, 1.6);
-const NORMAL: Stroke = Stroke { dash: Dash::Dotted, ..Stroke::solid(Color::Black, 1.0) };
+const NORMAL: Stroke = Stroke { dash: Dash::DOTTED, ..Stroke::solid(Color::Black, 1.0) };
 /// The fill of bodies without children, feet and hands, and of others.
 const LAST: Color = Color::Tint(1);
 const INNER: Color = Color::Tint(0);
@@ -48,21 +47,19 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     let analysis = impact.analysis.as_ref()?;
     let drawing = Drawing::of_impact(robot, feet, state, impact);
     let scene = DrawnScene::new(&drawing);
-    let several = analysis.outcomes.len() > 1;
-    let outcomes = analysis.outcomes.iter().enumerate();
-    let captions: Vec<String> = outcomes.map(|outcome| caption(impact, several, outcome)).collect();
-    let panel = |title: &String, outcome: Option<&DrawnOutcome>| Panel {
-        title: title.clone(),
+    let count = analysis.outcomes.len();
+    let panel = |title: String, outcome: Option<&DrawnOutcome>| Panel {
+        title,
         shapes: [scene.robot(), scene.impact(outcome)].concat(),
-        ..scene.view.panel(captions.len())
+        ..scene.view.panel(count)
     };
-    let panels: Vec<Panel> = match &captions[..] {
-        [] => vec![panel(&String::new(), None)],
-        captions => {
-            captions.iter().zip(&drawing.outcomes).map(|(title, outcome)| panel(title, Some(outcome))).collect()
-        }
-    };
-    let sentence = words::verdict(analysis.verdict, analysis.outcomes.len());
+    let titles = analysis.outcomes.iter().enumerate().map(|outcome| caption(impact, count > 1, outcome));
+    let mut panels: Vec<Panel> =
+        titles.zip(&drawing.outcomes).map(|(title, outcome)| panel(title, Some(outcome))).collect();
+    if panels.is_empty() {
+        panels.push(panel(String::new(), None));
+    }
+    let sentence = words::verdict(analysis.verdict, count);
     Some(Picture {
         title: format!("{}: {sentence}", words::titled(&robot.name, &state.id)),
         rows: panels.chunks(COLUMNS).map(<[Panel]>::to_vec).collect(),
@@ -90,12 +87,11 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
         names.extend(places.map(point).zip(robot.bodies.iter().map(|body| body.name.clone())));
     }
     shapes.push(PlotShape::Names { names, below: false });
-    let axis = |label: &str, range| PlotAxis { label: label.into(), range, ..PlotAxis::default() };
     let Extent { low, high } = drawing.extent();
     let view = Extent::of([low, high].into_iter().chain(axes)).with_room().panel(1);
     let panel = Panel {
-        x: axis("x [m]", view.x.range),
-        y: axis("z [m]", view.y.range),
+        x: PlotAxis { label: "x [m]".into(), ..view.x },
+        y: PlotAxis { label: "z [m]".into(), ..view.y },
         size: (1.2 * view.size.0, 1.2 * view.size.1),
         framed: true,
         shapes,
@@ -110,12 +106,11 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
         (shaped(false), LegendKey::Fill(INNER), "shape of an inner body"),
         (true, LegendKey::Line(AFTER), "axes of the root link"),
     ];
-    let entry =
-        |(is_drawn, key, name): (bool, LegendKey, &str)| is_drawn.then(|| LegendEntry { name: name.into(), key });
+    let entries = entries.into_iter().filter(|(is_drawn, ..)| *is_drawn);
     Picture {
         title: format!("{}: {} bodies, {joints} joints, {} kg", robot.name, robot.bodies.len(), number(robot.mass())),
         rows: vec![vec![panel]],
-        legend: entries.into_iter().filter_map(entry).collect(),
+        legend: entries.map(|(_, key, name)| LegendEntry::new(name, key)).collect(),
     }
 }
 
@@ -186,18 +181,25 @@ impl<'d> DrawnScene<'d> {
     fn whole_view(&self) -> Extent {
         let Self { drawing, size, view: Extent { low, high }, .. } = *self;
         let near = self.ground_at(0.5 * (low.x + high.x)).filter(|point| (low.z - size..low.z).contains(&point.z));
-        let tip = |point: Vector<f64>, scale: f64, vector: Vector<f64>| point + vector * scale;
-        let tips = drawing.contacts.iter().enumerate().flat_map(|(at, contact)| {
-            let outcomes = drawing.outcomes.iter().flat_map(move |outcome| {
-                let impulse = outcome.impulse.get(at).map(|&vector| tip(contact.point, self.impulse_scale, vector));
-                let after = outcome.velocity_after.get(at);
-                let velocity = after.map(|&vector| tip(contact.point, self.velocity_scale, vector));
-                impulse.into_iter().chain(velocity)
-            });
-            outcomes.chain([tip(contact.point, self.velocity_scale, contact.velocity_before)])
+        let outcomes = drawing.outcomes.iter().map(Some).chain([None]);
+        let tips = outcomes.flat_map(|outcome| self.arrows(outcome)).map(|(from, reach, _)| from + reach);
+        Extent::of([low, high].into_iter().chain(tips).chain(near)).with_room()
+    }
+
+    /// The arrows of an outcome, or of none: where each begins, how far it reaches and its shaft.
+    fn arrows(&self, outcome: Option<&DrawnOutcome>) -> Vec<(Vector<f64>, Vector<f64>, Stroke)> {
+        let Drawing { contacts, applied, .. } = self.drawing;
+        let (impulse, velocity) = (self.impulse_scale, self.velocity_scale);
+        let applied = applied.iter().map(|applied| (applied.point, applied.vector * impulse, APPLIED));
+        let effects = outcome.into_iter().flat_map(|outcome| {
+            let impulses = outcome.impulse.iter().map(|&vector| (vector * impulse, IMPULSE));
+            let after = outcome.velocity_after.iter().map(|&vector| (vector * velocity, AFTER));
+            let at = contacts.iter().chain(contacts).map(|contact| contact.point);
+            at.zip(impulses.chain(after)).map(|(point, (reach, stroke))| (point, reach, stroke))
         });
-        let applied = drawing.applied.iter().map(|arrow| tip(arrow.point, self.impulse_scale, arrow.vector));
-        Extent::of([low, high].into_iter().chain(tips).chain(applied).chain(near)).with_room()
+        // On top, because it may be the velocity after, too.
+        let before = contacts.iter().map(|contact| (contact.point, contact.velocity_before * velocity, BEFORE));
+        applied.chain(effects).chain(before).collect()
     }
 
     /// The ground's surface at this x; `None` beyond its ends.
@@ -240,9 +242,8 @@ impl<'d> DrawnScene<'d> {
                 }
             }));
         }
-        for body in bodies {
-            let bone = |end: &Vector<f64>| vec![point(body.origin), point(*end)];
-            shapes.extend(body.bones.iter().map(|end| PlotShape::Line { points: bone(end), stroke: BONE }));
+        for (body, end) in bodies.iter().flat_map(|body| body.bones.iter().map(move |end| (body, end))) {
+            shapes.push(PlotShape::Line { points: vec![point(body.origin), point(*end)], stroke: BONE });
         }
         let heaviest = bodies.iter().map(|body| body.mass).fold(0.0, f64::max);
         for body in bodies {
@@ -258,34 +259,20 @@ impl<'d> DrawnScene<'d> {
 
     /// Contacts, and the arrows of an outcome.
     fn impact(&self, outcome: Option<&DrawnOutcome>) -> Vec<PlotShape> {
-        let Drawing { contacts, applied, .. } = self.drawing;
-        let arrow = |at: Vector<f64>, scale: f64, vector: Vector<f64>, stroke: Stroke| PlotShape::Arrow {
-            from: point(at),
-            to: point(at + vector * scale),
-            stroke,
-        };
-        let mut shapes = Vec::new();
-        for contact in contacts {
+        let contacts = &self.drawing.contacts;
+        let normal = |contact: &DrawnContact| {
             let ends = [contact.point, contact.point + contact.normal * (SHORT * self.size)];
-            shapes.push(PlotShape::Line { points: ends.map(point).to_vec(), stroke: NORMAL });
-        }
+            PlotShape::Line { points: ends.map(point).to_vec(), stroke: NORMAL }
+        };
+        let mut shapes: Vec<PlotShape> = contacts.iter().map(normal).collect();
         let points = contacts.iter().map(|contact| point(contact.point)).collect();
         shapes.push(PlotShape::Marks { points, mark: Mark::Circle, color: Color::Black, size: 3.0 });
-        for applied in applied {
-            shapes.push(arrow(applied.point, self.impulse_scale, applied.vector, APPLIED));
-        }
-        if let Some(outcome) = outcome {
-            for (contact, &impulse) in contacts.iter().zip(&outcome.impulse) {
-                shapes.push(arrow(contact.point, self.impulse_scale, impulse, IMPULSE));
-            }
-            for (contact, &velocity) in contacts.iter().zip(&outcome.velocity_after) {
-                shapes.push(arrow(contact.point, self.velocity_scale, velocity, AFTER));
-            }
-        }
-        // On top, because it may be the velocity after, too.
-        for contact in contacts {
-            shapes.push(arrow(contact.point, self.velocity_scale, contact.velocity_before, BEFORE));
-        }
+        let arrows = self.arrows(outcome).into_iter();
+        shapes.extend(arrows.map(|(from, reach, stroke)| PlotShape::Arrow {
+            from: point(from),
+            to: point(from + reach),
+            stroke,
+        }));
         let names = contacts.iter().map(|contact| (point(contact.point), contact.name.clone())).collect();
         shapes.push(PlotShape::Names { names, below: true });
         shapes
@@ -294,11 +281,6 @@ impl<'d> DrawnScene<'d> {
     /// What the arrows are, with one of a round length for each kind.
     fn legend(&self) -> Vec<LegendEntry> {
         let Drawing { contacts, applied, outcomes, .. } = self.drawing;
-        let key = |stroke: Stroke, scale: f64, unit: &str, what: &str| {
-            let round = round(KEY * self.size / scale)?;
-            let name = format!("{what}: {round} {unit}");
-            Some(LegendEntry { name, key: LegendKey::Arrow { stroke, length: round * scale } })
-        };
         let has = |vectors: &[Vector<f64>]| vectors.iter().any(|vector| *vector != Vector::zero());
         let struck = outcomes.iter().any(|outcome| has(&outcome.impulse));
         let moving = outcomes.iter().any(|outcome| has(&outcome.velocity_after));
@@ -310,12 +292,13 @@ impl<'d> DrawnScene<'d> {
             (moved, BEFORE, self.velocity_scale, "m/s", "velocity before"),
         ];
         let arrows = arrows.into_iter().filter(|(is_drawn, ..)| *is_drawn);
-        let mut entries: Vec<LegendEntry> =
-            arrows.filter_map(|(_, stroke, scale, unit, what)| key(stroke, scale, unit, what)).collect();
-        if !contacts.is_empty() {
-            entries.push(LegendEntry { name: "contact".into(), key: LegendKey::Mark(Mark::Circle, Color::Black) });
-        }
-        entries
+        let arrows = arrows.filter_map(|(_, stroke, scale, unit, what)| {
+            let round = round(KEY * self.size / scale)?;
+            let key = LegendKey::Arrow { stroke, length: round * scale };
+            Some(LegendEntry::new(format!("{what}: {round} {unit}"), key))
+        });
+        let contact = || LegendEntry::new("contact", LegendKey::Mark(Mark::Circle, Color::Black));
+        arrows.chain((!contacts.is_empty()).then(contact)).collect()
     }
 }
 
@@ -325,7 +308,7 @@ fn round(most: f64) -> Option<f64> {
         return None;
     }
     let unit = libm::pow(10.0, libm::floor(libm::log10(most)));
-    [5.0, 2.0, 1.0].into_iter().map(|times| times * unit).find(|round| *round <= most)
+    [5.0, 2.0, 1.0].map(|times| times * unit).into_iter().find(|round| *round <= most)
 }
 
 fn point(Vector { x, z }: Vector<f64>) -> PlotPoint {

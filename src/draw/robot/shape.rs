@@ -4,18 +4,13 @@ use crate::planar::Vector;
 use crate::robot::{FootShape, Rim};
 use serde::Serialize;
 
-/// A collision shape in the frame of its body.
+/// A collision shape in the frame of its body \[m\].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DrawnShape {
     /// A disc, or with radius 0 a point.
-    Disc {
-        /// Its center \[m\].
-        center: Vector<f64>,
-        /// Its radius \[m\].
-        radius: f64,
-    },
-    /// A polygon; its corners \[m\].
+    Disc { center: Vector<f64>, radius: f64 },
+    /// By its corners.
     Polygon(Vec<Vector<f64>>),
 }
 
@@ -45,14 +40,13 @@ impl DrawnShape {
 
 /// The corners with their rims as a polygon: its farthest point in each of many directions.
 fn swept(corners: &[Vector<f64>], rim: Rim) -> Vec<Vector<f64>> {
-    let mut polygon: Vec<Vector<f64>> = (0..DIRECTIONS)
-        .filter_map(|at| {
-            let (sin, cos) = libm::sincos(f64::from(at) * std::f64::consts::TAU / f64::from(DIRECTIONS));
-            let direction = Vector::new(cos, sin);
-            let farthest = corners.iter().max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)));
-            farthest.map(|&corner| corner + rim.support(direction))
-        })
-        .collect();
+    let farthest = |at: u32| {
+        let (sin, cos) = libm::sincos(f64::from(at) * std::f64::consts::TAU / f64::from(DIRECTIONS));
+        let direction = Vector::new(cos, sin);
+        let corner = corners.iter().max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)))?;
+        Some(*corner + rim.support(direction))
+    };
+    let mut polygon: Vec<Vector<f64>> = (0..DIRECTIONS).filter_map(farthest).collect();
     polygon.dedup();
     polygon
 }

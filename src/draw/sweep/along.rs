@@ -1,23 +1,22 @@
 //! One parameter: panels below each other, for each contact its velocity after and its impulse.
 
 use super::style::{COMPONENTS, OutcomeStyles};
-use super::{KindLook, WIDTH, angles, fills_along, is_seen};
-use crate::draw::plot::{Band, Color, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke};
+use super::{KindLook, WIDTH, angles, different, fills_along, firsts, is_seen};
+use crate::draw::plot::{Band, Color, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke, range};
 use crate::impact::Motion;
-use crate::sweep::{CurvePoint, Region, RegionCurves, Survey};
+use crate::sweep::{CurvePoint, Region, RegionCurves, Survey, letter};
 use crate::write::sweep::Happening;
 
 /// A quantity of a contact that is drawn.
 struct PlottedQuantity {
-    label: &'static str,
-    /// Its name within a sentence.
     name: &'static str,
+    unit: &'static str,
     of: fn(&Motion) -> &[[f64; 2]],
 }
 
 const QUANTITIES: [PlottedQuantity; 2] = [
-    PlottedQuantity { label: "velocity after [m/s]", name: "velocity after", of: |motion| &motion.velocity_after },
-    PlottedQuantity { label: "impulse [N s]", name: "impulse", of: |motion| &motion.impulse },
+    PlottedQuantity { name: "velocity after", unit: "m/s", of: |motion| &motion.velocity_after },
+    PlottedQuantity { name: "impulse", unit: "N s", of: |motion| &motion.impulse },
 ];
 
 /// Height inside of the axes \[px\].
@@ -38,7 +37,7 @@ pub fn picture(x: PlotAxis, survey: &Survey, courses: &[RegionCurves]) -> Pictur
     let kinds = kinds(survey);
     let styles = OutcomeStyles::of(survey, &kinds);
     let whole = Curves { survey, courses, styles: &styles };
-    let mut panels = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect::<Vec<_>>();
+    let mut panels: Vec<Panel> = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect();
     if panels.is_empty() {
         let nothing = PlotAxis { bare: true, ..PlotAxis::default() };
         panels.push(Panel { size: (WIDTH, STRIP), ..Panel::new(PlotAxis::default(), nothing) });
@@ -70,20 +69,13 @@ fn bands(survey: &Survey, kinds: &[KindLook], look: impl Fn(&KindLook) -> (Strin
 }
 
 /// Every kind of region, in the order of letters.
-fn kinds(survey: &Survey) -> Vec<KindLook<'_>> {
-    let mut firsts: Vec<&Region> = Vec::new();
-    for region in &survey.regions {
-        if region.kind == firsts.len() {
-            firsts.push(region);
-        }
-    }
-    firsts
-        .iter()
-        .zip(fills_along(survey))
-        .map(|(region, color)| {
-            KindLook::new(region.kind, Happening::of(&region.regime, region.verdict, region.refused.as_ref()), color)
-        })
-        .collect()
+fn kinds<'s>(survey: &'s Survey) -> Vec<KindLook<'s>> {
+    let look = |(region, color): (&'s Region, Color)| KindLook {
+        letter: letter(region.kind),
+        color,
+        happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
+    };
+    firsts(survey).into_iter().zip(fills_along(survey)).map(look).collect()
 }
 
 /// Everything along the parameter.
@@ -96,26 +88,17 @@ struct Curves<'a> {
 impl<'a> Curves<'a> {
     /// Names of all contacts in visible regions.
     fn contacts(&self) -> Vec<&'a str> {
-        let mut names: Vec<&str> = Vec::new();
         let seen = self.survey.regions.iter().filter(|region| is_seen(region, self.survey));
-        for name in seen.flat_map(|region| region.regime.contacts()) {
-            if !names.contains(&name.as_str()) {
-                names.push(name);
-            }
-        }
-        names
+        different(seen.flat_map(|region| region.regime.contacts()))
     }
 
     /// Panels of a contact, without quantities that are zero everywhere.
     fn of_contact(&self, contact: &str) -> Vec<Panel> {
-        let (drawn, zero): (Vec<&PlottedQuantity>, Vec<&PlottedQuantity>) =
-            QUANTITIES.iter().partition(|quantity| self.is_drawn(contact, quantity));
+        let (drawn, zero): (Vec<_>, Vec<_>) = QUANTITIES.iter().partition(|quantity| self.is_drawn(contact, quantity));
         let mut panels: Vec<Panel> = drawn.iter().map(|quantity| self.panel(contact, quantity)).collect();
         if let Some(first) = panels.first_mut() {
-            first.title = contact.to_owned();
-            for PlottedQuantity { name, .. } in zero {
-                first.title.push_str(&format!("\n{name} is zero in every outcome"));
-            }
+            let zero = zero.iter().map(|quantity| format!("\n{} is zero in every outcome", quantity.name));
+            first.title = contact.to_owned() + &zero.collect::<String>();
         }
         panels
     }
@@ -124,14 +107,12 @@ impl<'a> Curves<'a> {
     fn is_drawn(&self, contact: &str, quantity: &PlottedQuantity) -> bool {
         let largest = |of: &dyn Fn(&str) -> bool| {
             let regions = self.survey.regions.iter().zip(self.courses);
-            let places = regions.flat_map(|(region, course)| {
-                let chosen: Vec<usize> =
-                    (0..region.regime.contacts().len()).filter(|&index| of(&region.regime.contacts()[index])).collect();
+            let pairs = regions.flat_map(|(region, course)| {
                 let motions = course.places.iter().flat_map(|place| &place.outcomes);
-                motions
-                    .flat_map(move |(_, motion)| chosen.clone().into_iter().map(|index| (quantity.of)(motion)[index]))
+                motions.flat_map(|(_, motion)| region.regime.contacts().iter().zip((quantity.of)(motion)))
             });
-            places.flatten().fold(0.0, |most: f64, number| most.max(number.abs()))
+            let numbers = pairs.filter(|(name, _)| of(name)).flat_map(|(_, pair)| pair);
+            numbers.fold(0.0, |most: f64, number| most.max(number.abs()))
         };
         largest(&|name| name == contact) > ZERO * largest(&|_| true)
     }
@@ -161,8 +142,8 @@ impl<'a> Curves<'a> {
                 }
             }
         }
-        let within = ranges.into_iter().reduce(|(low, high), (least, most)| (low.min(least), high.max(most)));
-        let y = PlotAxis { label: quantity.label.into(), within, ..PlotAxis::default() };
+        let within = range(ranges.into_iter().flat_map(|(least, most)| [least, most]));
+        let y = PlotAxis { within, ..PlotAxis::new(format!("{} [{}]", quantity.name, quantity.unit)) };
         Panel { shapes, size: (WIDTH, HEIGHT), ..Panel::new(PlotAxis::default(), y) }
     }
 }
@@ -179,8 +160,7 @@ fn shown(points: &[PlotPoint]) -> Option<(f64, f64)> {
     // A polynomial of low degree does not grow so much in the last eighth.
     let has_pole = largest(0.0, width) > POLE * largest(0.125 * width, 0.875 * width);
     let limit = if has_pole { NEAR_POLE * largest(0.25 * width, 0.75 * width) } else { f64::INFINITY };
-    let values = points.iter().map(|(_, value)| value.max(-limit).min(limit));
-    values.map(|value| (value, value)).reduce(|(low, high), (least, most)| (low.min(least), high.max(most)))
+    range(points.iter().map(|(_, value)| value.max(-limit).min(limit)))
 }
 
 #[cfg(test)]

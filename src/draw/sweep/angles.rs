@@ -8,8 +8,9 @@
 //!     E   beta    .. 0             -pi       .. beta - pi   all three
 //! ```
 
+use super::different;
 use super::place::clear_of;
-use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox};
+use crate::draw::plot::{Color, LegendEntry, LegendKey, Panel, Pixel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox};
 use crate::impact::{Explanation, ImpulseRegion};
 use crate::sweep::{RegionCurves, Survey};
 use std::f64::consts::PI;
@@ -22,19 +23,22 @@ const SIZE: (f64, f64) = (super::WIDTH, 220.0);
 /// Height of a label's letters \[px\].
 const LETTERS: u32 = 12;
 
+/// The regions of gamma, and what happens in them.
+const REGIONS: [(ImpulseRegion, &str); 4] = [
+    (ImpulseRegion::A, "lifts off"),
+    (ImpulseRegion::B, "slides"),
+    (ImpulseRegion::C, "stays"),
+    (ImpulseRegion::E, "all three"),
+];
+
 /// From one sample to the next an angle turns by less than this, or it jumps.
 const JUMP: f64 = 0.5;
 
 /// A panel for each contact that has angles somewhere.
 pub fn panels(survey: &Survey, courses: &[RegionCurves]) -> Vec<Panel> {
-    let mut names: Vec<&str> = Vec::new();
-    for (region, course) in survey.regions.iter().zip(courses) {
-        if course.places.iter().any(|place| place.explanation.is_some()) {
-            let new =
-                region.regime.contacts().iter().filter(|name| !names.contains(&name.as_str())).collect::<Vec<_>>();
-            names.extend(new.into_iter().map(String::as_str));
-        }
-    }
+    let explained = |course: &RegionCurves| course.places.iter().any(|place| place.explanation.is_some());
+    let regions = survey.regions.iter().zip(courses).filter(|(_, course)| explained(course));
+    let names = different(regions.flat_map(|(region, _)| region.regime.contacts()));
     let (Some(first), Some(last)) = (survey.regions.first(), survey.regions.last()) else { return Vec::new() };
     let borders: Vec<f64> = survey.borders.iter().map(|border| border.at).collect();
     names.into_iter().map(|name| panel(name, &runs(name, survey, courses), (first.from, last.to), &borders)).collect()
@@ -42,8 +46,7 @@ pub fn panels(survey: &Survey, courses: &[RegionCurves]) -> Vec<Panel> {
 
 /// The meanings of the lines of such panels.
 pub fn legend() -> [LegendEntry; 2] {
-    let entry = |name: &str, stroke| LegendEntry { name: name.into(), key: LegendKey::Line(stroke) };
-    [entry("γ", GAMMA), entry("0, β and β ± π", BETA)]
+    [("γ", GAMMA), ("0, β and β ± π", BETA)].map(|(name, stroke)| LegendEntry::new(name, LegendKey::Line(stroke)))
 }
 
 /// The angles of a contact at a place.
@@ -61,12 +64,8 @@ fn runs(name: &str, survey: &Survey, courses: &[RegionCurves]) -> Vec<Vec<Angles
         let contact = region.regime.contacts().iter().position(|known| known == name);
         for place in &course.places {
             let angles = |explanation: &Explanation| {
-                let contact = contact?;
-                Some(Angles {
-                    at: place.at,
-                    beta: *explanation.beta.get(contact)?,
-                    gamma: *explanation.gamma.get(contact)?,
-                })
+                let (beta, gamma) = (*explanation.beta.get(contact?)?, *explanation.gamma.get(contact?)?);
+                Some(Angles { at: place.at, beta, gamma })
             };
             match (place.explanation.as_ref().and_then(angles), runs.last_mut()) {
                 (Some(angles), Some(run)) => run.push(angles),
@@ -90,29 +89,20 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
     shapes.push(PlotShape::Line { points: vec![(from, 0.0), (to, 0.0)], stroke: BETA });
     let gamma: Vec<Vec<PlotPoint>> = runs.iter().flat_map(|run| unbroken(run)).collect();
     let pixel = |(x, y): PlotPoint| (SIZE.0 * (x - from) / (to - from), SIZE.1 * (y + PI) / (2.0 * PI));
-    let curve: Vec<Vec<PlotPoint>> =
-        gamma.iter().map(|piece| piece.iter().map(|&point| pixel(point)).collect()).collect();
+    let curve: Vec<Vec<Pixel>> = gamma.iter().map(|piece| piece.iter().copied().map(pixel).collect()).collect();
     let walls = borders.iter().map(|&at| vec![pixel((at, -PI)), pixel((at, PI))]);
-    let all: Vec<Vec<PlotPoint>> = curve.iter().cloned().chain(walls).collect();
+    let all: Vec<Vec<Pixel>> = curve.iter().cloned().chain(walls).collect();
     shapes.extend(gamma.into_iter().map(|points| PlotShape::Line { points, stroke: GAMMA }));
-    for (region, words) in [
-        (ImpulseRegion::A, "lifts off"),
-        (ImpulseRegion::B, "slides"),
-        (ImpulseRegion::C, "stays"),
-        (ImpulseRegion::E, "all three"),
-    ] {
+    for (region, words) in REGIONS {
         let ends = |angles: &Angles| strip(region, angles.beta).map(|angle| pixel((angles.at, angle)));
-        let strips: Vec<Vec<[PlotPoint; 2]>> = runs.iter().map(|run| run.iter().map(ends).collect()).collect();
+        let strips: Vec<Vec<[Pixel; 2]>> = runs.iter().map(|run| run.iter().map(ends).collect()).collect();
         // A place on a border is better than none.
         if let Some((x, y)) = room(&strips, &all, words).or_else(|| room(&strips, &curve, words)) {
-            shapes.push(PlotShape::Text {
-                at: (from + (to - from) * x / SIZE.0, 2.0 * PI * y / SIZE.1 - PI),
-                text: words.into(),
-                size: LETTERS,
-            });
+            let at = (from + (to - from) * x / SIZE.0, 2.0 * PI * y / SIZE.1 - PI);
+            shapes.push(PlotShape::Text { at, text: words.into(), size: LETTERS });
         }
     }
-    let y = PlotAxis { label: "angle [rad]".into(), range: Some((-PI, PI)), in_pi: true, ..PlotAxis::default() };
+    let y = PlotAxis { range: Some((-PI, PI)), in_pi: true, ..PlotAxis::new("angle [rad]") };
     let title = format!("{name}\nwith infinite friction, while all other contacts stick");
     Panel { title, shapes, size: SIZE, ..Panel::new(PlotAxis::default(), y) }
 }
@@ -134,9 +124,8 @@ fn strip(region: ImpulseRegion, beta: f64) -> [f64; 2] {
 /// gamma in pieces that neither wrap from pi to -pi nor jump.
 fn unbroken(run: &[Angles]) -> Vec<Vec<PlotPoint>> {
     let mut pieces: Vec<Vec<PlotPoint>> = vec![Vec::new()];
-    let mut before: Option<Angles> = None;
-    for &angles in run {
-        if let Some(last) = before {
+    for (at, angles) in run.iter().enumerate() {
+        if let Some(last) = at.checked_sub(1).map(|before| run[before]) {
             let turn = libm::remainder(angles.gamma - last.gamma, 2.0 * PI);
             let wraps = (last.gamma + turn - angles.gamma).abs() > PI;
             let jumps = turn.abs() > JUMP;
@@ -151,15 +140,14 @@ fn unbroken(run: &[Angles]) -> Vec<Vec<PlotPoint>> {
             }
         }
         pieces.last_mut().into_iter().for_each(|piece| piece.push((angles.at, angles.gamma)));
-        before = Some(angles);
     }
     pieces
 }
 
 /// The place \[px\] with the most room for a text between the ends of `strips` and apart from the curve.
-fn room(strips: &[Vec<[PlotPoint; 2]>], curve: &[Vec<PlotPoint>], text: &str) -> Option<PlotPoint> {
+fn room(strips: &[Vec<[Pixel; 2]>], curve: &[Vec<Pixel>], text: &str) -> Option<Pixel> {
     let half = TextBox::half_of(text, LETTERS);
-    let mut best: Option<(f64, PlotPoint)> = None;
+    let mut best: Option<(f64, Pixel)> = None;
     for run in strips {
         for &[(x, low), (_, high)] in run {
             for share in [0.5, 0.35, 0.65, 0.2, 0.8] {
@@ -208,8 +196,7 @@ mod tests {
     #[test]
     fn strips_cover_the_whole_turn() {
         for beta in [-1.2, -0.3, 0.3, 1.2] {
-            let strips = [ImpulseRegion::A, ImpulseRegion::B, ImpulseRegion::C, ImpulseRegion::E]
-                .map(|region| strip(region, beta));
+            let strips = REGIONS.map(|(region, _)| strip(region, beta));
             let widths: f64 = strips.iter().map(|[low, high]| high - low).sum();
             assert!((widths - 2.0 * PI).abs() < 1e-12, "{beta}");
             assert!(strips.iter().all(|[low, high]| low < high && -PI <= *low && *high <= PI), "{beta}");

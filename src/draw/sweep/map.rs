@@ -1,11 +1,11 @@
 //! Two parameters: areas of equal outcomes with their letters, and the borders between them.
 
-use super::place::{clear_of, freest};
-use super::{KindLook, fills_of_map};
+use super::fills_of_map;
+use super::place::{around, clear_of, freest};
 use crate::draw::plot::{
     Color, LegendEntry, LegendKey, Panel, Picture, Pixel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox,
 };
-use crate::sweep::{Area, Map};
+use crate::sweep::{Area, Map, letter};
 use crate::write::sweep::Happening;
 
 /// Inside of the axes \[px\].
@@ -24,25 +24,25 @@ const DIRECTIONS: usize = 24;
 
 /// The picture of a map's areas.
 pub fn picture([x, y]: [PlotAxis; 2], map: &Map) -> Picture {
-    let mut shapes: Vec<PlotShape> = Vec::new();
-    let mut entries = Vec::new();
+    let points = |points: &Vec<[f64; 2]>| points.iter().map(|&[x, y]| (x, y)).collect();
+    let (mut shapes, mut legend) = (Vec::new(), Vec::new());
     for ((index, area), color) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
-        let KindLook { letter, happening, .. } =
-            KindLook::new(index, Happening::of(&area.regime, area.verdict, area.refused.as_ref()), color);
-        let loops = area.loops.iter().map(|points| points.iter().map(|&[x, y]| (x, y)).collect()).collect();
+        let happening = Happening::of(&area.regime, area.verdict, area.refused.as_ref());
+        let name = format!("{}: {}", letter(index), happening.lines().join("\n"));
         // The seam between two fills lies under the border's line.
-        shapes.push(PlotShape::Area { loops, fill: Some(color), stroke: None });
-        entries.push(LegendEntry {
-            name: format!("{letter}: {}", happening.lines().join("\n")),
-            key: LegendKey::Fill(color),
+        shapes.push(PlotShape::Area {
+            loops: area.loops.iter().map(points).collect(),
+            fill: Some(color),
+            stroke: None,
         });
+        legend.push(LegendEntry::new(name, LegendKey::Fill(color)));
     }
     for curve in &map.curves {
-        shapes.push(PlotShape::Line { points: curve.points.iter().map(|&[x, y]| (x, y)).collect(), stroke: BORDER });
+        shapes.push(PlotShape::Line { points: points(&curve.points), stroke: BORDER });
     }
     shapes.extend(letters(&x, &y, map));
     let panel = Panel { shapes, size: SIZE, ..Panel::new(x, y) };
-    Picture { title: String::new(), rows: vec![vec![panel]], legend: entries }
+    Picture { title: String::new(), rows: vec![vec![panel]], legend }
 }
 
 /// The letters of all areas: within each part that has room for it, or next to the largest part, with a line to it.
@@ -52,55 +52,38 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
     let point = |(a, b): Pixel| -> PlotPoint { (x.0 + (x.1 - x.0) * a / SIZE.0, y.0 + (y.1 - y.0) * b / SIZE.1) };
     let pixels = |points: &Vec<[f64; 2]>| points.iter().copied().map(pixel).collect();
     let mut taken: Vec<Vec<Pixel>> = map.curves.iter().map(|curve| pixels(&curve.points)).collect();
-    let text = |index: usize, at: Pixel| {
-        let (letter, half) = lettered(index);
-        let label = PlotShape::Text { at: point(at), text: letter, size: LETTERS };
-        (TextBox { middle: at, half }, label)
-    };
+    let text = |index: usize, middle: Pixel| TextBox { middle, half: TextBox::half_of(&letter(index), LETTERS) };
+    let label =
+        |index: usize, text: &TextBox| PlotShape::Text { at: point(text.middle), text: letter(index), size: LETTERS };
+    let fits = |text: &TextBox, taken: &[Vec<Pixel>], room: f64| text.is_within(SIZE) && clear_of(text, taken) >= room;
     let mut shapes = Vec::new();
     let mut small: Vec<(usize, &Area)> = Vec::new();
     for (index, area) in map.areas.iter().enumerate() {
-        let half = lettered(index).1;
+        let half = text(index, SIZE).half;
         let middles = area.middles.iter().map(|(middle, _)| text(index, freest(pixel(*middle), half, &taken)));
-        let fitting: Vec<_> =
-            middles.filter(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR).collect();
+        let fitting: Vec<TextBox> = middles.filter(|text| fits(text, &taken, CLEAR)).collect();
         if fitting.is_empty() {
             small.push((index, area));
         }
-        for (text, shape) in fitting {
+        for text in fitting {
             taken.push(outline(&text));
-            shapes.push(shape);
+            shapes.push(label(index, &text));
         }
     }
     for (index, area) in small {
         let Some(from) = deepest(area).map(pixel) else { continue };
-        let places = AWAY.into_iter().flat_map(|distance| {
-            (0..DIRECTIONS).map(move |step| {
-                let angle = step as f64 * std::f64::consts::TAU / DIRECTIONS as f64;
-                (from.0 + distance * libm::cos(angle), from.1 + distance * libm::sin(angle))
-            })
-        });
-        let free = places
-            .map(|at| text(index, at))
-            .find(|(text, _)| text.is_within(SIZE) && clear_of(text, &taken) >= CLEAR + 2.0);
-        if let Some((text, shape)) = free {
+        let places = AWAY.into_iter().flat_map(|distance| around(from, distance, DIRECTIONS));
+        let free = places.map(|at| text(index, at)).find(|text| fits(text, &taken, CLEAR + 2.0));
+        if let Some(text) = free {
             let (dx, dy) = (from.0 - text.middle.0, from.1 - text.middle.1);
             let share = 0.5 * f64::from(LETTERS) / libm::hypot(dx, dy);
             let to = (text.middle.0 + share * dx, text.middle.1 + share * dy);
             shapes.push(PlotShape::Line { points: vec![point(from), point(to)], stroke: LEADER });
-            shapes.push(shape);
-            taken.push(outline(&text));
-            taken.push(vec![from, to]);
+            shapes.push(label(index, &text));
+            taken.extend([outline(&text), vec![from, to]]);
         }
     }
     shapes
-}
-
-/// An area's letter, and half its width and height \[px\].
-fn lettered(index: usize) -> (String, Pixel) {
-    let letter = super::letter(index);
-    let half = TextBox::half_of(&letter, LETTERS);
-    (letter, half)
 }
 
 /// The point of an area that is farthest from its edges.
@@ -111,8 +94,8 @@ fn deepest(area: &Area) -> Option<[f64; 2]> {
 }
 
 fn outline(TextBox { middle: (x, y), half: (across, up) }: &TextBox) -> Vec<Pixel> {
-    let corner = |right: f64, high: f64| (x + right * across, y + high * up);
-    vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0)]
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    corners.map(|(right, high)| (x + right * across, y + high * up)).to_vec()
 }
 
 #[cfg(test)]
@@ -132,11 +115,8 @@ mod tests {
             let middles = vec![([x + 0.5 * width, 0.5], 0.5 * width)];
             areas.push(Area { regime: regime.into(), loops, middles, verdict: None, refused: None });
             if index > 0 {
-                curves.push(BorderCurve {
-                    sides: [index - 1, index],
-                    transition: Transition::default(),
-                    points: line(x),
-                });
+                let (sides, transition) = ([index - 1, index], Transition::default());
+                curves.push(BorderCurve { sides, transition, points: line(x) });
             }
             x += width;
         }
@@ -145,27 +125,21 @@ mod tests {
 
     #[test]
     fn a_letter_without_room_has_a_line_to_its_area() {
-        let widths = [0.5, 0.01, 0.49];
         let axis = PlotAxis { range: Some((0.0, 1.0)), ..PlotAxis::default() };
-        let shapes = letters(&axis, &axis, &strips(&widths));
-        let texts: Vec<(&str, PlotPoint)> = shapes
-            .iter()
-            .filter_map(|shape| match shape {
-                PlotShape::Text { at, text, .. } => Some((text.as_str(), *at)),
-                _ => None,
-            })
-            .collect();
-        let names: Vec<&str> = texts.iter().map(|(name, _)| *name).collect();
+        let (mut names, mut places, mut leaders) = (Vec::new(), Vec::new(), Vec::new());
+        for shape in letters(&axis, &axis, &strips(&[0.5, 0.01, 0.49])) {
+            match shape {
+                PlotShape::Text { at, text, .. } => {
+                    names.push(text);
+                    places.push(at.0);
+                }
+                PlotShape::Line { points, .. } => leaders.push(points[0].0),
+                _ => {}
+            }
+        }
         assert_eq!(names, ["A", "C", "B"]);
-        assert!((0.0..0.5).contains(&texts[0].1.0) && (0.51..1.0).contains(&texts[1].1.0));
-        let leaders: Vec<&Vec<PlotPoint>> = shapes
-            .iter()
-            .filter_map(|shape| match shape {
-                PlotShape::Line { points, .. } => Some(points),
-                _ => None,
-            })
-            .collect();
+        assert!((0.0..0.5).contains(&places[0]) && (0.51..1.0).contains(&places[1]));
         let [leader] = leaders[..] else { panic!("one small area") };
-        assert!((leader[0].0 - 0.505).abs() < 0.006, "{leader:?}");
+        assert!((leader - 0.505).abs() < 0.006, "{leader}");
     }
 }

@@ -13,7 +13,7 @@ mod along;
 mod map;
 
 use crate::draw::plot::{Color, Picture, PlotAxis};
-use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers, letter};
+use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers};
 use crate::write::sweep::Happening;
 
 /// The width of panels along a parameter, inside of their axes \[px\].
@@ -39,11 +39,8 @@ pub fn work(model: &RobotStudy, findings: &Findings) -> usize {
 fn axis(model: &RobotStudy, parameter: usize) -> PlotAxis {
     let Some(known) = model.study.parameters().get(parameter) else { return PlotAxis::default() };
     let name = with_greek_letters(&known.name);
-    let label = match model.unit(parameter) {
-        Some(unit) => format!("{name} [{unit}]"),
-        None => name,
-    };
-    PlotAxis { label, range: Some((known.from, known.to)), ..PlotAxis::default() }
+    let label = model.unit(parameter).map_or(name.clone(), |unit| format!("{name} [{unit}]"));
+    PlotAxis { range: Some((known.from, known.to)), ..PlotAxis::new(label) }
 }
 
 /// A name in which the names of Greek letters are replaced by these letters: `delta_alpha` becomes δ_α.
@@ -52,10 +49,8 @@ fn with_greek_letters(name: &str) -> String {
         "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu",
         "xi", "omicron", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
     ];
-    let letters = || NAMES.into_iter().zip("αβγδεζηθικλμνξοπρστυφχψω".chars());
-    let part = |part: &str| {
-        letters().find(|(name, _)| *name == part).map_or(part.to_owned(), |(_, letter)| letter.to_string())
-    };
+    let letter = |part: &str| "αβγδεζηθικλμνξοπρστυφχψω".chars().nth(NAMES.iter().position(|name| *name == part)?);
+    let part = |part: &str| letter(part).map_or(part.to_owned(), |letter| letter.to_string());
     name.split('_').map(part).collect::<Vec<_>>().join("_")
 }
 
@@ -66,10 +61,15 @@ struct KindLook<'a> {
     happening: Happening<'a>,
 }
 
-impl<'a> KindLook<'a> {
-    fn new(kind: usize, happening: Happening<'a>, color: Color) -> Self {
-        Self { letter: letter(kind), color, happening }
+/// Each name once, in the order of the first of each.
+fn different<'n>(names: impl Iterator<Item = &'n String>) -> Vec<&'n str> {
+    let mut known: Vec<&str> = Vec::new();
+    for name in names {
+        if !known.contains(&name.as_str()) {
+            known.push(name);
+        }
     }
+    known
 }
 
 /// Whether a region is wide enough for lines in it.
@@ -78,16 +78,22 @@ fn is_seen(region: &Region, survey: &Survey) -> bool {
     WIDTH * (region.to - region.from) >= range
 }
 
-/// The color of every kind of region along a parameter, in the order of letters.
-pub(crate) fn fills_along(survey: &Survey) -> Vec<Color> {
-    let mut firsts: Vec<&Regime> = Vec::new();
+/// The first region of every kind along a parameter, in the order of letters.
+fn firsts(survey: &Survey) -> Vec<&Region> {
+    let mut firsts: Vec<&Region> = Vec::new();
     for region in &survey.regions {
         if region.kind == firsts.len() {
-            firsts.push(&region.regime);
+            firsts.push(region);
         }
     }
+    firsts
+}
+
+/// The color of every kind of region along a parameter, in the order of letters.
+pub(crate) fn fills_along(survey: &Survey) -> Vec<Color> {
+    let regimes: Vec<&Regime> = firsts(survey).iter().map(|region| &*region.regime).collect();
     let borders: Vec<[usize; 2]> = survey.regions.windows(2).map(|pair| [pair[0].kind, pair[1].kind]).collect();
-    colors(&firsts, &borders)
+    colors(&regimes, &borders)
 }
 
 /// The color of every area of a map, in the order of letters.
@@ -135,8 +141,6 @@ mod tests {
             (1..20).map(|kind| [kind - 1, kind]).chain((8..20).map(|k| [k, k - 8])).collect();
         let colors = colors(&regimes, &borders);
         assert_eq!(colors.len(), 20);
-        for [a, b] in borders {
-            assert_ne!(colors[a], colors[b], "{a} and {b}");
-        }
+        assert!(borders.iter().all(|&[a, b]| colors[a] != colors[b]), "{colors:?}");
     }
 }

@@ -26,6 +26,12 @@ pub fn clear_of(text: &TextBox, curves: &[Vec<Pixel>]) -> f64 {
     least
 }
 
+/// Points at this distance, in so many directions \[px\].
+pub fn around((x, y): Pixel, distance: f64, directions: usize) -> impl Iterator<Item = Pixel> {
+    let angle = move |direction: usize| direction as f64 * TAU / directions as f64;
+    (0..directions).map(angle).map(move |angle| (x + distance * libm::cos(angle), y + distance * libm::sin(angle)))
+}
+
 /// A text with so much room on all sides is well placed \[px\].
 const ENOUGH: f64 = 12.0;
 /// A text is moved so often at most, by this distance at most \[px\], in one of so many directions.
@@ -42,11 +48,8 @@ pub fn freest(start: Pixel, half: Pixel, curves: &[Vec<Pixel>]) -> Pixel {
             break;
         }
         let step = STEP.min(0.9 * clear_of(&TextBox { middle, half: (0.0, 0.0) }, curves));
-        let moved = (0..DIRECTIONS).map(|direction| {
-            let angle = direction as f64 * TAU / DIRECTIONS as f64;
-            (middle.0 + step * libm::cos(angle), middle.1 + step * libm::sin(angle))
-        });
-        let freer = moved.map(|at| (room(at), at)).max_by(|(a, _), (b, _)| a.total_cmp(b));
+        let moved = around(middle, step, DIRECTIONS).map(|at| (room(at), at));
+        let freer = moved.max_by(|(a, _), (b, _)| a.total_cmp(b));
         match freer.filter(|(room, _)| *room > best) {
             Some((room, at)) => (middle, best) = (at, room),
             None => break,

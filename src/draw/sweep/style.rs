@@ -37,28 +37,19 @@ impl<'a> OutcomeStyles<'a> {
             let contacts = region.regime.contacts();
             let KindLook { letter, color, .. } = &kinds[region.kind];
             let outcomes = region.regime.outcomes().unwrap_or_default();
+            let seen = is_seen(region, survey);
             for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
-                let ambiguous = outcomes.len() > 1 && is_seen(region, survey);
-                match styles.iter_mut().find(|style| (style.contacts, style.modes) == (contacts, modes)) {
-                    Some(style) => {
-                        style.ambiguous |= ambiguous;
-                        style.seen |= is_seen(region, survey);
-                        if !style.letters.contains(letter) {
-                            style.letters.push(letter.clone());
-                        }
-                    }
-                    None => {
-                        let letters = vec![letter.clone()];
-                        styles.push(OutcomeStyle {
-                            contacts,
-                            modes,
-                            dash: None,
-                            color: *color,
-                            letters,
-                            ambiguous,
-                            seen: is_seen(region, survey),
-                        });
-                    }
+                let known = styles.iter().position(|style| (style.contacts, style.modes) == (contacts, modes));
+                let at = known.unwrap_or(styles.len());
+                if known.is_none() {
+                    let (letters, ambiguous, seen) = (Vec::new(), false, false);
+                    styles.push(OutcomeStyle { contacts, modes, dash: None, color: *color, letters, ambiguous, seen });
+                }
+                let style = &mut styles[at];
+                style.ambiguous |= outcomes.len() > 1 && seen;
+                style.seen |= seen;
+                if !style.letters.contains(letter) {
+                    style.letters.push(letter.clone());
                 }
             }
         }
@@ -71,16 +62,14 @@ impl<'a> OutcomeStyles<'a> {
 
     pub fn dash(&self, contacts: &[String], modes: &[Mode]) -> Dash {
         let own = self.0.iter().find(|style| (style.contacts, style.modes) == (contacts, modes));
-        own.and_then(|style| style.dash).unwrap_or(Dash::Solid)
+        own.and_then(|style| style.dash).unwrap_or(Dash::SOLID)
     }
 
     /// Components, angles, outcomes with the letters of their regions, and regions without outcomes.
     pub fn legend(&self, kinds: &[KindLook], angles: bool) -> Vec<LegendEntry> {
         let mut entries = Vec::new();
         if !self.0.is_empty() {
-            entries.extend(
-                COMPONENTS.map(|(name, stroke)| LegendEntry { name: name.into(), key: LegendKey::Line(stroke) }),
-            );
+            entries.extend(COMPONENTS.map(|(name, stroke)| LegendEntry::new(name, LegendKey::Line(stroke))));
         }
         if angles {
             entries.extend(angles::legend());
@@ -89,16 +78,13 @@ impl<'a> OutcomeStyles<'a> {
             let sentence = words::modes(contacts.iter().map(String::as_str), modes);
             let line = |dash| LegendKey::Line(Stroke { dash, ..Stroke::solid(Color::Black, 1.6) });
             let key = dash.map_or(LegendKey::Fill(*color), line);
-            LegendEntry { name: format!("{}: {sentence}", letters.join(", ")), key }
+            LegendEntry::new(format!("{}: {sentence}", letters.join(", ")), key)
         }));
         for KindLook { letter, color, happening } in kinds {
             let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
             let lines = if answered { happening.not_excluded() } else { happening.lines() };
             if !lines.is_empty() {
-                entries.push(LegendEntry {
-                    name: format!("{letter}: {}", lines.join("\n")),
-                    key: LegendKey::Fill(*color),
-                });
+                entries.push(LegendEntry::new(format!("{letter}: {}", lines.join("\n")), LegendKey::Fill(*color)));
             }
         }
         entries
