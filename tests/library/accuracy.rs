@@ -1,7 +1,7 @@
 //! The stiff and extreme suite: every case answers with its condition or refuses with its reason, and M and G keep
 //! their digits against a reference of at least 256 bits.
 
-use crate::support::after::velocities_after;
+use crate::support::impact::velocities_after;
 use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, Subject, cases, of_state, study};
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};

@@ -1,36 +1,28 @@
 //! States from tables and results as tables: what is read, what is refused and where, and what is written.
 
-use crate::support::after::velocities_after;
-use heelstrike::impact::Friction;
+use crate::support::impact::{robot, velocities_after};
+use crate::support::urdf::{self, Axis, HINGE, POINT, collision, joint, link};
+use heelstrike::description::Description;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::read::table::{Header, Rates};
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::NamedContact;
-use heelstrike::state::{Defaults, State};
-use heelstrike::write::{Detail, Refused, Report};
-use heelstrike::{Error, Robot};
-use heelstrike::{
-    read::table::{Header, Rates},
-    write::Columns,
-};
+use heelstrike::write::{Columns, Detail, Refused, Report};
+use heelstrike::{Defaults, Error, Friction, Robot, State};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// A hip and a knee, a point for a foot, and a box on the body that can touch at two corners.
-const LEG: &str = r#"<robot name="leg">
-    <link name="body"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-        <collision><geometry><box size="0.4 0.1 0.2"/></geometry></collision></link>
-    <link name="shin"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="1"/></inertial>
-        <collision><origin xyz="0 0 -0.5"/><geometry><sphere radius="0"/></geometry></collision></link>
-    <joint name="knee" type="continuous"><parent link="body"/><child link="shin"/><axis xyz="0 1 0"/></joint>
-</robot>"#;
-
-fn leg() -> Robot {
-    Robot::from_urdf(LEG).unwrap()
+/// A knee, a point for a foot, and a box on the body that can touch at two corners.
+fn leg_urdf() -> String {
+    urdf::robot(&[
+        link("body", 2.0, [0.0; 2], 1.0, &collision([0.0; 2], r#"box size="0.4 0.1 0.2""#)),
+        link("shin", 1.0, [0.0; 2], 0.1, &collision([0.0, -0.5], POINT)),
+        joint("knee", HINGE, ["body", "shin"], [0.0; 2], ""),
+    ])
 }
 
-fn bolted_leg() -> Robot {
-    let description = heelstrike::description::Description::from_urdf(LEG).unwrap();
-    Robot::reduce(&description, &Reduction { base: Some(Base::Fixed), ..Reduction::default() }).unwrap()
+fn leg() -> Robot {
+    robot(&leg_urdf())
 }
 
 /// The states of a table whose every row is on a line of its own.
@@ -40,12 +32,8 @@ fn states(table: &[u8], robot: &Robot) -> Vec<Result<State, Error>> {
     let mut rows = header.rows();
     let mut states = Vec::new();
     for (line, record) in (2..).zip(lines) {
-        match rows.row(record, line) {
-            Ok(Some(row)) => states
-                .push(row.state(robot, &Defaults { friction: Some(Friction::Finite(0.25)), ..Defaults::default() })),
-            Ok(None) => {}
-            Err(error) => states.push(Err(error)),
-        }
+        let defaults = Defaults { friction: Some(Friction::Finite(0.25)), ..Defaults::default() };
+        states.extend(rows.row(record, line).transpose().map(|row| row?.state(robot, &defaults)));
     }
     states
 }
@@ -97,76 +85,69 @@ fn other_programs_tables_are_read() {
 }
 
 /// The error as a person sees it.
-fn told(error: &Error) -> String {
+fn shown(error: &Error) -> String {
     let hint = error.remedy().map_or(String::new(), |hint| format!(" | {hint}"));
     format!("{error}{hint}")
 }
 
 #[test]
 fn a_header_that_does_not_fit_is_refused_with_the_columns_place() {
-    let (leg, bolted) = (leg(), bolted_leg());
+    let bolted = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
+    let bolted = Robot::reduce(&Description::from_urdf(&leg_urdf()).unwrap(), &bolted).unwrap();
+    let with_rates: [&[u8]; 12] = [
+        b"q_kne,v_knee",
+        b"id,\"a,b\",v_base_y",
+        b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
+        b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,time",
+        b"v_knee,time,v_knee",
+        b"time,v_knee,time",
+        b"0.1,0.2,0.3",
+        b"",
+        b"q_knee",
+        b"q_knee,time",
+        b"v_knee,\xff",
+        b"q_Knee,v_knee",
+    ];
+    let with_time: [&[u8]; 5] = [
+        b"q_base_qw,q_base_qy,q_base_qx,time",
+        b"time,q_base_y,q_base_pitch",
+        b"q_base_pitch,q_base_qw,q_base_qy,q_base_qx,q_base_qz,time",
+        b"q_knee",
+        b"time,q_knee,v_knee",
+    ];
+    let of_bolted: [&[u8]; 2] = [b"v_knee,q_base_qw", b"v_knee,q_base_x"];
     let mut refusals = String::new();
     for (robot, rates, records) in [
-        (
-            &leg,
-            Rates::Columns,
-            &[
-                &b"q_kne,v_knee"[..],
-                b"id,\"a,b\",v_base_y",
-                b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
-                b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,time",
-                b"v_knee,time,v_knee",
-                b"time,v_knee,time",
-                b"0.1,0.2,0.3",
-                b"",
-                b"q_knee",
-                b"q_knee,time",
-                b"v_knee,\xff",
-                b"q_Knee,v_knee",
-            ][..],
-        ),
-        (
-            &leg,
-            Rates::Time,
-            &[
-                &b"q_base_qw,q_base_qy,q_base_qx,time"[..],
-                b"time,q_base_y,q_base_pitch",
-                b"q_base_pitch,q_base_qw,q_base_qy,q_base_qx,q_base_qz,time",
-                b"q_knee",
-                b"time,q_knee,v_knee",
-            ][..],
-        ),
-        (&bolted, Rates::Columns, &[&b"v_knee,q_base_qw"[..], b"v_knee,q_base_x"][..]),
+        (&leg(), Rates::Columns, &with_rates[..]),
+        (&leg(), Rates::Time, &with_time),
+        (&bolted, Rates::Columns, &of_bolted),
     ] {
         for record in records {
             let error = Header::read(record, robot, rates).map(|_| ()).unwrap_err();
-            writeln!(refusals, "{}\n    {}", record.escape_ascii(), told(&error)).unwrap();
+            writeln!(refusals, "{}\n    {}", record.escape_ascii(), shown(&error)).unwrap();
         }
     }
     insta::assert_snapshot!("headers", refusals);
 }
 
 /// A leg that can swing out of the plane, with a wheel that follows its knee; its base is a chain of three joints.
-const HIP: &str = r#"<robot name="hip"><link name="world"/>
-    <link name="rail"/><link name="lift"/>
-    <link name="body"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-    <link name="thigh"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-    <link name="shin"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-    <link name="wheel"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-    <joint name="slide" type="prismatic"><parent link="world"/><child link="rail"/><axis xyz="1 0 0"/>
-        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
-    <joint name="rise" type="prismatic"><parent link="rail"/><child link="lift"/><axis xyz="0 0 1"/>
-        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
-    <joint name="tip" type="continuous"><parent link="lift"/><child link="body"/><axis xyz="0 1 0"/></joint>
-    <joint name="splay" type="continuous"><parent link="body"/><child link="thigh"/><axis xyz="1 0 0"/></joint>
-    <joint name="knee" type="continuous"><parent link="thigh"/><child link="shin"/><axis xyz="0 1 0"/></joint>
-    <joint name="spin" type="continuous"><parent link="shin"/><child link="wheel"/><axis xyz="0 1 0"/>
-        <mimic joint="knee" multiplier="2"/></joint>
-</robot>"#;
+fn hip() -> Robot {
+    let [forward, up] = [[1.0, 0.0], [0.0, 1.0]].map(Axis::Prismatic);
+    robot(&urdf::robot(&[
+        r#"<link name="world"/><link name="rail"/><link name="lift"/>"#.to_owned(),
+        ["body", "thigh", "shin", "wheel"].map(|name| link(name, 1.0, [0.0; 2], 1.0, "")).concat(),
+        joint("slide", forward, ["world", "rail"], [0.0; 2], ""),
+        joint("rise", up, ["rail", "lift"], [0.0; 2], ""),
+        joint("tip", HINGE, ["lift", "body"], [0.0; 2], ""),
+        joint("splay", HINGE, ["body", "thigh"], [0.0; 2], "").replace("0 1 0", "1 0 0"),
+        joint("knee", HINGE, ["thigh", "shin"], [0.0; 2], ""),
+        joint("spin", HINGE, ["shin", "wheel"], [0.0; 2], r#"<mimic joint="knee" multiplier="2"/>"#),
+    ]))
+}
 
 #[test]
-fn columns_of_joints_without_a_coordinate_are_told_and_not_read() {
-    let robot = Robot::from_urdf(HIP).unwrap();
+fn columns_of_frozen_joints_are_listed_and_not_read() {
+    let robot = hip();
     let header = Header::read(b"q_splay,q_knee,v_spin,q_spin,v_knee,v_splay,note", &robot, Rates::Columns).unwrap();
     assert_eq!(header.ignored().collect::<Vec<_>>(), ["q_splay", "v_spin", "q_spin", "v_splay"]);
     assert_eq!(header.carried().collect::<Vec<_>>(), ["note"]);
@@ -178,10 +159,10 @@ fn columns_of_joints_without_a_coordinate_are_told_and_not_read() {
 
 #[test]
 fn a_joint_of_the_base_is_given_as_the_base() {
-    let robot = Robot::from_urdf(HIP).unwrap();
+    let robot = hip();
     let error = Header::read(b"q_knee,v_rise", &robot, Rates::Columns).map(|_| ()).unwrap_err();
     assert_eq!(
-        told(&error),
+        shown(&error),
         "1:8: column 2: joint \"rise\" is part of the floating base: x, z and pitch of body take its place | give v_base_x, v_base_z and v_base_pitch"
     );
 }
@@ -213,7 +194,7 @@ fn a_row_that_does_not_fit_is_refused_with_line_and_column() {
         let table = [b"id,q_base_x,v_knee,friction,restitution,stance,note\n", row].concat();
         let found = states(&table, &leg());
         let error = found[0].as_ref().map(|_| ()).unwrap_err();
-        writeln!(refusals, "{}\n    {}", row.escape_ascii(), told(error)).unwrap();
+        writeln!(refusals, "{}\n    {}", row.escape_ascii(), shown(error)).unwrap();
     }
     insta::assert_snapshot!("rows", refusals);
 }
@@ -230,21 +211,17 @@ fn a_broken_row_does_not_touch_the_next() {
 fn a_long_cell_stays_out_of_the_message() {
     let table = format!("q_knee,v_knee\n{},1\n", "x".repeat(1 << 20));
     let error = states(table.as_bytes(), &leg()).pop().unwrap().unwrap_err();
-    assert!(told(&error).len() < 200, "{error}");
+    assert!(shown(&error).len() < 200, "{error}");
 }
 
-/// The rows that are written for a state of the leg, by column.
-fn written(columns: &Columns, state: &State, options: Options) -> Vec<BTreeMap<String, String>> {
-    let robot = leg();
-    rows(&robot, columns, state, &Pipeline::new(&robot, options).impact(state).unwrap())
-}
-
-fn rows(robot: &Robot, columns: &Columns, state: &State, impact: &Impact) -> Vec<BTreeMap<String, String>> {
-    let report = Report::of_state(robot, state, impact, Detail::default()).unwrap();
-    let mut out = Vec::new();
+/// The rows that are written for a state, by column.
+fn rows(robot: &Robot, state: &State, options: Options) -> (Vec<BTreeMap<String, String>>, Impact) {
+    let impact = Pipeline::new(robot, options).impact(state).unwrap();
+    let report = Report::of_state(robot, state, &impact, Detail::default()).unwrap();
+    let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, false));
     columns.append_header(&mut out);
     columns.append_result(&report, None, &mut out).unwrap();
-    by_column(&out)
+    (by_column(&out), impact)
 }
 
 fn by_column(table: &[u8]) -> Vec<BTreeMap<String, String>> {
@@ -253,11 +230,8 @@ fn by_column(table: &[u8]) -> Vec<BTreeMap<String, String>> {
 
 #[test]
 fn an_outcome_is_a_row_with_every_number_of_the_result() {
-    let robot = leg();
-    let columns = Columns::new(&robot, &[], None, false);
     let state = state("id,q_base_z,q_knee,v_base_x,v_base_z,friction\nk1,0.5,0,0.1,-1,0.5\n");
-    let rows = written(&columns, &state, Options::default());
-    let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
+    let (rows, impact) = rows(&leg(), &state, Options::default());
     let analysis = impact.analysis.as_ref().unwrap();
     let outcome = &analysis.outcomes[0];
     assert_eq!((rows.len(), analysis.outcomes.len()), (1, 1));
@@ -301,9 +275,8 @@ fn the_header_has_every_contact_that_the_feet_can_give() {
 
 #[test]
 fn two_corners_have_columns_of_their_own() {
-    let columns = Columns::new(&leg(), &[], None, false);
     let state = state("q_base_z,q_knee,v_base_z,friction\n0.1,1.5707963267948966,-1,0.5\n");
-    let rows = written(&columns, &state, Options { contact_tolerance: Some(1e-6), ..Options::default() });
+    let (rows, _) = rows(&leg(), &state, Options { contact_tolerance: Some(1e-6), ..Options::default() });
     assert_eq!(rows.len(), 1);
     assert_eq!((rows[0]["mode_body"].as_str(), rows[0]["mode_shin"].as_str()), ("", ""));
     assert!(!rows[0]["mode_body/0"].is_empty() && !rows[0]["mode_body/1"].is_empty());
@@ -311,8 +284,7 @@ fn two_corners_have_columns_of_their_own() {
 
 #[test]
 fn a_state_in_the_air_has_a_row_without_modes() {
-    let columns = Columns::new(&leg(), &[], None, false);
-    let rows = written(&columns, &state("q_base_z,v_base_z\n9,-1\n"), Options::default());
+    let (rows, _) = rows(&leg(), &state("q_base_z,v_base_z\n9,-1\n"), Options::default());
     assert_eq!(rows.len(), 1);
     assert_eq!((rows[0]["verdict"].as_str(), rows[0]["mode_shin"].as_str()), ("no_contact", ""));
     assert_eq!(rows[0]["v_base_z"], "-1.0");
@@ -321,16 +293,15 @@ fn a_state_in_the_air_has_a_row_without_modes() {
 #[test]
 fn a_contact_without_columns_is_refused_and_nothing_is_written() {
     let robot = leg();
-    let columns = Columns::new(&robot, &[], None, false);
     let mut state = state("q_base_z,v_base_z,friction\n0.5,-1,1\n");
     let named = |x| NamedContact { link: 1, offset: [x, 0.0, -0.5], radius: 0.0 };
     state.scene.contacts = Some(vec![named(0.0), named(0.1)]);
     let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
     let report = Report::of_state(&robot, &state, &impact, Detail::default()).unwrap();
     let mut out = Vec::new();
-    let error = columns.append_result(&report, None, &mut out).unwrap_err();
+    let error = Columns::new(&robot, &[], None, false).append_result(&report, None, &mut out).unwrap_err();
     assert_eq!(
-        told(&error),
+        shown(&error),
         "the table of results has no columns for contact \"shin/0\" | write NDJSON instead, or add the foot by `feet`"
     );
     assert!(out.is_empty());
@@ -361,22 +332,21 @@ fn foreign_columns_are_carried_through_also_beside_a_refusal() {
 
 /// A state of the block, whose G is [[2, 1], [1, 2]], and its rows.
 fn block(row: &str) -> (Vec<BTreeMap<String, String>>, Impact) {
-    let robot = Robot::from_urdf(include_str!("../../urdf/block.urdf")).unwrap();
+    let robot = robot(include_str!("../../urdf/block.urdf"));
     let state = states(format!("id,v_base_x,v_base_z,friction\nk,{row}\n").as_bytes(), &robot).pop().unwrap().unwrap();
-    let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
-    (rows(&robot, &Columns::new(&robot, &[], None, false), &state, &impact), impact)
+    rows(&robot, &state, Options::default())
 }
 
 #[test]
-fn a_border_is_told_by_what_is_zero_and_a_family_by_its_ends() {
-    let told = |row: &str| -> Vec<[String; 2]> {
+fn a_border_has_what_is_zero_and_a_family_its_ends() {
+    let found = |row: &str| -> Vec<[String; 2]> {
         block(row).0.iter().map(|row| [&row["border"], &row["family"]].map(String::clone)).collect()
     };
     // Resting, it is not pressed; struck, it stops with less than all of its friction.
-    assert_eq!(told("0,0,0.5"), [["block: L_n = 0", "false"]]);
-    assert_eq!(told("-0.5,-1,0.5"), [["", "false"]]);
+    assert_eq!(found("0,0,0.5"), [["block: L_n = 0", "false"]]);
+    assert_eq!(found("-0.5,-1,0.5"), [["", "false"]]);
     // At friction 2 sliding loads the contact by just what brakes it: it stops, goes on, or anything between.
-    assert_eq!(told("1,0,2"), [["block: |L_t| = mu L_n", "true"], ["block: L_n = 0", "true"]]);
+    assert_eq!(found("1,0,2"), [["block: |L_t| = mu L_n", "true"], ["block: L_n = 0", "true"]]);
 }
 
 #[test]

@@ -1,59 +1,30 @@
 //! Studies of two parameters: the areas and curves of a map against single states, and against studies of one
 //! parameter.
 
-use heelstrike::Robot;
-use heelstrike::description::Description;
+use crate::sweep::studies::with;
+use crate::sweep::walkers::straight;
 use heelstrike::impact::Mode;
-use heelstrike::pipeline::Options;
-use heelstrike::robot::Reduction;
-use heelstrike::state::Defaults;
-use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Study, Survey, Workers};
+use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Survey, Workers};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use serde_json::{Value, json};
 
 const PDW: &str = include_str!("../../urdf/pdw.urdf");
 const MINIMALISTIC: &str = include_str!("../../urdf/minimalistic.urdf");
+const WORKERS: Workers<'static> = Workers { threads: 2, done: &|| () };
 
 /// The walker against its leg angle and its legs' inertia, with its CoG this far along the leg.
-fn inertia(along: f64) -> String {
-    let leg = format!("{{\"inertia\": \"j\", \"com\": [0, 0, {}]}}", -along);
-    format!(
-        "{{\"parameters\": {{\"alpha\": {{\"from\": 0.001, \"to\": 1.5697, \"steps\": 33}}, \
-         \"j\": {{\"from\": 0, \"to\": 0.5, \"steps\": 17}}}}, \
-         \"robot\": {{\"links\": {{\"left_leg\": {leg}, \"right_leg\": {leg}}}}}, {}}}",
-        walk("infinite")
-    )
-}
-
-fn walk(friction: &str) -> String {
-    format!(
-        "\"state\": {{\"position\": {{\"base\": {{\"pitch\": \"-alpha\"}}, \"joints\": {{\"hip\": \"-2*alpha\"}}}}, \
-         \"velocity\": {{\"base\": {{\"pitch\": -1}}}}, \"stance\": \"left_leg\", \"friction\": \"{friction}\"}}"
-    )
-}
-
-/// Asks about the model of a study.
-fn with<T>(urdf: &str, study: &str, ask: impl FnOnce(&RobotStudy) -> T) -> T {
-    let study = Study::from_json(study).expect("a study");
-    let description = Description::from_urdf(urdf).expect("a description");
-    let reduction = Reduction::default();
-    let robot = Robot::reduce(&description, &reduction).expect("a robot");
-    ask(&RobotStudy {
-        study: &study,
-        description: &description,
-        reduction: &reduction,
-        robot: &robot,
-        options: Options::default(),
-        defaults: Defaults::default(),
-    })
-}
-
-fn workers() -> Workers<'static> {
-    Workers { threads: 2, done: &|| () }
+fn inertia(along: f64) -> Value {
+    let mut study = straight(None);
+    study["parameters"] = json!({"alpha": {"from": 0.001, "to": 1.5697, "steps": 33},
+        "j": {"from": 0, "to": 0.5, "steps": 17}});
+    let leg = json!({"inertia": "j", "com": [0, 0, -along]});
+    study["robot"] = json!({"links": {"left_leg": leg, "right_leg": leg}});
+    study
 }
 
 fn map(model: &RobotStudy) -> Map {
-    match Findings::of(model, workers()) {
+    match Findings::of(model, WORKERS) {
         Findings::Map(map) => map,
         Findings::Along(_) => panic!("two parameters make a map"),
     }
@@ -80,8 +51,8 @@ fn outcomes(area: &Area) -> Vec<Vec<Mode>> {
 }
 
 /// Random points of the ranges lie within exactly one area, and have its regime but for a thin seam at its curves.
-fn points_lie_in_their_areas(urdf: &str, study: &str) {
-    with(urdf, study, |model| {
+fn points_lie_in_their_areas(urdf: &str, study: &Value) {
+    with(urdf, study, 0, |model| {
         let map = map(model);
         let mut solver = Solver::new(model);
         let [first, second] = model.study.parameters() else { panic!("two parameters") };
@@ -107,11 +78,10 @@ fn points_lie_in_the_area_of_their_outcomes() {
 
 #[test]
 fn points_lie_in_the_area_of_their_outcomes_where_many_areas_meet() {
-    let study = format!(
-        "{{\"parameters\": {{\"alpha\": {{\"from\": 0, \"to\": \"pi/2\", \"steps\": 20}}, \
-         \"mu\": {{\"from\": 0, \"to\": 2, \"steps\": 20}}}}, {}}}",
-        walk("mu")
-    );
+    let mut study = straight(None);
+    study["parameters"] = json!({"alpha": {"from": 0, "to": "pi/2", "steps": 20},
+        "mu": {"from": 0, "to": 2, "steps": 20}});
+    study["state"]["friction"] = json!("mu");
     points_lie_in_their_areas(MINIMALISTIC, &study);
 }
 
@@ -120,7 +90,7 @@ fn points_lie_in_the_area_of_their_outcomes_where_many_areas_meet() {
 fn the_walker_s_bands_close_at_its_critical_inertia() {
     for along in [0.3_f64, 0.4, 0.5] {
         let critical = along * (1.0 - along);
-        with(PDW, &inertia(along), |model| {
+        with(PDW, &inertia(along), 0, |model| {
             let map = map(model);
             let area = |wanted: &[[Mode; 2]]| {
                 let found = map.areas.iter().find(|area| outcomes(area) == wanted);
@@ -144,30 +114,24 @@ fn the_walker_s_bands_close_at_its_critical_inertia() {
 #[test]
 fn a_section_of_a_map_is_the_study_of_one_parameter() {
     let areas_along = |j: f64| {
-        with(PDW, &inertia(0.4), |model| {
+        with(PDW, &inertia(0.4), 0, |model| {
             let map = map(model);
-            let mut letters: Vec<Vec<Vec<Mode>>> = Vec::new();
-            for k in 0..=2_000 {
-                let alpha = 0.001 + 1.5687 * f64::from(k) / 2_000.0;
-                let area =
-                    map.areas.iter().find(|area| winding(area, [alpha, j]) == 1).map(outcomes).unwrap_or_default();
-                if letters.last() != Some(&area) {
-                    letters.push(area);
-                }
-            }
-            letters
+            let regions = (0..=2_000).map(|k| {
+                let at = [0.001 + 1.5687 * f64::from(k) / 2_000.0, j];
+                map.areas.iter().find(|area| winding(area, at) == 1).map(outcomes).unwrap_or_default()
+            });
+            let mut regions: Vec<_> = regions.collect();
+            regions.dedup();
+            regions
         })
     };
     for j in [0.05, 0.21, 0.33] {
-        let line = inertia(0.4).replace(", \"j\": {\"from\": 0, \"to\": 0.5, \"steps\": 17}", "");
-        let line = line.replace("{\"parameters\"", &format!("{{\"constants\": {{\"j\": {j}}}, \"parameters\""));
-        let alone = with(PDW, &line, |model| {
-            let survey = Survey::of(model, workers());
-            survey
-                .regions
-                .iter()
-                .map(|region| region.regime.outcomes().unwrap_or_default().to_vec())
-                .collect::<Vec<_>>()
+        let mut line = inertia(0.4);
+        line["constants"] = json!({"j": j});
+        line["parameters"].as_object_mut().expect("an object").remove("j");
+        let alone: Vec<_> = with(PDW, &line, 0, |model| {
+            let regions = Survey::of(model, WORKERS).regions;
+            regions.iter().map(|region| region.regime.outcomes().unwrap_or_default().to_vec()).collect()
         });
         assert_eq!(areas_along(j), alone, "{j}");
     }
@@ -176,7 +140,7 @@ fn a_section_of_a_map_is_the_study_of_one_parameter() {
 #[test]
 fn a_map_is_the_same_for_any_number_of_threads() {
     let found = |threads| {
-        with(PDW, &inertia(0.4), |model| {
+        with(PDW, &inertia(0.4), 0, |model| {
             let map = Map::of(model, Workers { threads, done: &|| () });
             let loops: Vec<_> = map.areas.iter().map(|area| (area.loops.clone(), area.middles.clone())).collect();
             let curves: Vec<_> = map.curves.iter().map(|curve| (curve.sides, curve.points.clone())).collect();
@@ -188,7 +152,7 @@ fn a_map_is_the_same_for_any_number_of_threads() {
 
 #[test]
 fn curves_and_areas_are_labelled_with_what_turns_and_what_holds() {
-    with(PDW, &inertia(0.4), |model| {
+    with(PDW, &inertia(0.4), 0, |model| {
         let map = map(model);
         let mut solver = Solver::new(model);
         for area in &map.areas {
@@ -209,12 +173,11 @@ fn curves_and_areas_are_labelled_with_what_turns_and_what_holds() {
 #[test]
 fn an_island_has_its_size() {
     for (radius, room) in [(0.03_f64, 2e-2), (0.1, 5e-3), (0.4, 1e-3)] {
-        let study = format!(
-            "{{\"parameters\": {{\"h\": {{\"from\": -1, \"to\": 1, \"steps\": 20}}, \"g\": {{\"from\": -1, \"to\": 1, \"steps\": 20}}}}, \
-             \"state\": {{\"friction\": 0.9, \"velocity\": {{\"base\": {{\"x\": 0.5, \
-             \"z\": \"(h - 0.15)^2 + (g - 0.25)^2 - {radius}^2\"}}}}}}}}"
-        );
-        with(include_str!("../../urdf/block.urdf"), &study, |model| {
+        let range = json!({"from": -1, "to": 1, "steps": 20});
+        let z = format!("(g - 0.15)^2 + (h - 0.25)^2 - {radius}^2");
+        let study = json!({"parameters": {"g": range, "h": range},
+            "state": {"friction": 0.9, "velocity": {"base": {"x": 0.5, "z": z}}}});
+        with(include_str!("../../urdf/block.urdf"), &study, 0, |model| {
             let map = map(model);
             let inside = |area: &&Area| winding(area, [0.15, 0.25]) == 1;
             let island = map.areas.iter().find(inside).expect("an island");

@@ -1,7 +1,7 @@
 //! A robot and its state seen another way: mirrored, in other units, under other names, with axes flipped, on a slope.
 
 use super::problems::mirror;
-use crate::support::after::velocities_after;
+use crate::support::impact::velocities_after;
 use crate::support::random::Random;
 use crate::support::urdf::{self, Axis};
 use heelstrike::Robot;

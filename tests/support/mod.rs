@@ -2,9 +2,9 @@
 
 #![allow(dead_code, reason = "each binary uses its own part")]
 
-pub mod after;
 pub mod answers;
 pub mod command;
+pub mod impact;
 pub mod mechanism;
 pub mod parallel;
 pub mod random;

@@ -7,6 +7,11 @@ pub fn robot(elements: &[String]) -> String {
     format!("<robot name=\"mechanism\">\n{}</robot>\n", elements.concat())
 }
 
+/// A robot of one link of 2 kg, its CoG at its origin.
+pub fn body(moment: f64, collisions: &str) -> String {
+    robot(&[link("body", 2.0, [0.0; 2], moment, collisions)])
+}
+
 /// A link with the same moment of inertia about every axis, and its `<collision>` elements.
 pub fn link(name: impl Display, mass: f64, [x, z]: [f64; 2], moment: f64, collisions: &str) -> String {
     format!(
@@ -14,6 +19,13 @@ pub fn link(name: impl Display, mass: f64, [x, z]: [f64; 2], moment: f64, collis
          <inertia ixx=\"{moment}\" iyy=\"{moment}\" izz=\"{moment}\"/></inertial>{collisions}</link>\n"
     )
 }
+
+/// A `<collision>` of a shape such as `sphere radius="0.1"`.
+pub fn collision([x, z]: [f64; 2], shape: &str) -> String {
+    format!("<collision><origin xyz=\"{x} 0 {z}\"/><geometry><{shape}/></geometry></collision>")
+}
+
+pub const POINT: &str = "sphere radius=\"0\"";
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +36,9 @@ pub enum Axis {
     Prismatic([f64; 2]),
     Fixed,
 }
+
+/// About the plane's normal.
+pub const HINGE: Axis = Axis::Revolute(1.0);
 
 impl Axis {
     pub fn slides(self) -> bool {

@@ -2,7 +2,7 @@
 //! loop: its dependent rates are solved for (implicit differentiation), v = T v_red with T = [1; -K_d^-1 K_i].
 
 use crate::constraints::mechanism::{Mechanism, Part, assert_near, flat, impact, matrix, part, point};
-use crate::support::after::{loop_impulses, velocities_after};
+use crate::support::impact::{loop_impulses, velocities_after};
 use heelstrike::pipeline::Impact;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;

@@ -12,7 +12,7 @@
 //! crank's moment about its pivot, m l^2 / 3 dq' = l f . d, gives f_x.
 
 use crate::constraints::mechanism::{Joint, Mechanism, Part, impact, part, point};
-use crate::support::after::{loop_impulses, velocities_after};
+use crate::support::impact::{loop_impulses, velocities_after};
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
 use heelstrike::robot::{Base, Reduction, Robot};

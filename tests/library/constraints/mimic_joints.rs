@@ -3,7 +3,7 @@
 use crate::constraints::mechanism::{
     Joint, Mechanism, Part, assert_near, flat, impact, matrix, part, point, try_impact,
 };
-use crate::support::after::velocities_after;
+use crate::support::impact::velocities_after;
 use heelstrike::impact::Mode;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;

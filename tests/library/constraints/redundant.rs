@@ -2,7 +2,7 @@
 
 use crate::constraints::four_bar::{L, M, M_COUPLER, WIDTH, assert_stops, bolted, parallelogram, pin, state};
 use crate::constraints::mechanism::{impact, point, try_impact};
-use crate::support::after::{loop_impulses, velocities_after};
+use crate::support::impact::{loop_impulses, velocities_after};
 use serde_json::json;
 
 const Q: f64 = 0.6;

@@ -8,15 +8,15 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     // A point on the edge of a step: halfway between tread and riser.
     let edge = [[-2.0, 0.0], [0.0, 0.0], [1e-9, -2.0], [2.0, -2.0]];
     let s = FRAC_1_SQRT_2;
-    let found = impact(&point(), &state([0.0; 3], FALLING, "1", &edge));
+    let found = impact(&point(), &state([0.0; 3], FALLING, 1, &edge));
     assert_eq!(found.contacts.len(), 1);
     let Vector { x, z } = found.contacts[0].normal();
     assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
     // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over
     // the void: all of the quarter between riser and tread.
-    let flat = impact(&sole(), &state([-0.2, 0.1, 0.0], FALLING, "1", &edge));
+    let flat = impact(&sole(), &state([-0.2, 0.1, 0.0], FALLING, 1, &edge));
     assert_touches(&flat, &[[[-0.4, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]]]);
-    let hung = impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, "1", &edge));
+    let hung = impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, 1, &edge));
     assert_eq!(hung.contacts.len(), 1);
     let Vector { x, z } = hung.contacts[0].normal();
     assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
@@ -25,7 +25,7 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     let (sin, cos) = 0.4_f64.sin_cos();
     // The heel at (-0.2, -0.1) of the body, turned: (cos x + sin' z, cos z - sin' x) with sin' = sin(-0.4).
     let heel = [-0.2 * cos + 0.1 * sin, -0.1 * cos - 0.2 * sin];
-    let tilted = impact(&sole(), &state([-heel[0], -heel[1], -0.4], FALLING, "1", &edge));
+    let tilted = impact(&sole(), &state([-heel[0], -heel[1], -0.4], FALLING, 1, &edge));
     let angle = std::f64::consts::FRAC_PI_4 - 0.2;
     assert_eq!(tilted.contacts.len(), 1);
     let Vector { x, z } = tilted.contacts[0].normal();
@@ -38,7 +38,7 @@ fn a_spot_touches_once() {
     // or in the tread: two contacts with the tread's normal.
     for overhang in [-1e-3, -1e-7, -1e-9, -1e-15, 0.0, 1e-15, 1e-9, 1e-7, 1e-3] {
         for height in [-1e-9, -1e-16, 0.0, 1e-16, 1e-9] {
-            let text = state([-0.2 + overhang, 0.1 + height, 0.0], FALLING, "1", &step_down(0.0, 0.5));
+            let text = state([-0.2 + overhang, 0.1 + height, 0.0], FALLING, 1, &step_down(0.0, 0.5));
             let found = impact(&sole(), &text);
             assert_eq!(found.contacts.len(), 2, "{overhang} {height}: {:?}", touches(&found));
             for contact in &found.contacts {
@@ -53,7 +53,7 @@ fn a_spot_touches_once() {
 fn a_plate_without_thickness_lies_on_an_edge() {
     let plate = body(r#"<geometry><box size="0.4 0.1 0"/></geometry>"#);
     for height in [-1e-9, 0.0, 1e-9] {
-        let found = impact(&plate, &state([0.0, height, 0.2], FALLING, "1", &step_down(0.0, 0.5)));
+        let found = impact(&plate, &state([0.0, height, 0.2], FALLING, 1, &step_down(0.0, 0.5)));
         assert_eq!(found.contacts.len(), 1, "{height}");
         assert_close(&found.contacts[0].normal().components(), &[0.2_f64.sin(), 0.2_f64.cos()]);
     }
@@ -82,11 +82,11 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     // Flat on a tread, and with its middle on an edge.
     let up = [0.0, 1.0];
     near(
-        &impact(&robot, &state([-1.0, 0.2, 0.0], FALLING, "1", &step_down(0.0, 1.0))),
+        &impact(&robot, &state([-1.0, 0.2, 0.0], FALLING, 1, &step_down(0.0, 1.0))),
         &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]],
     );
     near(
-        &impact(&robot, &state([0.0, 0.2, 0.0], FALLING, "1", &step_down(0.0, 1.0))),
+        &impact(&robot, &state([0.0, 0.2, 0.0], FALLING, 1, &step_down(0.0, 1.0))),
         &[[[-reach, 0.0], up], [[0.0, 0.0], up]],
     );
     // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there
@@ -96,18 +96,18 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     let size = f64::hypot(out[0], out[1]);
     let place = [-reach - half * s, 0.2 * s, 0.0];
     let ridge = [[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]];
-    near(&impact(&robot, &state(place, FALLING, "1", &ridge)), &[[[0.0, 0.0], [-out[0] / size, -out[1] / size]]]);
+    near(&impact(&robot, &state(place, FALLING, 1, &ridge)), &[[[0.0, 0.0], [-out[0] / size, -out[1] / size]]]);
     // On a slope up: the front end reaches hypot(half sin, 0.2 cos) along the normal.
     let (sin, cos) = 0.5_f64.sin_cos();
     let far = f64::hypot(half * sin, 0.2 * cos);
     let place = [-reach - far * sin, far * cos, 0.0];
-    let found = impact(&robot, &state(place, FALLING, "1", &[[-4.0 * cos, -4.0 * sin], [4.0 * cos, 4.0 * sin]]));
+    let found = impact(&robot, &state(place, FALLING, 1, &[[-4.0 * cos, -4.0 * sin], [4.0 * cos, 4.0 * sin]]));
     let point = [-far * sin + half * half * sin / far, far * cos - 0.2 * 0.2 * cos / far];
     near(&found, &[[point, [-sin, cos]]]);
     // Sunk: by as much as it is too low.
-    assert!((depth(&robot, &state([-1.0, 0.15, 0.0], [0.0; 3], "1", &step_down(0.0, 1.0))) - 0.05).abs() < 1e-12);
-    assert!((depth(&robot, &state([0.0, 0.15, 0.0], [0.0; 3], "1", &ridge)) - 0.05).abs() < 1e-12);
-    assert!((depth(&robot, &state([-1.0, -0.3, 0.0], [0.0; 3], "1", &step_down(0.0, 1.0))) - 0.5).abs() < 1e-12);
+    assert!((depth(&robot, &state([-1.0, 0.15, 0.0], [0.0; 3], 1, &step_down(0.0, 1.0))) - 0.05).abs() < 1e-12);
+    assert!((depth(&robot, &state([0.0, 0.15, 0.0], [0.0; 3], 1, &ridge)) - 0.05).abs() < 1e-12);
+    assert!((depth(&robot, &state([-1.0, -0.3, 0.0], [0.0; 3], 1, &step_down(0.0, 1.0))) - 0.5).abs() < 1e-12);
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn contacts_named_by_hand_take_the_nearest_ground() {
 #[test]
 fn a_circle_whose_lowest_point_is_exactly_a_corner_of_the_ground_touches_there() {
     let down = [[-2.0, 0.0], [0.0, 0.0], [2.0, -0.4]];
-    let on = |profile: &[[f64; 2]], x: f64| impact(&disc(), &state([x, 0.5, 0.0], FALLING, "0.5", profile));
+    let on = |profile: &[[f64; 2]], x: f64| impact(&disc(), &state([x, 0.5, 0.0], FALLING, 0.5, profile));
     // At the edge of a step, where a slope begins, and at both ends of the ground; the normal is that of the level
     // segment.
     for (profile, x) in [(&step_down(0.0, 1.0)[..], 0.0), (&down, 0.0), (&[[-2.0, 0.0], [0.25, 0.0]], 0.25)] {

@@ -5,18 +5,18 @@ use super::*;
 #[test]
 fn over_a_gap_and_beyond_an_end_there_is_nothing() {
     let gap = [[-1.0, 0.0], [-0.1, 0.0], [-0.1 + 1e-6, -5.0], [0.1 - 1e-6, -5.0], [0.1, 0.0], [1.0, 0.0]];
-    let over = impact(&point(), &state([0.0; 3], FALLING, "1", &gap));
+    let over = impact(&point(), &state([0.0; 3], FALLING, 1, &gap));
     assert!(over.contacts.is_empty());
     assert_eq!(over.analysis.unwrap().verdict, Verdict::NoContact);
     assert_eq!(over.notes.len(), 1);
     assert!(over.notes[0].contains("the nearest foot, body, is 0.09999"), "{:?}", over.notes);
     // A sole bridges it: both edges carry.
-    let bridge = impact(&sole(), &state([0.0, 0.1, 0.0], FALLING, "1", &gap));
+    let bridge = impact(&sole(), &state([0.0, 0.1, 0.0], FALLING, 1, &gap));
     assert_eq!(bridge.contacts.len(), 4);
-    let beyond = impact(&sole(), &state([1.1, 0.1, 0.0], FALLING, "1", &gap));
+    let beyond = impact(&sole(), &state([1.1, 0.1, 0.0], FALLING, 1, &gap));
     assert_touches(&beyond, &[[[0.9, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 1.0]]]);
     assert_eq!(beyond.notes, ["body reaches beyond the end of the ground's profile at x = 1.0 m: there is no ground"]);
-    let above = impact(&sole(), &state([1.1, 0.2, 0.0], FALLING, "1", &gap));
+    let above = impact(&sole(), &state([1.1, 0.2, 0.0], FALLING, 1, &gap));
     assert!(above.contacts.is_empty() && above.notes.len() == 1, "{:?}", above.notes);
 }
 
@@ -25,26 +25,26 @@ fn a_foot_in_the_ground_is_refused_with_its_depth() {
     let near = |depth: f64, expected: f64| assert!((depth - expected).abs() < 2e-6, "{depth} is not {expected}");
     let level = [0.0; 3];
     // Its toe is 0.02 m in the riser.
-    near(depth(&sole(), &state([0.02, 0.1, 0.0], level, "1", &step_up(0.2, 0.5))), 0.02);
+    near(depth(&sole(), &state([0.02, 0.1, 0.0], level, 1, &step_up(0.2, 0.5))), 0.02);
     // It is 0.05 m in the tread, and then as a whole far below it.
-    near(depth(&sole(), &state([-1.0, 0.05, 0.0], level, "1", &step_up(0.2, 0.5))), 0.05);
-    near(depth(&sole(), &state([-1.0, -0.9, 0.0], level, "1", &step_up(0.2, 0.5))), 1.0);
+    near(depth(&sole(), &state([-1.0, 0.05, 0.0], level, 1, &step_up(0.2, 0.5))), 0.05);
+    near(depth(&sole(), &state([-1.0, -0.9, 0.0], level, 1, &step_up(0.2, 0.5))), 1.0);
     // Below the upper tread, where a lower one would still be far beneath.
-    near(depth(&sole(), &state([-1.0, -0.2, 0.0], level, "1", &step_down(0.5, 3.0))), 0.3);
+    near(depth(&sole(), &state([-1.0, -0.2, 0.0], level, 1, &step_down(0.5, 3.0))), 0.3);
     // A disc, its centre above and below the ground.
-    near(depth(&disc(), &state([-1.0, 0.4, 0.0], level, "1", &step_up(0.2, 0.5))), 0.1);
-    near(depth(&disc(), &state([-1.0, -0.3, 0.0], level, "1", &step_up(0.2, 0.5))), 0.8);
+    near(depth(&disc(), &state([-1.0, 0.4, 0.0], level, 1, &step_up(0.2, 0.5))), 0.1);
+    near(depth(&disc(), &state([-1.0, -0.3, 0.0], level, 1, &step_up(0.2, 0.5))), 0.8);
     // A ridge pokes 0.03 m into a sole whose corners are free.
-    near(depth(&sole(), &state([0.0, 0.1, 0.0], level, "1", &[[-1.0, -5.0], [0.0, 0.03], [1.0, -5.0]])), 0.03);
+    near(depth(&sole(), &state([0.0, 0.1, 0.0], level, 1, &[[-1.0, -5.0], [0.0, 0.03], [1.0, -5.0]])), 0.03);
     // A thin pillar goes right through: no corner is inside of anything, and the shortest way out is along the box.
     let pillar = [[-1.0, -5.0], [-0.01, -5.0], [-0.009, 5.0], [0.009, 5.0], [0.01, -5.0], [1.0, -5.0]];
-    let found = depth(&sole(), &state([0.0, 0.1, 0.0], level, "1", &pillar));
+    let found = depth(&sole(), &state([0.0, 0.1, 0.0], level, 1, &pillar));
     assert!((0.1..0.25).contains(&found), "{found}");
 }
 
 #[test]
 fn a_greater_tolerance_accepts_what_is_as_deep() {
-    let text = state([0.0, 0.099, 0.0], FALLING, "0.5", &step_down(0.1, 0.2));
+    let text = state([0.0, 0.099, 0.0], FALLING, 0.5, &step_down(0.1, 0.2));
     assert!(try_impact(&sole(), Options::default(), &text).is_err());
     let wide = Options { contact_tolerance: Some(2e-3), ..Options::default() };
     let found = try_impact(&sole(), wide, &text).expect("within the tolerance");

@@ -1,7 +1,7 @@
 //! What changes nothing: a segment cut in two, another place, a mirror.
 
 use super::*;
-use crate::support::after::velocities_after;
+use crate::support::urdf::{HINGE, collision, joint, link};
 use proptest::prelude::*;
 
 /// A walker over stairs, seen in a mirror where `mirrored` is -1: a box and a disc for feet.
@@ -42,44 +42,27 @@ impl Walker {
 
     fn robot(mirrored: f64) -> Robot {
         let leg = |name: &str, x: f64, foot: &str| {
-            format!(
-                r#"<link name="{name}"><inertial><origin xyz="{} 0 -0.2"/><mass value="1"/>
-                    <inertia ixx="1" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="1"/></inertial>
-                    <collision><origin xyz="{} 0 -0.5"/><geometry>{foot}</geometry></collision></link>
-                <joint name="{name}" type="revolute"><origin xyz="{} 0 -0.1"/><parent link="body"/><child link="{name}"/>
-                    <axis xyz="0 1 0"/><limit effort="0" velocity="0"/></joint>"#,
-                mirrored * 0.02,
-                mirrored * 0.03,
-                mirrored * x
-            )
+            let foot = collision([mirrored * 0.03, -0.5], foot);
+            let link = link(name, 1.0, [mirrored * 0.02, -0.2], 0.03, &foot);
+            link + &joint(name, HINGE, ["body", name], [mirrored * x, -0.1], "")
         };
-        let legs = [leg("one", 0.2, r#"<box size="0.24 0.1 0.06"/>"#), leg("two", -0.15, r#"<sphere radius="0.07"/>"#)];
-        let text = format!(
-            r#"<robot name="walker"><link name="body"><inertial><origin xyz="{} 0 0.1"/><mass value="4"/>
-                <inertia ixx="1" ixy="0" ixz="0" iyy="0.3" iyz="0" izz="1"/></inertial></link>{}</robot>"#,
-            mirrored * 0.05,
-            legs.concat()
-        );
-        Robot::from_urdf(&text).expect("a good robot")
+        let legs = [leg("one", 0.2, r#"box size="0.24 0.1 0.06""#), leg("two", -0.15, r#"sphere radius="0.07""#)];
+        robot(&urdf::robot(&[link("body", 4.0, [mirrored * 0.05, 0.1], 0.3, ""), legs.concat()]))
     }
 
-    fn state(&self, mirrored: f64, height: f64, profile: &[[f64; 2]], shift: [f64; 2]) -> String {
+    fn state(&self, mirrored: f64, height: f64, profile: &[[f64; 2]], shift: [f64; 2]) -> Value {
         let [u, w, rate, one, two] = self.rates;
         let m = mirrored;
-        format!(
-            r#"{{"friction": 0.7, "ground": {{"profile": {profile:?}}},
-                "position": {{"base": {{"x": {:?}, "z": {:?}, "pitch": {:?}}}, "joints": {{"one": {:?}, "two": {:?}}}}},
-                "velocity": {{"base": {{"x": {:?}, "z": {w:?}, "pitch": {:?}}}, "joints": {{"one": {:?}, "two": {:?}}}}}}}"#,
-            m * self.x + shift[0],
-            height + shift[1],
-            m * self.pitch,
-            m * self.hips[0],
-            m * self.hips[1],
-            m * u,
-            m * rate,
-            m * one,
-            m * two
-        )
+        let place = [m * self.x + shift[0], height + shift[1], m * self.pitch];
+        let mut state = state(place, [m * u, w, m * rate], 0.7, profile);
+        state["position"]["joints"] = json!({"one": m * self.hips[0], "two": m * self.hips[1]});
+        state["velocity"]["joints"] = json!({"one": m * one, "two": m * two});
+        state
+    }
+
+    fn answer(robot: &Robot, state: &Value) -> Option<Impact> {
+        let options = Options { contact_tolerance: Some(Self::TOLERANCE), ..Options::default() };
+        try_impact(robot, options, state).ok()
     }
 
     /// The height at which the walker touches, half of the tolerance above the one at which it is refused.
@@ -88,19 +71,15 @@ impl Walker {
         let (mut low, mut high) = (-5.0, 5.0);
         while high - low > 1e-9 {
             let middle = 0.5 * (low + high);
-            match try_impact(robot, Self::options(), &self.state(1.0, middle, &profile, [0.0; 2])) {
-                Ok(_) => high = middle,
-                Err(_) => low = middle,
+            match Self::answer(robot, &self.state(1.0, middle, &profile, [0.0; 2])) {
+                Some(_) => high = middle,
+                None => low = middle,
             }
         }
         high + 0.5 * Self::TOLERANCE
     }
 
     const TOLERANCE: f64 = 1e-6;
-
-    fn options() -> Options {
-        Options { contact_tolerance: Some(Self::TOLERANCE), ..Options::default() }
-    }
 }
 
 fn sorted(mut numbers: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
@@ -128,7 +107,7 @@ proptest! {
         fine.push(profile[profile.len() - 1]);
         fine.dedup_by(|a, b| a[0] <= b[0]);
         let answer = |profile: &[[f64; 2]]| {
-            try_impact(&robot, Walker::options(), &walker.state(1.0, height, profile, [0.0; 2])).expect("it touches")
+            Walker::answer(&robot, &walker.state(1.0, height, profile, [0.0; 2])).expect("it touches")
         };
         let (coarse, fine) = (answer(&profile), answer(&fine));
         prop_assert!(!coarse.contacts.is_empty());
@@ -142,7 +121,7 @@ proptest! {
         let (profile, height) = (walker.profile(), walker.landed(&robot));
         let shifted: Vec<[f64; 2]> = profile.iter().map(|[x, z]| [x + shift[0], z + shift[1]]).collect();
         let answer = |profile: &[[f64; 2]], shift| {
-            try_impact(&robot, Walker::options(), &walker.state(1.0, height, profile, shift)).expect("it touches")
+            Walker::answer(&robot, &walker.state(1.0, height, profile, shift)).expect("it touches")
         };
         let (here, there) = (answer(&profile, [0.0; 2]), answer(&shifted, shift));
         prop_assert_eq!(here.contacts.len(), there.contacts.len());
@@ -156,7 +135,7 @@ proptest! {
         let (profile, height) = (walker.profile(), walker.landed(&robot));
         let mirrored: Vec<[f64; 2]> = profile.iter().rev().map(|[x, z]| [-x, *z]).collect();
         let answer = |robot: &Robot, sign: f64, profile: &[[f64; 2]]| {
-            try_impact(robot, Walker::options(), &walker.state(sign, height, profile, [0.0; 2])).expect("it touches")
+            Walker::answer(robot, &walker.state(sign, height, profile, [0.0; 2])).expect("it touches")
         };
         let (one, other) = (answer(&robot, 1.0, &profile), answer(&image, -1.0, &mirrored));
         let flip = |impact: &Impact, sign: f64| -> Vec<Vec<f64>> {

@@ -11,22 +11,17 @@ mod invariances;
 mod level;
 mod scenes;
 
-use crate::support::after::velocities_after;
+use crate::support::impact::{impact, outcomes, robot, try_impact, velocities_after};
+use crate::support::urdf;
 use heelstrike::impact::Verdict;
-use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::pipeline::{Impact, Options};
 use heelstrike::planar::Vector;
-use heelstrike::state::{Defaults, State};
-use heelstrike::{Error, Reason, Robot};
+use heelstrike::{Reason, Robot};
+use serde_json::{Value, json};
 
 /// A body of 2 kg and 0.5 kg m^2 with one collision shape.
 fn body(shape: &str) -> Robot {
-    let text = format!(
-        r#"<robot name="body"><link name="body">
-            <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="0.5" iyz="0" izz="1"/></inertial>
-            <collision>{shape}</collision>
-        </link></robot>"#
-    );
-    Robot::from_urdf(&text).expect("a good robot")
+    robot(&urdf::body(0.5, &format!("<collision>{shape}</collision>")))
 }
 
 /// A box 0.4 m long and 0.2 m high.
@@ -43,26 +38,11 @@ fn point() -> Robot {
     body(r#"<geometry><sphere radius="0"/></geometry>"#)
 }
 
-fn try_impact(robot: &Robot, options: Options, state: &str) -> Result<Impact, Error> {
-    Pipeline::new(robot, options).impact(&State::from_json(state, robot, &Defaults::default())?)
-}
-
-fn impact(robot: &Robot, state: &str) -> Impact {
-    try_impact(robot, Options::default(), state).unwrap_or_else(|error| panic!("{error}: {state}"))
-}
-
 /// The body at `[x, z, pitch]` with velocity `[x, z, pitch]` over a profile.
-fn state(position: [f64; 3], velocity: [f64; 3], friction: &str, profile: &[[f64; 2]]) -> String {
-    state_on(position, velocity, friction, &format!(r#"{{"profile": {profile:?}}}"#))
-}
-
-fn state_on(position: [f64; 3], velocity: [f64; 3], friction: &str, ground: &str) -> String {
-    let ([x, z, pitch], [u, w, rate]) = (position, velocity);
-    format!(
-        r#"{{"position": {{"base": {{"x": {x:?}, "z": {z:?}, "pitch": {pitch:?}}}}},
-            "velocity": {{"base": {{"x": {u:?}, "z": {w:?}, "pitch": {rate:?}}}}},
-            "friction": {friction}, "ground": {ground}}}"#
-    )
+fn state(position: [f64; 3], velocity: [f64; 3], friction: impl Into<Value>, profile: &[[f64; 2]]) -> Value {
+    let base = |[x, z, pitch]: [f64; 3]| json!({"base": {"x": x, "z": z, "pitch": pitch}});
+    json!({"position": base(position), "velocity": base(velocity), "friction": friction.into(),
+        "ground": {"profile": profile}})
 }
 
 const FALLING: [f64; 3] = [0.0, -1.0, 0.0];
@@ -92,7 +72,7 @@ fn only_outcome(impact: &Impact) -> (&[[f64; 2]], Vec<f64>) {
     (&analysis.outcomes[0].impulse, analysis.outcomes[0].velocity().collect())
 }
 
-fn depth(robot: &Robot, state: &str) -> f64 {
+fn depth(robot: &Robot, state: &Value) -> f64 {
     let error = try_impact(robot, Options::default(), state).expect_err("too deep");
     let Reason::Penetration { link, depth, .. } = error.reason() else { panic!("{error}") };
     assert_eq!(link, "body");
@@ -109,29 +89,14 @@ fn step_up(edge: f64, height: f64) -> [[f64; 2]; 4] {
     [[-2.0, 0.0], [edge, 0.0], [edge + 1e-6, height], [2.0, height]]
 }
 
-/// Two legs of different length below a body, each with a point foot.
-const BIPED: &str = r#"<robot name="biped">
-    <link name="body"><inertial><mass value="3"/><inertia ixx="1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="1"/></inertial></link>
-    <link name="rear"><inertial><origin xyz="0 0 -0.3"/><mass value="1"/>
-        <inertia ixx="1" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="1"/></inertial>
-        <collision><origin xyz="0 0 -0.8"/><geometry><sphere radius="0"/></geometry></collision></link>
-    <link name="front"><inertial><origin xyz="0 0 -0.3"/><mass value="1"/>
-        <inertia ixx="1" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="1"/></inertial>
-        <collision><origin xyz="0 0 -0.5"/><geometry><sphere radius="0"/></geometry></collision></link>
-    <joint name="rear" type="revolute"><origin xyz="-0.2 0 0"/><parent link="body"/><child link="rear"/><axis xyz="0 1 0"/>
-        <limit effort="0" velocity="0"/></joint>
-    <joint name="front" type="revolute"><origin xyz="0.2 0 0"/><parent link="body"/><child link="front"/><axis xyz="0 1 0"/>
-        <limit effort="0" velocity="0"/></joint></robot>"#;
-
 #[track_caller]
 fn assert_same_outcomes(one: &Impact, other: &Impact) {
-    let analyses = [one, other].map(|impact| impact.analysis.as_ref().expect("an analysis"));
-    assert_eq!(analyses[0].verdict, analyses[1].verdict);
-    assert_eq!(analyses[0].outcomes.len(), analyses[1].outcomes.len());
-    let outcomes = analyses[0].outcomes.iter().zip(&analyses[1].outcomes);
+    let verdict = |impact: &Impact| impact.analysis.as_ref().expect("an analysis").verdict;
+    assert_eq!(verdict(one), verdict(other));
+    assert_eq!(outcomes(one).len(), outcomes(other).len());
     let velocities = velocities_after(one).into_iter().zip(velocities_after(other));
     let near = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
-    for ((a, b), (before, after)) in outcomes.zip(velocities) {
+    for ((a, b), (before, after)) in outcomes(one).iter().zip(outcomes(other)).zip(velocities) {
         assert_eq!(a.modes, b.modes);
         assert!(near(a.impulse.as_flattened(), b.impulse.as_flattened()), "{:?} {:?}", a.impulse, b.impulse);
         assert!(near(&before, &after), "{before:?} {after:?}");

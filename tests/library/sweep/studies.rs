@@ -55,6 +55,13 @@ impl Subject {
     }
 }
 
+/// Asks about the model of a study, in which combinations are explained up to so many contacts.
+pub fn with<T>(urdf: &str, study: &Value, explain_up_to: usize, ask: impl FnOnce(&RobotStudy) -> T) -> T {
+    let (subject, text) = (Subject::new("", urdf), study.to_string());
+    let study = Study::from_json(&text).expect("a study");
+    ask(&RobotStudy { options: Options { explain_up_to, ..Options::default() }, ..subject.model(&study) })
+}
+
 /// A constant, or a line in the parameter p.
 fn linear(random: &mut Random, size: f64) -> Value {
     let constant = random.between(-size, size);

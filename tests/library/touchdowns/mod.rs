@@ -5,17 +5,18 @@
 mod motion;
 mod sagittal;
 
-use heelstrike::Robot;
+use crate::support::command::{heelstrike, read};
+use crate::support::impact::robot;
 use heelstrike::gait::{At, Difference, Sample, Sampled, Touchdown, Touching, find, rates};
-use heelstrike::impact::Friction;
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::table::{Header, Rates};
-use heelstrike::state::Defaults;
 use heelstrike::state::NamedContact;
+use heelstrike::{Defaults, Friction, Robot};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::Path;
+
+const RABBIT: &str = "tests/data/robots/rabbit/five_link_walker.urdf";
+const WALK: &str = "tests/data/gaits/rabbit_walk.csv";
 
 #[derive(Deserialize)]
 struct Reference {
@@ -45,21 +46,6 @@ struct Outcome {
     margin: Option<f64>,
 }
 
-fn data(path: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(path);
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
-
-fn rabbit() -> (Robot, Vec<NamedContact>) {
-    let robot = Robot::from_urdf(&data("robots/rabbit/five_link_walker.urdf")).unwrap();
-    let feet = ["right_shin", "left_shin"].map(|link| NamedContact {
-        link: robot.link(link).unwrap(),
-        offset: [0.0, 0.0, 0.4],
-        radius: 0.0,
-    });
-    (robot, feet.into())
-}
-
 /// The samples of a table, known by their lines.
 fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
     let mut lines = (1..).zip(table.lines());
@@ -77,19 +63,30 @@ fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
         .collect()
 }
 
+/// The touchdowns of samples of which none is refused.
+fn touchdowns(
+    robot: &Robot,
+    feet: &[NamedContact],
+    samples: Vec<Sampled<usize>>,
+    at: At,
+    touching: Touching,
+) -> Vec<Touchdown<usize>> {
+    find(samples.into_iter(), robot, feet, at, touching).unwrap().map(Result::unwrap).collect()
+}
+
 /// The touchdowns of the rabbit.
-fn found(samples: Vec<Sampled<usize>>, at: At, touching: Touching) -> Vec<Touchdown<usize>> {
-    let (robot, feet) = rabbit();
-    let touchdowns = find(samples.into_iter(), &robot, &feet, at, touching).unwrap();
-    touchdowns.map(|touchdown| touchdown.expect("no row is refused")).collect()
+fn rabbit(at: At, touching: Touching) -> Vec<Touchdown<usize>> {
+    let robot = robot(&read(RABBIT));
+    let foot = |link| NamedContact { link: robot.link(link).unwrap(), offset: [0.0, 0.0, 0.4], radius: 0.0 };
+    let samples = samples(&read(WALK), &robot, Rates::Columns);
+    touchdowns(&robot, &["right_shin", "left_shin"].map(foot), samples, at, touching)
 }
 
 #[test]
 fn the_rabbits_touchdowns_are_those_of_the_reference() {
-    let reference: Reference = serde_json::from_str(&data("gaits/rabbit_walk.reference.json")).unwrap();
-    let (robot, _) = rabbit();
-    let samples = samples(&data("gaits/rabbit_walk.csv"), &robot, Rates::Columns);
-    let touchdowns = found(samples, At::Row, Touching::default());
+    let reference = read("tests/data/gaits/rabbit_walk.reference.json");
+    let reference: Reference = serde_json::from_str(&reference).unwrap();
+    let (robot, touchdowns) = (robot(&read(RABBIT)), rabbit(At::Row, Touching::default()));
     assert_eq!(touchdowns.len(), reference.states.len());
     for (touchdown, expected) in touchdowns.iter().zip(&reference.states) {
         assert_eq!(touchdown.row, expected.csv_row);
@@ -130,11 +127,7 @@ fn close(found: &[[f64; 2]], expected: &[[f64; 2]]) {
 
 #[test]
 fn rows_of_one_time_are_taken_as_they_are_also_by_crossing() {
-    let (robot, _) = rabbit();
-    let table = data("gaits/rabbit_walk.csv");
-    let (row, crossing) = (At::Row, At::Crossing);
-    let [row, crossing] =
-        [row, crossing].map(|at| found(samples(&table, &robot, Rates::Columns), at, Touching::Strike));
+    let [row, crossing] = [At::Row, At::Crossing].map(|at| rabbit(at, Touching::Strike));
     assert_eq!(row.len(), 4);
     for (row, crossing) in row.iter().zip(&crossing) {
         assert_eq!((row.row, row.time), (crossing.row, crossing.time));
@@ -144,8 +137,7 @@ fn rows_of_one_time_are_taken_as_they_are_also_by_crossing() {
 
 #[test]
 fn velocities_from_the_time_stop_short_of_the_impact() {
-    let (robot, _) = rabbit();
-    let table = data("gaits/rabbit_walk.csv");
+    let (robot, table) = (robot(&read(RABBIT)), read(WALK));
     let recorded = samples(&table, &robot, Rates::Columns);
     // The same table without its columns of velocities.
     let kept = table.lines().next().unwrap().split(',').take_while(|name| !name.starts_with("v_")).count();
@@ -169,9 +161,8 @@ fn velocities_from_the_time_stop_short_of_the_impact() {
 
 #[test]
 fn a_robot_without_feet_is_refused() {
-    let (robot, _) = rabbit();
     let none = std::iter::empty::<Sampled<()>>();
-    let error = find(none, &robot, &[], At::Row, Touching::Strike).map(|_| ()).unwrap_err();
+    let error = find(none, &robot(&read(RABBIT)), &[], At::Row, Touching::Strike).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("foot"), "{error}");
     assert!(error.remedy().is_some_and(|hint| hint.contains("`feet: ")));
 }
@@ -188,28 +179,13 @@ fn touching_is_read_as_it_is_written() {
 
 /// What `heelstrike batch` writes about the rabbit's walk.
 fn batch(arguments: &[&str]) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
-    let output = assert_cmd::Command::new(env!("CARGO_BIN_EXE_heelstrike"))
-        .arg("batch")
-        .args([root.join("robots/rabbit/five_link_walker.urdf"), root.join("gaits/rabbit_walk.csv")])
-        .args([
-            "--contact",
-            "right_shin:0,0,0.4",
-            "--contact",
-            "left_shin:0,0,0.4",
-            "--touchdowns",
-            "--friction",
-            "0.8",
-        ])
-        .args(arguments)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    let feet = ["--contact", "right_shin:0,0,0.4", "--contact", "left_shin:0,0,0.4"];
+    let walk = [&["batch", RABBIT, WALK, "--touchdowns", "--friction", "0.8"], &feet[..], arguments].concat();
+    heelstrike(&walk).well().stdout
 }
 
 #[test]
-fn the_command_tells_of_each_touchdown_where_it_was_and_who_strikes() {
+fn the_command_prints_where_a_touchdown_was_and_who_strikes() {
     let lines = batch(&["--at", "row"]);
     let results: Vec<serde_json::Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let rows: Vec<u64> = results.iter().map(|result| result["touchdown"]["row"].as_u64().unwrap()).collect();

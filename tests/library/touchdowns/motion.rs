@@ -1,39 +1,31 @@
 //! What is a touchdown and which state is taken, on feet that move up and down.
 
-use super::samples;
+use super::{samples, touchdowns};
+use crate::support::impact::robot;
+use crate::support::urdf::{self, Axis, collision, joint, link};
 use heelstrike::Robot;
-use heelstrike::gait::{At, Difference, SMALL, Thresholds, Touchdown, Touching, find, rates};
+use heelstrike::gait::{At, Difference, SMALL, Sampled, Thresholds, Touchdown, Touching, find, rates};
 use heelstrike::read::table::Rates;
 
-/// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own.
-const LIFT: &str = r#"<robot name="lift">
-    <link name="block"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-    <link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-        <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
-    <link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-        <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
-    <joint name="ja" type="prismatic"><parent link="block"/><child link="a"/><axis xyz="0 0 1"/>
-        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
-    <joint name="jb" type="prismatic"><parent link="block"/><child link="b"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
-        <limit effort="1" velocity="1" lower="-9" upper="9"/></joint>
-</robot>"#;
-
-/// A ball of the radius 0.1 m.
-const DROPPED: &str = r#"<robot name="dropped"><link name="ball">
-    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-    <collision><geometry><sphere radius="0.1"/></geometry></collision>
-</link></robot>"#;
-
-/// The same machine, written down in a unit of length of which `scale` make a metre.
+/// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own; in a unit of length of which
+/// `scale` make a metre.
 fn lift(scale: f64) -> Robot {
-    let scaled = LIFT
-        .replace("radius=\"0.1\"", &format!("radius=\"{}\"", 0.1 * scale))
-        .replace("xyz=\"1 0 0\"", &format!("xyz=\"{scale} 0 0\""));
-    Robot::from_urdf(&scaled).unwrap()
+    let ball = collision([0.0; 2], &format!("sphere radius=\"{}\"", 0.1 * scale));
+    let foot = |name: &str, x: f64| {
+        let rail = joint(format!("j{name}"), Axis::Prismatic([0.0, 1.0]), ["block", name], [x, 0.0], "");
+        link(name, 1.0, [0.0; 2], 1.0, &ball) + &rail
+    };
+    robot(&urdf::robot(&[link("block", 1.0, [0.0; 2], 1.0, ""), foot("a", 0.0), foot("b", scale)]))
 }
 
-fn lift_thresholds(scale: f64) -> Thresholds {
-    Thresholds::of(&lift(scale), &[])
+/// The height that counts as touching.
+fn above() -> f64 {
+    Thresholds::of(&lift(1.0), &[]).above
+}
+
+/// The samples of a table without velocities.
+fn differences(table: &str, robot: &Robot, difference: Difference) -> Vec<Sampled<usize>> {
+    rates(samples(table, robot, Rates::Time).into_iter(), difference).collect()
 }
 
 /// The touchdowns of both feet: rows of time, height of a, height of b.
@@ -46,10 +38,12 @@ fn lifted_at(scale: f64, rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<T
     let mut table = "time,q_base_z,q_ja,q_jb\n".to_owned();
     // The sphere's lowest point is its radius below its link.
     table.extend(rows.iter().map(|[time, a, b]| format!("{time},{},{a},{b}\n", 0.1 * scale)));
-    let samples = samples(&table, &robot, Rates::Time);
-    let samples: Vec<_> = rates(samples.into_iter(), Difference::Backward).collect();
-    let touchdowns = find(samples.into_iter(), &robot, &[], at, touching).unwrap();
-    touchdowns.map(|touchdown| touchdown.expect("no row is refused")).collect()
+    touchdowns(&robot, &[], differences(&table, &robot, Difference::Backward), at, touching)
+}
+
+#[track_caller]
+fn assert_near(found: f64, expected: f64, within: f64) {
+    assert!((found - expected).abs() < within, "{found} {expected}");
 }
 
 /// Rows of 10 ms at which foot a has these heights and foot b stands at 0.
@@ -61,27 +55,25 @@ fn one_foot(heights: &[f64]) -> Vec<[f64; 3]> {
 fn the_state_is_the_last_row_above_the_level_on_which_the_foot_comes_to_rest() {
     let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.005, 0.005, 0.05]);
     let touchdowns = lifted(&rows, At::Row, Touching::Strike);
-    assert_eq!(touchdowns.len(), 1);
-    let Touchdown { row, striking, shift_z, state, .. } = &touchdowns[0];
-    assert_eq!((*row, striking.as_str()), (4, "a"));
-    assert!((shift_z + 0.01).abs() < 1e-15);
-    assert!((state.position[1] - 0.09).abs() < 1e-15);
-    assert!((state.velocity[3] + 1.0).abs() < 1e-12, "backward: 10 mm in 10 ms");
+    let [Touchdown { row: 4, striking, shift_z, state, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    assert_eq!(striking, "a");
+    assert_near(*shift_z, -0.01, 1e-15);
+    assert_near(state.position[1], 0.09, 1e-15);
+    // Backward: 10 mm in 10 ms.
+    assert_near(state.velocity[3], -1.0, 1e-12);
 }
 
 #[test]
 fn crossing_goes_on_as_the_foot_fell_and_not_as_it_was_stopped() {
     let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.004, 0.004, 0.004]);
     let touchdowns = lifted(&rows, At::Crossing, Touching::Strike);
-    assert_eq!(touchdowns.len(), 1);
-    let above = lift_thresholds(1.0).above;
+    let [Touchdown { row: 4, time, shift_z, state, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
     // At 1 m/s from 10 mm down to what counts as touching, which is above the row at 4 mm.
-    let time = 0.04 + (0.01 - (0.004 + above));
-    assert!((touchdowns[0].time - time).abs() < 1e-12, "{}", touchdowns[0].time);
-    assert!((touchdowns[0].state.position[3] - (0.004 + above)).abs() < 1e-12);
-    assert!((touchdowns[0].shift_z + 0.004 + above).abs() < 1e-12);
-    assert!((touchdowns[0].state.velocity[3] + 1.0).abs() < 1e-12, "not that of the row which is stopped");
-    assert_eq!(touchdowns[0].row, 4);
+    assert_near(*time, 0.04 + (0.01 - (0.004 + above())), 1e-12);
+    assert_near(state.position[3], 0.004 + above(), 1e-12);
+    assert_near(*shift_z, -0.004 - above(), 1e-12);
+    // Not that of the row which is stopped.
+    assert_near(state.velocity[3], -1.0, 1e-12);
 }
 
 #[test]
@@ -93,12 +85,10 @@ fn crossing_lies_between_rows_that_are_both_before_the_impact() {
         .collect();
     let high = [[-2e-3, 0.03, 0.0], [-1e-3, 0.02, 0.0]];
     let touchdowns = lifted(&[&high[..], &rows].concat(), At::Crossing, Touching::Strike);
-    assert_eq!(touchdowns.len(), 1);
-    let above = lift_thresholds(1.0).above;
-    let Touchdown { state, time, .. } = &touchdowns[0];
-    assert!((state.position[3] - above).abs() < 1e-15, "{}", state.position[3]);
-    assert!((time - (0.0056 - above) / 0.2).abs() < 1e-12, "{time}");
-    assert!((state.velocity[3] + 0.2).abs() < 1e-9, "{}", state.velocity[3]);
+    let [Touchdown { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    assert_near(state.position[3], above(), 1e-15);
+    assert_near(*time, (0.0056 - above()) / 0.2, 1e-12);
+    assert_near(state.velocity[3], -0.2, 1e-9);
 }
 
 #[test]
@@ -109,48 +99,43 @@ fn what_was_before_another_foots_impact_is_not_carried_on() {
     let stopped = [[0.04, 0.004, 0.0], [0.05, 0.004, 0.0]];
     let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
     table.extend(rows.iter().chain(&stopped).map(|[time, a, rate]| format!("{time},0.1,{a},{rate}\n")));
-    let samples = samples(&table, &robot, Rates::Columns);
-    let found: Vec<_> = find(samples.into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap().collect();
-    let [Ok(Touchdown { state, time, .. })] = &found[..] else { panic!("one touchdown: {found:?}") };
-    let expected = 0.03 + (0.01 - 0.004 - lift_thresholds(1.0).above);
-    assert!((time - expected).abs() < 1e-12, "{time} {expected}");
-    assert!((state.velocity[3] + 1.0).abs() < 1e-12, "{}", state.velocity[3]);
+    let found = touchdowns(&robot, &[], samples(&table, &robot, Rates::Columns), At::Crossing, Touching::Strike);
+    let [Touchdown { state, time, .. }] = &found[..] else { panic!("one touchdown: {found:?}") };
+    assert_near(*time, 0.03 + (0.01 - 0.004 - above()), 1e-12);
+    assert_near(state.velocity[3], -1.0, 1e-12);
 }
 
 /// Gravity of the test's drop \[m/s^2\].
 const G: f64 = 9.81;
 
 /// A ball that is let go 1 m above the ground and stays there: rows of 10 Hz, the first `phase` \[s\]
-/// after it was let go.
-fn drop(phase: f64, velocities: bool) -> String {
-    let mut table = if velocities { "time,q_base_z,v_base_z\n" } else { "time,q_base_z\n" }.to_owned();
+/// after it was let go; with its velocities and without.
+fn drop(phase: f64) -> [String; 2] {
+    let mut tables = ["time,q_base_z,v_base_z\n", "time,q_base_z\n"].map(str::to_owned);
     for row in 0..8 {
         let time = phase + 0.1 * f64::from(row);
         let (height, velocity) = match 1.0 - 0.5 * G * time * time {
             height if height > 0.0 => (height, -G * time),
             _ => (0.0, 0.0),
         };
-        table += &if velocities {
-            format!("{time},{},{velocity}\n", 0.1 + height)
-        } else {
-            format!("{time},{}\n", 0.1 + height)
-        };
+        tables[0] += &format!("{time},{},{velocity}\n", 0.1 + height);
+        tables[1] += &format!("{time},{}\n", 0.1 + height);
     }
-    table
+    tables
 }
 
 #[test]
 fn the_velocity_at_the_crossing_is_that_of_the_fall_also_at_ten_rows_a_second() {
-    let robot = Robot::from_urdf(DROPPED).unwrap();
+    let robot = robot(&urdf::body(1.0, &collision([0.0; 2], "sphere radius=\"0.1\"")));
     let strikes = (2.0 * G).sqrt();
     for phase in (0..10).map(|part| f64::from(part) * 0.01) {
-        let recorded = samples(&drop(phase, true), &robot, Rates::Columns);
-        let bare = || samples(&drop(phase, false), &robot, Rates::Time).into_iter();
-        let backward: Vec<_> = rates(bare(), Difference::Backward).collect();
-        let central: Vec<_> = rates(bare(), Difference::Central).collect();
-        for (from, samples) in [("columns", recorded), ("backward", backward), ("central", central)] {
-            let found = find(samples.into_iter(), &robot, &[], At::Crossing, Touching::Strike).unwrap();
-            let found: Vec<_> = found.map(Result::unwrap).collect();
+        let [recorded, bare] = drop(phase);
+        for (from, samples) in [
+            ("columns", samples(&recorded, &robot, Rates::Columns)),
+            ("backward", differences(&bare, &robot, Difference::Backward)),
+            ("central", differences(&bare, &robot, Difference::Central)),
+        ] {
+            let found = touchdowns(&robot, &[], samples, At::Crossing, Touching::Strike);
             assert_eq!(found.len(), 1, "{from}, phase {phase}");
             let (velocity, time) = (found[0].state.velocity[1], found[0].time);
             assert!((velocity + strikes).abs() < 0.01 * strikes, "{from}, phase {phase}: {velocity} m/s");
@@ -191,32 +176,26 @@ fn small_robots_have_the_touchdowns_of_large_ones_in_proportion() {
     }
 }
 
-/// A sole of 0.2 m, 20 mm thick, with a ball of 15 mm inside of its front end; it turns on its heel.
-const SOLE: &str = r#"<robot name="sole"><link name="foot">
-    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-    <collision><origin xyz="0.1 0 0.01"/><geometry><box size="0.2 0.1 0.02"/></geometry></collision>
-    <collision><origin xyz="0.18 0 0.018"/><geometry><sphere radius="0.015"/></geometry></collision>
-</link></robot>"#;
-
 #[test]
 fn what_another_point_of_the_foot_keeps_from_the_ground_does_not_strike() {
-    let robot = Robot::from_urdf(SOLE).unwrap();
+    // A sole of 0.2 m, 20 mm thick, with a ball of 15 mm inside of its front end; it turns on its heel.
+    let sole =
+        collision([0.1, 0.01], r#"box size="0.2 0.1 0.02""#) + &collision([0.18, 0.018], r#"sphere radius="0.015""#);
+    let robot = robot(&urdf::body(1.0, &sole));
     // The heel stands where it was recorded, and the toe comes down from 60 mm until the sole is level or, as recorded,
     // not.
     for rest in [-0.02, 0.0, 0.02_f64] {
         let mut table = "time,q_base_z,q_base_pitch\n".to_owned();
         let pitch = |row: u32| -(0.3 - 0.03 * f64::from(row)).max(rest);
         table.extend((0..15).map(|row| format!("{},-0.003,{}\n", f64::from(row) * 0.01, pitch(row))));
-        let rows = samples(&table, &robot, Rates::Time);
-        let rows: Vec<_> = rates(rows.into_iter(), Difference::Backward).collect();
-        let found = find(rows.into_iter(), &robot, &[], At::Row, "near:0.05".parse().unwrap()).unwrap();
-        let found: Vec<_> = found.map(Result::unwrap).collect();
+        let samples = differences(&table, &robot, Difference::Backward);
+        let found = touchdowns(&robot, &[], samples, At::Row, "near:0.05".parse().unwrap());
         assert_eq!(found.len(), 1, "rest at {rest}: {found:?}");
         let contacts = found[0].state.scene.contacts.as_ref().unwrap();
         let along: Vec<f64> = contacts.iter().map(|contact| (contact.offset[0] * 1e3).round()).collect();
         let radii: Vec<f64> = contacts.iter().map(|contact| contact.radius).collect();
         assert_eq!((along, radii), (vec![0.0, 200.0], vec![0.0; 2]), "heel and toe of the sole, rest at {rest}");
-        assert_eq!(found[0].striking, "foot/1");
+        assert_eq!(found[0].striking, "body/1");
     }
 }
 
@@ -299,7 +278,7 @@ fn feet_that_come_down_together_are_one_touchdown() {
 
 #[test]
 fn a_refused_row_stays_in_its_place() {
-    let robot = Robot::from_urdf(LIFT).unwrap();
+    let robot = lift(1.0);
     let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
     let heights = ["0.05", "0.04", "x", "0.02", "0.01", "0", "0", "0"];
     table.extend((0..).zip(heights).map(|(row, height)| format!("{},0.1,{height},-1\n", f64::from(row) * 0.01)));
@@ -314,7 +293,7 @@ fn a_refused_row_stays_in_its_place() {
 #[test]
 fn numbers_beyond_all_measure_are_refused_and_end() {
     let rows = one_foot(&[1e308, -1e308, 1e308, -1e308, -1e308]);
-    let robot = Robot::from_urdf(LIFT).unwrap();
+    let robot = lift(1.0);
     for base in ["0.1", "1e308", "-1e308"] {
         let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
         table.extend(rows.iter().map(|[time, a, _]| format!("{time},{base},{a:e},-1\n")));
@@ -328,7 +307,7 @@ fn numbers_beyond_all_measure_are_refused_and_end() {
             }
         }
         let bare = table.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect::<String>();
-        let computed: Vec<_> = rates(samples(&bare, &robot, Rates::Time).into_iter(), Difference::Central).collect();
+        let computed = differences(&bare, &robot, Difference::Central);
         assert_eq!(computed.len(), rows.len());
         let error = computed[0].as_ref().map(|_| ()).unwrap_err();
         assert_eq!(error.1.to_string(), "time: the velocity to the next row is beyond all numbers");

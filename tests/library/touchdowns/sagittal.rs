@@ -1,16 +1,18 @@
 //! Motions in three dimensions, projected clip by clip.
 
-use super::{data, samples};
+use super::samples;
+use crate::support::command::read;
+use crate::support::impact::robot;
+use crate::support::urdf;
 use heelstrike::Robot;
 use heelstrike::gait::{Dropped, Sampled, sagittal};
 use heelstrike::read::table::Rates;
 use proptest::prelude::*;
 use std::sync::Mutex;
 
-const BODY: &str = r#"<robot name="body"><link name="body">
-    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-    <collision><geometry><sphere radius="0.1"/></geometry></collision>
-</link></robot>"#;
+fn body() -> Robot {
+    robot(&urdf::body(1.0, &urdf::collision([0.0; 2], "sphere radius=\"0.1\"")))
+}
 
 const HEADER: &str = "time,q_base_qy,q_base_x,q_base_qw,q_base_z,q_base_y,q_base_qz,q_base_qx\n";
 
@@ -43,7 +45,7 @@ fn projected(table: &str, robot: &Robot) -> (Vec<Sampled<usize>>, Dropped) {
 }
 
 fn positions(table: &str) -> Vec<Vec<f64>> {
-    let (samples, _) = projected(table, &Robot::from_urdf(BODY).unwrap());
+    let (samples, _) = projected(table, &body());
     samples.into_iter().map(|sampled| sampled.unwrap().state.position).collect()
 }
 
@@ -64,10 +66,10 @@ fn a_walk_toward_the_left_is_one_along_x() {
 }
 
 #[test]
-fn each_clip_has_a_heading_of_its_own_and_what_is_left_out_is_told() {
+fn each_clip_has_a_heading_of_its_own() {
     let ahead = [[0.0, 0.0, 0.0, 1.0, 0.2, 0.0, 0.1], [0.1, 1.0, 0.5, 1.0, -0.2, 0.0, 0.0]];
     let back = [[0.0, 0.0, 0.0, 1.0, 3.0, 0.0, 0.0], [0.1, -1.0, 0.0, 1.0, 3.0, 0.0, -0.3]];
-    let (found, dropped) = projected(&table(&[ahead, back].concat()), &Robot::from_urdf(BODY).unwrap());
+    let (found, dropped) = projected(&table(&[ahead, back].concat()), &body());
     let x: Vec<f64> = found.iter().map(|sampled| sampled.as_ref().unwrap().state.position[0]).collect();
     close(&[x], &[vec![0.0, 1.0, 0.0, -3.0_f64.cos()]]);
     // The line through the middle of the first clip lies at y = 0.25; in the second one half of sin 3 is off it.
@@ -77,7 +79,7 @@ fn each_clip_has_a_heading_of_its_own_and_what_is_left_out_is_told() {
 #[test]
 fn a_refused_row_stays_in_its_place_and_a_circle_has_no_heading() {
     let rows: Vec<Row> = (0..3).map(|row| [0.1 * f64::from(row), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]).collect();
-    let robot = Robot::from_urdf(BODY).unwrap();
+    let robot = body();
     let broken = table(&rows).replacen("0.1,0,0,1,", "0.1,0,0,0.5,", 1);
     let (found, _) = projected(&broken, &robot);
     let refused: Vec<bool> = found.iter().map(Result::is_err).collect();
@@ -102,9 +104,9 @@ fn recorded_robots_are_where_the_reduced_tables_have_them() {
     for (gait, urdf, at_x) in
         [("a1_walk", "a1/a1.urdf", 5e-9), ("h1_walk", "h1/h1.urdf", 5e-9), ("h1_run", "h1/h1.urdf", 5e-8)]
     {
-        let robot = Robot::from_urdf(&data(&format!("robots/{urdf}"))).unwrap();
-        let (found, _) = projected(&data(&format!("gaits/{gait}.3d.csv")), &robot);
-        let planar = samples(&data(&format!("gaits/{gait}.csv")), &robot, Rates::Columns);
+        let robot = robot(&read(&format!("tests/data/robots/{urdf}")));
+        let (found, _) = projected(&read(&format!("tests/data/gaits/{gait}.3d.csv")), &robot);
+        let planar = samples(&read(&format!("tests/data/gaits/{gait}.csv")), &robot, Rates::Columns);
         assert_eq!(found.len(), planar.len());
         for (found, planar) in found.iter().zip(&planar) {
             let (found, planar) = (found.as_ref().unwrap(), planar.as_ref().unwrap());

@@ -7,9 +7,8 @@ mod states;
 
 use crate::support::random::Random;
 use heelstrike::pipeline::robust::Robustness;
-use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::{Robot, state::State};
-use states::{impact, in_the_box, modes, on_both_feet, ramone, walking};
+use states::{answer, assert_in_the_box, in_the_box, modes, on_both_feet, ramone, walking};
 use std::time::Instant;
 
 /// How many boxes hold, do not, and stay unknown.
@@ -20,66 +19,65 @@ struct Shares {
     unknown: usize,
 }
 
-/// Answers a state; the result for its box must hold at corners and inside.
-fn count(robot: &Robot, state: &State, random: &mut Random, shares: &mut Shares) {
-    let answer = impact(robot, state);
-    match answer.holds.as_ref().expect("the state is uncertain") {
-        Robustness::Everywhere => {
-            shares.holds += 1;
-            for _ in 0..20 {
-                let corner = in_the_box(robot, state, || if random.once_in(2) { 1.0 } else { -1.0 });
-                assert_eq!(modes(&impact(robot, &corner)), modes(&answer), "{corner:?}");
-                let within = in_the_box(robot, state, || random.between(-1.0, 1.0));
-                assert_eq!(modes(&impact(robot, &within)), modes(&answer), "{within:?}");
+impl Shares {
+    fn add(&mut self, robustness: &Robustness) {
+        *match robustness {
+            Robustness::Everywhere => &mut self.holds,
+            Robustness::Not(_) => &mut self.differs,
+            Robustness::Unknown => &mut self.unknown,
+        } += 1;
+    }
+
+    /// Those of so many random states; the result for each box must hold at corners and inside.
+    fn of(seeds: u64, state: impl Fn(&Robot, &mut Random) -> State) -> Self {
+        let (robot, mut shares) = (&ramone(), Self::default());
+        for seed in 0..seeds {
+            let random = &mut Random::new(seed);
+            let state = &state(robot, random);
+            let found = answer(robot, state);
+            let robustness = found.holds.as_ref().expect("the state is uncertain");
+            shares.add(robustness);
+            match robustness {
+                Robustness::Everywhere => {
+                    for _ in 0..20 {
+                        let corner = in_the_box(robot, state, || random.pick(&[-1.0, 1.0]));
+                        let within = in_the_box(robot, state, || random.between(-1.0, 1.0));
+                        for other in [corner, within] {
+                            assert_eq!(modes(&answer(robot, &other)), modes(&found), "{other:?}");
+                        }
+                    }
+                }
+                Robustness::Not(counterexample) => {
+                    let other = answer(robot, &counterexample.state);
+                    assert_ne!(modes(&other), modes(&found), "{:?}", counterexample.state);
+                    assert_eq!(other.analysis.map(|analysis| analysis.verdict), Some(counterexample.verdict));
+                    assert_in_the_box(state, &counterexample.state);
+                }
+                Robustness::Unknown => {}
             }
         }
-        Robustness::Not(found) => {
-            shares.differs += 1;
-            let other = impact(robot, &found.state);
-            assert_ne!(modes(&other), modes(&answer), "{:?}", found.state);
-            assert_eq!(other.analysis.map(|analysis| analysis.verdict), Some(found.verdict));
-            states::assert_in_the_box(state, &found.state);
-        }
-        Robustness::Unknown => shares.unknown += 1,
+        shares
     }
 }
 
 #[test]
-fn few_random_states_stay_unknown_and_what_is_told_is_true() {
-    let robot = ramone();
-    let mut shares = Shares::default();
-    for seed in 0..300 {
-        let mut random = Random::new(seed);
-        let state = on_both_feet(&robot, &mut random, 1e-3);
-        count(&robot, &state, &mut random, &mut shares);
-    }
+fn few_random_states_stay_unknown_and_results_are_true() {
+    let shares = Shares::of(300, |robot, random| on_both_feet(robot, random, 1e-3));
     // Measured over 2,000: 98.6 % hold, 1.4 % do not, none unknown.
     assert!(10 * shares.unknown <= 300 && shares.differs > 0, "{shares:?}");
 }
 
 /// Wide boxes are halved often, and many do not hold.
 #[test]
-fn wide_boxes_are_told_truly_or_not_at_all() {
-    let robot = ramone();
-    let mut shares = Shares::default();
-    for seed in 0..60 {
-        let mut random = Random::new(seed);
-        let state = on_both_feet(&robot, &mut random, 1e-2);
-        count(&robot, &state, &mut random, &mut shares);
-    }
+fn results_for_wide_boxes_are_true() {
+    let shares = Shares::of(60, |robot, random| on_both_feet(robot, random, 1e-2));
     // Measured over 1,000: 87 % hold, 12 % do not, 1 % unknown.
     assert!(shares.holds >= 45 && shares.differs >= 4, "{shares:?}");
 }
 
 #[test]
 fn stances_slopes_restitution_rotors_and_held_joints_take_part() {
-    let robot = ramone();
-    let mut shares = Shares::default();
-    for seed in 0..200 {
-        let mut random = Random::new(seed);
-        let state = walking(&robot, &mut random);
-        count(&robot, &state, &mut random, &mut shares);
-    }
+    let shares = Shares::of(200, walking);
     assert!(shares.holds >= 100 && 10 * shares.unknown <= 200, "{shares:?}");
 }
 
@@ -107,15 +105,10 @@ fn shares_and_times_by_half_width() {
         let mut times = Vec::new();
         for seed in 0..states {
             let state = on_both_feet(&robot, &mut Random::new(seed), width);
-            let mut pipeline = Pipeline::new(&robot, Options::default());
             let begin = Instant::now();
-            let answer = pipeline.impact(&state).expect("an answer");
+            let found = answer(&robot, &state);
             times.push(begin.elapsed());
-            match answer.holds.expect("the state is uncertain") {
-                Robustness::Everywhere => shares.holds += 1,
-                Robustness::Not(_) => shares.differs += 1,
-                Robustness::Unknown => shares.unknown += 1,
-            }
+            shares.add(found.holds.as_ref().expect("the state is uncertain"));
         }
         times.sort();
         let [median, most] = [times[times.len() / 2], times[times.len() - 1]];

@@ -1,50 +1,50 @@
 //! Random states of RAMone on both feet, and what their boxes may hold.
 
+use crate::support::impact;
 use crate::support::random::Random;
+use heelstrike::Robot;
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
-use heelstrike::{Error, Robot};
 use serde_json::{Value, json};
 
 pub fn ramone() -> Robot {
-    Robot::from_urdf(include_str!("../../../urdf/ramone.urdf")).expect("a good robot")
+    impact::robot(include_str!("../../../urdf/ramone.urdf"))
 }
 
-pub fn read(robot: &Robot, state: &Value) -> Result<State, Error> {
-    State::from_json(&state.to_string(), robot, &Defaults::default())
-}
-
-pub fn impact(robot: &Robot, state: &State) -> Impact {
+pub fn answer(robot: &Robot, state: &State) -> Impact {
     Pipeline::new(robot, Options::default()).impact(state).expect("an answer")
 }
 
-/// Both feet on the ground, in any posture, with any velocities of order one and friction from 0.2 to 1.5, all
+fn read(robot: &Robot, mut state: Value) -> State {
+    state["contacts"] =
+        ["left_foot", "right_foot"].map(|link| json!({"link": link, "radius": 0.02815})).into_iter().collect();
+    State::from_json(&state.to_string(), robot, &Defaults::default()).expect("a good state")
+}
+
+fn joints(robot: &Robot, random: &mut Random, size: f64) -> Value {
+    robot.joints.iter().map(|joint| (joint.name.clone(), json!(random.between(-size, size)))).collect()
+}
+
+/// Both feet on the ground, in any configuration, with any velocities of order one and friction from 0.2 to 1.5, all
 /// half-widths `width`.
 pub fn on_both_feet(robot: &Robot, random: &mut Random, width: f64) -> State {
-    let mut number = |scale: f64| random.between(-scale, scale);
-    let joints = |value: &mut dyn FnMut() -> f64| -> Value {
-        robot.joints.iter().map(|joint| (joint.name.clone(), json!(value()))).collect()
-    };
     let state = json!({
-        "position": {"base": {"z": 0.4, "pitch": number(0.5)}, "joints": joints(&mut || number(1.5))},
-        "velocity": {"base": {"x": number(1.0), "z": number(1.0), "pitch": number(2.0)}, "joints": joints(&mut || number(3.0))},
-        "friction": 0.85 + number(0.65),
-        "contacts": [{"link": "left_foot", "radius": 0.02815}, {"link": "right_foot", "radius": 0.02815}],
+        "position": {"base": {"z": 0.4, "pitch": random.between(-0.5, 0.5)}, "joints": joints(robot, random, 1.5)},
+        "velocity": {"base": {"x": random.between(-1.0, 1.0), "z": random.between(-1.0, 1.0),
+            "pitch": random.between(-2.0, 2.0)}, "joints": joints(robot, random, 3.0)},
+        "friction": random.between(0.2, 1.5),
         "uncertainty": {"position": width, "velocity": width, "friction": width},
     });
-    read(robot, &state).expect("a good state")
+    read(robot, state)
 }
 
 /// One foot stands on a slope while the other strikes, with whatever else a state may have.
 pub fn walking(robot: &Robot, random: &mut Random) -> State {
-    let joints: Value =
-        robot.joints.iter().map(|joint| (joint.name.clone(), json!(random.between(-1.2, 1.2)))).collect();
-    let rates: Value =
-        robot.joints.iter().map(|joint| (joint.name.clone(), json!(random.between(-2.0, 2.0)))).collect();
+    let (positions, rates) = (joints(robot, random, 1.2), joints(robot, random, 2.0));
     let held: &[&str] = if random.once_in(2) { &["left_knee"] } else { &[] };
     let state = json!({
-        "position": {"base": {"pitch": random.between(-0.5, 0.5)}, "joints": joints},
+        "position": {"base": {"pitch": random.between(-0.5, 0.5)}, "joints": positions},
         "velocity": {"base": {"pitch": random.between(-2.0, 2.0)}, "joints": rates},
         "stance": "left_foot",
         "ground": {"slope": random.between(-0.3, 0.3)},
@@ -52,7 +52,6 @@ pub fn walking(robot: &Robot, random: &mut Random) -> State {
         "rotor_inertia": {"right_knee": 0.01},
         "friction": {"default": random.between(0.2, 1.5), "right_foot": random.pick(&[json!("infinite"), json!(0.7), json!(0)])},
         "restitution": {"left_foot": 0, "right_foot": random.pick(&[0.0, 0.5])},
-        "contacts": [{"link": "left_foot", "radius": 0.02815}, {"link": "right_foot", "radius": 0.02815}],
         "uncertainty": {
             "position": {"base": {"pitch": 1e-3}, "joints": {"left_hip": 2e-3, "right_knee": 1e-3, "left_knee": 1e-3}},
             "velocity": 1e-3,
@@ -60,7 +59,7 @@ pub fn walking(robot: &Robot, random: &mut Random) -> State {
             "rotor_inertia": 1e-3,
         },
     });
-    read(robot, &state).expect("a good state")
+    read(robot, state)
 }
 
 /// RAMone whose right knee bends with the left one, and a rotor there.
@@ -94,10 +93,9 @@ pub fn five_bar(random: &mut Random) -> (Robot, State) {
 }
 
 /// The lists of modes of a proven answer, sorted.
-pub fn modes(impact: &Impact) -> Vec<Vec<Mode>> {
-    let analysis = impact.analysis.as_ref().expect("outcomes");
-    assert!(analysis.proven);
-    let mut modes: Vec<Vec<Mode>> = analysis.outcomes.iter().map(|outcome| outcome.modes.clone()).collect();
+pub fn modes(found: &Impact) -> Vec<Vec<Mode>> {
+    assert!(found.analysis.as_ref().expect("outcomes").proven);
+    let mut modes = impact::modes(found);
     modes.sort();
     modes
 }
