@@ -3,6 +3,7 @@
 use crate::support::parallel::total;
 use crate::support::random::Random;
 use heelstrike::impact::{Analysis, ContactProblem, Friction, Mode, Verdict, analyse};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// The parts of a contact problem, kept for transforming and printing.
@@ -16,29 +17,22 @@ struct Parts {
 
 impl Parts {
     fn analyse(&self) -> Analysis {
-        let problem = ContactProblem::new(
-            self.delassus.concat(),
-            self.velocity_before.clone(),
-            self.friction.clone(),
-            self.restitution.clone(),
-        );
-        let problem = problem.unwrap_or_else(|error| panic!("{error}\n{}", self.json()));
-        analyse(&problem, false).unwrap_or_else(|error| panic!("{error}\n{}", self.json()))
+        let Self { delassus, velocity_before, friction, restitution } = self.clone();
+        let problem = ContactProblem::new(delassus.concat(), velocity_before, friction, restitution);
+        let analysis = problem.and_then(|problem| analyse(&problem, false));
+        analysis.unwrap_or_else(|error| panic!("{error}\n{}", self.json()))
     }
 
     /// As `heelstrike solve` reads it.
     fn json(&self) -> String {
-        let friction: Vec<serde_json::Value> = self
-            .friction
-            .iter()
-            .map(|friction| match friction {
-                Friction::Finite(mu) => (*mu).into(),
-                Friction::Infinite => "infinite".into(),
-            })
-            .collect();
-        serde_json::json!({"delassus": self.delassus, "velocity_before": self.velocity_before, "friction": friction,
-                           "restitution": self.restitution})
-        .to_string()
+        let friction = self.friction.iter().map(|friction| match friction {
+            Friction::Finite(mu) => json!(mu),
+            Friction::Infinite => json!("infinite"),
+        });
+        let friction: Vec<_> = friction.collect();
+        let Self { delassus, velocity_before, restitution, .. } = self;
+        json!({"delassus": delassus, "velocity_before": velocity_before, "friction": friction, "restitution": restitution})
+            .to_string()
     }
 
     /// A regular problem: G = A A^T with a Gaussian A of 2n rows and as many columns or some more.
@@ -72,10 +66,6 @@ impl Parts {
             friction: (0..contacts).map(|_| friction(random)).collect(),
             restitution: (0..contacts).map(|_| restitution(random)).collect(),
         }
-    }
-
-    fn frictionless(&self) -> bool {
-        self.friction.iter().all(|friction| friction.is_zero())
     }
 }
 
@@ -121,11 +111,24 @@ fn indices_of_all_outcomes_sum_to_one() {
         assert_eq!(indices.iter().flatten().map(|&index| i32::from(index)).sum::<i32>(), 1, "{}", context());
         assert_eq!(analysis.index_sum, Some(1), "{}", context());
         assert_eq!(indices.len() % 2, 1, "{}", context());
-        let lists: BTreeMap<_, _> = analysis.outcomes.iter().map(|outcome| (&outcome.modes, ())).collect();
-        assert_eq!(lists.len(), indices.len(), "doubled: {}", context());
+        assert_eq!(margins(&analysis).len(), indices.len(), "doubled: {}", context());
+        for outcome in &analysis.outcomes {
+            let (l, after) = (outcome.impulse.as_flattened(), outcome.velocity_after.as_flattened());
+            let rows = l.iter().zip(parts.velocity_before.as_flattened()).zip(after);
+            let terms: Vec<f64> = rows.flat_map(|((l, before), after)| [l * before, l * after]).collect();
+            // A sum of 2n products.
+            let error = (outcome.energy_loss + 0.5 * terms.iter().sum::<f64>()).abs();
+            assert!(error <= 1e-13 * terms.iter().map(|term| term.abs()).sum::<f64>(), "{error:e}: {}", context());
+        }
         match analysis.verdict {
             Verdict::Unique | Verdict::NoImpact => assert_eq!(indices.len(), 1, "{}", context()),
-            Verdict::Ambiguous => assert!(indices.len() >= 3 && !parts.frictionless(), "{}", context()),
+            Verdict::Ambiguous => {
+                assert!(
+                    indices.len() >= 3 && !parts.friction.iter().all(|friction| friction.is_zero()),
+                    "{}",
+                    context()
+                );
+            }
             verdict => panic!("{verdict:?}: {}", context()),
         }
         [0, u64::from(indices.len() > 1)]
@@ -136,107 +139,37 @@ fn indices_of_all_outcomes_sum_to_one() {
     assert!(ambiguous > PROBLEMS / 100, "only {ambiguous} ambiguous");
 }
 
-/// Reads the contact law off the outcomes in its textbook form: Signorini's complementarity and Coulomb's law.
-#[test]
-fn outcomes_keep_the_contact_law() {
-    let [closed, slipping] = total(20_000, |seed| {
-        let parts = Parts::random(&mut Random::new(seed));
+/// Runs `check` on this many random problems, of which hardly one is undecided.
+fn every_problem(count: u64, check: impl Fn(&mut Random, &Parts, &Analysis, &dyn Fn() -> String) + Sync) {
+    let [undecided] = total(count, |seed| {
+        let mut random = Random::new(seed);
+        let parts = Parts::random(&mut random);
         let analysis = parts.analyse();
-        let mut counts = [0, 0];
-        if analysis.verdict == Verdict::Undecided {
-            return counts;
+        if analysis.verdict != Verdict::Undecided {
+            check(&mut random, &parts, &analysis, &|| format!("seed {seed}: {}", parts.json()));
         }
-        for outcome in &analysis.outcomes {
-            let context = || format!("seed {seed}: {}\n{outcome:?}", parts.json());
-            let (l, after) = (outcome.impulse.concat(), outcome.velocity_after.concat());
-            let before = parts.velocity_before.concat();
-            let flow = |i: usize| parts.delassus[i].iter().zip(&l).map(|(g, l)| g * l);
-            // The equations hold to eps times the growth of the elimination: 8.4e-13 was the worst seen.
-            let size_of = |i: usize| before[i].abs() + flow(i).map(f64::abs).sum::<f64>();
-            for i in 0..l.len() {
-                let error = (before[i] + flow(i).sum::<f64>() - after[i]).abs();
-                assert!(error <= 1e-11 * size_of(i), "row {i}: {error:e}\n{}", context());
-            }
-            for (k, friction) in parts.friction.iter().enumerate() {
-                let (t, n) = (2 * k, 2 * k + 1);
-                let (speed, impulse) =
-                    (1e-11 * size_of(t).max(size_of(n)), 1e-11 * l.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
-                let xi = after[n] + parts.restitution[k] * before[n].min(0.0);
-                assert!(xi >= -speed && l[n] >= -impulse, "contact {k}\n{}", context());
-                assert!(xi <= speed || (l[n] == 0.0 && l[t] == 0.0), "contact {k} pushes and leaves\n{}", context());
-                if xi > speed {
-                    continue;
-                }
-                counts[0] += 1;
-                let slips = after[t].abs() > speed;
-                counts[1] += u64::from(slips);
-                assert!(!slips || l[t] * after[t].signum() <= impulse, "friction drives contact {k}\n{}", context());
-                match friction {
-                    Friction::Finite(mu) => {
-                        let bound = mu * l[n];
-                        let slack = impulse * (1.0 + mu);
-                        assert!(l[t].abs() <= bound + slack, "contact {k} leaves its cone\n{}", context());
-                        assert!(!slips || l[t].abs() >= bound - slack, "contact {k} slips early\n{}", context());
-                    }
-                    Friction::Infinite => {
-                        assert!(!slips || l[n].abs() <= impulse, "contact {k} slips under load\n{}", context());
-                    }
-                }
-            }
-            let work: f64 = (0..l.len()).map(|i| -0.5 * l[i] * (before[i] + after[i])).sum();
-            let size: f64 = (0..l.len()).map(|i| (l[i] * before[i]).abs() + (l[i] * after[i]).abs()).sum();
-            // A sum of 2n products.
-            assert!(
-                (outcome.energy_loss - work).abs() <= 1e-13 * size,
-                "{} is not {work}\n{}",
-                outcome.energy_loss,
-                context()
-            );
-        }
-        counts
+        [u64::from(analysis.verdict == Verdict::Undecided)]
     });
-    assert!(closed > 20_000 && slipping > 2_000, "{closed} closed, {slipping} slipping contacts were seen");
+    assert!(undecided < 10, "{undecided} undecided");
 }
 
 #[test]
 fn units_change_no_verdict_and_no_margin() {
     // G is in 1/kg, velocities in m/s.
-    let [compared] = total(3_000, |seed| {
-        let parts = Parts::random(&mut Random::new(seed));
-        let analysis = parts.analyse();
-        if analysis.verdict == Verdict::Undecided {
-            return [0];
-        }
-        for (mass, length, time) in [
-            (1e6, 1.0, 1.0),
-            (1e-6, 1.0, 1.0),
-            (1.0, 1e6, 1.0),
-            (1.0, 1e-6, 1.0),
-            (1.0, 1.0, 1e6),
-            (1.0, 1.0, 1e-6),
-            (1e-6, 1e6, 1e-6),
-        ] {
+    let units = [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e6), (1.0, 1e-6), (1e-6, 1e12)];
+    every_problem(3_000, |_, parts, analysis, context| {
+        for (mass, speed) in units {
             let mut scaled = parts.clone();
             scaled.delassus.iter_mut().flatten().for_each(|g| *g /= mass);
-            scaled.velocity_before.iter_mut().flatten().for_each(|c| *c *= length / time);
-            let context =
-                || format!("seed {seed}, units of mass {mass}, length {length}, time {time}: {}", parts.json());
-            assert_same(&analysis, &scaled.analyse(), &context);
+            scaled.velocity_before.iter_mut().flatten().for_each(|c| *c *= speed);
+            assert_same(analysis, &scaled.analyse(), &|| format!("units of {mass} kg, {speed} m/s, {}", context()));
         }
-        [1]
     });
-    assert!(compared > 2_990, "only {compared} were compared");
 }
 
 #[test]
 fn the_order_of_contacts_does_not_matter() {
-    let [compared] = total(10_000, |seed| {
-        let mut random = Random::new(seed);
-        let parts = Parts::random(&mut random);
-        let analysis = parts.analyse();
-        if analysis.verdict == Verdict::Undecided {
-            return [0];
-        }
+    every_problem(10_000, |random, parts, analysis, context| {
         let order = random.permutation(parts.friction.len());
         let rows: Vec<usize> = order.iter().flat_map(|&k| [2 * k, 2 * k + 1]).collect();
         let permuted = Parts {
@@ -247,24 +180,16 @@ fn the_order_of_contacts_does_not_matter() {
         };
         let mut other = permuted.analyse();
         for outcome in &mut other.outcomes {
-            let mut modes = outcome.modes.clone();
-            order.iter().zip(&outcome.modes).for_each(|(&k, &mode)| modes[k] = mode);
-            outcome.modes = modes;
+            let modes = outcome.modes.clone();
+            order.iter().zip(modes).for_each(|(&k, mode)| outcome.modes[k] = mode);
         }
-        assert_same(&analysis, &other, &|| format!("seed {seed}, order {order:?}: {}", parts.json()));
-        [1]
+        assert_same(analysis, &other, &|| format!("order {order:?}, {}", context()));
     });
-    assert!(compared > 9_990, "only {compared} were compared");
 }
 
 #[test]
 fn a_mirrored_problem_slides_the_other_way() {
-    let [compared] = total(10_000, |seed| {
-        let parts = Parts::random(&mut Random::new(seed));
-        let analysis = parts.analyse();
-        if analysis.verdict == Verdict::Undecided {
-            return [0];
-        }
+    every_problem(10_000, |_, parts, analysis, context| {
         let mut mirrored = parts.clone();
         for (i, row) in mirrored.delassus.iter_mut().enumerate() {
             row.iter_mut().enumerate().filter(|(j, _)| (i + j) % 2 == 1).for_each(|(_, g)| *g = -*g);
@@ -272,10 +197,8 @@ fn a_mirrored_problem_slides_the_other_way() {
         mirrored.velocity_before.iter_mut().for_each(|c| c[0] = -c[0]);
         let mut other = mirrored.analyse();
         other.outcomes.iter_mut().flat_map(|outcome| &mut outcome.modes).for_each(|mode| *mode = mirror(*mode));
-        assert_same(&analysis, &other, &|| format!("seed {seed}: {}", parts.json()));
-        [1]
+        assert_same(analysis, &other, context);
     });
-    assert!(compared > 9_990, "only {compared} were compared");
 }
 
 /// The mode seen from the other side of the plane.
