@@ -16,10 +16,13 @@ pub fn answer(robot: &Robot, state: &State) -> Impact {
     Pipeline::new(robot, Options::default()).impact(state).expect("an answer")
 }
 
-fn read(robot: &Robot, mut state: Value) -> State {
-    state["contacts"] =
-        ["left_foot", "right_foot"].map(|link| json!({"link": link, "radius": 0.02815})).into_iter().collect();
+fn read(robot: &Robot, state: &Value) -> State {
     State::from_json(&state.to_string(), robot, &Defaults::default()).expect("a good state")
+}
+
+/// The feet of RAMone.
+fn feet() -> Value {
+    ["left_foot", "right_foot"].map(|link| json!({"link": link, "radius": 0.02815})).into_iter().collect()
 }
 
 fn joints(robot: &Robot, random: &mut Random, size: f64) -> Value {
@@ -34,9 +37,10 @@ pub fn on_both_feet(robot: &Robot, random: &mut Random, width: f64) -> State {
         "velocity": {"base": {"x": random.between(-1.0, 1.0), "z": random.between(-1.0, 1.0),
             "pitch": random.between(-2.0, 2.0)}, "joints": joints(robot, random, 3.0)},
         "friction": random.between(0.2, 1.5),
+        "contacts": feet(),
         "uncertainty": {"position": width, "velocity": width, "friction": width},
     });
-    read(robot, state)
+    read(robot, &state)
 }
 
 /// One foot stands on a slope while the other strikes, with whatever else a state may have.
@@ -52,6 +56,7 @@ pub fn walking(robot: &Robot, random: &mut Random) -> State {
         "rotor_inertia": {"right_knee": 0.01},
         "friction": {"default": random.between(0.2, 1.5), "right_foot": random.pick(&[json!("infinite"), json!(0.7), json!(0)])},
         "restitution": {"left_foot": 0, "right_foot": random.pick(&[0.0, 0.5])},
+        "contacts": feet(),
         "uncertainty": {
             "position": {"base": {"pitch": 1e-3}, "joints": {"left_hip": 2e-3, "right_knee": 1e-3, "left_knee": 1e-3}},
             "velocity": 1e-3,
@@ -59,26 +64,29 @@ pub fn walking(robot: &Robot, random: &mut Random) -> State {
             "rotor_inertia": 1e-3,
         },
     });
-    read(robot, state)
+    read(robot, &state)
 }
 
-/// RAMone whose right knee bends with the left one, and a rotor there.
-pub fn with_coupled_knees(random: &mut Random) -> (Robot, State) {
+/// RAMone whose right knee bends with the left one.
+pub fn with_coupled_knees() -> Robot {
     let urdf = include_str!("../../../urdf/ramone.urdf");
     let knee = urdf.find(r#"<joint name="right_knee""#).expect("a right knee");
     let end = knee + urdf[knee..].find("</joint>").expect("its end");
     let mimic = r#"<mimic joint="left_knee" multiplier="-0.7" offset="0.2"/>"#;
-    let robot = Robot::from_urdf(&[&urdf[..end], mimic, &urdf[end..]].concat()).expect("a good robot");
-    let mut state = on_both_feet(&robot, random, 1e-3);
+    impact::robot(&[&urdf[..end], mimic, &urdf[end..]].concat())
+}
+
+/// Both feet on the ground, and a rotor at the mimic joint.
+pub fn on_coupled_knees(robot: &Robot, random: &mut Random) -> State {
+    let mut state = on_both_feet(robot, random, 1e-3);
     state.scene.rotor_inertia = vec![0.0, 0.0, 0.0, 0.02];
     state.uncertainty.as_mut().expect("an uncertain state").rotor_inertia = vec![0.0, 0.0, 0.0, 1e-3];
-    (robot, state)
+    state
 }
 
 /// A closed chain of five links whose joint touches, and a point of a shank; any motion that keeps it closed, and an
 /// impulse on its torso.
-pub fn five_bar(random: &mut Random) -> (Robot, State) {
-    let robot = Robot::from_urdf(include_str!("../../../urdf/five_bar.urdf")).expect("a good robot");
+pub fn five_bar(robot: &Robot, random: &mut Random) -> State {
     let mut state: Value = serde_json::from_str(include_str!("../../../examples/five_bar.json")).expect("an example");
     state["position"]["base"]["pitch"] = json!(random.between(-0.5, 0.5));
     state["velocity"]["base"] =
@@ -87,9 +95,9 @@ pub fn five_bar(random: &mut Random) -> (Robot, State) {
     state["contacts"] =
         json!([{"link": "left_shank", "offset": [0, 0, -0.5]}, {"link": "torso", "offset": [0.3, 0, -0.6]}]);
     state["impulse"] = json!([{"link": "torso", "vector": [random.between(-0.1, 0.1), random.between(-0.1, 0.1)]}]);
-    state["uncertainty"] = json!({"position": {"base": {"pitch": 1e-3}}, "velocity": {"base": {"x": 1e-3, "pitch": 1e-3}}, "friction": 1e-2});
-    let state = read(&robot, &state).expect("a good state");
-    (robot, state)
+    state["uncertainty"] = json!({"position": {"base": {"pitch": 1e-3}}, "velocity": {"base": {"x": 1e-3, "pitch": 1e-3}},
+        "friction": 1e-2});
+    read(robot, &state)
 }
 
 /// The lists of modes of a proven answer, sorted.
