@@ -19,6 +19,6 @@ mod study;
 pub mod compliant;
 
 pub use computation::Factorization;
-pub use study::{Answer, Condition, Errors, Method, Study, Work, of_problem, of_state, study};
-pub use suite::{Case, End, Subject, cases};
+pub use study::{AnswerSummary, CaseStudy, ConditionNumbers, Method, MethodErrors, Work, of_problem, of_state, study};
+pub use suite::{Case, CaseSubject, Expected, cases};
 pub use timing::{Budget, Spread};

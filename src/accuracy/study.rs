@@ -4,7 +4,7 @@ use super::computation::{Computation, Factorization};
 use super::condition::mass_matrix_condition;
 use super::number::Number;
 use super::reference::{PRECISION, Reference, distance, relative, with_precision, worst};
-use super::suite::Subject;
+use super::suite::CaseSubject;
 use super::timing::{Budget, Spread, time};
 use crate::Error;
 use crate::impact::enumerate::Tableau;
@@ -31,7 +31,7 @@ const TOO_LONG: &str = "with more than 300 coordinates it takes seconds";
 /// One case, computed by every method.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Study {
+pub struct CaseStudy {
     /// What the case is called.
     pub name: String,
     /// Coordinates of the robot; `None` for a problem given as matrices.
@@ -41,13 +41,13 @@ pub struct Study {
     pub contacts: usize,
     /// The answer; `None` if the case was refused.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub answer: Option<Answer>,
+    pub answer: Option<AnswerSummary>,
     /// Why the case was refused.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_text")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub refused: Option<Error>,
     /// How much rounding grows.
-    pub condition: Condition,
+    pub condition: ConditionNumbers,
     /// The results of each method; empty for a refused case.
     pub methods: Vec<Method>,
 }
@@ -55,7 +55,7 @@ pub struct Study {
 /// The answer in short.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Answer {
+pub struct AnswerSummary {
     /// The verdict.
     pub verdict: Verdict,
     /// Number of outcomes.
@@ -77,7 +77,7 @@ fn as_text<S: Serializer>(refused: &Option<Error>, serializer: S) -> Result<S::O
 /// Condition numbers of matrices scaled to a unit diagonal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Condition {
+pub struct ConditionNumbers {
     /// Of M; `None` without a robot.
     pub mass_matrix: Option<f64>,
     /// Of G; `None` if it is singular or not known.
@@ -98,7 +98,7 @@ pub struct Method {
     /// Run time; `None` if it was not measured.
     pub time: Option<Spread>,
     /// The distance from the reference; `None` if the method failed.
-    pub error: Option<Errors>,
+    pub error: Option<MethodErrors>,
     /// Why the method was not tried, if it was not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<&'static str>,
@@ -120,7 +120,7 @@ pub enum Work {
 /// Largest errors, free of units (see [`Reference`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Errors {
+pub struct MethodErrors {
     /// Of M; `None` if the method has none.
     pub mass_matrix: Option<f64>,
     /// Of G; `None` if it was given.
@@ -130,16 +130,16 @@ pub struct Errors {
 }
 
 /// Studies a case of the suite.
-pub fn study(name: &str, subject: &Subject, options: &Options, budget: Budget) -> Study {
+pub fn study(name: &str, subject: &CaseSubject, options: &Options, budget: Budget) -> CaseStudy {
     match subject {
-        Subject::State(case) => of_state(name, &case.0, &case.1, options, budget),
-        Subject::Problem(problem) => of_problem(name, problem, !options.no_proof, budget),
+        CaseSubject::State(case) => of_state(name, &case.0, &case.1, options, budget),
+        CaseSubject::Problem(problem) => of_problem(name, problem, !options.no_proof, budget),
     }
 }
 
 /// Studies a robot's state.
-pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> Study {
-    let mut study = Study::of(name, Some(robot.dofs()));
+pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, budget: Budget) -> CaseStudy {
+    let mut study = CaseStudy::of(name, Some(robot.dofs()));
     let mut pipeline = Pipeline::new(robot, options.clone());
     let found = pipeline.impact(state).and_then(|impact| Ok((impact, pipeline.prepare(state)?)));
     let (impact, prepared) = match found {
@@ -182,8 +182,8 @@ fn answers(prove: bool) -> impl Iterator<Item = (&'static str, bool)> {
 }
 
 /// Studies a contact problem given as matrices, which are taken as exact.
-pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Budget) -> Study {
-    let mut study = Study::of(name, None);
+pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Budget) -> CaseStudy {
+    let mut study = CaseStudy::of(name, None);
     study.contacts = problem.contacts();
     let mut scratch = Scratch::default();
     let mut analyse =
@@ -196,7 +196,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
     Interval::scope(PRECISION, || {
         let exact = problem.map(Interval::from_f64);
         let mut row = |number, outcome| {
-            let error = Some(Errors { mass_matrix: None, delassus: None, outcome });
+            let error = Some(MethodErrors { mass_matrix: None, delassus: None, outcome });
             study.methods.push(Method { error, ..Method::new(number, Work::Outcome, None) });
         };
         row("f32", outcome_error(&analysis, &problem.map(f32::from_f64), &exact));
@@ -212,7 +212,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
     study
 }
 
-impl Study {
+impl CaseStudy {
     fn of(name: &str, coordinates: Option<usize>) -> Self {
         Self {
             name: name.to_owned(),
@@ -220,7 +220,7 @@ impl Study {
             contacts: 0,
             answer: None,
             refused: None,
-            condition: Condition::default(),
+            condition: ConditionNumbers::default(),
             methods: Vec::new(),
         }
     }
@@ -231,7 +231,7 @@ impl Study {
 
     fn answered<'a>(&mut self, analysis: &'a Analysis) -> Option<&'a Analysis> {
         let margins = analysis.outcomes.iter().filter_map(|outcome| outcome.margin);
-        self.answer = Some(Answer {
+        self.answer = Some(AnswerSummary {
             verdict: analysis.verdict,
             outcomes: analysis.outcomes.len(),
             proven: analysis.proven,
@@ -283,7 +283,7 @@ impl Bench<'_> {
                 std::hint::black_box(&Reference::new(self.state).contacts.delassus);
             })
         });
-        let error = Errors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None };
+        let error = MethodErrors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None };
         let method = Method::delassus("reference", self.reference.factorization(), Some(reference));
         self.methods.push(Method { error: Some(error), ..method });
     }
@@ -351,7 +351,7 @@ impl Bench<'_> {
             let problem = filled(self.problem, &computation.collect());
             outcome_error(analysis, &problem, &filled(self.problem, &self.reference.contacts))
         });
-        let error = Some(Errors { mass_matrix, delassus: Some(delassus), outcome });
+        let error = Some(MethodErrors { mass_matrix, delassus: Some(delassus), outcome });
         self.methods.push(Method { error, ..Method::delassus(number, factorization, Some(time)) });
     }
 }

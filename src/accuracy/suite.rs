@@ -18,14 +18,14 @@ pub struct Case {
     /// Its name, as in `chain of 100 links, folded`.
     pub name: String,
     /// What it is.
-    pub subject: Subject,
+    pub subject: CaseSubject,
     /// What it must come to.
-    pub end: End,
+    pub end: Expected,
 }
 
 /// What is analysed.
 #[derive(Debug, Clone)]
-pub enum Subject {
+pub enum CaseSubject {
     /// A robot's state.
     State(Box<(Robot, State)>),
     /// Matrices without a robot.
@@ -34,7 +34,7 @@ pub enum Subject {
 
 /// What a case must come to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+pub enum Expected {
     /// Every outcome and the condition.
     Answered,
     /// A refusal, because the mass matrix is singular to the rounding of f64.
@@ -66,15 +66,15 @@ struct Suite(Vec<Case>);
 
 impl Suite {
     fn state(&mut self, name: impl Into<String>, robot: Robot, state: State) {
-        self.ending(name, robot, state, End::Answered);
+        self.ending(name, robot, state, Expected::Answered);
     }
 
-    fn ending(&mut self, name: impl Into<String>, robot: Robot, state: State, end: End) {
-        self.0.push(Case { name: name.into(), subject: Subject::State(Box::new((robot, state))), end });
+    fn ending(&mut self, name: impl Into<String>, robot: Robot, state: State, end: Expected) {
+        self.0.push(Case { name: name.into(), subject: CaseSubject::State(Box::new((robot, state))), end });
     }
 
     fn problem(&mut self, name: impl Into<String>, problem: ContactProblem) {
-        self.0.push(Case { name: name.into(), subject: Subject::Problem(problem), end: End::Answered });
+        self.0.push(Case { name: name.into(), subject: CaseSubject::Problem(problem), end: Expected::Answered });
     }
 
     fn masses(&mut self) -> Result<()> {
@@ -91,7 +91,7 @@ impl Suite {
             self.state(format!("{name} inertias"), robot, state);
         }
         // A needle whose CoG lies 1 nm off its hinge turns at a touch.
-        for (name, com, end) in [("1 nm off", -1e-9, End::Answered), ("at", 0.0, End::Singular)] {
+        for (name, com, end) in [("1 nm off", -1e-9, Expected::Answered), ("at", 0.0, Expected::Singular)] {
             let mut robot = robots::minimalistic()?;
             robot.bodies[1].com = Vector::new(0.0, com);
             let state = walker(&robot, 1.4);
@@ -103,7 +103,7 @@ impl Suite {
         let scene = Scene { rotor_inertia: vec![0.0, 1e-6, 1e-6], ..standing(&robot, 2) };
         self.state("massless feet with rotors", robot.clone(), State { scene, ..with_feet(&robot) });
         let loose = with_feet(&robot);
-        self.ending("massless feet, loose", robot, loose, End::Singular);
+        self.ending("massless feet, loose", robot, loose, Expected::Singular);
         Ok(())
     }
 
@@ -158,7 +158,7 @@ impl Suite {
             // which is exactly zero in f64: M has a condition of 1e18, and no answer by f64 would have a digit.
             let robot = robots::minimalistic()?;
             let state = walker(&robot, alpha);
-            self.ending(format!("{name}, point masses"), robot, state, End::Singular);
+            self.ending(format!("{name}, point masses"), robot, state, Expected::Singular);
         }
         // At this moment of inertia and angle every outcome touches every other.
         for (name, angle) in [("degenerate walker", FRAC_PI_4), ("one ulp beside it", FRAC_PI_4.next_up())] {

@@ -8,7 +8,7 @@ use super::robot::RobotOptions;
 use super::stream::only_document;
 use super::{Completion, Failure};
 use heelstrike::accuracy::compliant::compare;
-use heelstrike::accuracy::{Budget, Case, Study, Subject, cases, of_state, study};
+use heelstrike::accuracy::{Budget, Case, CaseStudy, CaseSubject, cases, of_state, study};
 use heelstrike::pipeline::Options;
 use heelstrike::state::State;
 use heelstrike::write::{Accuracy, Compliant};
@@ -63,7 +63,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let written = args.output.write(&accuracy, |palette| accuracy.text(palette))?;
     // The suite contains refused cases on purpose; a user's own state does not.
     match accuracy.studies.as_slice() {
-        [Study { refused: Some(error), .. }] if args.robot.is_some() => Err(Failure::Refused(error.clone())),
+        [CaseStudy { refused: Some(error), .. }] if args.robot.is_some() => Err(Failure::Refused(error.clone())),
         _ => Ok(written),
     }
 }
@@ -109,7 +109,7 @@ fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure
     let studies = chosen.iter().map(|case| study(&case.name, &case.subject, &options, budget)).collect();
     let walker = chosen.iter().find(|case| case.name == WALKER);
     let compliant = match walker.map(|case| &case.subject) {
-        Some(Subject::State(case)) => compliant(WALKER, &case.0, &case.1, &options)?,
+        Some(CaseSubject::State(case)) => compliant(WALKER, &case.0, &case.1, &options)?,
         _ => None,
     };
     Ok(Accuracy::new(studies, compliant))

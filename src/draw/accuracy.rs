@@ -1,6 +1,6 @@
 //! Errors against run time as a picture: a panel for G and one for the outcomes.
 
-use crate::accuracy::{Errors, Factorization, Method};
+use crate::accuracy::{MethodErrors, Factorization, Method};
 use crate::draw::plot::{
     Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, range,
 };
@@ -38,7 +38,7 @@ impl Accuracy {
             let key = |case| LegendKey::Mark(mark(case), Color::Gray);
             legend.extend(cases.map(|(case, study)| LegendEntry::new(&study.name, key(case))));
         }
-        let panel = |what: &str, pick: fn(&Errors) -> Option<f64>| {
+        let panel = |what: &str, pick: fn(&MethodErrors) -> Option<f64>| {
             let mut series: Vec<(Mark, Color, Vec<PlotPoint>)> = Vec::new();
             for (case, method) in drawn() {
                 let error = method.error.as_ref().and_then(pick);

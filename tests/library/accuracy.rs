@@ -2,7 +2,7 @@
 //! their digits against a reference of at least 256 bits.
 
 use crate::support::impact::velocities_after;
-use heelstrike::accuracy::{Budget, Case, End, Factorization, Study, Subject, cases, of_state, study};
+use heelstrike::accuracy::{Budget, Case, Expected, Factorization, CaseStudy, CaseSubject, cases, of_state, study};
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
@@ -24,17 +24,17 @@ fn walk(choose: impl Fn(&Case) -> bool) {
     for case in chosen {
         let study = study(&case.name, &case.subject, &Options::default(), ONCE);
         match case.end {
-            End::Singular => {
+            Expected::Singular => {
                 let refused = study.refused.unwrap_or_else(|| panic!("{} must be refused", case.name));
                 assert!(matches!(refused.reason(), Reason::Singular(_)), "{}: {refused}", case.name);
                 assert!(refused.remedy().is_some(), "{}", case.name);
             }
-            End::Answered => assert_answered(&study),
+            Expected::Answered => assert_answered(&study),
         }
     }
 }
 
-fn assert_answered(study: &Study) {
+fn assert_answered(study: &CaseStudy) {
     let name = &study.name;
     assert!(study.refused.is_none(), "{name}: {:?}", study.refused);
     let answer = study.answer.as_ref().unwrap_or_else(|| panic!("{name} must be answered"));
@@ -96,7 +96,7 @@ fn assert_energy(name: &str, robot: &Robot, state: &State) -> Impact {
 #[test]
 fn velocities_of_base_and_joints_keep_their_digits_in_chains() {
     for case in cases().expect("read").into_iter().filter(|case| case.name.starts_with("chain of 100 links")) {
-        let Subject::State(subject) = &case.subject else { panic!("a state") };
+        let CaseSubject::State(subject) = &case.subject else { panic!("a state") };
         let impact = assert_energy(&case.name, &subject.0, &subject.1);
         for (outcome, after) in
             impact.analysis.as_ref().expect("outcomes").outcomes.iter().zip(velocities_after(&impact))

@@ -8,7 +8,7 @@
 //! nothing, damping and ratios do.
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
-use super::integrate::{Equations, Limits, integrate};
+use super::integrate::{Limits, StiffEquations, integrate};
 use crate::impact::ContactProblem;
 use crate::planar::Pair;
 use crate::{Reason, Result};
@@ -99,7 +99,7 @@ impl Frozen {
     }
 }
 
-impl Equations for Frozen {
+impl StiffEquations for Frozen {
     fn rates(&self, state: &[f64]) -> Vec<f64> {
         let velocity = self.velocity(state);
         let forces = self.forces(state, &velocity);

@@ -23,8 +23,8 @@ const MOST_STEPS: usize = 5_000;
 /// Steps before which no run has ended: all begin without forces.
 const FEWEST_STEPS: usize = 2;
 
-/// Equations of an impact in units in which times and states are of order one.
-pub(super) trait Equations {
+/// StiffEquations of an impact in units in which times and states are of order one.
+pub(super) trait StiffEquations {
     /// f(y).
     fn rates(&self, state: &[f64]) -> Vec<f64>;
 
@@ -49,7 +49,7 @@ pub(super) trait Equations {
 
 /// Where a run came to.
 #[derive(Debug, Clone)]
-pub(super) struct End {
+pub(super) struct RunEnd {
     /// The last state.
     pub state: Vec<f64>,
     /// Steps of the integrator, the start included.
@@ -74,7 +74,7 @@ pub(super) struct Limits {
 ///
 /// # Errors
 /// [`Reason::Unsupported`] if the integrator gives up, and for other lengths.
-pub(super) fn integrate(model: &impl Equations, start: &[f64], limits: Limits) -> Result<End> {
+pub(super) fn integrate(model: &impl StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     match start.len() {
         4 => integrate_array::<4>(model, start, limits),
         8 => integrate_array::<8>(model, start, limits),
@@ -88,14 +88,14 @@ pub(super) fn integrate(model: &impl Equations, start: &[f64], limits: Limits) -
     }
 }
 
-fn integrate_array<const N: usize>(model: &impl Equations, start: &[f64], limits: Limits) -> Result<End> {
+fn integrate_array<const N: usize>(model: &impl StiffEquations, start: &[f64], limits: Limits) -> Result<RunEnd> {
     let Limits { relative, absolute, horizon } = limits;
     // One tolerance for each entry: of a single one version 0.7 takes the power 2/3 once per entry.
     let mut method =
         ImplicitRungeKutta::radau5().rtol([relative; N]).atol([absolute; N]).h0(FIRST_STEP).max_steps(MOST_STEPS);
     let mut first = [0.0; N];
     first.copy_from_slice(start);
-    let mut run = Run { model, end: End { state: start.to_vec(), steps: 0, ended: false } };
+    let mut run = Run { model, end: RunEnd { state: start.to_vec(), steps: 0, ended: false } };
     solve_ode(&mut method, &System(model), 0.0, horizon, &first, &mut run).map_err(|error| gave_up(&error))?;
     Ok(run.end)
 }
@@ -109,7 +109,7 @@ fn gave_up(error: &impl std::fmt::Debug) -> Error {
 /// A model as the integrator takes it.
 struct System<'m, M>(&'m M);
 
-impl<M: Equations, const N: usize> ODE<f64, [f64; N]> for System<'_, M> {
+impl<M: StiffEquations, const N: usize> ODE<f64, [f64; N]> for System<'_, M> {
     fn diff(&self, _: f64, state: &[f64; N], rates: &mut [f64; N]) {
         rates.fill(0.0);
         rates.iter_mut().zip(self.0.rates(state)).for_each(|(rate, own)| *rate = own);
@@ -126,10 +126,10 @@ impl<M: Equations, const N: usize> ODE<f64, [f64; N]> for System<'_, M> {
 /// Ends a run with its model, and keeps the last state.
 struct Run<'m, M> {
     model: &'m M,
-    end: End,
+    end: RunEnd,
 }
 
-impl<M: Equations, const N: usize> Solout<f64, [f64; N]> for Run<'_, M> {
+impl<M: StiffEquations, const N: usize> Solout<f64, [f64; N]> for Run<'_, M> {
     fn solout<I: Interpolation<f64, [f64; N]> + ?Sized>(
         &mut self,
         _: f64,
@@ -140,7 +140,7 @@ impl<M: Equations, const N: usize> Solout<f64, [f64; N]> for Run<'_, M> {
         _: &mut Solution<f64, [f64; N]>,
     ) -> ControlFlag<f64, [f64; N]> {
         let steps = self.end.steps + 1;
-        self.end = End { state: state.to_vec(), steps, ended: self.model.has_ended(state) };
+        self.end = RunEnd { state: state.to_vec(), steps, ended: self.model.has_ended(state) };
         if self.end.ended && steps > FEWEST_STEPS { ControlFlag::Terminate } else { ControlFlag::Continue }
     }
 }

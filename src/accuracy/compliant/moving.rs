@@ -8,7 +8,7 @@
 //! difference from the frozen model falls with 1 / sqrt(k_n).
 
 use super::ground::{SoftGround, Suspension, mean_mobility};
-use super::integrate::{Equations, Limits, integrate};
+use super::integrate::{Limits, StiffEquations, integrate};
 use crate::Result;
 use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::dynamics::{
@@ -151,7 +151,7 @@ impl<'a> Equation<'a> {
     }
 }
 
-impl Equations for Equation<'_> {
+impl StiffEquations for Equation<'_> {
     fn rates(&self, state: &[f64]) -> Vec<f64> {
         self.evaluate(state).0
     }

@@ -6,7 +6,7 @@
 //! ```
 
 use super::in_words;
-use crate::accuracy::{Factorization, Method, Study, Work};
+use crate::accuracy::{CaseStudy, Factorization, Method, Work};
 
 /// Ways in f64 whose digits differ by less count as equal: the last bits are chance.
 const SAME_DIGITS: f64 = 0.5;
@@ -20,7 +20,7 @@ struct Way {
 }
 
 /// One sentence; `None` if no way to G in f64 was measured.
-pub(super) fn advice(studies: &[Study]) -> Option<String> {
+pub(super) fn advice(studies: &[CaseStudy]) -> Option<String> {
     let ways = ways(studies, "f64");
     let quickest = quickest(&ways)?;
     let most_exact = *ways.iter().max_by(|a, b| a.digits.total_cmp(&b.digits))?;
@@ -60,7 +60,7 @@ fn quickest(ways: &[Way]) -> Option<Way> {
 }
 
 /// Every way to G in numbers of one kind that failed in none of its cases.
-fn ways(studies: &[Study], number: &str) -> Vec<Way> {
+fn ways(studies: &[CaseStudy], number: &str) -> Vec<Way> {
     let all = [Factorization::SparseLtl, Factorization::DenseCholesky, Factorization::ArticulatedBodies];
     let way = |factorization| {
         let methods: Vec<&Method> = studies
@@ -78,8 +78,8 @@ fn ways(studies: &[Study], number: &str) -> Vec<Way> {
 }
 
 /// The cost of the proof, and how often it succeeds.
-fn of_the_proof(studies: &[Study]) -> Option<String> {
-    let time = |study: &Study, number| {
+fn of_the_proof(studies: &[CaseStudy]) -> Option<String> {
+    let time = |study: &CaseStudy, number| {
         let mut methods = study.methods.iter();
         let method = methods.find(|method| method.work == Work::Answer && method.number == number)?;
         method.time.map(|time| time.median)
@@ -112,26 +112,26 @@ fn times(ratio: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::{Answer, Condition, Errors, Spread};
+    use crate::accuracy::{AnswerSummary, ConditionNumbers, MethodErrors, Spread};
     use crate::impact::Verdict;
 
     fn method(number: &'static str, factorization: Option<Factorization>, time: f64, error: f64) -> Method {
         let work = if factorization.is_some() { Work::Delassus } else { Work::Answer };
         let time = Some(Spread { lower_quartile: time, median: time, upper_quartile: time, samples: 1 });
-        let error = factorization.map(|_| Errors { mass_matrix: None, delassus: Some(error), outcome: None });
+        let error = factorization.map(|_| MethodErrors { mass_matrix: None, delassus: Some(error), outcome: None });
         Method { number, factorization, work, time, error, left_out: None }
     }
 
-    fn study(proven: bool, methods: Vec<Method>) -> Study {
+    fn study(proven: bool, methods: Vec<Method>) -> CaseStudy {
         let verdict = Verdict::Unique;
-        let answer = Answer { verdict, outcomes: 1, proven, margin: None, index_sum: Some(1), rank: 2 };
-        Study {
+        let answer = AnswerSummary { verdict, outcomes: 1, proven, margin: None, index_sum: Some(1), rank: 2 };
+        CaseStudy {
             name: String::new(),
             coordinates: None,
             contacts: 1,
             answer: Some(answer),
             refused: None,
-            condition: Condition::default(),
+            condition: ConditionNumbers::default(),
             methods,
         }
     }

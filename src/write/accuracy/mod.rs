@@ -1,14 +1,14 @@
 //! The record of error against run time.
 //!
 //! ```text
-//!     Study, Comparison --> Accuracy --> JSON (its own fields), advice.rs, text.rs, picture.rs
+//!     CaseStudy, Comparison --> Accuracy --> JSON (its own fields), advice.rs, text.rs, picture.rs
 //! ```
 
 mod advice;
 mod text;
 
 use crate::accuracy::compliant::Comparison;
-use crate::accuracy::{Factorization, Method, Study};
+use crate::accuracy::{CaseStudy, Factorization, Method};
 use serde::Serialize;
 
 /// The results of every method on some cases.
@@ -16,7 +16,7 @@ use serde::Serialize;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Accuracy {
     /// The cases.
-    pub studies: Vec<Study>,
+    pub studies: Vec<CaseStudy>,
     /// Compliant contact next to the rigid outcomes of one state.
     pub compliant: Option<Compliant>,
     /// Which method to use, by the times and errors of these cases; `None` if nothing was measured.
@@ -36,7 +36,7 @@ pub struct Compliant {
 
 impl Accuracy {
     /// A record of these cases, and of compliant contact if it was compared.
-    pub fn new(studies: Vec<Study>, compliant: Option<Compliant>) -> Self {
+    pub fn new(studies: Vec<CaseStudy>, compliant: Option<Compliant>) -> Self {
         Self { advice: advice::advice(&studies), studies, compliant }
     }
 }

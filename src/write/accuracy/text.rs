@@ -2,7 +2,7 @@
 
 use super::{Accuracy, Compliant, name_of};
 use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
-use crate::accuracy::{Errors, Factorization, Method, Spread, Study, Work};
+use crate::accuracy::{CaseStudy, Factorization, Method, MethodErrors, Spread, Work};
 use crate::write::Palette;
 use crate::write::table::{Table, number};
 use std::fmt::Write;
@@ -26,11 +26,11 @@ impl Accuracy {
 }
 
 /// One case: a line for each method.
-fn one(out: &mut String, study: &Study, Palette { strong, plain, .. }: &Palette) {
+fn one(out: &mut String, study: &CaseStudy, Palette { strong, plain, .. }: &Palette) {
     let _ = writeln!(out, "{strong}{}{plain}: {}", study.name, ending(study));
-    let _ = writeln!(out, "Condition: {}.\n", conditions(study));
+    let _ = writeln!(out, "ConditionNumbers: {}.\n", conditions(study));
     let methods = &study.methods;
-    let error = |pick: fn(&Errors) -> Option<f64>| {
+    let error = |pick: fn(&MethodErrors) -> Option<f64>| {
         methods.iter().map(move |method| method.error.as_ref().and_then(pick).map_or("-".into(), digits))
     };
     Table::default()
@@ -54,7 +54,7 @@ fn work(work: Work) -> &'static str {
 }
 
 /// Many cases: a line for each, then one for each method.
-fn many(out: &mut String, studies: &[Study], Palette { strong, plain, .. }: &Palette) {
+fn many(out: &mut String, studies: &[CaseStudy], Palette { strong, plain, .. }: &Palette) {
     let columns = [
         ("f32", Factorization::SparseLtl, "f32 LTL"),
         ("f64", Factorization::SparseLtl, "LTL"),
@@ -69,7 +69,7 @@ fn many(out: &mut String, studies: &[Study], Palette { strong, plain, .. }: &Pal
         .text("cond. M", studies.iter().map(|study| power(study.condition.mass_matrix)))
         .text("G", studies.iter().map(|study| power(study.condition.delassus)));
     for (number, factorization, head) in columns {
-        let cell = |study: &Study| {
+        let cell = |study: &CaseStudy| {
             let mut methods = study.methods.iter();
             let method = methods.find(|m| m.number == number && m.factorization == Some(factorization));
             method.and_then(|method| method.error?.delassus).map_or("-".into(), digits)
@@ -118,7 +118,7 @@ fn many(out: &mut String, studies: &[Study], Palette { strong, plain, .. }: &Pal
 }
 
 /// Methods that were not tried, and why.
-fn list_left_out(out: &mut String, studies: &[Study]) {
+fn list_left_out(out: &mut String, studies: &[CaseStudy]) {
     let every = || studies.iter().flat_map(|study| &study.methods);
     let mut listed: Vec<String> = Vec::new();
     for (method, why) in every().filter_map(|method| Some((method, method.left_out?))) {
@@ -132,7 +132,7 @@ fn list_left_out(out: &mut String, studies: &[Study]) {
     }
 }
 
-fn ending(study: &Study) -> String {
+fn ending(study: &CaseStudy) -> String {
     match (&study.answer, &study.refused) {
         (Some(answer), _) => {
             let (outcomes, s) = (answer.outcomes, if answer.outcomes == 1 { "" } else { "s" });
@@ -144,7 +144,7 @@ fn ending(study: &Study) -> String {
     }
 }
 
-fn brief_ending(study: &Study) -> String {
+fn brief_ending(study: &CaseStudy) -> String {
     match (&study.answer, &study.refused) {
         (Some(answer), _) => format!("{}{}", answer.verdict, if answer.proven { "" } else { " (not proven)" }),
         (None, Some(_)) => "refused".to_owned(),
@@ -152,7 +152,7 @@ fn brief_ending(study: &Study) -> String {
     }
 }
 
-fn conditions(study: &Study) -> String {
+fn conditions(study: &CaseStudy) -> String {
     let of = |what: &str, condition: Option<f64>| condition.map(|value| format!("{what} {}", number(value)));
     let known: Vec<String> =
         [of("mass matrix", study.condition.mass_matrix), of("Delassus matrix", study.condition.delassus)]
