@@ -3,6 +3,8 @@
 #[cfg(feature = "accuracy")]
 mod accuracy;
 mod architecture;
+#[cfg(feature = "accuracy")]
+mod compliant;
 mod constraints;
 mod courses;
 mod csv;

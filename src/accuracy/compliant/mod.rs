@@ -9,14 +9,12 @@ mod ground;
 mod frozen;
 mod moving;
 mod comparison;
-mod map;
 
 pub use comparison::{
     ByStiffness, ByTolerance, Comparison, Group, NEAR, NearestOutcome, Target, compare, distance, landing,
 };
 pub use frozen::{CompliantRun, TOLERANCE, run};
 pub use ground::{GREATEST_FRICTION, SoftGround};
-pub use map::{Biped, LandingCell, LandingMap};
 pub use moving::Moving;
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
 //! Where compliant, overdamped contact takes the paper's minimalistic biped, over the trailing foot's approach speed
 //! and d_t / d_n: `cargo run --release --example compliant_map -- map.csv map.png`.
 
-use heelstrike::accuracy::compliant::{Biped, LandingMap, NEAR};
+mod map;
+
+use heelstrike::accuracy::compliant::NEAR;
 use heelstrike::draw::plot::{Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Stroke};
 use heelstrike::impact::{Friction, Mode};
+use map::{Biped, LandingCell, LandingMap};
 use std::error::Error;
 use std::fmt::Write;
 
@@ -41,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// How the trailing foot ends, where that is near a rigid outcome.
-fn end(cell: &heelstrike::accuracy::compliant::LandingCell) -> Option<Mode> {
+fn end(cell: &LandingCell) -> Option<Mode> {
     cell.modes.first().copied().filter(|_| cell.distance <= NEAR)
 }
 

@@ -5,21 +5,17 @@
 //! separatrix. It does not follow the border at which lift-off ceases to be a rigid outcome, so that some runs end near
 //! no outcome.
 
-use super::comparison::{NEAR, NearestOutcome, landing};
-use super::frozen::run;
-use super::ground::SoftGround;
-use crate::Result;
-use crate::accuracy::robots;
-use crate::impact::{Analysis, ContactProblem, analyse};
-use crate::law::{Friction, Mode};
-use crate::pipeline::{Options, Pipeline};
-use crate::planar::Pair;
-use crate::state::{Defaults, State};
+use heelstrike::Result;
+use heelstrike::accuracy::compliant::{NEAR, NearestOutcome, SoftGround, landing, run};
+use heelstrike::impact::{Analysis, ContactProblem, Friction, Mode, analyse};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::planar::Pair;
+use heelstrike::robot::Robot;
+use heelstrike::state::{Defaults, State};
 use nalgebra::{DMatrix, DVector};
-use serde::Serialize;
 
 /// The outcomes over approach speed and damping.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct LandingMap {
     /// Approach speeds of the trailing foot \[m/s\].
     pub speeds: Vec<f64>,
@@ -32,13 +28,13 @@ pub struct LandingMap {
 }
 
 /// One run of the map.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LandingCell {
     /// Modes of the nearest rigid outcome, trailing foot first.
     pub modes: Vec<Mode>,
     /// Its index.
     pub index: Option<i8>,
-    /// Distance to it (see [`Group`](super::Group)).
+    /// Distance to it, in the energy norm.
     pub distance: f64,
 }
 
@@ -55,12 +51,9 @@ const TOLERANCE: f64 = 1e-8;
 
 impl Biped {
     /// The paper's state, and this friction.
-    ///
-    /// # Errors
-    /// None that a user could bring about: the robot is this crate's own.
     pub fn new(friction: Friction) -> Result<Self> {
-        let robot = robots::minimalistic()?;
-        let state = include_str!("../../../examples/minimalistic.json");
+        let robot = Robot::from_urdf(include_str!("../../urdf/minimalistic.urdf"))?;
+        let state = include_str!("../minimalistic.json");
         let state = State::from_json(state, &robot, &Defaults::default())?;
         let options = Options { matrices: true, ..Options::default() };
         let impact = Pipeline::new(&robot, options).impact(&state)?;
@@ -69,9 +62,6 @@ impl Biped {
     }
 
     /// The contact problem where the trailing foot comes down with `speed` \[m/s\].
-    ///
-    /// # Errors
-    /// A speed that is not finite.
     pub fn struck(&self, speed: f64) -> Result<ContactProblem> {
         let mut before = self.before.clone();
         if let Some(trailing) = before.first_mut() {
@@ -99,9 +89,6 @@ impl Biped {
     }
 
     /// The cell at a speed and a ratio; without modes if there is no rigid outcome to compare with.
-    ///
-    /// # Errors
-    /// Those of [`run`].
     pub fn cell(&self, speed: f64, ratio: f64) -> Result<LandingCell> {
         let (analysis, landing) = self.land(speed, ratio)?;
         Ok(landing.map_or(
@@ -114,9 +101,6 @@ impl Biped {
     }
 
     /// The speed up to `greatest` beyond which both feet stop, to 1e-4 of it; `None` if they do not.
-    ///
-    /// # Errors
-    /// Those of [`run`].
     pub fn separatrix(&self, ratio: f64, greatest: f64) -> Result<Option<f64>> {
         let stops = |speed: f64| {
             self.cell(speed, ratio).map(|cell| cell.modes.first() == Some(&Mode::Stick) && cell.distance <= NEAR)
@@ -133,9 +117,6 @@ impl Biped {
     }
 
     /// The map over `columns` speeds from 0 to 1 m/s and `rows` ratios from 0.1 to 1000, evenly on a logarithmic scale.
-    ///
-    /// # Errors
-    /// Those of [`run`].
     pub fn map(&self, columns: usize, rows: usize) -> Result<LandingMap> {
         let even = |at: usize, count: usize| at as f64 / (count.max(2) - 1) as f64;
         let speeds: Vec<f64> = (0..columns).map(|at| even(at, columns)).collect();
@@ -161,40 +142,5 @@ impl LandingMap {
     /// Runs that end within `share` of an outcome of index -1.
     pub fn near_negative_index(&self, share: f64) -> impl Iterator<Item = (f64, f64, &LandingCell)> {
         self.runs().filter(move |(_, _, cell)| cell.index == Some(-1) && cell.distance <= share)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_separatrix_lies_where_other_integrators_found_it() {
-        // Measured beforehand by other code, to two digits.
-        let infinite = [(1.0, 0.80), (10.0, 0.43), (100.0, 0.056), (1000.0, 0.006)];
-        let finite = [(1.0, 0.80), (10.0, 0.64), (100.0, 0.23), (1000.0, 0.17)];
-        for (friction, expected) in [(Friction::Infinite, infinite), (Friction::Finite(10.0), finite)] {
-            let biped = Biped::new(friction).unwrap();
-            for (ratio, speed) in expected {
-                let found = biped.separatrix(ratio, 1.0).unwrap().unwrap();
-                // Half a unit of the last digit.
-                let unit = if speed < 0.1 { 0.001 } else { 0.01 };
-                assert!((found - speed).abs() <= 0.5 * unit + 1e-4, "{friction} {ratio}: {found}");
-            }
-        }
-    }
-
-    #[test]
-    fn runs_end_at_lift_off_or_stop_and_never_at_the_slide() {
-        let map = Biped::new(Friction::Infinite).unwrap().map(11, 9).unwrap();
-        assert_eq!(map.runs().count(), 99);
-        assert_eq!(map.near_negative_index(0.01).count(), 0);
-        for (speed, ratio, cell) in map.runs() {
-            assert_eq!(cell.index, Some(1), "{speed} {ratio} {cell:?}");
-        }
-        // Beyond 0.75 m/s only the stop is a rigid outcome, and a ground of little tangential damping misses it.
-        assert!(map.runs().any(|(speed, _, cell)| speed > 0.75 && cell.distance > 0.5));
-        let ends = |mode| map.runs().filter(|(_, _, cell)| cell.modes.first() == Some(&mode)).count();
-        assert!(ends(Mode::Separate) > 10 && ends(Mode::Stick) > 10);
     }
 }
