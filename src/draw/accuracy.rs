@@ -1,6 +1,6 @@
 //! Errors against run time as a picture: a panel for G and one for the outcomes.
 
-use crate::accuracy::{MethodErrors, Factorization, Method};
+use crate::accuracy::{Factorization, Method, MethodErrors};
 use crate::draw::plot::{
     Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, range,
 };
