@@ -19,7 +19,7 @@ use super::problem::{ContactProblem, Precision, Source, escalate};
 use super::rank::{rank_and_condition, shows_regular};
 use super::slack::Scale;
 use crate::error::{Error, Reason, Result};
-use crate::law::{ContactLaw, Impulse, Mode};
+use crate::law::{Impulse, Mode};
 
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;

@@ -1,7 +1,7 @@
 //! Where an outcome on a border leads.
 
 use super::outcome::{AtZero, Border, Motion};
-use crate::law::{ContactLaw, Inequality, Law, Mode};
+use crate::law::{Inequality, Law, Mode};
 use std::cmp::Ordering;
 
 /// The border of an outcome whose impulse inequalities `at_zero` are zero; `None` if none is.

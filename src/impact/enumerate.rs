@@ -13,7 +13,7 @@
 //! Cost: 4^n leaves (2^k 4^(n-k) if k contacts are frictionless: their modes share one elimination), each O(n).
 
 use super::problem::ContactProblem;
-use crate::law::{ContactLaw, Friction, Impulse, Law, Mode};
+use crate::law::{Friction, Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::Real;
 

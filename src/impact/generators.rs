@@ -5,7 +5,7 @@
 //! ```
 
 use super::problem::ContactProblem;
-use crate::law::{ContactLaw, Impulse, Law, Mode};
+use crate::law::{Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::Real;
 

@@ -6,7 +6,7 @@
 
 use super::linear::{Unsettled, settled};
 use super::problem::ContactProblem;
-use crate::law::{ContactLaw, Impulse, Mode};
+use crate::law::{Impulse, Mode};
 use crate::planar::Pair;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;

@@ -13,7 +13,7 @@ use super::enumerate::{Leaf, Tableau};
 use super::labels::Labels;
 use super::problem::{ContactProblem, Errors};
 use super::slack::{Scale, slacks};
-use crate::law::{ContactLaw, Impulse};
+use crate::law::Impulse;
 
 /// The inequalities of all combinations of one problem.
 #[derive(Debug, Clone, Default, PartialEq)]

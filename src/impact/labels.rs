@@ -1,6 +1,6 @@
 //! Which strict modes one combination of the enumeration stands for.
 
-use crate::law::{ContactLaw, Law, Mode};
+use crate::law::{Law, Mode};
 
 /// The lists of modes that one leaf stands for: all whose impulses are the same.
 #[derive(Debug, Clone, Default)]

@@ -10,7 +10,7 @@ use super::linear::Unsettled;
 use super::outcome::Rejection;
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read_f64};
-use crate::law::{ContactLaw, Impulse};
+use crate::law::Impulse;
 use crate::scalar::{Ordered, Sign};
 
 /// Beyond this growth of rounding, f64 has lost the digits that an answer is expected to have.

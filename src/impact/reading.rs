@@ -5,7 +5,7 @@ use super::enumerate::Leaf;
 use super::outcome::{Motion, RejectionReason};
 use super::problem::ContactProblem;
 use super::slack::{Scale, Slack, slacks};
-use crate::law::{ContactLaw, Inequality, Law, Mode};
+use crate::law::{Inequality, Law, Mode};
 use crate::scalar::{Ordered, Real, Sign};
 
 /// What the slacks of a combination say.

@@ -18,7 +18,7 @@ use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
 use super::slack::Scale;
-use crate::law::{Condition, ContactLaw, Inequality, Mode};
+use crate::law::{Condition, Inequality, Mode};
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 

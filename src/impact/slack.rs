@@ -2,7 +2,7 @@
 
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
-use crate::law::{Condition, ContactLaw, Law, Mode};
+use crate::law::{Condition, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, Real};
 

@@ -5,26 +5,19 @@
 //!     impulse    separate  L = 0       stick  L free in its cone  slide+-  L = lambda (-+mu, 1), lambda >= 0
 //! ```
 //!
-//! The velocities are those of [`Mode`], with restitution in xi ([`restitution`]). The impulses are each law's own: one
-//! file per law, each a [`ContactLaw`] with the same methods in the same order, listed once in [`Law`]. Code that
-//! enumerates, bounds or reads combinations asks the law, and matches on no mode and no friction itself.
+//! The velocities are those of [`Mode`], with Newton's restitution in Moreau's form: xi_n = c_n+ + e min(c_n-, 0). The
+//! impulses are each law's own, and all of a law is in [`Law`]: code that enumerates, bounds or reads combinations asks
+//! it, and matches on no mode and no friction itself.
 
 mod inequality;
 mod condition;
 mod mode;
 mod friction;
-mod frictionless;
-mod coulomb;
-mod unbounded;
-pub mod restitution;
 
 pub use condition::{Condition, Function};
-pub use coulomb::Coulomb;
 pub use friction::Friction;
-pub use frictionless::Frictionless;
 pub use inequality::Inequality;
 pub use mode::Mode;
-pub use unbounded::Unbounded;
 
 use crate::scalar::Real;
 use std::cmp::Ordering;
@@ -40,98 +33,106 @@ pub enum Impulse<T = f64> {
     Free,
 }
 
-/// What one contact's friction allows; `T` is the number of its coefficients.
-pub trait ContactLaw<T: Real> {
+/// The law of a contact; `T` is the number of its coefficients.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law<T = f64> {
+    /// No friction: the impulse is normal, and a closed contact sticks or slides as the others let it.
+    Frictionless,
+    /// |L_t| <= mu L_n, and a sliding contact is resisted by all of it.
+    Coulomb(T),
+    /// No bound on L_t: a sticking contact is held whatever it takes, and one that slides has no normal impulse.
+    Unbounded,
+}
+
+impl<T: Real> Law<T> {
     /// The friction as it is given and written.
-    fn friction(&self) -> Friction<T>;
+    pub fn friction(&self) -> Friction<T> {
+        match *self {
+            Self::Frictionless => Friction::Finite(T::zero()),
+            Self::Coulomb(mu) => Friction::Finite(mu),
+            Self::Unbounded => Friction::Infinite,
+        }
+    }
 
     /// The modes that the contact may take, in the order in which they are tried. Those of one group have the same
     /// impulses, so that one elimination serves them all; its first mode stands for the group.
-    fn modes(&self) -> &'static [&'static [Mode]];
+    pub fn modes(&self) -> &'static [&'static [Mode]] {
+        match self {
+            Self::Frictionless => &[&[Mode::Separate], &[Mode::Stick, Mode::SlidePlus, Mode::SlideMinus]],
+            _ => &[&[Mode::Separate], &[Mode::Stick], &[Mode::SlidePlus], &[Mode::SlideMinus]],
+        }
+    }
+
+    /// The mode that stands for those with the same impulses.
+    pub fn representative(&self, mode: Mode) -> Mode {
+        self.modes().iter().find(|group| group.contains(&mode)).map_or(mode, |group| group[0])
+    }
 
     /// The impulses of a mode.
-    fn impulse(&self, mode: Mode) -> Impulse<T>;
-
-    /// Calls `visit` with each inequality of a mode's impulse.
-    fn impulse_conditions(&self, mode: Mode, visit: impl FnMut(Condition<T>));
-
-    /// The modes that share velocity and impulse with a closed `mode` whose `inequality` is zero; `tangential` is the
-    /// sign of L_t.
-    fn beyond(&self, mode: Mode, inequality: Inequality, tangential: Ordering) -> Vec<Mode>;
+    #[inline]
+    pub fn impulse(&self, mode: Mode) -> Impulse<T> {
+        match (*self, mode) {
+            (_, Mode::Separate) => Impulse::Zero,
+            // Minus zero: times the lambda of a contact that is pulled it is a plain zero.
+            (Self::Frictionless, _) => Impulse::Along([T::from_f64(-0.0), T::one()]),
+            (_, Mode::Stick) => Impulse::Free,
+            (Self::Coulomb(mu), _) => Impulse::Along([T::from_f64(-mode.direction()) * mu, T::one()]),
+            (Self::Unbounded, _) => Impulse::Along([T::from_f64(-mode.direction()), T::zero()]),
+        }
+    }
 
     /// Calls `visit` with every inequality of a mode, that of its velocity last.
     #[inline]
-    fn conditions(&self, mode: Mode, mut visit: impl FnMut(Condition<T>)) {
-        self.impulse_conditions(mode, &mut visit);
-        if let Some(condition) = mode.velocity_condition() {
-            visit(condition);
+    pub fn conditions(&self, mode: Mode, mut visit: impl FnMut(Condition<T>)) {
+        let mut ask = |inequality, function| visit(Condition { inequality, function });
+        match (*self, mode) {
+            (_, Mode::Separate) => {}
+            (Self::Unbounded, Mode::SlidePlus | Mode::SlideMinus) => {
+                ask(Inequality::TangentialImpulse, Function::Second);
+            }
+            _ => ask(Inequality::NormalImpulse, Function::Second),
+        }
+        if let (Self::Coulomb(mu), Mode::Stick) = (*self, mode) {
+            ask(Inequality::FrictionCone, Function::ConeMinus(mu));
+            ask(Inequality::FrictionCone, Function::ConePlus(mu));
+        }
+        match mode {
+            Mode::Separate => ask(Inequality::NormalVelocity, Function::Second),
+            Mode::Stick => {}
+            Mode::SlidePlus => ask(Inequality::TangentialVelocity, Function::First),
+            Mode::SlideMinus => ask(Inequality::TangentialVelocity, Function::MinusFirst),
         }
     }
 
     /// Whether c_t = 0 of a mode has no impulse to hold it: an equation more than unknowns.
     #[inline]
-    fn is_unheld(&self, mode: Mode) -> bool {
+    pub fn is_unheld(&self, mode: Mode) -> bool {
         mode == Mode::Stick && !matches!(self.impulse(mode), Impulse::Free)
     }
 
-    /// The mode that stands for those with the same impulses.
-    fn representative(&self, mode: Mode) -> Mode {
-        self.modes().iter().find(|group| group.contains(&mode)).map_or(mode, |group| group[0])
+    /// The modes that share velocity and impulse with a closed `mode` whose `inequality` is zero; `tangential` is the
+    /// sign of L_t. Without friction the direction of a slide changes without a border.
+    pub fn beyond(&self, mode: Mode, inequality: Inequality, tangential: Ordering) -> Vec<Mode> {
+        let at_edge = match self {
+            Self::Frictionless => return vec![Mode::Separate],
+            Self::Coulomb(_) => inequality == Inequality::FrictionCone,
+            Self::Unbounded => tangential.is_ne(),
+        };
+        match mode {
+            // Friction acts against the slide.
+            Mode::Stick if at_edge => vec![Mode::closed(tangential.reverse())],
+            Mode::Stick => vec![Mode::Separate, Mode::SlidePlus, Mode::SlideMinus],
+            _ => vec![Mode::Separate],
+        }
     }
-}
-
-/// Lists the laws: an enum of them all, which is the law that it holds.
-macro_rules! laws {
-    ($($(#[$doc:meta])* $name:ident($law:ty)),* $(,)?) => {
-        /// The law of a contact.
-        #[derive(Debug, Clone, Copy, PartialEq)]
-        pub enum Law<T = f64> {
-            $($(#[$doc])* $name($law)),*
-        }
-
-        impl<T: Real> ContactLaw<T> for Law<T> {
-            #[inline]
-            fn friction(&self) -> Friction<T> {
-                match self { $(Self::$name(law) => law.friction()),* }
-            }
-
-            #[inline]
-            fn modes(&self) -> &'static [&'static [Mode]] {
-                match self { $(Self::$name(law) => ContactLaw::<T>::modes(law)),* }
-            }
-
-            #[inline]
-            fn impulse(&self, mode: Mode) -> Impulse<T> {
-                match self { $(Self::$name(law) => law.impulse(mode)),* }
-            }
-
-            #[inline]
-            fn impulse_conditions(&self, mode: Mode, visit: impl FnMut(Condition<T>)) {
-                match self { $(Self::$name(law) => law.impulse_conditions(mode, visit)),* }
-            }
-
-            fn beyond(&self, mode: Mode, inequality: Inequality, tangential: Ordering) -> Vec<Mode> {
-                match self { $(Self::$name(law) => ContactLaw::<T>::beyond(law, mode, inequality, tangential)),* }
-            }
-        }
-    };
-}
-
-laws! {
-    /// No friction.
-    Frictionless(Frictionless),
-    /// |L_t| <= mu L_n.
-    Coulomb(Coulomb<T>),
-    /// No bound on L_t.
-    Unbounded(Unbounded),
 }
 
 impl From<Friction> for Law {
     fn from(friction: Friction) -> Self {
         match friction {
-            _ if friction.is_zero() => Self::Frictionless(Frictionless),
-            Friction::Finite(mu) => Self::Coulomb(Coulomb { mu }),
-            Friction::Infinite => Self::Unbounded(Unbounded),
+            _ if friction.is_zero() => Self::Frictionless,
+            Friction::Finite(mu) => Self::Coulomb(mu),
+            Friction::Infinite => Self::Unbounded,
         }
     }
 }

@@ -1,7 +1,5 @@
 //! How a contact ends, and which velocity that is.
 
-use super::condition::{Condition, Function};
-use super::inequality::Inequality;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
@@ -49,18 +47,6 @@ impl Mode {
             Ordering::Equal => Mode::Stick,
             Ordering::Less => Mode::SlideMinus,
         }
-    }
-
-    /// The inequality of the velocity.
-    #[inline]
-    pub fn velocity_condition<T>(self) -> Option<Condition<T>> {
-        let (inequality, function) = match self {
-            Mode::Separate => (Inequality::NormalVelocity, Function::Second),
-            Mode::Stick => return None,
-            Mode::SlidePlus => (Inequality::TangentialVelocity, Function::First),
-            Mode::SlideMinus => (Inequality::TangentialVelocity, Function::MinusFirst),
-        };
-        Some(Condition { inequality, function })
     }
 
     /// The sign of the sliding velocity along t: +1, -1, or 0 if the contact does not slide.

@@ -2,7 +2,7 @@
 
 use super::ContactProblem;
 use crate::error::{Error, Reason, Result, finite};
-use crate::law::{ContactLaw, Friction};
+use crate::law::Friction;
 
 /// Matrices are formed for at most so many contacts, whether or not their outcomes are sought.
 pub const MATRIX_LIMIT: usize = 500;

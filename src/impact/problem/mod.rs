@@ -20,9 +20,9 @@ pub use source::{Errors, Source};
 use self::dense::Dynamics;
 use self::repair::{Rows, is_semidefinite};
 use crate::error::{Error, Reason, Result, finite};
-use crate::law::{ContactLaw, Friction, Law, restitution};
+use crate::law::{Friction, Law};
 use crate::planar::Pair;
-use crate::scalar::{Ordered, Real};
+use crate::scalar::{Ordered, Real, Sign};
 
 /// A contact problem of n contacts; vectors have two entries per contact, [tangential, normal].
 ///
@@ -92,7 +92,7 @@ impl<T: Real> ContactProblem<T> {
 
     /// What Newton's law adds to c_n+: e min(c_n-, 0), so that xi_n = c_n+ + bounce (Moreau's form) \[m/s\].
     pub fn bounce(&self, contact: usize) -> T {
-        restitution::bounce(self.restitution[contact], self.approach[contact])
+        T::from_f64(self.restitution[contact]) * self.approach[contact]
     }
 
     /// A row's velocity without impulses, with the bounce on a normal row: c_t, or xi_n = c_n + bounce.
@@ -125,7 +125,13 @@ impl<T: Ordered> ContactProblem<T> {
         laws: Vec<Law>,
         restitution: Vec<f64>,
     ) -> Self {
-        let approach = velocity_before.iter().map(|c| restitution::approach(c[1])).collect();
+        let approach = |c: &Pair<T>| match c[1].sign() {
+            Sign::Negative => c[1],
+            Sign::Zero | Sign::Positive => T::zero(),
+            // Not a number, so that everything that depends on it stays open.
+            Sign::Undecided => T::one() / T::zero(),
+        };
+        let approach = velocity_before.iter().map(approach).collect();
         Self { delassus, velocity_before, velocity_free, approach, laws, restitution, origin: Origin::Given }
     }
 }

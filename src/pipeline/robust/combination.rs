@@ -6,7 +6,7 @@
 //!
 //! Unknowns: two impulses of a sticking contact, one along the ray of a sliding (or frictionless closed) one.
 
-use crate::law::{ContactLaw, Impulse, Inequality, Law, Mode};
+use crate::law::{Impulse, Inequality, Law, Mode};
 use crate::scalar::{Ordered, Sign};
 
 /// A contact problem on a box.
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
     use crate::impact::ContactProblem;
     use crate::impact::enumerate::Tableau;
-    use crate::law::{Coulomb, Friction, Unbounded};
+    use crate::law::Friction;
     use crate::scalar::Real;
     use proptest::prelude::*;
 
@@ -201,7 +201,7 @@ mod tests {
                 delassus: delassus.into_iter().map(ball).collect(),
                 free: before.into_iter().map(ball).collect(),
                 laws: [Some(mu), None, Some(2.0 * mu)]
-                    .map(|mu| mu.map_or(Law::Unbounded(Unbounded), |mu| Law::Coulomb(Coulomb { mu: ball(mu) })))
+                    .map(|mu| mu.map_or(Law::Unbounded, |mu| Law::Coulomb(ball(mu))))
                     .into(),
             };
             let (mut tableau, mut found) = (Tableau::<f64>::new(), BoxCombination::default());

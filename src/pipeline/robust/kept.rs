@@ -8,7 +8,7 @@ use super::state_box::{Quantity, StateBox};
 use crate::contact::Contact;
 use crate::dynamics::Constraints;
 use crate::impact::Analysis;
-use crate::law::{ContactLaw, Coulomb, Friction, Frictionless, Law, Mode, Unbounded};
+use crate::law::{Friction, Law, Mode};
 use crate::robot::Robot;
 use crate::scalar::{Affine, Real};
 use crate::state::{NamedContact, State};
@@ -121,11 +121,11 @@ impl KeptContacts<'_, '_> {
             [free[contact][0], free[contact][1] + bounce]
         };
         let law = |(&friction, &link): (&Friction, &usize)| match friction {
-            Friction::Infinite => Law::Unbounded(Unbounded),
+            Friction::Infinite => Law::Unbounded,
             Friction::Finite(mu) if mu == 0.0 && !whole.quantities.contains(&Quantity::Friction(link)) => {
-                Law::Frictionless(Frictionless)
+                Law::Frictionless
             }
-            Friction::Finite(mu) => Law::Coulomb(Coulomb { mu: whole.number(Quantity::Friction(link), mu) }),
+            Friction::Finite(mu) => Law::Coulomb(whole.number(Quantity::Friction(link), mu)),
         };
         UncertainProblem {
             delassus,
