@@ -1,14 +1,13 @@
 //! `accuracy`: tables for people with their times masked, the JSON's numbers, pictures, and what is refused.
 
-use super::{heelstrike, heelstrike_reads, place};
-use serde_json::Value;
+use super::{each, heelstrike, heelstrike_reads, list, place, read, result};
+use std::fs;
 
 const RAMONE: [&str; 5] = ["accuracy", "urdf/ramone.urdf", "examples/ramone.json", "--time", "0"];
 
-fn json(args: &[&str]) -> Value {
-    let run = heelstrike(&[args, &["--format", "json"]].concat());
-    assert_eq!(run.status, 0, "{}", run.stderr);
-    run.line()
+/// The arguments for cases of the suite.
+fn cases(name: &str) -> [&str; 5] {
+    ["accuracy", "--case", name, "--time", "0"]
 }
 
 /// The text with times masked, the advice that depends on them, and blanks as wide as they happen to be made one; so
@@ -42,55 +41,42 @@ fn masked(text: &str) -> String {
 }
 
 #[test]
-fn a_state_is_told_method_by_method() {
-    let run = heelstrike(&RAMONE);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("accuracy_ramone", masked(&run.stdout));
-}
-
-#[test]
-fn cases_are_told_by_their_digits_then_method_by_method() {
-    let run = heelstrike(&["accuracy", "--case", "massless feet", "--time", "0"]);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("accuracy_massless_feet", masked(&run.stdout));
-}
-
-#[test]
-fn a_method_that_is_not_tried_is_told_with_its_reason() {
-    let run = heelstrike(&["accuracy", "--case", "chain of 1000 links, folded", "--time", "0"]);
+fn every_method_has_a_line() {
+    for (name, arguments) in [("accuracy_ramone", RAMONE), ("accuracy_massless_feet", cases("massless feet"))] {
+        insta::assert_snapshot!(name, masked(&heelstrike(&arguments).text()));
+    }
+    let stdout = heelstrike(&cases("chain of 1000 links, folded")).stdout;
     let reason = "  double-double, sparse LTL is left out: with more than 300 coordinates it takes seconds\n";
-    assert!(run.stdout.contains(reason), "{}", run.stdout);
+    assert!(stdout.contains(reason), "{stdout}");
 }
 
 #[test]
-fn without_proofs_neither_they_nor_their_cost_are_told() {
-    for mut args in [RAMONE.to_vec(), vec!["accuracy", "--case", "Hilbert G of two", "--time", "0"]] {
-        let numbers = |args: &[&str]| -> Vec<String> {
-            let accuracy = json(args);
-            let study = &accuracy["studies"][0];
-            assert_eq!(study["answer"]["proven"], !args.contains(&"--no-proof"), "{study}");
-            let methods = study["methods"].as_array().expect("a list").iter();
-            let whole = methods.filter(|method| method["work"] == "answer");
-            whole.map(|method| method["number"].as_str().expect("a name").to_owned()).collect()
-        };
-        assert_eq!(numbers(&args), ["f64", "f64 with proof"]);
-        args.push("--no-proof");
-        assert_eq!(numbers(&args), ["f64"]);
-        assert!(!heelstrike(&args).stdout.contains("the proof takes"));
+fn proofs_and_their_cost_are_left_out_without_proofs() {
+    for arguments in [RAMONE, cases("Hilbert G of two")] {
+        let without = [&arguments[..], &["--no-proof"]].concat();
+        for (arguments, proven, expected) in
+            [(&arguments[..], true, &["f64", "f64 with proof"][..]), (&without, false, &["f64"])]
+        {
+            let study = &result(arguments, "")["studies"][0];
+            assert_eq!(study["answer"]["proven"], proven, "{study}");
+            let whole = list(&study["methods"]).iter().filter(|method| method["work"] == "answer");
+            let numbers: Vec<_> = whole.map(|method| method["number"].clone()).collect();
+            assert_eq!(numbers, expected, "{arguments:?}");
+        }
+        assert!(!heelstrike(&without).stdout.contains("the proof takes"));
     }
 }
 
 #[test]
 fn the_json_holds_errors_times_and_conditions() {
-    let accuracy = json(&RAMONE);
+    let accuracy = result(&RAMONE, "");
     let study = &accuracy["studies"][0];
     assert_eq!(study["answer"]["verdict"], "unique");
     assert!(study["condition"]["mass_matrix"].as_f64().is_some_and(|condition| (10.0..20.0).contains(&condition)));
-    let methods = study["methods"].as_array().expect("a list");
+    let methods = list(&study["methods"]);
     assert_eq!(methods.len(), 10);
     for method in methods {
-        let time = &method["time"];
-        let at = |name: &str| time[name].as_f64().expect("a number");
+        let at = |name: &str| method["time"][name].as_f64().expect("a number");
         assert!(0.0 < at("lower_quartile") && at("lower_quartile") <= at("median"), "{method}");
         assert!(at("median") <= at("upper_quartile"), "{method}");
     }
@@ -102,33 +88,27 @@ fn the_json_holds_errors_times_and_conditions() {
 
 #[test]
 fn the_suite_is_picked_from_by_name() {
-    let accuracy = json(&["accuracy", "--case", "massless feet", "--time", "0"]);
-    let studies = accuracy["studies"].as_array().expect("a list");
-    assert_eq!(studies.len(), 3);
-    let refused: Vec<bool> = studies.iter().map(|study| study["refused"].is_string()).collect();
-    assert_eq!(refused, [false, false, true]);
-
-    let none = heelstrike(&["accuracy", "--case", "no such case"]);
-    assert_eq!((none.status, none.stdout.as_str()), (2, ""));
-    assert!(none.stderr.contains("--case"), "{}", none.stderr);
+    let refused = each(&result(&cases("massless feet"), "")["studies"], "refused");
+    assert_eq!(refused.iter().map(|refused| refused.is_string()).collect::<Vec<_>>(), [false, false, true]);
 }
 
 #[test]
-fn a_picture_names_the_cases_or_says_what_a_mark_is() {
+fn a_picture_names_the_cases_or_explains_its_marks() {
     let path = place("cases.svg");
     let drawn = |case: &str| {
-        let plot = &path;
-        let run = heelstrike(&["accuracy", "--case", case, "--time", "0", "--plot", plot]);
-        assert_eq!(run.status, 0, "{}", run.stderr);
-        std::fs::read_to_string(&path).expect("written")
+        heelstrike(&[&cases(case)[..], &["--plot", &path]].concat()).well();
+        read(&path)
     };
     let few = drawn("massless feet");
-    // The loose feet are refused and have no mark.
-    for (text, times) in [("massless feet, held", 1), ("massless feet with rotors", 1), ("massless feet, loose", 0)] {
+    for (text, times) in [
+        ("massless feet, held", 1),
+        ("massless feet with rotors", 1),
+        // The loose feet are refused and have no mark.
+        ("massless feet, loose", 0),
+        ("largest error of G", 1),
+        ("largest error of impulses and velocities after", 1),
+    ] {
         assert_eq!(few.matches(text).count(), times, "{text}");
-    }
-    for axis in ["largest error of G", "largest error of impulses and velocities after"] {
-        assert_eq!(few.matches(axis).count(), 1, "{axis}");
     }
     let many = drawn("friction");
     assert!(many.contains("each mark is one of 13 cases by one method"));
@@ -139,26 +119,22 @@ fn a_picture_names_the_cases_or_says_what_a_mark_is() {
 fn pictures_are_drawn_as_svg_and_png() {
     for (name, start) in [("a.svg", b"<svg".as_slice()), ("a.png", b"\x89PNG".as_slice())] {
         let path = place(name);
-        let run = heelstrike(&[&RAMONE[..], &["--plot", &path]].concat());
-        assert_eq!(run.status, 0, "{}", run.stderr);
-        assert!(std::fs::read(&path).expect("written").starts_with(start), "{name}");
+        heelstrike(&[&RAMONE[..], &["--plot", &path]].concat()).well();
+        assert!(fs::read(&path).expect("written").starts_with(start), "{name}");
     }
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_with_its_remedy() {
-    let ending = heelstrike(&[&RAMONE[..], &["--plot", "a.gif"]].concat());
-    assert_eq!((ending.status, ending.stdout.as_str()), (2, ""));
-    assert!(ending.stderr.contains(".svg or .png"), "{}", ending.stderr);
-
-    let alone = heelstrike(&["accuracy", "urdf/ramone.urdf"]);
-    assert_eq!((alone.status, alone.stdout.as_str()), (2, ""));
-
-    let two = heelstrike_reads(&["accuracy", "urdf/ramone.urdf", "-"], "{}\n{}\n");
-    assert_eq!((two.status, two.stdout.as_str()), (1, ""));
-    assert!(two.stderr.contains(":2:1"), "{}", two.stderr);
-
-    let broken = heelstrike_reads(&["accuracy", "urdf/ramone.urdf", "-"], r#"{"positon": {}}"#);
-    assert_eq!((broken.status, broken.stdout.as_str()), (1, ""));
-    assert!(broken.stderr.contains("position"), "{}", broken.stderr);
+fn wrong_arguments_and_states_are_refused() {
+    let state = &["accuracy", "urdf/ramone.urdf", "-"][..];
+    for (arguments, stdin, status, words) in [
+        (&[&RAMONE[..], &["--plot", "a.gif"]].concat()[..], "", 2, ".svg or .png"),
+        (&state[..2], "", 2, "error: "),
+        (&cases("no such case"), "", 2, "--case"),
+        (state, "{}\n{}\n", 1, ":2:1"),
+        (state, r#"{"positon": {}}"#, 1, "position"),
+    ] {
+        let stderr = heelstrike_reads(arguments, stdin).refusal(status);
+        assert!(stderr.contains(words), "{stderr}");
+    }
 }

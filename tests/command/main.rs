@@ -1,10 +1,11 @@
 //! The command line, run as a user runs it: what is written where, in which form, and the exit status.
 //!
 //! Texts for people are kept as snapshots (`INSTA_UPDATE=always cargo test --test command` renews them, then read the
-//! difference); the JSON contract is checked field by field; refusals stand in tables. Numbers are checked elsewhere.
+//! difference); the JSON contract is checked field by field; refusals are in tables. Numbers are checked elsewhere.
 
-use serde_json::Value;
-use support::command::{Run, command, file, finished, heelstrike, heelstrike_reads, place};
+use serde_json::{Value, json};
+use std::fs;
+use support::command::{Run, command, file, finished, heelstrike, heelstrike_reads, place, read};
 
 mod accuracy;
 mod batch;
@@ -23,98 +24,97 @@ const RAMONE: &str = "urdf/ramone.urdf";
 const WALKER: &str = "urdf/minimalistic.urdf";
 const BLOCK: &str = "urdf/block.urdf";
 
+/// The only result of a run, which must have ended well.
+#[track_caller]
+fn result(arguments: &[&str], stdin: &str) -> Value {
+    heelstrike_reads(&[arguments, &["--format", "json"]].concat(), stdin).well().line()
+}
+
+fn parsed(json: &str) -> Value {
+    serde_json::from_str(json).unwrap_or_else(|error| panic!("{error}: {json}"))
+}
+
+#[track_caller]
+fn list(value: &Value) -> &[Value] {
+    value.as_array().expect("a list")
+}
+
+/// The field of each entry of a list.
+fn each(list: &Value, field: &str) -> Vec<Value> {
+    self::list(list).iter().map(|entry| entry[field].clone()).collect()
+}
+
+/// A study of a walker that turns about its trailing foot, with these parameters; alpha is the legs' angle.
+fn walker(parameters: Value) -> Value {
+    json!({
+        "parameters": parameters,
+        "state": {
+            "position": {"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}},
+            "velocity": {"base": {"pitch": -1.0}},
+            "stance": "left_leg",
+            "friction": "infinite"
+        }
+    })
+}
+
 // Text for people.
 
 #[test]
-fn one_command_shows_the_outcome_of_the_example() {
-    let run = heelstrike(&["impact", RAMONE, "examples/ramone.json"]);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("impact_ramone", run.stdout);
-}
-
-#[test]
-fn explain_tells_why_every_other_combination_fails() {
-    let run = heelstrike(&["impact", WALKER, "examples/minimalistic.json", "--explain", "--matrices"]);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("impact_minimalistic_explained", run.stdout);
-}
-
-#[test]
-fn solve_tells_borders_and_families_in_words() {
+fn texts_are_kept_word_for_word() {
     let problems = r#"
         {"id": "cone edge", "delassus": [[1, 0], [0, 1]], "velocity_before": [[-0.5, -1]], "friction": 0.5, "names": ["tip"]}
         {"id": "family", "delassus": [[2, 1], [1, 2]], "velocity_before": [[1, 0]], "friction": 2, "names": ["tip"]}"#;
-    let run = heelstrike_reads(&["solve", "-", "--format", "text"], problems);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("solve_borders", run.stdout);
-
-    let run = heelstrike_reads(&["solve", "-", "--format", "text", "--brief"], problems);
-    insta::assert_snapshot!("solve_borders_brief", run.stdout);
-}
-
-#[test]
-fn a_verdict_without_outcome_is_explained() {
     // A point between floor and ceiling, of which the floor alone throws back.
     let walls = r#"{"id": "walls", "mass_matrix": [[1, 0], [0, 1]], "velocity": [0, -1], "friction": 0,
         "contact_jacobian": [[1, 0], [0, 1], [-1, 0], [0, -1]], "restitution": [0.5, 0], "names": ["floor", "ceiling"]}"#;
-    let run = heelstrike_reads(&["solve", "-", "--format", "text", "--brief"], walls);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("solve_without_outcome", run.stdout);
-}
-
-#[test]
-fn solve_tells_three_outcomes_of_a_rod_that_may_jam() {
-    let run = heelstrike(&["solve", "examples/problems/painleve_rod.json"]);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("solve_painleve_rod", run.stdout);
-}
-
-#[test]
-fn an_uncertain_state_is_told_to_hold_or_not() {
-    let run = heelstrike(&["impact", RAMONE, "examples/ramone_measured.json", "--brief"]);
-    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
-    insta::assert_snapshot!("impact_uncertain", run.stdout);
+    for (name, arguments, stdin) in [
+        ("impact_ramone", &["impact", RAMONE, "examples/ramone.json"][..], ""),
+        (
+            "impact_minimalistic_explained",
+            &["impact", WALKER, "examples/minimalistic.json", "--explain", "--matrices"],
+            "",
+        ),
+        ("solve_borders", &["solve", "-", "--format", "text"], problems),
+        ("solve_borders_brief", &["solve", "-", "--format", "text", "--brief"], problems),
+        ("solve_without_outcome", &["solve", "-", "--format", "text", "--brief"], walls),
+        ("solve_painleve_rod", &["solve", "examples/problems/painleve_rod.json"], ""),
+        ("impact_uncertain", &["impact", RAMONE, "examples/ramone_measured.json", "--brief"], ""),
+        ("impact_brief", &["impact", BLOCK, "examples/block_jams.json", "--brief"], ""),
+        ("impact_in_the_air", &["impact", BLOCK, "-"], IN_THE_AIR),
+    ] {
+        insta::assert_snapshot!(name, heelstrike_reads(arguments, stdin).text());
+    }
     let run = heelstrike_reads(&["impact", RAMONE, "-", "--brief"], badly_measured());
     let line = run.stdout.lines().find(|line| line.starts_with("Holds")).expect("a line about the box");
     insta::assert_snapshot!("impact_badly_measured", line);
 }
 
+const IN_THE_AIR: &str = r#"{"position": {"base": {"z": 1}}, "velocity": {"base": {"x": 2}}, "friction": 0.5}"#;
+
 /// The example with half-widths ten times as wide.
 fn badly_measured() -> String {
-    std::fs::read_to_string("examples/ramone_measured.json").expect("the example").replace("1e-3", "1e-2")
+    read("examples/ramone_measured.json").replace("1e-3", "1e-2")
 }
 
 #[test]
 fn a_counterexample_can_be_fed_back() {
-    let run = heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], badly_measured());
-    let first: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let impact = |state: &str| heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], state).line();
+    let first = impact(&badly_measured());
     assert_eq!(first["holds"], false);
     let found = &first["counterexample"];
-    let run = heelstrike_reads(&["impact", RAMONE, "-", "--format", "json"], found["state"].to_string());
-    let second: Value = serde_json::from_str(&run.stdout).expect("JSON");
-    let modes = |answer: &Value| -> Vec<Value> {
-        answer["outcomes"].as_array().expect("a list").iter().map(|outcome| outcome["modes"].clone()).collect()
-    };
-    assert_eq!((&second["verdict"], &second["proven"]), (&found["verdict"], &Value::Bool(true)));
-    assert_eq!(&modes(&second), found["outcomes"].as_array().expect("a list"));
-    assert_ne!(modes(&second), modes(&first));
-}
-
-#[test]
-fn brief_text_has_a_line_per_outcome() {
-    let run = heelstrike(&["impact", BLOCK, "examples/block_jams.json", "--brief"]);
-    insta::assert_snapshot!("impact_brief", run.stdout);
+    let second = impact(&found["state"].to_string());
+    assert_eq!((&second["verdict"], &second["proven"]), (&found["verdict"], &json!(true)));
+    let modes = each(&second["outcomes"], "modes");
+    assert_eq!(modes, list(&found["outcomes"]));
+    assert_ne!(modes, each(&first["outcomes"], "modes"));
 }
 
 #[test]
 fn a_robot_in_the_air_keeps_its_velocity() {
-    let state = r#"{"position": {"base": {"z": 1}}, "velocity": {"base": {"x": 2}}, "friction": 0.5}"#;
-    let run = heelstrike_reads(&["impact", BLOCK, "-"], state);
-    insta::assert_snapshot!("impact_in_the_air", run.stdout);
-    let result = heelstrike_reads(&["impact", BLOCK, "-", "--format", "json"], state).line();
-    assert_eq!(result["verdict"], "no_contact");
-    assert_eq!(result["outcomes"][0]["modes"], serde_json::json!([]));
-    assert_eq!(result["outcomes"][0]["base_velocity_after"]["x"], 2.0);
+    let result = result(&["impact", BLOCK, "-"], IN_THE_AIR);
+    let outcome = &result["outcomes"][0];
+    assert_eq!((&result["verdict"], &outcome["modes"]), (&json!("no_contact"), &json!([])));
+    assert_eq!(outcome["base_velocity_after"]["x"], 2.0);
 }
 
 // The JSON contract.
@@ -152,59 +152,55 @@ fn results_have_the_fields_of_the_contract() {
         ("fields_bolted", &["impact", WALKER, "-", "--base", "fixed", "--matrices"], bolted),
         ("fields_of_inspect", &["inspect", "urdf/ramone_paper.urdf"], ""),
     ] {
-        let run = heelstrike_reads(&[arguments, &["--format", "json"]].concat(), stdin);
-        assert_eq!(run.status, 0, "{}", run.stderr);
+        let run = heelstrike_reads(&[arguments, &["--format", "json"]].concat(), stdin).well();
         insta::assert_snapshot!(name, shape(&run.stdout));
     }
 }
 
 #[test]
 fn a_problem_s_matrices_are_written_as_given() {
-    let result = heelstrike(&["solve", "examples/problems/rod.json", "--format", "json", "--matrices"]).line();
-    assert_eq!(result["contacts"], serde_json::json!([{"name": "tip", "velocity_before": [0.5, -1.0]}]));
-    assert_eq!(result["delassus"], serde_json::json!([[2.0, 1.0], [1.0, 2.0]]));
+    let result = result(&["solve", "examples/problems/rod.json", "--matrices"], "");
+    assert_eq!(result["contacts"], json!([{"name": "tip", "velocity_before": [0.5, -1.0]}]));
+    assert_eq!(result["delassus"], json!([[2.0, 1.0], [1.0, 2.0]]));
 }
 
 // Commands and options.
 
 #[test]
 fn every_example_is_answered() {
-    for (robot, state) in [
-        (RAMONE, "examples/ramone.json"),
-        (RAMONE, "examples/ramone_measured.json"),
-        (RAMONE, "examples/ramone_measured_by_name.json"),
-        ("urdf/ramone_paper.urdf", "examples/ramone_paper.json"),
-        (WALKER, "examples/minimalistic.json"),
-        ("urdf/pdw.urdf", "examples/pdw.json"),
-        (BLOCK, "examples/block.json"),
-        (BLOCK, "examples/block_jams.json"),
+    for (command, example) in [
+        (&["impact", RAMONE][..], "ramone"),
+        (&["impact", RAMONE], "ramone_measured"),
+        (&["impact", RAMONE], "ramone_measured_by_name"),
+        (&["impact", "urdf/ramone_paper.urdf"], "ramone_paper"),
+        (&["impact", WALKER], "minimalistic"),
+        (&["impact", "urdf/pdw.urdf"], "pdw"),
+        (&["impact", BLOCK], "block"),
+        (&["impact", BLOCK], "block_jams"),
+        (&["solve"], "problems/rod"),
+        (&["solve"], "problems/painleve_rod"),
+        (&["solve"], "problems/block_from_dynamics"),
     ] {
-        let run = heelstrike(&["impact", robot, state]);
-        assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{state}");
+        heelstrike(&[command, &[&format!("examples/{example}.json")]].concat()).text();
     }
-    for problem in ["rod", "painleve_rod", "block_from_dynamics"] {
-        let run = heelstrike(&["solve", &format!("examples/problems/{problem}.json")]);
-        assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{problem}");
-    }
-    let run = heelstrike(&["batch", WALKER, "examples/keyframes.ndjson", "--friction", "infinite"]);
-    let verdicts: Vec<Value> = run.lines().iter().map(|line| line["verdict"].clone()).collect();
-    assert_eq!(verdicts, ["unique", "unique", "unique", "ambiguous"]);
-    assert_eq!(run.status, 0);
+    let run = heelstrike(&["batch", WALKER, "examples/keyframes.ndjson", "--friction", "infinite"]).well();
+    assert_eq!(each(&run.lines().into(), "verdict"), ["unique", "unique", "unique", "ambiguous"]);
     assert!(run.stderr.starts_with("4 states: 3 unique, 1 ambiguous\n"), "{}", run.stderr);
 }
 
 #[test]
-fn matrices_of_too_many_contacts_stand_beside_an_error() {
-    let contacts: Vec<String> = (0..11).map(|k| format!(r#"{{"link": "block", "offset": [{k}, 0, 0]}}"#)).collect();
-    let state = format!(r#"{{"id": 1, "friction": 1, "contacts": [{}]}}"#, contacts.join(", "));
+fn matrices_of_too_many_contacts_are_written_with_an_error() {
+    let contacts: Vec<Value> = (0..11).map(|k| json!({"link": "block", "offset": [k, 0, 0]})).collect();
+    let state = json!({"id": 1, "friction": 1, "contacts": contacts}).to_string();
     for command in ["impact", "batch"] {
-        let run = heelstrike_reads(&[command, BLOCK, "-", "--matrices", "--format", "json"], state.as_str());
+        let arguments = [command, BLOCK, "-", "--format", "json", "--matrices"];
+        let run = heelstrike_reads(&arguments, state.as_str());
         let result = run.line();
-        assert_eq!((run.status, result["delassus"].as_array().map(Vec::len)), (1, Some(22)));
+        assert_eq!((run.status, list(&result["delassus"]).len()), (1, 22));
         assert!(result["error"]["message"].as_str().is_some_and(|message| message.starts_with("11 contacts")));
         assert!(result.get("verdict").is_none() && result.get("outcomes").is_none());
         assert!(run.stderr.starts_with("error: ") && run.stderr.contains("11 contacts"), "{}", run.stderr);
-        let without = heelstrike_reads(&[command, BLOCK, "-", "--format", "json"], state.as_str());
+        let without = heelstrike_reads(&arguments[..5], state.as_str());
         let fields = without.line();
         let fields: Vec<&str> = fields.as_object().expect("an object").keys().map(String::as_str).collect();
         assert_eq!((without.status, fields), (1, vec!["error", "id", "line"]));
@@ -224,14 +220,9 @@ fn a_batch_answers_in_order_and_a_broken_line_in_its_place() {
     let run = heelstrike_reads(&["batch", "urdf/pdw.urdf", "-"], lines);
     assert_eq!(run.status, 1);
     let answers = run.lines();
-    let ids: Vec<&Value> = answers.iter().map(|answer| &answer["id"]).collect();
-    assert_eq!(ids, [&serde_json::json!(1), &serde_json::json!("k2"), &serde_json::json!(3), &serde_json::json!(4.5)]);
-    assert_eq!(
-        run.stdout.lines().nth(1),
-        Some(
-            r#"{"id":"k2","line":3,"error":{"message":"the robot has no joint named \"hipp\"","place":"position.joints.hipp","hint":"did you mean hip?"}}"#
-        )
-    );
+    assert_eq!(each(&json!(answers), "id"), [json!(1), json!("k2"), json!(3), json!(4.5)]);
+    let second = r#"{"id":"k2","line":3,"error":{"message":"the robot has no joint named \"hipp\"","place":"position.joints.hipp","hint":"did you mean hip?"}}"#;
+    assert_eq!(run.stdout.lines().nth(1), Some(second));
     assert_eq!(answers[2]["line"], 4);
     let places: Vec<&str> = run.stderr.lines().filter(|line| line.starts_with(" --> ")).collect();
     assert_eq!(places, [" --> <stdin>:3:55", " --> <stdin>:4:28"], "{}", run.stderr);
@@ -239,9 +230,8 @@ fn a_batch_answers_in_order_and_a_broken_line_in_its_place() {
 
 #[test]
 fn file_and_standard_input_give_the_same_bytes() {
-    let lines = std::fs::read("examples/keyframes.ndjson").expect("the example");
     let from_file = heelstrike(&["batch", WALKER, "examples/keyframes.ndjson"]);
-    let from_stdin = heelstrike_reads(&["batch", WALKER, "-"], lines);
+    let from_stdin = heelstrike_reads(&["batch", WALKER, "-"], read("examples/keyframes.ndjson"));
     // Without friction every line is refused, by the same bytes.
     assert_eq!((from_file.status, from_stdin.status), (1, 1));
     assert_eq!(from_file.stdout, from_stdin.stdout);
@@ -250,79 +240,68 @@ fn file_and_standard_input_give_the_same_bytes() {
 
 #[test]
 fn bytes_that_are_no_text_are_refused_in_their_place() {
-    let mut lines = b"{\"id\": \"\xff\"}\n".to_vec();
-    lines.extend(b"{\"friction\": 1}\n");
-    let run = heelstrike_reads(&["batch", BLOCK, "-"], lines);
+    let run = heelstrike_reads(&["batch", BLOCK, "-"], b"{\"id\": \"\xff\"}\n{\"friction\": 1}\n");
     assert_eq!(run.status, 1);
     let answers = run.lines();
     let hint = "save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote";
-    assert_eq!(answers[0], serde_json::json!({"line": 1, "error": {"message": "the text is not UTF-8", "hint": hint}}));
+    assert_eq!(answers[0], json!({"line": 1, "error": {"message": "the text is not UTF-8", "hint": hint}}));
     assert_eq!(answers[1]["verdict"], "no_impact");
 }
 
 #[test]
-fn a_stream_of_problems_is_answered_line_by_line_and_a_refused_one_in_its_place() {
+fn a_stream_of_problems_is_answered_in_order() {
     let good = r#"{"id": "a", "delassus": [[2, 1], [1, 2]], "velocity_before": [[0.5, -1]], "friction": 1}"#;
     let bad = r#"{"id": "b", "delassus": [[2, 1], [1, 2]], "friction": 1}"#;
-    let stream = format!("{good} {good}\n{bad}\n{{\"id\": \"c\", oops\n{good}\n");
-    let run = heelstrike_reads(&["solve", "-", "--format", "json"], stream);
+    let solve = |stream: String| heelstrike_reads(&["solve", "-", "--format", "json"], stream);
+    let run = solve(format!("{good} {good}\n{bad}\n{{\"id\": \"c\", oops\n{good}\n"));
     assert_eq!(run.status, 1);
-    let answers = run.lines();
-    let seen: Vec<_> = answers.iter().map(|answer| (answer["id"].as_str(), answer["line"].as_u64())).collect();
-    assert_eq!(
-        seen,
-        [(Some("a"), None), (Some("a"), None), (Some("b"), Some(2)), (Some("c"), Some(3)), (Some("a"), None)]
-    );
+    let answers = json!(run.lines());
+    assert_eq!(each(&answers, "id"), ["a", "a", "b", "c", "a"]);
+    assert_eq!(json!(each(&answers, "line")), json!([null, null, 2, 3, null]));
     assert_eq!(answers[2]["error"]["message"], "\"velocity_before\" is missing");
 
-    let list = heelstrike_reads(&["solve", "-", "--format", "json"], format!("[{good},\n{good}]"));
-    assert_eq!((list.status, list.lines().len()), (0, 2));
+    assert_eq!(solve(format!("[{good},\n{good}]")).well().lines().len(), 2);
 }
 
 #[test]
-fn friction_of_the_command_line_is_for_states_that_name_none() {
-    let modes = |state: &str, friction: &str| {
-        let run = heelstrike_reads(&["impact", BLOCK, "-", "--format", "json", "--friction", friction], state);
-        run.line()["outcomes"][0]["modes"][0].clone()
-    };
+fn friction_of_the_command_line_is_a_default() {
     let silent = r#"{"velocity": {"base": {"x": 1, "z": -1}}}"#;
-    assert_eq!(modes(silent, "0"), "slide+");
-    assert_eq!(modes(silent, "infinite"), "stick");
-    let told = r#"{"velocity": {"base": {"x": 1, "z": -1}}, "friction": {"block": "infinite"}}"#;
-    assert_eq!(modes(told, "0"), "stick");
+    let named = r#"{"velocity": {"base": {"x": 1, "z": -1}}, "friction": {"block": "infinite"}}"#;
+    for (state, friction, mode) in [(silent, "0", "slide+"), (silent, "infinite", "stick"), (named, "0", "stick")] {
+        let result = result(&["impact", BLOCK, "-", "--friction", friction], state);
+        assert_eq!(result["outcomes"][0]["modes"][0], mode, "{state}, {friction}");
+    }
 }
 
 #[test]
 fn a_foot_of_the_command_line_touches_by_its_height() {
-    let contacts = |height: &str| {
-        let state = format!(r#"{{"position": {{"base": {{"z": {height}}}}}, "friction": 1}}"#);
-        let run =
-            heelstrike_reads(&["impact", BLOCK, "-", "--format", "json", "--contact", "block:0,0,-0.7:0.3"], state);
-        run.line()["contacts"].as_array().map(Vec::len)
-    };
-    assert_eq!(contacts("1"), Some(1));
-    assert_eq!(contacts("1.1"), Some(0));
-    let run = heelstrike(&["inspect", BLOCK, "--contact", "block:0,0,-0.7:0.3", "--format", "json"]);
-    assert_eq!(run.line()["feet"][1]["centre"], serde_json::json!([0.0, -0.7]));
+    let foot = ["--contact", "block:0,0,-0.7:0.3"];
+    for (height, contacts) in [(1.0, 1), (1.1, 0)] {
+        let state = json!({"position": {"base": {"z": height}}, "friction": 1}).to_string();
+        let result = result(&["impact", BLOCK, "-", foot[0], foot[1]], &state);
+        assert_eq!(list(&result["contacts"]).len(), contacts, "{height}");
+    }
+    assert_eq!(result(&["inspect", BLOCK, foot[0], foot[1]], "")["feet"][1]["centre"], json!([0.0, -0.7]));
 }
 
 #[test]
-fn the_outputs_ending_says_its_form() {
-    let written = |command: &[&str], name: &str| {
+fn the_outputs_ending_determines_its_form() {
+    let impact = &["impact", BLOCK, "examples/block.json"][..];
+    let as_text = &[impact, &["--format", "text"]].concat();
+    let solve = &["solve", "examples/problems/rod.json"];
+    let batch = &["batch", WALKER, "examples/keyframes.ndjson", "--friction", "1"];
+    for (command, name, [start, end]) in [
+        (impact, "a.json", ["{\"", "}\n"]),
+        (impact, "a.ndjson", ["{\"", "}\n"]),
+        (impact, "a.txt", ["block", ""]),
+        (solve, "b", ["{\"", "}\n"]),
+        (solve, "b.dat", ["{\"", "}\n"]),
+        (batch, "c", ["{\"", "}\n"]),
+        (as_text, "d.json", ["block", ""]),
+    ] {
         let path = file(name, "what was there before, and longer than nothing");
-        let run = heelstrike(&[command, &["-o", &path]].concat());
-        assert_eq!((run.status, run.stdout.as_str()), (0, ""), "{}", run.stderr);
-        std::fs::read_to_string(&path).expect("it was written")
-    };
-    let impact = ["impact", BLOCK, "examples/block.json"];
-    let solve = ["solve", "examples/problems/rod.json"];
-    let batch = ["batch", WALKER, "examples/keyframes.ndjson", "--friction", "1"];
-    let is_json = |text: String| text.starts_with("{\"") && text.ends_with("}\n");
-    assert!(is_json(written(&impact, "a.json")));
-    assert!(is_json(written(&impact, "a.ndjson")));
-    assert!(written(&impact, "a.txt").starts_with("block"));
-    assert!(is_json(written(&solve, "b")));
-    assert!(is_json(written(&solve, "b.dat")));
-    assert!(is_json(written(&batch, "c")));
-    assert!(written(&[&impact[..], &["--format", "text"]].concat(), "d.json").starts_with("block"));
+        let run = heelstrike(&[command, &["-o", &path]].concat()).well();
+        let written = read(&path);
+        assert!(run.stdout.is_empty() && written.starts_with(start) && written.ends_with(end), "{name}: {written}");
+    }
 }

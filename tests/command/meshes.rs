@@ -1,17 +1,15 @@
 //! Mesh files as a user meets them: how the command finds them by name, what it says of those that are missing, broken
 //! or hostile, and the feet that they give. Readers and hulls are tested beside their code.
 
+use super::{command, each, finished, fs, list, place};
 use assert_cmd::Command;
-use serde_json::Value;
-use std::fs;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// A new folder of a test.
-fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("meshes").join(test);
-    // What an earlier run has left.
+/// A folder of the running test, without what an earlier run has left.
+fn folder() -> PathBuf {
+    let folder = PathBuf::from(place("meshes"));
     let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
     folder
 }
 
@@ -32,26 +30,22 @@ fn mesh(name: &str) -> String {
     robot(&format!("<geometry><mesh filename=\"{name}\"/></geometry>"))
 }
 
-fn heelstrike(subcommand: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.env_remove("ROS_PACKAGE_PATH").env_remove("AMENT_PREFIX_PATH").env_remove("NO_COLOR");
-    command.arg(subcommand);
+fn inspecting() -> Command {
+    let mut command = command();
+    command.arg("inspect");
     command
 }
 
-/// The JSON of `inspect` for `urdf`.
 #[track_caller]
 fn inspect(command: &mut Command, urdf: &Path) -> Value {
-    let output = command.args(["--format", "json"]).arg(urdf).output().expect("the command runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).expect("JSON")
+    finished(command.args(["--format", "json"]).arg(urdf)).well().line()
 }
 
-/// Whether the robot has its one foot; else why not.
+/// The corners of the robot's only foot; else why it has none.
 #[track_caller]
 fn foot(command: &mut Command, urdf: &Path) -> Result<Value, String> {
     let inspection = inspect(command, urdf);
-    match inspection["feet"].as_array().expect("feet").as_slice() {
+    match list(&inspection["feet"]) {
         [] => Err(inspection["left_out"][0]["why"].as_str().expect("a reason").to_owned()),
         [foot] => Ok(foot["corners"].clone()),
         _ => panic!("{inspection}"),
@@ -68,20 +62,14 @@ fn sole() -> String {
 
 #[test]
 fn a_mesh_of_a_box_strikes_as_the_box_does() {
-    let folder = folder("box");
+    let folder = folder();
     write(&folder.join("sole.obj"), sole());
     write(&folder.join("mesh.urdf"), mesh("sole.obj"));
     write(&folder.join("box.urdf"), robot("<geometry><box size=\"0.2 0.1 0.04\"/></geometry>"));
-    let state = br#"{"position": {"base": {"z": 0.02}}, "velocity": {"base": {"x": 0.3, "z": -1, "pitch": 0.5}}, "friction": 0.6}"#;
+    let state = r#"{"position": {"base": {"z": 0.02}}, "velocity": {"base": {"x": 0.3, "z": -1, "pitch": 0.5}}, "friction": 0.6}"#;
     let [of_mesh, of_box] = ["mesh.urdf", "box.urdf"].map(|name| {
-        let output = heelstrike("impact")
-            .args(["--format", "json"])
-            .arg(folder.join(name))
-            .arg("-")
-            .write_stdin(state)
-            .output()
-            .expect("the command runs");
-        String::from_utf8(output.stdout).expect("UTF-8")
+        let mut command = command();
+        finished(command.arg("impact").arg(folder.join(name)).args(["-", "--format", "json"]).write_stdin(state)).stdout
     });
     assert!(of_box.contains("\"verdict\":\"unique\"") && of_box.contains("foot/1"), "{of_box}");
     assert_eq!(of_mesh, of_box);
@@ -89,34 +77,35 @@ fn a_mesh_of_a_box_strikes_as_the_box_does() {
 
 #[test]
 fn packages_are_found_by_option_environment_and_the_folders_above() {
-    let folder = folder("packages");
+    let folder = folder();
     let urdf = folder.join("robots/deep/r.urdf");
     write(&urdf, mesh("package://a_description/meshes/sole.obj"));
     let missing = "package a_description is not here: name the folder that holds it by --package-path";
-    assert_eq!(foot(&mut heelstrike("inspect"), &urdf), Err(missing.to_owned()));
+    assert_eq!(foot(&mut inspecting(), &urdf), Err(missing.to_owned()));
 
     let elsewhere = folder.join("elsewhere");
     write(&elsewhere.join("share/a_description/meshes/sole.obj"), sole());
     let found = |command: &mut Command| assert!(foot(command, &urdf).is_ok());
-    found(heelstrike("inspect").arg("--package-path").arg(elsewhere.join("share")));
-    found(heelstrike("inspect").arg("--package-path").arg(&folder).arg("--package-path").arg(elsewhere.join("share")));
-    found(heelstrike("inspect").arg("--package-path").arg(elsewhere.join("share/a_description")));
-    found(heelstrike("inspect").env("ROS_PACKAGE_PATH", elsewhere.join("share")));
-    found(heelstrike("inspect").env("AMENT_PREFIX_PATH", &elsewhere));
+    let share = elsewhere.join("share");
+    found(inspecting().arg("--package-path").arg(&share));
+    found(inspecting().arg("--package-path").arg(&folder).arg("--package-path").arg(&share));
+    found(inspecting().arg("--package-path").arg(share.join("a_description")));
+    found(inspecting().env("ROS_PACKAGE_PATH", &share));
+    found(inspecting().env("AMENT_PREFIX_PATH", &elsewhere));
 
     // A package there, but without the file; then the file. The folder above is named otherwise, but its manifest says
     // so.
     fs::create_dir(folder.join("robots/a_description")).expect("a folder");
-    assert_eq!(foot(&mut heelstrike("inspect"), &urdf), Err("no such file in package a_description".to_owned()));
+    assert_eq!(foot(&mut inspecting(), &urdf), Err("no such file in package a_description".to_owned()));
     write(&folder.join("robots/package.xml"), "<package><name> a_description </name></package>");
     fs::remove_dir(folder.join("robots/a_description")).expect("removed");
     write(&folder.join("robots/meshes/sole.obj"), sole());
-    found(&mut heelstrike("inspect"));
+    found(&mut inspecting());
 }
 
 #[test]
 fn names_of_every_kind_lead_to_the_file() {
-    let folder = folder("names");
+    let folder = folder();
     write(&folder.join("pack/meshes/my sole.obj"), sole());
     write(&folder.join("pack/meshes/100%20.OBJ"), sole());
     let urdf = folder.join("pack/urdf/r.urdf");
@@ -135,8 +124,8 @@ fn names_of_every_kind_lead_to_the_file() {
         &format!("file://{}", absolute.replace(' ', "%20")),
     ] {
         write(&urdf, mesh(name));
-        let corners = foot(&mut heelstrike("inspect"), &urdf).unwrap_or_else(|why| panic!("{name}: {why}"));
-        assert_eq!(corners, serde_json::json!([[-0.1, -0.02], [0.1, -0.02], [0.1, 0.02], [-0.1, 0.02]]), "{name}");
+        let corners = json!([[-0.1, -0.02], [0.1, -0.02], [0.1, 0.02], [-0.1, 0.02]]);
+        assert_eq!(foot(&mut inspecting(), &urdf), Ok(corners), "{name}");
     }
     for (name, why) in [
         ("../meshes/sole.obj", "no such file"),
@@ -146,14 +135,13 @@ fn names_of_every_kind_lead_to_the_file() {
         ("package://pack/", "no such file in package pack"),
     ] {
         write(&urdf, mesh(name));
-        assert_eq!(foot(&mut heelstrike("inspect"), &urdf), Err(why.to_owned()), "{name}");
+        assert_eq!(foot(&mut inspecting(), &urdf), Err(why.to_owned()), "{name}");
     }
 }
 
 #[test]
 fn a_path_that_leaves_its_package_is_refused() {
-    let folder = folder("leaving");
-    let urdf = folder.join("r.urdf");
+    let urdf = folder().join("r.urdf");
     for name in [
         "package://x/../../etc/passwd",
         "package://x/meshes/../../y.stl",
@@ -163,53 +151,51 @@ fn a_path_that_leaves_its_package_is_refused() {
         "package:///etc/y.stl",
     ] {
         write(&urdf, mesh(name));
-        let output = heelstrike("inspect").arg(&urdf).output().expect("the command runs");
-        let told = String::from_utf8(output.stderr).expect("UTF-8");
-        assert_eq!(output.status.code(), Some(1), "{name}: {told}");
-        assert!(told.contains("link \"foot\"") && told.contains("leaves its package"), "{name}: {told}");
-        assert!(told.contains(":2:1") && told.contains("hint: name a file inside the package"), "{name}: {told}");
+        let stderr = finished(inspecting().arg(&urdf)).refusal(1);
+        for words in ["link \"foot\"", "leaves its package", ":2:1", "hint: name a file inside the package"] {
+            assert!(stderr.contains(words), "{name}: {stderr}");
+        }
     }
 }
 
 #[test]
-fn meshes_that_cannot_be_read_are_told_and_the_rest_is_answered() {
-    let folder = folder("broken");
+fn meshes_that_cannot_be_read_are_left_out() {
+    let folder = folder();
     let urdf = folder.join("r.urdf");
-    let refused = |name: &str, bytes: &[u8], why: &str| {
+    for (name, bytes, why) in [
+        ("nan.obj", &b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"[..], "has the coordinate NaN"),
+        ("huge.obj", b"v 0 0 1e308\nv 1e308 0 0\nv -1e308 1 0\nf 1 2 3\n", "not distinct in f64"),
+        ("short.stl", &[b' '; 100], "cannot be read"),
+        ("empty.dae", b"", "cannot be read"),
+        ("what.bin", b"what", "STL, OBJ or DAE"),
+        ("big.obj", &vec![b'\n'; (16 << 20) + 1], "more than 16 MiB of OBJ text"),
+        ("bigger.stl", &vec![0; (64 << 20) + 1], "more than 64 MiB"),
+    ] {
         write(&folder.join(name), bytes);
         write(&urdf, mesh(name));
-        let told = foot(&mut heelstrike("inspect"), &urdf).expect_err(name);
-        assert!(told.contains(why), "{name}: {told}");
-    };
-    refused("nan.obj", b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "has the coordinate NaN");
-    refused("huge.obj", b"v 0 0 1e308\nv 1e308 0 0\nv -1e308 1 0\nf 1 2 3\n", "not distinct in f64");
-    refused("short.stl", &[b' '; 100], "cannot be read");
-    refused("empty.dae", b"", "cannot be read");
-    refused("what.bin", b"what", "STL, OBJ or DAE");
-    refused("big.obj", &vec![b'\n'; (16 << 20) + 1], "more than 16 MiB of OBJ text");
-    refused("bigger.stl", &vec![0; (64 << 20) + 1], "more than 64 MiB");
+        let reason = foot(&mut inspecting(), &urdf).expect_err(name);
+        assert!(reason.contains(why), "{name}: {reason}");
+    }
 }
 
 #[test]
-fn the_foot_of_solo_is_found_and_told() {
+fn the_feet_of_solo_are_the_hulls_of_their_meshes() {
     let inspection = inspect(
-        heelstrike("inspect").args(["--package-path", "tests/data/robots/solo8/packages"]),
+        inspecting().args(["--package-path", "tests/data/robots/solo8/packages"]),
         Path::new("tests/data/robots/solo8/solo.urdf"),
     );
-    let feet = inspection["feet"].as_array().expect("feet");
-    let links: Vec<&str> = feet.iter().filter_map(|foot| foot["link"].as_str()).collect();
-    assert_eq!(links, ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"]);
-    for foot in feet {
+    assert_eq!(each(&inspection["feet"], "link"), ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"]);
+    for foot in list(&inspection["feet"]) {
         // A drum of 16 mm about (0, -0.16), 106 sides: within their bulge of 16 mm (1 - cos(pi / 106)).
         assert_eq!(foot["mesh"], "solo_foot.obj");
-        let corners = foot["corners"].as_array().expect("corners");
+        let corners = list(&foot["corners"]);
         assert_eq!(corners.len(), 106);
         for corner in corners {
             let [x, z] = [0, 1].map(|axis| corner[axis].as_f64().expect("a number"));
             assert!((x.hypot(z + 0.16) - 0.016).abs() < 1e-6, "{corner}");
         }
     }
-    let missing = inspection["left_out"].as_array().expect("a list").iter();
-    let missing = missing.filter(|left| left["why"] == "no such file in package example-robot-data").count();
-    assert_eq!(missing, 9);
+    let mut reasons = each(&inspection["left_out"], "why");
+    reasons.retain(|why| why == "no such file in package example-robot-data");
+    assert_eq!(reasons.len(), 9);
 }

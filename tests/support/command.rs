@@ -8,6 +8,7 @@ use serde_json::Value;
 
 /// What a run left behind.
 pub struct Run {
+    arguments: Vec<std::ffi::OsString>,
     pub status: i32,
     pub stdout: String,
     pub stderr: String,
@@ -22,15 +23,29 @@ impl Run {
     /// The only line of standard output as JSON.
     #[track_caller]
     pub fn line(&self) -> Value {
-        assert_eq!(self.stdout.lines().count(), 1, "{}{}", self.stdout, self.stderr);
+        assert_eq!(self.stdout.lines().count(), 1, "{:?}\n{}{}", self.arguments, self.stdout, self.stderr);
         serde_json::from_str(&self.stdout).expect("JSON")
     }
 
     /// The run, which must have ended well.
     #[track_caller]
     pub fn well(self) -> Self {
-        assert_eq!(self.status, 0, "{}", self.stderr);
+        assert_eq!(self.status, 0, "{:?}\n{}", self.arguments, self.stderr);
         self
+    }
+
+    /// Standard output of the run, which must have ended well and without a note.
+    #[track_caller]
+    pub fn text(self) -> String {
+        assert_eq!((self.status, self.stderr.as_str()), (0, ""), "{:?}", self.arguments);
+        self.stdout
+    }
+
+    /// Standard error of the run, which must have ended with this status and without a result.
+    #[track_caller]
+    pub fn refusal(self, status: i32) -> String {
+        assert_eq!((self.status, self.stdout.as_str()), (status, ""), "{:?}\n{}", self.arguments, self.stderr);
+        self.stderr
     }
 }
 
@@ -44,14 +59,19 @@ pub fn heelstrike_reads(args: &[&str], stdin: impl Into<Vec<u8>>) -> Run {
 
 pub fn command() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE").timeout(Duration::from_secs(600));
+    for variable in ["NO_COLOR", "CLICOLOR_FORCE", "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"] {
+        command.env_remove(variable);
+    }
+    command.timeout(Duration::from_secs(600));
     command
 }
 
 pub fn finished(command: &mut Command) -> Run {
     let output = command.output().expect("the command runs");
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    Run { status: output.status.code().expect("no signal"), stdout: text(output.stdout), stderr: text(output.stderr) }
+    let arguments = command.get_args().map(std::ffi::OsStr::to_owned).collect();
+    let status = output.status.code().expect("no signal");
+    Run { arguments, status, stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
 /// The text of a file of this repository.

@@ -6,9 +6,8 @@ use super::*;
 #[cfg(target_os = "linux")]
 fn peak(lines: usize, arguments: &[&str]) -> u64 {
     use std::process::ChildStdin;
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.args(["batch", &disc(), "-", "--friction", "0.5", "--threads", "4"]).args(arguments);
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut command = batching(&["-", "--friction", "0.5", "--threads", "4"]);
+    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut child = command.spawn().expect("it runs");
     let header = if arguments.contains(&"csv") { "id,q_base_z,v_base_x,v_base_z\n" } else { "" };
     let line = move |id: usize| match (header.is_empty(), id % 10) {

@@ -1,10 +1,10 @@
-//! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary. What a single result
-//! says is checked in `cli`; tables and touchdowns have tests of their own.
+//! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary.
 
-use super::{Run, file, heelstrike_reads, place};
-use serde_json::{Value, json};
+use super::support::urdf;
+use super::{Run, file, heelstrike_reads, parsed, place, read};
+use serde_json::json;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 mod memory;
 mod refusals;
@@ -12,13 +12,9 @@ mod summary;
 mod table;
 
 /// A disc of 2 kg, 1 kg m^2 and radius 0.5 m.
-const DISC: &str = r#"<robot name="disc"><link name="disc">
-    <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-    <collision><geometry><sphere radius="0.5"/></geometry></collision>
-</link></robot>"#;
-
 fn disc() -> String {
-    file("disc.urdf", DISC)
+    let sphere = "<collision><geometry><sphere radius=\"0.5\"/></geometry></collision>";
+    file("disc.urdf", urdf::robot(&[urdf::link("disc", 2.0, [0.0, 0.0], 1.0, sphere)]))
 }
 
 /// Runs `heelstrike batch` on a disc.
@@ -26,8 +22,11 @@ fn batch(arguments: &[&str], stdin: impl Into<Vec<u8>>) -> Run {
     heelstrike_reads(&[&["batch", &disc()], arguments].concat(), stdin)
 }
 
-fn parsed(text: &str) -> Value {
-    serde_json::from_str(text).expect("JSON")
+/// The same, as a process of its own.
+fn batching(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+    command.args(["batch", &disc()]).args(arguments);
+    command
 }
 
 /// A disc that strikes the ground with the tangential speed `x`.
@@ -71,23 +70,20 @@ fn the_bytes_do_not_depend_on_threads_or_on_the_way_in() {
     let run = |threads: &str, input: &str, stdin: String| {
         let summary = place(&format!("bytes-{threads}.json"));
         let arguments = [input, "--friction", "0.5", "--threads", threads, "--summary", &summary];
-        let run = batch(&arguments, stdin);
-        (run.stdout, std::fs::read(summary).expect("written"))
+        (batch(&arguments, stdin).stdout, read(&summary))
     };
     let expected = run("1", &states, String::new());
     for threads in ["2", "4", "0"] {
         assert!(run(threads, &states, String::new()) == expected, "{threads} threads, file");
         assert!(run(threads, "-", many()) == expected, "{threads} threads, pipe");
     }
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
     let stdin = std::fs::File::open(&states).expect("it is there");
-    let arguments = ["batch", &disc(), "-", "--friction", "0.5"];
-    let output = command.args(arguments).stdin(stdin).output().expect("it runs");
+    let output = batching(&["-", "--friction", "0.5"]).stdin(stdin).output().expect("it runs");
     assert!(output.stdout == expected.0.as_bytes(), "redirected");
 }
 
 #[test]
-fn refused_lines_are_no_failure_where_that_is_said() {
+fn refused_lines_are_no_failure_if_asked() {
     let fails = batch(&["-"], "oops\n");
     let passes = batch(&["-", "--refused", "ok"], "oops\n");
     assert_eq!((fails.status, passes.status), (1, 0));
@@ -107,9 +103,8 @@ fn many_refusals_do_not_flood_standard_error() {
 
 #[test]
 fn an_empty_input_gives_an_empty_output() {
-    for threads in ["1", "4"] {
-        let run = batch(&["-", "--threads", threads], "");
-        assert_eq!((run.status, run.stdout.len(), run.stderr.as_str()), (0, 0, ""));
+    for (threads, input) in [("1", ""), ("4", ""), ("4", "\n\n")] {
+        assert_eq!(batch(&["-", "--threads", threads], input).text(), "", "{threads}, {input:?}");
     }
 }
 
@@ -147,16 +142,16 @@ fn an_endless_line_is_refused_and_the_rest_goes_on() {
 
 // Ends.
 
-fn spawned(threads: &str) -> std::process::Child {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-    command.args(["batch", &disc(), "-", "--friction", "1", "--threads", threads]);
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs")
+fn spawned(threads: &str, more: &[&str]) -> Child {
+    let mut command = batching(&["-", "--friction", "1", "--threads", threads]);
+    command.args(more).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().expect("it runs")
 }
 
 #[test]
 fn an_answer_does_not_wait_for_the_next_line() {
     for threads in ["1", "2"] {
-        let mut child = spawned(threads);
+        let mut child = spawned(threads, &[]);
         let mut stdin = child.stdin.take().expect("piped");
         let mut answers = BufReader::new(child.stdout.take().expect("piped")).lines();
         for id in 0..3 {
@@ -171,9 +166,9 @@ fn an_answer_does_not_wait_for_the_next_line() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_ends_it_quietly() {
+fn a_closed_reader_ends_it_quietly() {
     for threads in ["1", "4"] {
-        let mut child = spawned(threads);
+        let mut child = spawned(threads, &[]);
         let mut stdin = child.stdin.take().expect("piped");
         // A closed pipe stops the writer, too.
         let writer = std::thread::spawn(move || while stdin.write_all(strike(1, 0.0).as_bytes()).is_ok() {});
@@ -188,27 +183,24 @@ fn a_reader_that_has_seen_enough_ends_it_quietly() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_with_what_was_written() {
-    let told =
+fn a_full_disk_is_reported_with_what_was_written() {
+    let expected =
         "error: the output cannot be written: No space left on device (os error 28); it ends after 0 whole lines\n";
     for threads in ["1", "4"] {
-        let run = batch(&["-", "--friction", "1", "--threads", threads, "-o", "/dev/full"], strike(1, 0.0));
-        assert_eq!((run.status, run.stderr.as_str()), (1, told));
+        let options = ["--friction", "1", "--threads", threads];
+        let run = batch(&[&options[..], &["-", "-o", "/dev/full"]].concat(), strike(1, 0.0));
+        assert_eq!((run.status, run.stderr.as_str()), (1, expected));
         let full = std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
         let states = file(&format!("full-{threads}.ndjson"), strike(1, 0.0));
-        let output = Command::new(env!("CARGO_BIN_EXE_heelstrike"))
-            .args(["batch", &disc(), &states, "--friction", "1", "--threads", threads])
-            .stdout(full)
-            .output()
-            .expect("it runs");
-        assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(1), told));
+        let output = batching(&options).arg(states).stdout(full).output().expect("it runs");
+        assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(1), expected));
     }
 }
 
 #[test]
-fn a_reader_that_is_gone_ends_it_also_while_the_input_is_silent() {
+fn a_closed_reader_ends_it_while_the_input_is_silent() {
     for threads in ["1", "4"] {
-        let mut child = spawned(threads);
+        let mut child = spawned(threads, &[]);
         drop(child.stdout.take());
         // Processes that other tests are just starting hold the pipe for a moment.
         std::thread::sleep(std::time::Duration::from_millis(300));
@@ -220,74 +212,66 @@ fn a_reader_that_is_gone_ends_it_also_while_the_input_is_silent() {
 }
 
 /// Exit status and standard error of a process that must not wait for its input, which is still open.
-fn ended(child: &mut std::process::Child) -> (Option<i32>, String) {
+fn ended(child: &mut Child) -> (Option<i32>, String) {
     let mut stderr = child.stderr.take().expect("piped");
     let (sent, received) = std::sync::mpsc::channel();
     // Standard error ends with the process.
     std::thread::spawn(move || {
-        let mut told = String::new();
-        stderr.read_to_string(&mut told).map(|_| sent.send(told))
+        let mut text = String::new();
+        stderr.read_to_string(&mut text).map(|_| sent.send(text))
     });
-    let told = received.recv_timeout(std::time::Duration::from_secs(20));
-    if told.is_err() {
+    let text = received.recv_timeout(std::time::Duration::from_secs(20));
+    if text.is_err() {
         child.kill().expect("ours");
     }
-    let told = told.expect("it does not wait for the next line");
-    (child.wait().expect("it ends").code(), told)
+    let text = text.expect("it does not wait for the next line");
+    (child.wait().expect("it ends").code(), text)
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_failed_output_ends_it_also_while_the_input_is_silent() {
+fn a_failed_output_ends_it_while_the_input_is_silent() {
     for threads in ["1", "4"] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-        command.args(["batch", &disc(), "-", "--friction", "1", "--threads", threads, "-o", "/dev/full"]);
-        let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+        let mut child = spawned(threads, &["-o", "/dev/full"]);
         let mut stdin = child.stdin.take().expect("piped");
         stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
-        let (status, told) = ended(&mut child);
+        let (status, stderr) = ended(&mut child);
         assert_eq!(status, Some(1), "{threads} threads");
-        assert!(told.starts_with("error: the output cannot be written: No space left on device"), "{told}");
+        assert!(stderr.starts_with("error: the output cannot be written: No space left on device"), "{stderr}");
         drop(stdin);
     }
 }
 
 #[test]
-fn nothing_that_is_read_or_written_beside_is_replaced() {
+fn no_input_or_other_output_is_replaced() {
     let states = file("spared.ndjson", strike(1, 0.0));
     for arguments in [[&states, "-o", &states], [&states, "--summary", &states]] {
         assert_eq!(batch(&arguments, "").status, 1, "{arguments:?}");
     }
     let both = file("both.ndjson", "");
     assert_eq!(batch(&[&states, "-o", &both, "--summary", &both], "").status, 2);
-    assert_eq!(std::fs::read_to_string(&states).expect("still there"), strike(1, 0.0));
+    assert_eq!(read(&states), strike(1, 0.0));
     let dash = batch(&["-", "--summary", "-"], "");
     assert!(dash.status == 2 && dash.stderr.contains("--summary: "), "{}", dash.stderr);
 }
 
 #[cfg(unix)]
 #[test]
-fn standard_input_is_not_replaced_under_whatever_name() {
+fn standard_input_is_not_replaced_under_any_name() {
     let states = file("redirected.ndjson", strike(1, 0.0));
     let link = format!("{states}.link");
     let _ = std::fs::remove_file(&link);
     std::fs::hard_link(&states, &link).expect("linked");
-    let run = |arguments: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_heelstrike"));
-        command.args(["batch", &disc(), "-", "--friction", "1"]).args(arguments);
-        command.stdin(std::fs::File::open(&states).expect("it is there"));
-        command
-    };
-    let refused = |command: &mut Command| {
+    for arguments in [&["-o", &states][..], &["-o", &link], &["--summary", &link], &[]] {
+        let mut command = batching(&["-", "--friction", "1"]);
+        command.args(arguments).stdin(std::fs::File::open(&states).expect("it is there"));
+        if arguments.is_empty() {
+            // As `cat f >> f`, which would go on for ever.
+            command.stdout(std::fs::File::options().append(true).open(&states).expect("it is there"));
+        }
         let output = command.output().expect("it runs");
-        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.code() == Some(1) && stderr.contains("is an input of this command"), "{stderr}");
-    };
-    for arguments in [["-o", &states], ["-o", &link], ["--summary", &link]] {
-        refused(&mut run(&arguments));
     }
-    // As `cat f >> f`, which would go on for ever.
-    let appended = std::fs::File::options().append(true).open(&states).expect("it is there");
-    refused(run(&[]).stdout(appended));
-    assert_eq!(std::fs::read_to_string(&states).expect("still there"), strike(1, 0.0));
+    assert_eq!(read(&states), strike(1, 0.0));
 }

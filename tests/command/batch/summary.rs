@@ -15,13 +15,9 @@ fn the_summary_counts_and_names() {
     let path = file("summary.json", "what was there before");
     let run = batch(&["-", "--friction", "0.5", "--summary", &path], discs());
     assert_eq!(run.status, 1);
-    let mut summary = parsed(&std::fs::read_to_string(path).expect("written"));
-    let margins: Vec<f64> = summary["smallest_margins"]
-        .as_array_mut()
-        .expect("a list")
-        .iter_mut()
-        .map(|near| near["margin"].take().as_f64().expect("a number"))
-        .collect();
+    let mut summary = parsed(&read(&path));
+    let near = summary["smallest_margins"].as_array_mut().expect("a list").iter_mut();
+    let margins: Vec<f64> = near.map(|near| near["margin"].take().as_f64().expect("a number")).collect();
     // The holding cone's (0.5 L_n - |L_t|) / (S sqrt(0.25 / G_nn + 1 / G_tt)) with S = 1 / sqrt(G_nn); then c_t+ = 0.75
     // of S = 1.5 / sqrt(G_tt); then L_n sqrt(G_nn) / S with S = 3 / sqrt(G_tt).
     let expected = [0.6 / (2.0_f64.sqrt() * (11.0_f64 / 6.0).sqrt()), 2.0 * 0.375_f64.sqrt() / 3.0, 0.5];
@@ -59,26 +55,25 @@ all outcomes slide because friction is too small: 2; most is needed by 3 (line 3
 }
 
 #[test]
-fn a_single_state_has_a_summary_only_where_it_is_asked_for() {
+fn a_single_state_has_a_summary_only_if_asked_for() {
     assert_eq!(batch(&["-", "--friction", "1"], strike(1, 0.0)).stderr, "");
     let path = file("single.json", "");
     let run = batch(&["-", "--friction", "1", "--summary", &path], strike(1, 0.0));
     assert!(run.stderr.starts_with("1 state: 1 unique\n"), "{}", run.stderr);
-    assert_eq!(parsed(&std::fs::read_to_string(path).expect("written"))["states"], 1);
+    assert_eq!(parsed(&read(&path))["states"], 1);
 }
 
 #[test]
-fn a_summary_that_cannot_be_written_is_told_before_the_work() {
-    let run = batch(&["-", "--summary", "nowhere/at/all.json"], strike(1, 0.0));
-    assert_eq!((run.status, run.stdout.len()), (1, 0));
-    assert!(run.stderr.starts_with("error: the output cannot be written: nowhere/at/all.json: "), "{}", run.stderr);
+fn a_summary_that_cannot_be_written_is_refused_first() {
+    let stderr = batch(&["-", "--summary", "nowhere/at/all.json"], strike(1, 0.0)).refusal(1);
+    assert!(stderr.starts_with("error: the output cannot be written: nowhere/at/all.json: "), "{stderr}");
 }
 
 /// The walk of the README: a foot that stands rests, also where its speed is zero by rounding alone.
 #[test]
 fn the_example_s_walk_has_its_two_touchdowns() {
     let arguments = ["examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9", "--brief"];
-    let told = heelstrike_reads(&[&["batch", "urdf/ramone.urdf"], &arguments[..]].concat(), "").stderr;
-    assert!(told.contains("102 states: 2 unique, 100 without impact\n"), "{told}");
-    assert!(told.contains("smallest margins: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)\n"), "{told}");
+    let summary = heelstrike_reads(&[&["batch", "urdf/ramone.urdf"], &arguments[..]].concat(), "").stderr;
+    assert!(summary.contains("102 states: 2 unique, 100 without impact\n"), "{summary}");
+    assert!(summary.contains("smallest margins: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)\n"), "{summary}");
 }

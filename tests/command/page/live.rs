@@ -1,20 +1,20 @@
 //! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
 
 use super::browser::found;
-use super::{data, file, heelstrike, hostile, near_a_border, page, swept};
+use super::{HOSTILE, WALK, WALKER, data, file, hostile, list, near_a_border, page, swept};
+use crate::result;
 use serde_json::{Value, json};
 
 const WINDOW: (u32, u32) = (1280, 800);
 
 /// Numbers of a list.
 fn numbers(list: &Value) -> Vec<f64> {
-    let entries = list.as_array().expect("a list").iter();
-    // As the page writes them.
     let number = |entry: &Value| match entry {
+        // As the page writes it.
         Value::String(text) => text.replace('−', "-").parse().expect("a number"),
         entry => entry.as_f64().expect("a number"),
     };
-    entries.map(number).collect()
+    self::list(list).iter().map(number).collect()
 }
 
 fn close(a: f64, b: f64, tolerance: f64) -> bool {
@@ -23,9 +23,8 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
 
 #[test]
 fn keys_and_slider_move_the_robot_and_the_cursor() {
-    let (_, path) = swept("urdf/minimalistic.urdf", &near_a_border(), "keys.html");
-    let script = include_str!("scripts/keys.js");
-    let Some(found) = found(&path, WINDOW, script) else { return };
+    let (_, path) = swept(WALKER, &near_a_border(), "keys.html");
+    let Some(found) = found(&path, WINDOW, include_str!("scripts/keys.js")) else { return };
     let steps = &found["steps"];
     let step = |name: &str, of: &str| steps[name][of].as_f64().expect("a number");
     let stops =
@@ -38,8 +37,8 @@ fn keys_and_slider_move_the_robot_and_the_cursor() {
     assert!(0.0 < step("border", "alpha") - border && step("border", "alpha") - border < 1e-12);
     assert!(0.0 < border - step("back", "alpha") && border - step("back", "alpha") < 1e-12);
     assert_eq!((&steps["back"]["badge"], &steps["border"]["badge"]), (&json!("A"), &json!("B")));
-    let told = steps["border"]["told"].as_str().expect("words");
-    assert!(told.ends_with(", region B, Exactly one outcome."), "{told}");
+    let words = steps["border"]["told"].as_str().expect("words");
+    assert!(words.ends_with(", region B, Exactly one outcome."), "{words}");
     // Legs that spread lower the hip, which on the screen is a greater y.
     let hip = |name: &str| steps[name]["hip"].as_str().and_then(|y| y.parse::<f64>().ok()).expect("a number");
     assert!(hip("start") < hip("slide") && hip("slide") < hip("end"));
@@ -58,26 +57,22 @@ fn keys_and_slider_move_the_robot_and_the_cursor() {
 
 #[test]
 fn outcomes_are_those_of_the_tool() {
-    let robot = "urdf/minimalistic.urdf";
-    let example = "examples/paper/figures_3_and_6.json";
-    let (_, path) = page(&["sweep", robot, example], "", "outcomes.html");
-    let sweep = heelstrike(&["sweep", robot, example, "--format", "json"]).line();
-    let samples = sweep["samples"].as_array().expect("samples");
-    // Three outcomes.
-    let sample = &samples[45];
-    let outcomes = sample["result"]["outcomes"].as_array().expect("outcomes");
+    let sweep = ["sweep", WALKER, "examples/paper/figures_3_and_6.json"];
+    let (_, path) = page(&sweep, "", "outcomes.html");
+    let sample = &result(&sweep, "")["samples"][45];
+    let outcomes = list(&sample["result"]["outcomes"]);
     assert_eq!(outcomes.len(), 3);
     let script = format!("const alpha = {};{}", sample["alpha"], include_str!("scripts/outcomes.js"));
     let Some(found) = found(&path, WINDOW, &script) else { return };
     assert_eq!(found["alpha"], sample["alpha"]);
     assert_eq!(found["sentence"], "DThree outcomes are equally valid. Proven.");
-    let shown = found["everything"].as_array().expect("outcomes");
+    let shown = list(&found["everything"]);
     assert_eq!(shown.len(), 3);
     let verbs =
         [("separate", "lifts off"), ("stick", "sticks"), ("slide+", "slides forward"), ("slide-", "slides backward")];
     for (outcome, shown) in outcomes.iter().zip(shown) {
         let words = shown["words"].as_str().expect("words");
-        for (contact, mode) in ["left_leg", "right_leg"].iter().zip(outcome["modes"].as_array().expect("modes")) {
+        for (contact, mode) in ["left_leg", "right_leg"].iter().zip(list(&outcome["modes"])) {
             let (_, verb) = verbs.iter().find(|(known, _)| mode == known).expect("a mode");
             assert!(words.contains(&format!("{contact} {verb}")), "{words}, {outcome}");
         }
@@ -88,15 +83,14 @@ fn outcomes_are_those_of_the_tool() {
         assert!(words.contains(index), "{words}");
         for contact in 0..2 {
             let row = numbers(&shown["numbers"][contact]);
-            let told = [numbers(&outcome["impulse"][contact]), numbers(&outcome["velocity_after"][contact])].concat();
-            for (shown, told) in row.iter().zip(&told) {
-                assert!(close(*shown, *told, 1e-3 * told.abs()), "{row:?} {told:?}");
+            let given = [numbers(&outcome["impulse"][contact]), numbers(&outcome["velocity_after"][contact])].concat();
+            for (shown, given) in row.iter().zip(given) {
+                assert!(close(*shown, given, 1e-3 * given.abs()), "{row:?} {given:?}");
             }
         }
     }
-    let pressed = |name: &str| -> Vec<bool> {
-        found[name].as_array().expect("outcomes").iter().map(|outcome| outcome["pressed"] == "true").collect()
-    };
+    let pressed =
+        |name: &str| -> Vec<bool> { list(&found[name]).iter().map(|outcome| outcome["pressed"] == "true").collect() };
     assert_eq!(pressed("everything"), [false; 3]);
     assert_eq!(pressed("second"), [false, true, false]);
     assert_eq!(pressed("none"), [false; 3], "there is no ninth outcome");
@@ -111,9 +105,8 @@ fn a_map_is_walked_in_both_directions() {
     let mut grid = near_a_border();
     grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 5});
     grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
-    let (_, path) = swept("urdf/minimalistic.urdf", &grid, "map.html");
-    let script = include_str!("scripts/map.js");
-    let Some(found) = found(&path, WINDOW, script) else { return };
+    let (_, path) = swept(WALKER, &grid, "map.html");
+    let Some(found) = found(&path, WINDOW, include_str!("scripts/map.js")) else { return };
     let pair = |name: &str| (found[name][0].as_f64(), found[name][1].as_f64());
     assert_eq!(pair("start"), (Some(0.5), Some(-2.0)));
     assert_eq!(pair("up"), (Some(0.5), Some(-1.75)));
@@ -130,11 +123,8 @@ fn a_map_is_walked_in_both_directions() {
 
 #[test]
 fn a_gait_is_walked_from_impact_to_impact() {
-    let walk =
-        ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9"];
-    let (_, path) = page(&walk, "", "walk.html");
-    let script = include_str!("scripts/batch.js");
-    let Some(found) = found(&path, WINDOW, script) else { return };
+    let (_, path) = page(&[&WALK[..], &["--resting-speed", "1e-9"]].concat(), "", "walk.html");
+    let Some(found) = found(&path, WINDOW, include_str!("scripts/batch.js")) else { return };
     assert_eq!(found["list"][2]["name"], "gait/050, line 52");
     assert_eq!(found["list"][2]["badge"], "unique");
     let words = found["list"][2]["words"].as_str().expect("words");
@@ -153,13 +143,10 @@ fn what_is_refused_says_why() {
     let study = file("refused.json", height.to_string());
     let args = ["sweep", "urdf/ramone.urdf", &study, "--contact-tolerance", "0.01"];
     let (_, path) = page(&args, "", "refused.html");
-    let script = include_str!("scripts/refused.js");
-    let Some(found) = found(&path, WINDOW, script) else { return };
-    assert_eq!(
-        (&found["refused"]["scene"], &found["refused"]["bodies"]),
-        (&json!("This state is refused."), &json!(0))
-    );
-    let sentence = found["refused"]["sentence"].as_str().expect("a sentence");
+    let Some(found) = found(&path, WINDOW, include_str!("scripts/refused.js")) else { return };
+    let refused = &found["refused"];
+    assert_eq!((&refused["scene"], &refused["bodies"]), (&json!("This state is refused."), &json!(0)));
+    let sentence = refused["sentence"].as_str().expect("a sentence");
     assert!(
         sentence.starts_with("ARefused: link \"left_foot\" is ") && sentence.contains("hint: raise the base"),
         "{sentence}"
@@ -174,9 +161,9 @@ fn hostile_names_are_shown_and_not_run() {
     let Some(found) = found(&path, WINDOW, script) else { return };
     let title = data(&page)["title"].clone();
     assert_eq!((&found["heading"], &found["title"]), (&title, &title));
-    assert_eq!(found["name"], format!("{}, line 1", super::HOSTILE));
-    assert_eq!(found["labels"], json!([super::HOSTILE]));
-    assert!(found["words"].as_str().expect("words").contains(&format!("{} sticks", super::HOSTILE)));
+    assert_eq!(found["name"], format!("{}, line 1", HOSTILE));
+    assert_eq!(found["labels"], json!([HOSTILE]));
+    assert!(found["words"].as_str().expect("words").contains(&format!("{} sticks", HOSTILE)));
     // Those of the page, and two of the test.
     assert_eq!(found["scripts"], 4);
 }

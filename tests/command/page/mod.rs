@@ -6,9 +6,11 @@
 mod browser;
 mod live;
 
-use super::{file, heelstrike, heelstrike_reads, place};
+use super::{RAMONE, WALKER, each, file, fs, heelstrike, heelstrike_reads, list, parsed, place, read, walker};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+
+const WALK: [&str; 5] = ["batch", RAMONE, "examples/gait/ramone_walk.csv", "--friction", "0.6"];
 
 /// The largest page of 400 samples of RAMone \[bytes\].
 const LARGEST: usize = 3_000_000;
@@ -17,7 +19,7 @@ const LARGEST: usize = 3_000_000;
 fn page(args: &[&str], stdin: &str, name: &str) -> (String, PathBuf) {
     let path = place(name);
     let run = heelstrike_reads(&[args, &["--plot", &path]].concat(), stdin);
-    let page = std::fs::read_to_string(&path).unwrap_or_else(|_| panic!("{}", run.stderr));
+    let page = fs::read_to_string(&path).unwrap_or_else(|_| panic!("{}", run.stderr));
     (page, path.into())
 }
 
@@ -25,20 +27,17 @@ fn page(args: &[&str], stdin: &str, name: &str) -> (String, PathBuf) {
 fn data(page: &str) -> Value {
     let (_, rest) = page.split_once(r#"<script type="application/json" id="data">"#).expect("data");
     let (data, _) = rest.split_once("</script>").expect("their end");
-    serde_json::from_str(data).expect("JSON")
+    parsed(data)
+}
+
+/// The numbers of an axis.
+fn axis(data: &Value, axis: usize) -> Vec<f64> {
+    serde_json::from_value(data["axes"][axis]["values"].clone()).expect("numbers")
 }
 
 /// The minimalistic biped beside its border at pi / 6, where its trailing foot stops sliding.
 fn near_a_border() -> Value {
-    json!({
-        "parameters": {"alpha": {"from": 0.5, "to": 0.55, "steps": 3}},
-        "state": {
-            "position": {"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}},
-            "velocity": {"base": {"pitch": -1.0}},
-            "stance": "left_leg",
-            "friction": "infinite"
-        }
-    })
+    walker(json!({"alpha": {"from": 0.5, "to": 0.55, "steps": 3}}))
 }
 
 fn swept(robot: &str, study: &Value, name: &str) -> (String, PathBuf) {
@@ -65,7 +64,7 @@ fn hostile() -> (String, PathBuf) {
 
 #[test]
 fn the_data_of_a_small_study() {
-    let (page, _) = swept("urdf/minimalistic.urdf", &near_a_border(), "small.html");
+    let (page, _) = swept(WALKER, &near_a_border(), "small.html");
     let mut data = data(&page);
     // The result next to a border depends on the last digits of its place.
     let samples = [0, 5, 8].map(|sample| data["frames"][sample].take());
@@ -82,9 +81,9 @@ fn the_data_of_a_small_study() {
 
 #[test]
 fn a_page_stops_at_samples_and_within_every_region() {
-    let (page, _) = swept("urdf/minimalistic.urdf", &near_a_border(), "stops.html");
+    let (page, _) = swept(WALKER, &near_a_border(), "stops.html");
     let data = data(&page);
-    let stops: Vec<f64> = serde_json::from_value(data["axes"][0]["values"].clone()).expect("numbers");
+    let stops = axis(&data, 0);
     let border = std::f64::consts::FRAC_PI_6;
     // Three samples, and both sides and the middle of two regions.
     assert_eq!(stops.len(), 9);
@@ -94,14 +93,12 @@ fn a_page_stops_at_samples_and_within_every_region() {
     }
     let beside: Vec<f64> = stops.iter().map(|stop| stop - border).filter(|beside| beside.abs() < 1e-12).collect();
     assert!(matches!(beside[..], [below, above] if below < 0.0 && above > 0.0), "{beside:?}");
-    let regions: Vec<i64> =
-        data["frames"].as_array().expect("stills").iter().filter_map(|still| still["region"].as_i64()).collect();
-    assert_eq!(regions, [0, 0, 0, 0, 1, 1, 1, 1, 1]);
+    assert_eq!(each(&data["frames"], "region"), [0, 0, 0, 0, 1, 1, 1, 1, 1]);
 }
 
 #[test]
 fn nothing_is_loaded() {
-    let (page, _) = swept("urdf/minimalistic.urdf", &near_a_border(), "alone.html");
+    let (page, _) = swept(WALKER, &near_a_border(), "alone.html");
     assert!(page.contains(r#"content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'""#));
     let named = page.matches("://").count();
     let spaces = page.matches(r#""http://www.w3.org/2000/svg""#).count();
@@ -127,95 +124,83 @@ fn names_stay_names() {
 
 #[test]
 fn four_hundred_samples_of_ramone_are_small() {
-    let text = std::fs::read_to_string("examples/paper/table_1.json").expect("the study");
-    let dense = serde_json::from_str(&text.replace(r#""steps": 50"#, r#""steps": 400"#)).expect("JSON");
+    let dense = parsed(&read("examples/paper/table_1.json").replace(r#""steps": 50"#, r#""steps": 400"#));
     let (page, _) = swept("urdf/ramone_paper.urdf", &dense, "dense.html");
     assert!(page.len() < LARGEST, "{} bytes", page.len());
     let data = data(&page);
-    assert_eq!(data["frames"].as_array().map(Vec::len), Some(400 + 3 * 7));
-    assert_eq!(data["parts"].as_array().map(Vec::len), Some(3), "bodies of one shape share it: torso, thigh, shank");
+    assert_eq!(list(&data["frames"]).len(), 400 + 3 * 7);
+    assert_eq!(list(&data["parts"]).len(), 3, "bodies of one shape share it: torso, thigh, shank");
 }
 
 #[test]
-fn two_parameters_make_a_grid_that_is_thinned_where_it_is_too_fine() {
+fn a_grid_of_two_parameters_is_thinned_if_too_fine() {
     let grid = |steps: usize| {
         let mut grid = near_a_border();
         grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 2});
         grid["parameters"]["alpha"]["steps"] = json!(steps);
         grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
-        let (page, _) = swept("urdf/minimalistic.urdf", &grid, "grid.html");
+        let (page, _) = swept(WALKER, &grid, "grid.html");
         data(&page)
     };
-    let axis = |data: &Value, axis: usize| data["axes"][axis]["values"].as_array().expect("numbers").clone();
     let few = grid(4);
     assert_eq!((axis(&few, 0).len(), axis(&few, 1).len()), (4, 2));
-    assert_eq!(few["frames"].as_array().map(Vec::len), Some(8));
+    assert_eq!(list(&few["frames"]).len(), 8);
     let many = grid(2600);
     // The longer one is thinned, to its last sample.
     assert_eq!((axis(&many, 0).len(), axis(&many, 1).len()), (1301, 2));
-    assert_eq!((&axis(&many, 0)[0], axis(&many, 0).last()), (&json!(0.5), Some(&json!(0.55))));
+    assert_eq!((axis(&many, 0)[0], axis(&many, 0)[1300]), (0.5, 0.55));
     assert_eq!(many["notes"][0], "this page stops at one of 2 samples of alpha");
 }
 
 #[test]
-fn a_long_batch_is_thinned_evenly_and_says_so() {
+fn a_long_batch_is_thinned_evenly_with_a_note() {
     let state = |line: usize| format!("{}\n", json!({"id": line, "position": {"base": {"z": 3}}, "friction": 1}));
     let states: String = (1..=5001).map(state).collect();
-    let (page, _) = page(&["batch", "urdf/ramone.urdf", "-", "--brief"], &states, "long.html");
+    let (page, _) = page(&["batch", RAMONE, "-", "--brief"], &states, "long.html");
     let data = data(&page);
-    let lines: Vec<f64> = serde_json::from_value(data["axes"][0]["values"].clone()).expect("numbers");
-    assert_eq!(lines, (0..2501).map(|k| f64::from(2 * k + 1)).collect::<Vec<_>>());
+    assert_eq!(axis(&data, 0), (0..2501).map(|k| f64::from(2 * k + 1)).collect::<Vec<_>>());
     assert_eq!(data["notes"], json!(["this page shows one of every 2 of the 5001 states"]));
 }
 
 #[test]
 fn a_batch_writes_the_same_results_beside_its_page() {
-    let args = ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6"];
-    let alone = heelstrike(&args).stdout;
+    let alone = heelstrike(&WALK).stdout;
     let path = place("same.html");
     let run = |threads| {
         let page = ["--threads", threads, "--plot", &path];
-        assert_eq!(alone, heelstrike(&[&args[..], &page].concat()).stdout);
-        std::fs::read(&path).expect("a page")
+        assert_eq!(alone, heelstrike(&[&WALK[..], &page].concat()).stdout);
+        read(&path)
     };
     assert_eq!(run("1"), run("4"));
 }
 
 #[test]
 fn a_batch_draws_its_margins_as_svg() {
-    let args =
-        ["batch", "urdf/ramone.urdf", "examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9"];
     let path = place("walk.svg");
-    let status = heelstrike(&[&args[..], &["--plot", &path]].concat()).status;
-    assert_eq!(status, 0);
-    insta::assert_snapshot!("walk", std::fs::read_to_string(&path).expect("an SVG").replace("><", ">\n<"));
+    heelstrike(&[&WALK[..], &["--resting-speed", "1e-9", "--plot", &path]].concat()).well();
+    insta::assert_snapshot!("walk", read(&path).replace("><", ">\n<"));
 }
 
 #[test]
 fn a_page_of_nothing_is_refused() {
     let path = place("nothing.html");
-    let run = heelstrike(&["batch", "urdf/ramone.urdf", "-", "--plot", &path]);
-    assert_eq!(run.status, 1);
-    assert_eq!(run.stderr, "error: --plot: there is nothing to draw\nhint: the input holds no states\n");
+    let stderr = heelstrike(&["batch", RAMONE, "-", "--plot", &path]).refusal(1);
+    assert_eq!(stderr, "error: --plot: there is nothing to draw\nhint: the input holds no states\n");
     assert!(!Path::new(&path).exists());
 }
 
 #[test]
-fn other_commands_say_who_writes_pages() {
-    for args in [
-        &["impact", "urdf/ramone.urdf", "examples/ramone.json"][..],
-        &["inspect", "urdf/ramone.urdf"],
-        &["accuracy", "--case", "massless", "--time", "0"],
+fn commands_without_pages_refuse_to_write_one() {
+    let by_others = "interactive pages are written by `sweep` and `batch`";
+    let other_ending = "an interactive page as .html";
+    for (arguments, name, words) in [
+        (&["impact", RAMONE, "examples/ramone.json"][..], "report.html", by_others),
+        (&["inspect", RAMONE], "report.html", by_others),
+        (&["accuracy", "--case", "massless", "--time", "0"], "report.html", by_others),
+        (&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"], "report.htm", other_ending),
+        (&["batch", RAMONE, "-"], "report.htm", other_ending),
     ] {
-        let run = heelstrike(&[args, &["--plot", "report.html"]].concat());
-        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{args:?}");
-        assert!(run.stderr.contains("interactive pages are written by `sweep` and `batch`"), "{}", run.stderr);
-    }
-    for args in
-        [&["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"][..], &["batch", "urdf/ramone.urdf", "-"]]
-    {
-        let run = heelstrike(&[args, &["--plot", "report.htm"]].concat());
-        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{args:?}");
-        assert!(run.stderr.contains("an interactive page as .html"), "{}", run.stderr);
+        let stderr = heelstrike(&[arguments, &["--plot", name]].concat()).refusal(2);
+        assert!(stderr.contains(words), "{arguments:?}: {stderr}");
     }
 }

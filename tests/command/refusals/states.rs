@@ -1,8 +1,8 @@
 //! States and problems that are refused.
 
-use super::super::{RAMONE, heelstrike_reads};
 use super::{assert_refused, lines};
-use heelstrike::Robot;
+use crate::schema::ROBOT;
+use crate::{RAMONE, heelstrike_reads};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::Problem;
 use heelstrike::state::{Defaults, State};
@@ -89,8 +89,7 @@ friction: 1
 
 #[test]
 fn states_are_refused_word_for_word() {
-    let ramone = std::fs::read_to_string(RAMONE).expect("the file");
-    let ramone = Robot::from_urdf(&ramone).expect("a robot");
+    let robot = &ROBOT.1;
     let feet = |count| vec![r#"{"link": "left_foot"}"#; count].join(", ");
     let cases = lines(STATES, str::to_owned).chain([
         String::new(),
@@ -104,8 +103,8 @@ fn states_are_refused_word_for_word() {
         format!("{{\"friction\": 1, \"contacts\": [{}]}}", feet(11)),
     ]);
     assert_refused("states", cases, &["impact", RAMONE, "-"], |text| {
-        let state = State::from_json(text, &ramone, &Defaults::default())?;
-        Pipeline::new(&ramone, Options::default()).impact(&state)?.into_analysis().map(drop)
+        let state = State::from_json(text, robot, &Defaults::default())?;
+        Pipeline::new(robot, Options::default()).impact(&state)?.into_analysis().map(drop)
     });
 }
 

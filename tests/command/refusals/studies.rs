@@ -1,12 +1,7 @@
 //! Studies that are refused as a whole.
 
 use super::{assert_refused, lines};
-use heelstrike::Robot;
-use heelstrike::description::Description;
-use heelstrike::pipeline::Options;
-use heelstrike::robot::Reduction;
-use heelstrike::state::Defaults;
-use heelstrike::sweep::{RobotStudy, Study};
+use crate::schema::studies::read;
 
 /// A study of the parameter a from 0 to 1 with these other fields.
 fn study(rest: &str) -> String {
@@ -108,10 +103,6 @@ const STUDY: &str = r#"
 
 #[test]
 fn studies_are_refused_word_for_word() {
-    let urdf = std::fs::read_to_string("urdf/ramone.urdf").expect("the file");
-    let description = Description::from_urdf(&urdf).expect("a description");
-    let reduction = Reduction::default();
-    let ramone = Robot::reduce(&description, &reduction).expect("a robot");
     let quoted = |text: &str, count: usize| friction(&format!("\"{}\"", text.repeat(count)));
     let constants: Vec<String> = (0..100_000).map(|k| format!("\"c{k}\": {k}")).collect();
     let cases = lines(STUDIES, str::to_owned)
@@ -128,18 +119,5 @@ fn studies_are_refused_word_for_word() {
             quoted("x", 1_000_000),
             study(&format!("\"state\": {}", "[".repeat(100_000))),
         ]);
-    assert_refused("studies", cases, &["sweep", "urdf/ramone.urdf", "-"], |text| {
-        let study = Study::from_json(text)?;
-        let defaults = Defaults::default();
-        let options = Options::default();
-        RobotStudy {
-            study: &study,
-            description: &description,
-            reduction: &reduction,
-            robot: &ramone,
-            options,
-            defaults,
-        }
-        .readable()
-    });
+    assert_refused("studies", cases, &["sweep", "urdf/ramone.urdf", "-"], read);
 }

@@ -3,46 +3,73 @@
 //! Inputs: a full sample is changed in every place and in every way; schema and reader must agree about each. Results:
 //! every form of result that the command writes must be valid, and not with a field more or less.
 
-use super::heelstrike_reads;
+use super::{heelstrike_reads, list, parsed, read};
+use heelstrike::description::Description;
 use heelstrike::read::Problem;
+use heelstrike::robot::Reduction;
 use heelstrike::state::{Defaults, State};
 use heelstrike::write::schema;
 use heelstrike::{Error, Reason, Robot};
-use serde_json::{Map, Value, json};
-use std::path::Path;
+use serde_json::{Value, json};
+use std::sync::LazyLock;
 use validator::is_valid;
 
-mod studies;
+pub mod studies;
 mod validator;
 
-fn robot() -> Robot {
-    Robot::from_urdf(&std::fs::read_to_string("urdf/ramone.urdf").expect("the file")).expect("a robot")
+/// RAMone.
+pub static ROBOT: LazyLock<(Description, Robot)> = LazyLock::new(|| {
+    let description = Description::from_urdf(include_str!("../../../urdf/ramone.urdf")).expect("a description");
+    let robot = Robot::reduce(&description, &Reduction::default()).expect("a robot");
+    (description, robot)
+});
+
+fn read_state(text: &str) -> Result<State, Error> {
+    State::from_json(text, &ROBOT.1, &Defaults::default())
 }
 
-/// What the command writes, whatever its exit status.
-fn written(arguments: &[&str], stdin: &str) -> String {
-    heelstrike_reads(arguments, stdin).stdout
+/// What the command writes as JSON, whatever its exit status; it must be valid, but not with another field in the
+/// object at `place`.
+fn assert_valid(schema: &Value, arguments: &[&str], stdin: &str, place: &str) -> Vec<Value> {
+    let results = heelstrike_reads(&[arguments, &["--format", "json"]].concat(), stdin).lines();
+    for result in &results {
+        assert!(is_valid(schema, result), "{arguments:?}: {result}");
+        let mut more = result.clone();
+        more.pointer_mut(place).expect("an object")["unknown?"] = json!(0);
+        assert!(!is_valid(schema, &more), "{arguments:?}");
+    }
+    results
+}
+
+/// Checks that the reader of an unknown field names those that the schema has at `pointer`.
+fn assert_fields<T>(schema: &Value, read: impl Fn(&str) -> Result<T, Error>, value: &Value, pointer: &str) {
+    let properties = schema.pointer(pointer).and_then(Value::as_object).expect("properties");
+    let error = read(&value.to_string()).err().expect("an unknown field");
+    let hint = error.remedy().and_then(|hint| hint.strip_prefix("the fields here are ")).expect("the known fields");
+    let mut known: Vec<&str> = hint.split(", ").collect();
+    known.sort_unstable();
+    assert_eq!(properties.keys().collect::<Vec<_>>(), known, "{value}");
 }
 
 /// The sample, each of its values replaced by each of some others, left out, and each object with an unknown field.
 fn variants(sample: &Value) -> Vec<Value> {
-    let others = [
-        json!(null),
-        json!(true),
-        json!("x"),
-        json!("infinite"),
-        json!(-1),
-        json!(0),
-        json!(1.5),
-        json!(2),
-        json!([]),
-        json!({}),
-        json!([0, 0]),
-        json!([0, 0, 0]),
-        json!([[0, 0]]),
-        json!(["left_hip", "left_hip"]),
-    ];
-    let mut variants = others.to_vec();
+    let others = json!([
+        null,
+        true,
+        "x",
+        "infinite",
+        -1,
+        0,
+        1.5,
+        2,
+        [],
+        {},
+        [0, 0],
+        [0, 0, 0],
+        [[0, 0]],
+        ["left_hip", "left_hip"]
+    ]);
+    let mut variants = list(&others).to_vec();
     match sample {
         Value::Object(fields) => {
             for (name, field) in fields {
@@ -55,9 +82,9 @@ fn variants(sample: &Value) -> Vec<Value> {
                 variants.push(with(None));
                 variants.extend(self::variants(field).into_iter().map(|field| with(Some(field))));
             }
-            let mut more: Map<String, Value> = fields.clone();
-            more.insert("unknown?".into(), json!(0));
-            variants.push(more.into());
+            let mut more = sample.clone();
+            more["unknown?"] = json!(0);
+            variants.push(more);
         }
         Value::Array(entries) => {
             for at in 0..entries.len() {
@@ -103,7 +130,6 @@ fn assert_agreement<T>(
 
 #[test]
 fn schema_and_reader_of_states_agree() {
-    let robot = robot();
     let scene = json!({
         "id": "k17",
         "position": {"base": {"x": 0.0, "z": 0.44, "pitch": 0.0}, "joints": {"left_hip": 0.7}},
@@ -124,12 +150,11 @@ fn schema_and_reader_of_states_agree() {
     let standing = json!({"id": 1, "stance": "left_foot", "friction": 0.8, "restitution": 0.5,
         "position": {"base": {"pitch": 0.1}}, "ground": {"profile": [[-1, 0], [1, 0.5], [2, 0.5]]},
         "uncertainty": {"friction": 0.1, "rotor_inertia": 0.1}});
-    let read = |text: &str| State::from_json(text, &robot, &Defaults::default());
     // Which names the robot has, and that a stance places the base.
     let beyond = |reason: &Reason| matches!(reason, Reason::UnknownName { .. } | Reason::Inconsistent(_));
     let shape = |reason: &Reason| matches!(reason, Reason::Inconsistent(text) if text.starts_with("expected"));
     for sample in [scene, standing] {
-        assert_agreement(&schema::state(), &sample, read, |reason| beyond(reason) && !shape(reason));
+        assert_agreement(&schema::state(), &sample, read_state, |reason| beyond(reason) && !shape(reason));
     }
 }
 
@@ -154,14 +179,8 @@ fn schema_and_reader_of_problems_agree() {
 }
 
 #[test]
-fn the_schema_of_states_has_the_fields_that_the_reader_names() {
-    let robot = robot();
-    let schema = schema::state();
-    let of = |pointer: &str| {
-        let properties = schema.pointer(pointer).and_then(Value::as_object).expect("properties");
-        properties.keys().cloned().collect::<Vec<_>>()
-    };
-    for (text, pointer) in [
+fn the_schema_of_states_has_the_fields_of_the_reader() {
+    for (value, pointer) in [
         (json!({"?": 0}), "/properties"),
         (json!({"position": {"?": 0}}), "/$defs/Coordinates/properties"),
         (json!({"velocity": {"base": {"?": 0}}}), "/$defs/Base/properties"),
@@ -174,51 +193,41 @@ fn the_schema_of_states_has_the_fields_that_the_reader_names() {
         (json!({"uncertainty": {"position": {"?": 0}}}), "/$defs/NamedHalfWidths/properties"),
         (json!({"uncertainty": {"velocity": {"base": {"?": 0}}}}), "/$defs/BaseHalfWidths/properties"),
     ] {
-        let error = State::from_json(&text.to_string(), &robot, &Defaults::default()).expect_err("an unknown field");
-        let hint = error.remedy().and_then(|hint| hint.strip_prefix("the fields here are ")).expect("the known fields");
-        let mut known: Vec<&str> = hint.split(", ").collect();
-        known.sort_unstable();
-        assert_eq!(of(pointer), known, "{text}");
+        assert_fields(&schema::state(), read_state, &value, pointer);
     }
 }
 
 #[test]
 fn every_example_is_valid() {
-    let files = |folder: &str| {
+    for (folder, at_least, schema) in [
+        ("examples", 7, schema::state()),
+        ("examples/problems", 3, schema::problem()),
+        ("examples/paper", 16, schema::study()),
+    ] {
         let entries = std::fs::read_dir(folder).expect("a folder");
-        let paths = entries.map(|entry| entry.expect("an entry").path());
-        let json = paths.filter(|path| path.extension().is_some_and(|ending| ending == "json" || ending == "ndjson"));
-        json.collect::<Vec<_>>()
-    };
-    let values = |path: &Path| {
-        let text = std::fs::read_to_string(path).expect("the example");
-        let values: Result<Vec<Value>, _> = serde_json::Deserializer::from_str(&text).into_iter().collect();
-        values.unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-    };
-    let check = |schema_of: &dyn Fn(&Value) -> Value, folder: &str, at_least: usize| {
-        let files = files(folder);
-        assert!(files.len() >= at_least, "{folder}");
-        for path in files {
-            for value in values(&path) {
-                assert!(is_valid(&schema_of(&value), &value), "{}: {value}", path.display());
+        let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|ending| ending == "json" || ending == "ndjson"));
+        assert!(paths.len() >= at_least, "{folder}");
+        for path in paths {
+            let path = path.to_str().expect("UTF-8");
+            for value in serde_json::Deserializer::from_str(&read(path)).into_iter::<Value>() {
+                let value = value.unwrap_or_else(|error| panic!("{path}: {error}"));
+                // A figure is of a study or of a state.
+                let is_state = folder == "examples/paper" && value.get("parameters").is_none();
+                let schema = if is_state { &schema::state() } else { &schema };
+                assert!(is_valid(schema, &value), "{path}: {value}");
             }
         }
-    };
-    check(&|_| schema::state(), "examples", 7);
-    check(&|_| schema::problem(), "examples/problems", 3);
-    // A figure is of a study or of a state.
-    let of_figure = |value: &Value| if value.get("parameters").is_some() { schema::study() } else { schema::state() };
-    check(&of_figure, "examples/paper", 16);
+    }
 }
 
 #[test]
 fn every_form_of_result_is_valid() {
-    let schema = schema::result();
-    let ramone = ["impact", "urdf/ramone.urdf", "examples/ramone.json", "--format", "json"];
-    let measured = ["impact", "urdf/ramone.urdf", "examples/ramone_measured.json", "--format", "json"];
-    let badly = std::fs::read_to_string("examples/ramone_measured.json").expect("a state").replace("1e-3", "1e-2");
+    let ramone = ["impact", "urdf/ramone.urdf", "examples/ramone.json"];
+    let measured = ["impact", "urdf/ramone.urdf", "examples/ramone_measured.json"];
+    let badly = super::badly_measured();
     let pdw = ["batch", "urdf/pdw.urdf", "-"];
-    let rod = ["solve", "examples/problems/rod.json", "--format", "json"];
+    let rod = ["solve", "examples/problems/rod.json"];
     let lines = "{\"id\": 1, \"stance\": \"left_leg\", \"friction\": 0.5}\n{\"id\": \"k2\", \"frict\": 0.5}\n";
     let contacts: Vec<Value> = (0..11).map(|k| json!({"link": "left_leg", "offset": [k, 0, 0]})).collect();
     let many = json!({"id": 1, "friction": 1, "contacts": contacts}).to_string();
@@ -229,23 +238,16 @@ fn every_form_of_result_is_valid() {
         (&[&ramone[..], &["--brief"]].concat(), ""),
         (&measured, ""),
         (&[&measured[..], &["--brief"]].concat(), ""),
-        (&["impact", "urdf/ramone.urdf", "-", "--format", "json"], &badly),
+        (&["impact", "urdf/ramone.urdf", "-"], &badly),
         (&pdw, lines),
         (&[&pdw[..], &["--brief"]].concat(), lines),
         (&[&pdw[..], &["--matrices"]].concat(), &many),
         (&[&pdw[..], &["--base", "fixed"]].concat(), "{\"friction\": 1}"),
         (&rod, ""),
         (&[&rod[..], &["--explain", "--matrices"]].concat(), ""),
-        (&["solve", "examples/problems/painleve_rod.json", "--format", "json", "--explain"], ""),
+        (&["solve", "examples/problems/painleve_rod.json", "--explain"], ""),
     ] {
-        for line in written(arguments, input).lines() {
-            let result: Value = serde_json::from_str(line).expect("a line of JSON");
-            assert!(is_valid(&schema, &result), "{arguments:?}: {line}");
-            let mut more = result.clone();
-            more["unknown?"] = json!(0);
-            assert!(!is_valid(&schema, &more), "{arguments:?}");
-            seen += 1;
-        }
+        seen += assert_valid(&schema::result(), arguments, input, "").len();
     }
     assert_eq!(seen, 15);
 }
@@ -253,7 +255,6 @@ fn every_form_of_result_is_valid() {
 #[test]
 fn every_form_of_a_report_on_accuracy_is_valid() {
     let schema = schema::accuracy();
-    let accuracy = ["accuracy", "--time", "0", "--format", "json"];
     for arguments in [
         // Regular, and with compliant contact.
         &["urdf/ramone.urdf", "examples/ramone.json"][..],
@@ -265,19 +266,15 @@ fn every_form_of_a_report_on_accuracy_is_valid() {
         // A method left out.
         &["--case", "chain of 1000 links, folded"],
     ] {
-        let report: Value = serde_json::from_str(&written(&[&accuracy[..], arguments].concat(), "")).expect("JSON");
-        assert!(is_valid(&schema, &report), "{arguments:?}: {report}");
-        let mut more = report.clone();
-        more["studies"][0]["unknown?"] = json!(0);
-        assert!(!is_valid(&schema, &more), "{arguments:?}");
-        let mut less = report.clone();
+        let mut less =
+            assert_valid(&schema, &[&["accuracy", "--time", "0"], arguments].concat(), "", "/studies/0").remove(0);
         less["studies"][0].as_object_mut().expect("an object").remove("methods");
         assert!(!is_valid(&schema, &less), "{arguments:?}");
     }
 }
 
 #[test]
-fn the_command_prints_the_schemas_and_no_other() {
+fn the_command_prints_every_schema() {
     for (name, expected) in [
         ("state", schema::state()),
         ("result", schema::result()),
@@ -286,9 +283,9 @@ fn the_command_prints_the_schemas_and_no_other() {
         ("sweep", schema::sweep()),
         ("accuracy", schema::accuracy()),
     ] {
-        let printed: Value = serde_json::from_str(&written(&["schema", name], "")).expect("JSON");
+        let printed = parsed(&heelstrike_reads(&["schema", name], "").stdout);
         assert_eq!(printed, expected);
         assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");
     }
-    assert_eq!(written(&["schema", "gait"], ""), "");
+    assert_eq!(heelstrike_reads(&["schema", "gait"], "").stdout, "");
 }
