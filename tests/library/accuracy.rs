@@ -2,7 +2,7 @@
 //! their digits against a reference of at least 256 bits.
 
 use crate::support::impact::velocities_after;
-use heelstrike::accuracy::{Budget, Case, Expected, Factorization, CaseStudy, CaseSubject, cases, of_state, study};
+use heelstrike::accuracy::{Budget, Case, CaseStudy, CaseSubject, Expected, Factorization, cases, of_state, study};
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{Workspace, kinematics, kinetic_energy};
 use heelstrike::pipeline::{Impact, Options, Pipeline};

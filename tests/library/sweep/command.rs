@@ -47,7 +47,7 @@ pub fn run(robot: &str, study: &Value, arguments: &[&str]) -> Run {
 
 /// The regions, borders and samples of a study that is answered everywhere.
 pub fn sweep(robot: &str, study: &Value) -> Sweep {
-    let Run { status, stdout, stderr } = run(robot, study, &["--format", "json"]);
+    let Run { status, stdout, stderr, .. } = run(robot, study, &["--format", "json"]);
     assert_eq!(status, 0, "{study}\n{stderr}");
     serde_json::from_str(&stdout).unwrap_or_else(|error| panic!("{error}: {stdout}"))
 }

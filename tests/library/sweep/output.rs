@@ -17,7 +17,7 @@ fn every_sample_is_the_result_of_impact_for_the_same_numbers() {
         let mut study = kneed();
         study["parameters"]["alpha"]["steps"] = json!(7);
         study["state"]["id"] = json!("alpha");
-        let Run { status, stdout, stderr } =
+        let Run { status, stdout, stderr, .. } =
             run("urdf/ramone.urdf", &study, &[&["--format", "json"], arguments].concat());
         assert_eq!(status, 0, "{stderr}");
         let written: Value = serde_json::from_str(&stdout).expect("JSON");
@@ -82,7 +82,7 @@ fn partly_refused() -> Value {
 
 #[test]
 fn refused_samples_stand_in_their_place_and_the_rest_goes_on() {
-    let Run { status, stdout, stderr } = run("urdf/block.urdf", &partly_refused(), &["--format", "json"]);
+    let Run { status, stdout, stderr, .. } = run("urdf/block.urdf", &partly_refused(), &["--format", "json"]);
     assert_eq!(status, 1);
     assert!(stderr.contains("the expression has no value"), "{stderr}");
     let found: Value = serde_json::from_str(&stdout).expect("JSON");
@@ -112,7 +112,7 @@ fn a_refused_region_with_an_answered_middle_says_why_it_is_refused() {
         "parameters": {"p": {"from": 0, "to": 1, "steps": 4}},
         "state": {"position": {"base": {"z": "1 + sqrt(max(p - 0.6, 1e-14 - (p - 0.3)^2))"}}, "friction": 1},
     });
-    let Run { status, stdout, stderr } = run("urdf/block.urdf", &study, &["--format", "text"]);
+    let Run { status, stdout, stderr, .. } = run("urdf/block.urdf", &study, &["--format", "text"]);
     assert_eq!(status, 1, "{stdout}");
     assert!(stderr.contains("the expression has no value"), "{stderr}");
     assert!(stdout.contains("A  0 .. 0.6  refused: the expression has no value"), "{stdout}");
