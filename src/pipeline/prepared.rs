@@ -350,7 +350,7 @@ impl Pipeline<'_> {
                 let name = &self.robot.links[contact.link].name;
                 Error::new(Reason::Missing(format!("the friction of link \"{name}\", which touches the ground,")))
                     .at("friction")
-                    .hint("add \"friction\": 0.8 to the state, or `friction: 0.8` (or infinite)")
+                    .hint("add \"friction\": 0.8 (or \"infinite\") to the state, or set `friction: 0.8` for all states")
             })?);
         }
         let restitution = contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect();

@@ -101,7 +101,11 @@ fn lines_that_are_no_states_get_a_remedy() {
         (&["-"][..], "[{\"friction\": 1}, {}]\n", list),
         (&["-"][..], "{\"friction\": 1},\n", "a line holds one state and nothing after it"),
         (&["-"][..], "id,q_base_z,v_base_z\n1,0.5,-1\n", "is this a table? then say `input_format: csv`"),
-        (&["-"][..], &strike(1, 0.0), "add \"friction\": 0.8 to the state, or `friction: 0.8` (or infinite)"),
+        (
+            &["-"][..],
+            &strike(1, 0.0),
+            "add \"friction\": 0.8 (or \"infinite\") to the state, or set `friction: 0.8` for all states",
+        ),
         (
             &["-", "--input-format", "csv"],
             "q_base_z,v_base_z\n0.5,-1\n",
