@@ -4,7 +4,7 @@ use super::run::Source;
 use crate::read::table::Quotes;
 use crate::{Error, Reason, Result};
 use memchr::memchr;
-use std::io::{self, BufRead, BufReader, ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 
 /// How many bytes are requested from the input at once.
 const READ: usize = 1 << 16;
@@ -14,9 +14,6 @@ const RECORDS: usize = 16;
 
 /// Longer records are skipped and refused \[bytes\].
 pub const RECORD_LIMIT: usize = 1 << 24;
-
-/// A record and the line on which it begins, from 1.
-pub type Numbered = (usize, Vec<u8>);
 
 /// Some consecutive whole records.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -55,26 +52,30 @@ impl<R: Read> Chunks<R> {
         self.quotes.is_some()
     }
 
-    /// The refusal of an input whose first bytes show that it is compressed, a spreadsheet or the like.
+    /// Refuses an input whose first bytes show that it is compressed, a spreadsheet or the like.
     ///
     /// # Errors
-    /// Those of reading.
-    pub fn foreign(&mut self) -> io::Result<Option<Error>> {
-        Ok(foreign(self.fill()?))
+    /// Also those of reading.
+    pub fn check_format(&mut self) -> Result<()> {
+        let beginning = self.fill()?;
+        let Some((_, what, remedy)) = FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic)) else {
+            return Ok(());
+        };
+        Err(Error::new(Reason::Unsupported((*what).into())).hint(*remedy))
     }
 
-    /// The first record that is not blank, or its refusal; `None` if there is none.
+    /// The first record that is not blank, with the line on which it begins, from 1; `None` if there is none.
     ///
     /// # Errors
-    /// Those of reading.
-    pub fn first(&mut self) -> io::Result<Option<Result<Numbered>>> {
+    /// A record longer than [`RECORD_LIMIT`], and those of reading.
+    pub fn first(&mut self) -> Result<Option<(usize, Vec<u8>)>> {
         while let Some(chunk) = self.record()? {
             if let Some(line) = chunk.too_long {
-                return Ok(Some(Err(too_long().on(line, 1))));
+                return Err(too_long().on(line, 1));
             }
             let found = chunk.records().find(|(_, record)| !record.trim_ascii().is_empty());
             if let Some((line, record)) = found {
-                return Ok(Some(Ok((line, record.to_vec()))));
+                return Ok(Some((line, record.to_vec())));
             }
         }
         Ok(None)
@@ -84,12 +85,12 @@ impl<R: Read> Chunks<R> {
     ///
     /// # Errors
     /// Those of reading.
-    pub fn record(&mut self) -> io::Result<Option<Chunk>> {
+    pub fn record(&mut self) -> Result<Option<Chunk>> {
         self.records(1)
     }
 
     /// Up to `most` records, fewer if the input would have to be waited for.
-    fn records(&mut self, most: usize) -> io::Result<Option<Chunk>> {
+    fn records(&mut self, most: usize) -> Result<Option<Chunk>> {
         let mut chunk = Chunk::default();
         // Where the current record and its last line begin, the record's first line and its length so far.
         let (mut start, mut line_start, mut first, mut length) = (0, 0, self.line, 0);
@@ -126,7 +127,7 @@ impl<R: Read> Chunks<R> {
     }
 
     /// The buffered bytes, at least one unless the input has ended; without a byte order mark.
-    fn fill(&mut self) -> io::Result<&[u8]> {
+    fn fill(&mut self) -> Result<&[u8]> {
         loop {
             match self.input.fill_buf() {
                 Ok(ready) if std::mem::take(&mut self.fresh) && ready.starts_with(b"\xEF\xBB\xBF") => {
@@ -134,7 +135,7 @@ impl<R: Read> Chunks<R> {
                 }
                 Ok(_) => break,
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(error),
+                Err(error) => return Err(Reason::Io(format!("cannot be read: {error}")).into()),
             }
         }
         Ok(self.input.buffer())
@@ -155,7 +156,7 @@ pub(super) fn too_long() -> Error {
 impl<R: Read + Send> Source for Chunks<R> {
     type Task = Chunk;
 
-    fn next(&mut self) -> io::Result<Option<Chunk>> {
+    fn next(&mut self) -> Result<Option<Chunk>> {
         self.records(RECORDS)
     }
 
@@ -186,12 +187,6 @@ const FOREIGN: [(&[u8], &str, &str); 8] = [
     (b"PAR1", "the input is a Parquet file", "write it as CSV or NDJSON"),
 ];
 
-/// The refusal of an input that begins like another format.
-fn foreign(beginning: &[u8]) -> Option<Error> {
-    let (_, what, remedy) = FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic))?;
-    Some(Error::new(Reason::Unsupported((*what).into())).hint(*remedy))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,7 +195,7 @@ mod tests {
     struct Parts(Vec<&'static [u8]>);
 
     impl Read for Parts {
-        fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
             if self.0.is_empty() { Ok(0) } else { self.0.remove(0).read(into) }
         }
     }

@@ -13,23 +13,22 @@ mod chunk;
 mod recording;
 
 use chunk::too_long;
-pub use chunk::{Chunk, Chunks, Numbered, RECORD_LIMIT};
-pub use recording::{Landing, Origin, Recorded, Recording, samples};
-pub use run::{Answerer, Block, Broken, RefusedRecord, Sink, Source, run};
+pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
+pub use recording::{Recording, RowOrigin, samples};
+pub use run::{Block, RefusedRecord, Sink, Source, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
 
 use crate::draw::{Keyframe, ListedKeyframe};
 use crate::error::Location;
 use crate::error::excerpt::Excerpt;
-use crate::gait::{At, Touching};
+use crate::gait::{Landing, Sample, Sampled};
 use crate::impact::{Analysis, Outcome, Verdict};
 use crate::law::{Friction, Mode};
 use crate::pipeline::{Options, Pipeline};
 use crate::read::documents::utf8;
 use crate::read::table::{Carried, Header, Rows};
 use crate::state::{ByLink, Defaults, State};
-use crate::write::Columns;
-use crate::write::{self, CarriedFields, Detail, Refused, Report, short_id};
+use crate::write::{self, CarriedFields, Columns, Detail, Refused, Report, Touchdown, short_id};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 
@@ -48,8 +47,6 @@ pub struct Question<'r> {
     pub header: Option<&'r Header>,
     /// The columns of the output table; `None` for lines of JSON.
     pub columns: Option<&'r Columns>,
-    /// How touchdowns are found, if only these are answered.
-    pub touchdowns: Option<(At, Touching)>,
     /// Whether keyframes of the states are kept for a page.
     pub keyframes: bool,
 }
@@ -62,40 +59,26 @@ pub struct Batch<'q> {
 }
 
 /// The context of a state in its input.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Around<'a> {
+    /// On which the state begins.
     line: usize,
-    text: Text<'a>,
+    /// Empty if an excerpt was kept in its place.
+    record: &'a [u8],
+    excerpt: Option<&'a Excerpt>,
     carried: Option<&'a Carried>,
-    touchdown: Option<&'a Landing>,
-}
-
-/// The part of the input that can be shown if a state is refused.
-#[derive(Debug, Clone, Copy)]
-enum Text<'a> {
-    /// The record, which begins on the state's line.
-    Record(&'a [u8]),
-    /// An excerpt that was kept of it.
-    Kept(Option<&'a Excerpt>),
+    /// Of a sample \[s\].
+    time: Option<f64>,
+    landing: Option<&'a Landing>,
 }
 
 impl Around<'_> {
     /// The time of the state, if its input gives one \[s\].
     fn time(&self, header: Option<&Header>) -> Option<f64> {
-        let column = || {
+        self.time.or_else(|| {
             let (_, text) = self.carried?.by_name(header?).find(|(name, _)| *name == "time")?;
             text.trim().parse().ok().filter(|time: &f64| time.is_finite())
-        };
-        self.touchdown.map(|landing| landing.time).or_else(column)
-    }
-}
-
-impl Text<'_> {
-    fn around(self, first: usize, place: Location) -> Option<Excerpt> {
-        match self {
-            Self::Record(record) => Excerpt::around(record, first, place),
-            Self::Kept(excerpt) => excerpt.cloned(),
-        }
+        })
     }
 }
 
@@ -106,10 +89,44 @@ impl<'q> Batch<'q> {
         Self { question, pipeline, rows: question.header.map(Header::rows) }
     }
 
+    /// Answers records that do not depend on each other.
+    pub fn records(&mut self, chunk: &Chunk) -> Block {
+        let mut block = Block::default();
+        let mut rows = self.rows.take();
+        for (line, record) in chunk.records() {
+            let around = Around { line, record, ..Around::default() };
+            match &mut rows {
+                Some(rows) => self.row(rows, around, &mut block),
+                None => self.line(around, &mut block),
+            }
+        }
+        self.rows = rows;
+        if let Some(line) = chunk.too_long {
+            self.refuse(too_long(), None, Around { line, ..Around::default() }, &mut block);
+        }
+        block
+    }
+
+    /// Answers samples of a recording.
+    pub fn samples(&mut self, samples: Vec<Sampled<RowOrigin>>) -> Block {
+        let mut block = Block::default();
+        for sampled in samples {
+            let (origin, state, time, landing) = match sampled {
+                Ok(Sample { source, state, time, landing, .. }) => (source, Ok(state), Some(time), landing),
+                Err((source, error)) => (source, Err(error), None, None),
+            };
+            let RowOrigin { line, id, carried, excerpt } = origin;
+            let (carried, excerpt, landing) = (Some(&carried), excerpt.as_ref(), landing.as_ref());
+            let around = Around { line, record: b"", excerpt, carried, time, landing };
+            self.answer(state, || id, around, &mut block);
+        }
+        block
+    }
+
     /// Answers a line of JSON; a blank one has no answer.
-    fn line(&mut self, line: usize, record: &[u8], block: &mut Block) {
+    fn line(&mut self, around: Around<'_>, block: &mut Block) {
         // Without its line break: an error at the end of a truncated line would be on the next line.
-        let record = record.trim_ascii_end();
+        let record = around.record.trim_ascii_end();
         if record.is_empty() {
             return;
         }
@@ -119,20 +136,17 @@ impl<'q> Batch<'q> {
             let error = with_remedy(error, record);
             // Its place is that in the line alone.
             match error.location() {
-                Some(Location { column, .. }) => error.on(line, column),
+                Some(Location { column, .. }) => error.on(around.line, column),
                 None => error,
             }
         });
-        let unread = || utf8(record).ok().and_then(State::id_in);
-        let around = Around { line, text: Text::Record(record), carried: None, touchdown: None };
-        self.answer(state, unread, around, block);
+        self.answer(state, || utf8(record).ok().and_then(State::id_in), Around { record, ..around }, block);
     }
 
     /// Answers a row of a table; a blank one has no answer.
-    fn row(&mut self, rows: &mut Rows, line: usize, record: &[u8], block: &mut Block) {
+    fn row(&mut self, rows: &mut Rows, around: Around<'_>, block: &mut Block) {
         let Question { robot, defaults, .. } = self.question;
-        let around = Around { line, text: Text::Record(record), carried: None, touchdown: None };
-        match rows.row(record, line) {
+        match rows.row(around.record, around.line) {
             Ok(None) => {}
             Ok(Some(row)) => {
                 let carried = row.carried();
@@ -164,17 +178,27 @@ impl<'q> Batch<'q> {
     /// Appends the result of a state.
     fn result(&mut self, state: &mut State, around: Around<'_>, block: &mut Block) -> Result<()> {
         let Question { robot, detail, header, columns, .. } = *self.question;
-        let impact = self.pipeline.impact(state).map_err(|error| self.with_hint_for_tables(error))?;
+        let impact = self.pipeline.impact(state).map_err(|error| match error.reason() {
+            Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {
+                error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
+            }
+            _ => error,
+        })?;
         let mut report = Report::of_state(robot, state, &impact, detail)?;
-        report.touchdown =
-            around.touchdown.zip(self.question.touchdowns).map(|(landing, choice)| landing.record(choice));
+        report.touchdown = around.landing.zip(around.time).map(|(landing, time)| Touchdown {
+            row: landing.row,
+            time,
+            striking: (&landing.striking).into(),
+            shift_z: landing.shift_z,
+            at: landing.at.name().into(),
+            touching: landing.touching.to_string(),
+        });
         if let Some(columns) = columns {
             columns.append_result(&report, around.carried, &mut block.out)?;
         } else {
-            let carried = header
-                .zip(around.carried)
-                .map(|(header, carried)| carried.by_name(header).map(|(name, text)| (name.into(), text)).collect());
-            report.carried = carried.filter(|fields: &Vec<_>| !fields.is_empty()).map(CarriedFields);
+            let fields = header.zip(around.carried).into_iter().flat_map(|(header, carried)| carried.by_name(header));
+            let fields: Vec<_> = fields.map(|(name, text)| (name.into(), text)).collect();
+            report.carried = (!fields.is_empty()).then_some(CarriedFields(fields));
             report.append_json(detail, &mut block.out);
         }
         self.keep(state.id.as_ref(), around, block, || {
@@ -212,16 +236,6 @@ impl<'q> Batch<'q> {
         }
     }
 
-    /// The error with a hint that fits the format of the input.
-    fn with_hint_for_tables(&self, error: Error) -> Error {
-        match error.reason() {
-            Reason::Missing(_) if self.question.header.is_some() && error.place() == Some("friction") => {
-                error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
-            }
-            _ => error,
-        }
-    }
-
     /// The friction with which no contact would have to slide, if one has to; see [`MoreFriction`].
     fn friction_needed(&mut self, state: &mut State, analysis: &Analysis) -> Option<f64> {
         if analysis.no_slip_consistent != Some(false)
@@ -235,33 +249,6 @@ impl<'q> Batch<'q> {
         let outcomes = rough.ok()?.analysis?.outcomes;
         let without_slip = outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
         without_slip.map(friction_of).min_by(f64::total_cmp)
-    }
-}
-
-impl Answerer<Chunk> for Batch<'_> {
-    fn answer(&mut self, chunk: Chunk, block: &mut Block) {
-        let mut rows = self.rows.take();
-        for (line, record) in chunk.records() {
-            match &mut rows {
-                Some(rows) => self.row(rows, line, record, block),
-                None => self.line(line, record, block),
-            }
-        }
-        self.rows = rows;
-        if let Some(line) = chunk.too_long {
-            let around = Around { line, text: Text::Kept(None), carried: None, touchdown: None };
-            self.refuse(too_long(), None, around, block);
-        }
-    }
-}
-
-impl Answerer<Vec<Recorded>> for Batch<'_> {
-    fn answer(&mut self, found: Vec<Recorded>, block: &mut Block) {
-        for Recorded { origin: Origin { line, id, carried, excerpt }, state, touchdown } in found {
-            let text = Text::Kept(excerpt.as_ref());
-            let around = Around { line, text, carried: Some(&carried), touchdown: touchdown.as_ref() };
-            self.answer(state, || id, around, block);
-        }
     }
 }
 
@@ -288,7 +275,8 @@ impl Block {
     fn refuse(&mut self, error: Error, around: Around<'_>) {
         self.summary.refuse();
         let place = error.location();
-        let excerpt = place.and_then(|place| around.text.around(around.line, place));
+        let kept = |place| around.excerpt.cloned().or_else(|| Excerpt::around(around.record, around.line, place));
+        let excerpt = place.and_then(kept);
         let error = if place.is_some() { error } else { error.on(around.line, 1) };
         self.refused.push(RefusedRecord { error, excerpt });
     }

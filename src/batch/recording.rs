@@ -4,20 +4,19 @@
 use super::chunk::{Chunks, too_long};
 use super::run::Source;
 use crate::error::excerpt::Excerpt;
-use crate::gait::{At, Sample, Sampled, Touchdown, Touching};
+use crate::gait::{Sample, Sampled};
 use crate::read::table::{Carried, Header};
-use crate::state::{Defaults, State};
-use crate::write;
+use crate::state::Defaults;
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
-use std::io::{self, Read};
+use std::io::Read;
 
 /// How many states make a task.
 const STATES: usize = 16;
 
-/// The row that a state comes from.
+/// The row that a state comes from; for a touchdown the last one before it.
 #[derive(Debug, Clone, Default)]
-pub struct Origin {
+pub struct RowOrigin {
     /// Its line, from 1.
     pub line: usize,
     /// Its id.
@@ -28,86 +27,29 @@ pub struct Origin {
     pub excerpt: Option<Excerpt>,
 }
 
-/// A state of a recording, or its refusal.
-#[derive(Debug, Clone)]
-pub struct Recorded {
-    /// The row; for a touchdown the last one before it.
-    pub origin: Origin,
-    /// The state.
-    pub state: Result<State>,
-    /// How a touchdown was found.
-    pub touchdown: Option<Landing>,
-}
-
-/// How a touchdown was found; the fields are those of [`Touchdown`].
-#[derive(Debug, Clone)]
-#[allow(missing_docs, reason = "documented at their origin")]
-pub struct Landing {
-    pub row: usize,
-    pub time: f64,
-    pub striking: String,
-    pub shift_z: f64,
-}
-
-impl Landing {
-    /// As it stands in a result.
-    pub(super) fn record(&self, (at, touching): (At, Touching)) -> write::Touchdown<'_> {
-        let Self { row, time, striking, shift_z } = self;
-        let (at, touching) = (at.name(), touching.to_string());
-        write::Touchdown {
-            row: *row,
-            time: *time,
-            striking: striking.into(),
-            shift_z: *shift_z,
-            at: at.into(),
-            touching,
-        }
-    }
-}
-
-impl From<Sampled<Origin>> for Recorded {
-    fn from(sampled: Sampled<Origin>) -> Self {
-        let (origin, state) = match sampled {
-            Ok(Sample { source, state, .. }) => (source, Ok(state)),
-            Err((source, error)) => (source, Err(error)),
-        };
-        Self { origin, state, touchdown: None }
-    }
-}
-
-impl From<std::result::Result<Touchdown<Origin>, (Origin, Error)>> for Recorded {
-    fn from(found: std::result::Result<Touchdown<Origin>, (Origin, Error)>) -> Self {
-        match found {
-            Ok(Touchdown { state, row, time, striking, shift_z, source }) => {
-                let touchdown = Some(Landing { row, time, striking, shift_z });
-                Self { origin: source, state: Ok(state), touchdown }
-            }
-            Err((origin, error)) => Self { origin, state: Err(error), touchdown: None },
-        }
-    }
-}
-
 /// The rows of a table with their times. If reading fails, the last sample is refused with [`Reason::Io`].
 pub fn samples<'h, R: Read>(
     mut chunks: Chunks<R>,
     header: &'h Header,
     robot: &'h Robot,
     defaults: &'h Defaults,
-) -> impl Iterator<Item = Sampled<Origin>> {
+) -> impl Iterator<Item = Sampled<RowOrigin>> {
     let mut rows = header.rows();
-    let mut read = move |line: usize, record: &[u8]| match rows.row(record, line) {
-        Ok(None) => None,
-        Ok(Some(row)) => {
-            let source = Origin { line, id: row.id(), carried: row.carried(), excerpt: None };
-            let sample = || Ok((row.time()?, row.state(robot, defaults)?, row.spatial()?));
-            Some(match sample() {
-                Ok((time, state, spatial)) => Ok(Sample { time, state, rate_over: [time; 2], spatial, source }),
-                Err(error) => Err((Origin { excerpt: excerpt(record, line, &error), ..source }, error)),
-            })
-        }
-        Err(error) => {
-            let source = Origin { line, excerpt: excerpt(record, line, &error), ..Origin::default() };
-            Some(Err((source, error)))
+    let mut read = move |line: usize, record: &[u8]| {
+        let mut source = RowOrigin { line, ..RowOrigin::default() };
+        let sample = rows.row(record, line).and_then(|row| {
+            let Some(row) = row else { return Ok(None) };
+            (source.id, source.carried) = (row.id(), row.carried());
+            Ok(Some((row.time()?, row.state(robot, defaults)?, row.spatial()?)))
+        });
+        match sample.transpose()? {
+            Ok((time, state, spatial)) => {
+                Some(Ok(Sample { time, state, rate_over: [time; 2], spatial, landing: None, source }))
+            }
+            Err(error) => {
+                source.excerpt = error.location().and_then(|place| Excerpt::around(record, line, place));
+                Some(Err((source, error)))
+            }
         }
     };
     let chunks = std::iter::from_fn(move || chunks.record().transpose());
@@ -115,52 +57,43 @@ pub fn samples<'h, R: Read>(
         Ok(chunk) => {
             let mut samples: Vec<_> = chunk.records().filter_map(|(line, record)| read(line, record)).collect();
             let line = chunk.too_long;
-            samples.extend(line.map(|line| Err((Origin { line, ..Origin::default() }, too_long()))));
+            samples.extend(line.map(|line| Err((RowOrigin { line, ..RowOrigin::default() }, too_long()))));
             samples
         }
-        Err(error) => vec![Err((Origin::default(), Reason::Io(error.to_string()).into()))],
+        Err(error) => vec![Err((RowOrigin::default(), error))],
     })
-}
-
-/// The line of a record that an error is about.
-fn excerpt(record: &[u8], first: usize, error: &Error) -> Option<Excerpt> {
-    Excerpt::around(record, first, error.location()?)
 }
 
 /// States of a recording as tasks.
 #[derive(Debug)]
 pub struct Recording<I> {
-    states: I,
+    samples: I,
     /// Why the input ended early; reported after what came before.
-    broken: Option<String>,
+    broken: Option<Error>,
 }
 
-impl<I: Iterator<Item = Recorded> + Send> Recording<I> {
-    /// The tasks of `states`, which come from [`samples`].
-    pub fn new(states: I) -> Self {
-        Self { states, broken: None }
+impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<I> {
+    /// The tasks of `samples`, which come from [`samples`].
+    pub fn new(samples: I) -> Self {
+        Self { samples, broken: None }
     }
 }
 
-impl<I: Iterator<Item = Recorded> + Send> Source for Recording<I> {
-    type Task = Vec<Recorded>;
+impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Source for Recording<I> {
+    type Task = Vec<Sampled<RowOrigin>>;
 
-    fn next(&mut self) -> io::Result<Option<Vec<Recorded>>> {
+    fn next(&mut self) -> Result<Option<Self::Task>> {
         let mut task = Vec::new();
         while self.broken.is_none() && task.len() < STATES {
-            let Some(recorded) = self.states.next() else { break };
-            match recorded.state.as_ref().map_err(Error::reason) {
-                Err(Reason::Io(reason)) => self.broken = Some(reason.clone()),
-                _ => task.push(recorded),
+            match self.samples.next() {
+                None => break,
+                Some(Err((_, error))) if matches!(error.reason(), Reason::Io(_)) => self.broken = Some(error),
+                Some(sampled) => task.push(sampled),
             }
         }
         match &self.broken {
-            Some(reason) if task.is_empty() => Err(io::Error::other(reason.clone())),
+            Some(error) if task.is_empty() => Err(error.clone()),
             _ => Ok((!task.is_empty()).then_some(task)),
         }
-    }
-
-    fn keeps_waiting(&self) -> bool {
-        false
     }
 }

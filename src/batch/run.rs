@@ -1,7 +1,7 @@
 //! Answers the tasks of a source in several threads, and passes the answers on in order.
 //!
 //! ```text
-//!     Source --tasks--> threads, each with its own Answerer --blocks--┐
+//!     Source --tasks--> threads, each with its own answerer --blocks--┐
 //!        └─────────────────── places of the blocks ───────────────┴──> Sink, on the caller's thread
 //! ```
 //!
@@ -9,12 +9,11 @@
 //! second channel is bounded, and so is the memory. No answer depends on another: the bytes are those of one thread.
 
 use super::Summary;
-use crate::Error;
 use crate::draw::ListedKeyframe;
 use crate::error::excerpt::Excerpt;
-use std::io;
+use crate::{Error, Result};
 use std::sync::Mutex;
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
+use std::sync::mpsc::{Receiver, SendError, TryRecvError, channel, sync_channel};
 use std::thread::{self, Builder};
 
 /// Tasks in flight per thread.
@@ -25,20 +24,16 @@ pub trait Source: Send {
     /// Some records.
     type Task: Send;
 
-    /// The next records; `None` at the end.
+    /// The next records; `None` at the end. After an error this is not called again.
     ///
     /// # Errors
-    /// Those of reading; this is not called again then.
-    fn next(&mut self) -> io::Result<Option<Self::Task>>;
+    /// Those of reading.
+    fn next(&mut self) -> Result<Option<Self::Task>>;
 
     /// Whether the next records may take long to arrive.
-    fn keeps_waiting(&self) -> bool;
-}
-
-/// Answers tasks; each thread has its own.
-pub trait Answerer<T> {
-    /// Answers the records of a task.
-    fn answer(&mut self, task: T, block: &mut Block);
+    fn keeps_waiting(&self) -> bool {
+        false
+    }
 }
 
 /// The answers to a task.
@@ -63,43 +58,26 @@ pub struct RefusedRecord {
     pub excerpt: Option<Excerpt>,
 }
 
-/// Takes the answers in the order of the input.
+/// Takes the answers in the order of the input. A sink that cannot write ends the process: a source may wait for ever.
 pub trait Sink {
     /// Takes the next answers.
-    ///
-    /// # Errors
-    /// Those of writing; this is not called again then.
-    fn block(&mut self, block: Block) -> io::Result<()>;
+    fn block(&mut self, block: Block);
 
     /// Writes what is buffered: everything read so far is answered, and the input pauses or has ended.
-    ///
-    /// # Errors
-    /// As above.
-    fn idle(&mut self) -> io::Result<()>;
+    fn idle(&mut self);
 }
 
-/// Why not all records were answered.
-#[derive(Debug)]
-pub enum Broken {
-    /// The input could not be read further; what came before is answered.
-    Input(io::Error),
-    /// The sink could not take an answer.
-    Output(io::Error),
-}
-
-/// Answers all tasks of `source` in `threads` threads, each with an answerer that `answerer` makes; with one thread
-/// none is started.
-///
-/// If fewer threads can be started, these do the work. If the sink fails, this returns after the source's current call
-/// of `next`; with a source that may wait for ever, the sink must end the process itself.
+/// Answers all tasks of `source` in `threads` threads, each with what `answerer` makes; with one thread none is
+/// started. If fewer threads can be started, these do the work.
 ///
 /// # Errors
-/// Those of the source and the sink.
-pub fn run<S, F>(source: S, threads: usize, answerer: impl Fn() -> F + Sync, sink: &mut impl Sink) -> Result<(), Broken>
-where
-    S: Source,
-    F: Answerer<S::Task>,
-{
+/// Those of the source; what came before is answered.
+pub fn run<S: Source, F: FnMut(S::Task) -> Block>(
+    source: S,
+    threads: usize,
+    answerer: impl Fn() -> F + Sync,
+    sink: &mut impl Sink,
+) -> Result<()> {
     if threads > 1 {
         in_threads(source, threads, answerer, sink, |_| Builder::new())
     } else {
@@ -107,32 +85,27 @@ where
     }
 }
 
-fn alone<S: Source>(mut source: S, mut answerer: impl Answerer<S::Task>, sink: &mut impl Sink) -> Result<(), Broken> {
-    while let Some(task) = source.next().map_err(Broken::Input)? {
-        sink.block(answer(&mut answerer, task)).map_err(Broken::Output)?;
+fn alone<S: Source>(mut source: S, mut answer: impl FnMut(S::Task) -> Block, sink: &mut impl Sink) -> Result<()> {
+    while let Some(task) = source.next()? {
+        sink.block(answer(task));
         if source.keeps_waiting() {
-            sink.idle().map_err(Broken::Output)?;
+            sink.idle();
         }
     }
-    sink.idle().map_err(Broken::Output)
+    sink.idle();
+    Ok(())
 }
 
-/// A task, and the channel for its answer.
-type Job<T> = (T, SyncSender<Block>);
-
 /// Starts thread `k` by `builder(k)`, of which 0 reads.
-fn in_threads<S, F>(
+fn in_threads<S: Source, F: FnMut(S::Task) -> Block>(
     source: S,
     threads: usize,
     answerer: impl Fn() -> F + Sync,
     sink: &mut impl Sink,
     builder: impl Fn(usize) -> Builder,
-) -> Result<(), Broken>
-where
-    S: Source,
-    F: Answerer<S::Task>,
-{
-    let (jobs, queue) = channel::<Job<S::Task>>();
+) -> Result<()> {
+    // A job is a task and the channel for its answer.
+    let (jobs, queue) = channel();
     let (places, ordered) = sync_channel(AHEAD * threads);
     let queue = Mutex::new(queue);
     thread::scope(|scope| {
@@ -144,64 +117,52 @@ where
                 let (block, place) = sync_channel(1);
                 let task = task.map(|task| jobs.send((task, block)));
                 let ended = task.is_err();
-                // A send fails if the sink has failed.
+                // A send fails if the sink has panicked.
                 if places.send(task.map(|_| place)).is_err() || ended {
                     break;
                 }
             }
         };
         let work = || {
-            let mut answerer = answerer();
-            while let Some((task, block)) = next_job(&queue) {
-                if block.send(answer(&mut answerer, task)).is_err() {
+            let mut answer = answerer();
+            let next_job = || queue.lock().ok()?.recv().ok();
+            while let Some((task, block)) = next_job() {
+                if block.send(answer(task)).is_err() {
                     break;
                 }
             }
         };
         let reads = builder(0).spawn_scoped(scope, read).is_ok();
         let work = (1..=threads).map_while(|k| builder(k).spawn_scoped(scope, work).ok());
-        if reads && work.count() > 0 {
-            return match hand_over.send(source) {
-                Ok(()) => hand_on(ordered, sink),
-                // Unreachable: the reading thread waits for the source.
-                Err(refused) => alone(refused.0, answerer(), sink),
-            };
-        }
+        let source = match reads && work.count() > 0 {
+            true => hand_over.send(source).err().map(|SendError(source)| source),
+            false => Some(source),
+        };
         drop(hand_over);
-        alone(source, answerer(), sink)
+        match source {
+            None => hand_on(ordered, sink),
+            Some(source) => alone(source, answerer(), sink),
+        }
     })
 }
 
-/// The next job; `None` when the source has ended.
-fn next_job<T>(queue: &Mutex<Receiver<Job<T>>>) -> Option<Job<T>> {
-    queue.lock().ok()?.recv().ok()
-}
-
 /// Gives the sink the blocks in the order of their places.
-fn hand_on(ordered: Receiver<io::Result<Receiver<Block>>>, sink: &mut impl Sink) -> Result<(), Broken> {
+fn hand_on(ordered: Receiver<Result<Receiver<Block>>>, sink: &mut impl Sink) -> Result<()> {
     loop {
-        let place = match ordered.try_recv() {
-            Err(TryRecvError::Empty) => {
-                sink.idle().map_err(Broken::Output)?;
-                ordered.recv().ok()
+        let place = ordered.try_recv().or_else(|error| {
+            if error == TryRecvError::Empty {
+                sink.idle();
             }
-            place => place.ok(),
+            ordered.recv()
+        });
+        let Ok(place) = place else {
+            sink.idle();
+            return Ok(());
         };
-        let Some(place) = place else {
-            return sink.idle().map_err(Broken::Output);
-        };
-        match place.map_err(Broken::Input)?.recv() {
-            Ok(block) => sink.block(block).map_err(Broken::Output)?,
-            // Its thread has panicked, which the end of the scope passes on.
-            Err(_) => return Ok(()),
-        }
+        // A thread whose block is missing has panicked, which the end of the scope passes on.
+        let Ok(block) = place?.recv() else { return Ok(()) };
+        sink.block(block);
     }
-}
-
-fn answer<T>(answerer: &mut impl Answerer<T>, task: T) -> Block {
-    let mut block = Block::default();
-    answerer.answer(task, &mut block);
-    block
 }
 
 #[cfg(test)]
@@ -214,46 +175,30 @@ mod tests {
     impl Source for Numbers {
         type Task = u32;
 
-        fn next(&mut self) -> io::Result<Option<u32>> {
+        fn next(&mut self) -> Result<Option<u32>> {
             self.0 += 1;
             Ok((self.0 <= self.1).then_some(self.0 - 1))
-        }
-
-        fn keeps_waiting(&self) -> bool {
-            false
-        }
-    }
-
-    struct Lines;
-
-    impl Answerer<u32> for Lines {
-        fn answer(&mut self, task: u32, block: &mut Block) {
-            block.out.extend(format!("{task}\n").bytes());
         }
     }
 
     impl Sink for Vec<u8> {
-        fn block(&mut self, block: Block) -> io::Result<()> {
+        fn block(&mut self, block: Block) {
             self.extend(block.out);
-            Ok(())
         }
 
-        fn idle(&mut self) -> io::Result<()> {
-            Ok(())
-        }
+        fn idle(&mut self) {}
     }
 
     #[test]
     fn threads_that_cannot_be_started_are_done_without() {
         let expected: String = (0..100).map(|number| format!("{number}\n")).collect();
         for missing in [vec![], vec![3], vec![2, 3], vec![1, 2, 3], vec![0], vec![0, 1, 2, 3]] {
-            let builder = |thread| match missing.contains(&thread) {
-                // No system has room for such a stack.
-                true => Builder::new().stack_size(usize::MAX / 4),
-                false => Builder::new(),
-            };
+            // No system has room for such a stack.
+            let stack = |thread| if missing.contains(&thread) { usize::MAX / 4 } else { 1 << 20 };
+            let builder = |thread| Builder::new().stack_size(stack(thread));
             let mut written = Vec::new();
-            in_threads(Numbers(0, 100), 3, || Lines, &mut written, builder).unwrap();
+            let line = |task| Block { out: format!("{task}\n").into(), ..Block::default() };
+            in_threads(Numbers(0, 100), 3, || line, &mut written, builder).unwrap();
             assert_eq!(String::from_utf8(written).unwrap(), expected, "without {missing:?}");
         }
     }

@@ -44,17 +44,14 @@ pub struct Args {
     #[command(flatten)]
     contacts: ContactOptions,
     #[command(flatten)]
-    plot: PlotOptions,
+    plot: PlotOptions<false>,
     #[command(flatten)]
     output: OutputOptions,
 }
 
 pub(super) fn run(args: &Args) -> Completion {
     let budget = Budget { time: Duration::from_millis(args.time), ..Budget::default() };
-    args.plot.check()?;
-    let inputs: Vec<&Path> = [&args.robot, &args.state].into_iter().flatten().map(PathBuf::as_path).collect();
-    args.output.spare(&inputs)?;
-    args.plot.claim(&inputs, args.output.output.as_deref())?;
+    args.plot.claim(&[args.robot.as_ref(), args.state.as_ref()], args.output.path())?;
     let accuracy = match (&args.robot, &args.state) {
         (Some(robot), Some(state)) => own(args, robot, state, budget)?,
         _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, budget)?,
@@ -69,7 +66,7 @@ pub(super) fn run(args: &Args) -> Completion {
 }
 
 fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accuracy, Failure> {
-    let robot = RobotOptions::of_file(robot).load()?;
+    let robot = RobotOptions { robot: robot.to_owned(), ..RobotOptions::default() }.load()?;
     let input = InputFile::read(state, LARGEST)?;
     let document = only_document(&input)?;
     let state = State::from_json(document.text, &robot, &args.scene.defaults());

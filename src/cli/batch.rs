@@ -2,25 +2,23 @@
 
 use super::diagnostic::note;
 use super::options::{
-    ContactOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, from_zero, pipeline_options,
+    Choices, ContactOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, choice, from_zero,
+    pipeline_options,
 };
-use super::output::{apart, named, spare};
-use super::page::PageOptions;
-use super::progress::Progress;
+use super::output::{apart, create, named, spare};
+use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::sink::OutputSink;
-use super::{Answered, Completion, Failure, input};
+use super::{Answered, Completion, Failure, input, progress};
 use clap::ValueEnum;
-use heelstrike::batch::{self, Batch, Broken, Chunks, Question, Recorded, Recording, Summary};
-use heelstrike::draw::page::Gait;
+use heelstrike::batch::{self, Batch, Chunks, Question, Recording};
 use heelstrike::error::Location;
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::gait::{self, At, Difference, Dropped, Thresholds, Touching};
 use heelstrike::read::table::{Header, Rates};
-use heelstrike::state::{Defaults, NamedContact};
+use heelstrike::state::Defaults;
 use heelstrike::write::{self, Columns};
 use heelstrike::{Error, Reason, Robot};
-use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -64,10 +62,10 @@ pub struct Args {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     summary: Option<PathBuf>,
     #[command(flatten)]
-    plot: PageOptions,
+    plot: PlotOptions<true>,
     /// Whether refused states make the exit status 1
-    #[arg(long, value_name = "HOW", value_enum, default_value_t = OnRefused::Fail, help_heading = "Output")]
-    refused: OnRefused,
+    #[arg(long, value_name = "HOW", value_parser = choice(ON_REFUSED), default_value = "fail", help_heading = "Output")]
+    refused: Answered,
     #[command(flatten)]
     threads: ThreadOptions,
 }
@@ -86,8 +84,8 @@ struct RecordingOptions {
     #[arg(long)]
     touchdowns: bool,
     /// Which state of a touchdown is analyzed
-    #[arg(long, value_enum, default_value = "crossing", requires = "touchdowns")]
-    at: AtRow,
+    #[arg(long, value_parser = choice(ROWS), default_value = "crossing", requires = "touchdowns")]
+    at: At,
     /// Which other feet touch the ground at a touchdown: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
     ///
     /// With slow, the lowest point of every other body, if it is slower than SPEED (m/s) and its height differs from
@@ -102,9 +100,19 @@ struct RecordingOptions {
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
     ground_height: Option<f64>,
     /// Compute velocities from the positions and the column "time"
-    #[arg(long, value_enum, value_name = "HOW")]
-    velocity: Option<Velocity>,
+    #[arg(long, value_parser = choice(DIFFERENCES), value_name = "HOW")]
+    velocity: Option<Difference>,
 }
+
+const ROWS: Choices<At> = &[
+    ("crossing", "The state at the moment of contact, extrapolated from the rows before the impact", At::Crossing),
+    ("row", "The last row before that moment, shifted in z", At::Row),
+];
+
+const DIFFERENCES: Choices<Difference> = &[
+    ("central", "From the rows before and after", Difference::Central),
+    ("backward", "From the row before", Difference::Backward),
+];
 
 /// The format of an input or output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -116,29 +124,8 @@ enum RecordFormat {
     Csv,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum OnRefused {
-    /// The exit status is 1
-    Fail,
-    /// The exit status is 0
-    Ok,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum AtRow {
-    /// The state at the moment of contact, extrapolated from the rows before the impact
-    Crossing,
-    /// The last row before that moment, shifted in z
-    Row,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Velocity {
-    /// From the rows before and after
-    Central,
-    /// From the row before
-    Backward,
-}
+const ON_REFUSED: Choices<Answered> =
+    &[("fail", "The exit status is 1", Answered::NotAll), ("ok", "The exit status is 0", Answered::All)];
 
 impl RecordFormat {
     fn of(path: &Path) -> Self {
@@ -146,75 +133,50 @@ impl RecordFormat {
     }
 }
 
-impl RecordingOptions {
-    fn touchdowns(&self) -> Option<(At, Touching)> {
-        let at = match self.at {
-            AtRow::Crossing => At::Crossing,
-            AtRow::Row => At::Row,
-        };
-        self.touchdowns.then_some((at, self.touching))
-    }
-
-    fn thresholds(&self, robot: &Robot, feet: &[NamedContact]) -> Thresholds {
-        let usual = Thresholds::of(robot, feet);
-        let (drop, ground) = (self.drop.unwrap_or(usual.drop), self.ground_height.unwrap_or(usual.ground));
-        Thresholds { drop, ground, ..usual }
-    }
-
-    fn difference(&self) -> Option<Difference> {
-        self.velocity.map(|velocity| match velocity {
-            Velocity::Central => Difference::Central,
-            Velocity::Backward => Difference::Backward,
-        })
-    }
-}
-
 pub(super) fn run(args: &Args) -> Completion {
-    args.plot.check()?;
-    let inputs = [Some(&args.robot.robot), Some(&args.states), args.loops.loops.as_ref()];
-    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    spare(args.output.as_deref(), &inputs)?;
-    args.summary.as_deref().map_or(Ok(()), |summary| spare(Some(summary), &inputs))?;
-    if args.summary.as_deref() == Some(Path::new("-")) {
-        let reason =
-            "standard output holds the results alone, and standard error has the summary for people".to_owned();
-        return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).at("--summary").hint("name a file")));
-    }
     let (output, summary) = (args.output.as_deref(), args.summary.as_deref());
-    apart([("results", output), ("summary", summary)], "--summary")?;
-    if summary.is_some() {
-        apart([("summary", summary), ("picture", args.plot.path())], "--plot")?;
-    }
+    let inputs = [Some(&args.robot.robot), Some(&args.states), args.loops.loops.as_ref()];
     args.plot.claim(&inputs, output)?;
+    if let Some(summary) = summary {
+        spare(Some(summary), &inputs)?;
+        if summary == Path::new("-") {
+            let reason = "standard output holds the results alone, and standard error has the summary for people";
+            let error = Error::new(Reason::Inconsistent(reason.to_owned())).at("--summary");
+            return Err(Failure::Usage(error.hint("name a file")));
+        }
+        apart([("results", output), ("summary", Some(summary))], "--summary")?;
+        apart([("summary", Some(summary)), ("picture", args.plot.path())], "--plot")?;
+    }
     let robot = args.robot.load()?;
     let feet = args.robot.feet(&robot)?;
     let name = input::name(&args.states);
-    let progress = Progress::over(&args.states, args.output.is_some());
-    let states = progress.watch(input::stream(&args.states)?);
+    let in_input = |error: Error| error.in_file(&name);
+    let progress = progress::over(&args.states, args.output.is_some());
+    let states: Box<dyn Read + Send> = Box::new(progress.wrap_read(input::stream(&args.states)?));
     let mut chunks = match args.input_format.unwrap_or_else(|| RecordFormat::of(&args.states)) {
         RecordFormat::Ndjson => Chunks::of_lines(states),
         RecordFormat::Csv => Chunks::of_table(states),
     };
-    let foreign = chunks.foreign().map_err(|error| input::cannot_read(&args.states, &error))?;
-    foreign.map_or(Ok(()), |error| Err(error.in_file(&name)))?;
+    chunks.check_format().map_err(in_input)?;
     let header = args.header(&robot, &mut chunks)?;
-    let output_format =
-        args.output_format.unwrap_or_else(|| args.output.as_deref().map_or(RecordFormat::Ndjson, RecordFormat::of));
+    let output_format = args.output_format.unwrap_or_else(|| output.map_or(RecordFormat::Ndjson, RecordFormat::of));
     let detail = args.detail.detail();
     if output_format == RecordFormat::Csv && (detail.explain || detail.matrices || detail.brief) {
         let reason = "a table has a row per outcome and no room for --explain, --matrices or --brief".to_owned();
         let hint = "write JSON: --output-format ndjson, or -o with that ending";
         return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
     }
-    let touchdowns = args.recording.touchdowns();
-    if let Some((at, touching)) = touchdowns {
+    let RecordingOptions { touchdowns, at, touching, drop: least, ground_height, velocity } = args.recording;
+    let usual = Thresholds::of(&robot, &feet);
+    let (least, ground) = (least.unwrap_or(usual.drop), ground_height.unwrap_or(usual.ground));
+    let thresholds = Thresholds { drop: least, ground, ..usual };
+    if touchdowns {
         // Before any file is replaced: does this robot have feet to look for?
         let none = std::iter::empty::<gait::Sampled<()>>();
         let refused = gait::find(none, &robot, &feet, at, touching).err();
         refused.map_or(Ok(()), |error| Err(error.in_file(input::name(&args.robot.robot))))?;
     }
-    let thresholds = args.recording.thresholds(&robot, &feet);
-    let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns.is_some());
+    let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns);
     let columns = (output_format == RecordFormat::Csv).then(columns);
     let question = Question {
         robot: &robot,
@@ -223,37 +185,88 @@ pub(super) fn run(args: &Args) -> Completion {
         detail,
         header: header.as_ref(),
         columns: columns.as_ref(),
-        touchdowns,
-        keyframes: args.plot.is_asked(),
+        keyframes: args.plot.path().is_some(),
     };
     // Created before the work, which would otherwise be lost.
-    let summary = args.summary.as_deref().map(|path| File::create(path).map_err(|error| named(path, error)));
-    let summary = summary.transpose()?;
-
-    let mut sink = OutputSink::new(args.open()?, &name, &progress);
+    let summary_file = create(summary)?;
+    let mut sink = OutputSink::new(open(output)?, &name, &progress);
     if let Some(columns) = &columns {
         let mut line = Vec::new();
         columns.append_header(&mut line);
         sink.write(&line)?;
     }
+
     let dropped = Mutex::new(Dropped::default());
-    args.answer(&question, chunks, thresholds, &dropped, &mut sink)?;
-    let summary_of_all = std::mem::take(&mut sink.summary);
-    let gait = std::mem::take(&mut sink.gait);
-    drop(sink);
-    drop(progress);
-    header.as_ref().inspect(|header| note_columns(header, &dropped));
-    args.report(&summary_of_all, summary, thresholds)?;
-    args.draw(&gait, &robot)?;
-    Ok(if summary_of_all.refused == 0 || args.refused == OnRefused::Ok { Answered::All } else { Answered::NotAll })
+    let threads = args.threads.count();
+    let batch = || Batch::new(&question);
+    match question.header.filter(|_| args.recording.is_in_order()) {
+        Some(header) => {
+            let samples = batch::samples(chunks, header, &robot, &question.defaults);
+            let mut samples: Box<dyn Iterator<Item = _> + Send> = Box::new(samples);
+            if header.is_spatial() {
+                samples = Box::new(gait::sagittal(samples, &dropped));
+            }
+            if let Some(difference) = velocity {
+                samples = Box::new(gait::rates(samples, difference));
+            }
+            if touchdowns {
+                samples = Box::new(gait::find(samples, &robot, &question.options.feet, at, touching)?.with(thresholds));
+            }
+            let answerer = || {
+                let mut batch = batch();
+                move |samples| batch.samples(samples)
+            };
+            batch::run(Recording::new(samples), threads, answerer, &mut sink)
+        }
+        None => {
+            let answerer = || {
+                let mut batch = batch();
+                move |chunk| batch.records(&chunk)
+            };
+            batch::run(chunks, threads, answerer, &mut sink)
+        }
+    }
+    .map_err(in_input)?;
+    let OutputSink { summary: counts, gait, .. } = sink;
+    progress.finish_and_clear();
+
+    if let Some(header) = &header {
+        note_columns(header, &dropped);
+    }
+    // A failure to write to standard error cannot be reported anywhere.
+    let _ = match counts.states {
+        0 if touchdowns => writeln!(
+            io::stderr(),
+            "no touchdown found: a foot must descend {least:.4} m or more, faster than {:.4} m/s, to at most {ground:.4} m \
+             above the ground (see --drop, --ground-height)",
+            thresholds.slow
+        ),
+        0 | 1 if summary.is_none() => Ok(()),
+        _ => write!(io::stderr(), "{counts}"),
+    };
+    if let (Some(mut file), Some(path)) = (summary_file, summary) {
+        let mut line = Vec::new();
+        write::append_line(&mut line, &counts);
+        file.write_all(&line).map_err(|error| named(path, error))?;
+    }
+    if args.plot.path().is_some() {
+        let page = |rendered| gait.page(&robot.name, rendered);
+        args.plot.draw_or_page(&gait.picture(&robot.name), "the input holds no states", page)?;
+    }
+    Ok(if counts.refused == 0 { Answered::All } else { args.refused })
 }
 
-type Input = Chunks<Box<dyn Read + Send>>;
+impl RecordingOptions {
+    /// Whether rows depend on each other.
+    fn is_in_order(&self) -> bool {
+        self.touchdowns || self.velocity.is_some()
+    }
+}
 
 impl Args {
     /// The columns of a table; `None` for lines of JSON and for an empty table.
-    fn header(&self, robot: &Robot, chunks: &mut Input) -> Result<Option<Header>, Failure> {
-        let in_order = self.recording.touchdowns || self.recording.velocity.is_some();
+    fn header(&self, robot: &Robot, chunks: &mut Chunks<impl Read>) -> Result<Option<Header>, Failure> {
+        let in_order = self.recording.is_in_order();
         if !chunks.is_table() {
             if in_order {
                 let reason = "touchdowns and velocities over time need a table".to_owned();
@@ -263,10 +276,8 @@ impl Args {
             return Ok(None);
         }
         let name = input::name(&self.states);
-        let first = chunks.first().map_err(|error| input::cannot_read(&self.states, &error))?;
         // A table without any line has no states, like lines of JSON.
-        let Some(first) = first else { return Ok(None) };
-        let (line, record) = first.map_err(|error| error.in_file(&name))?;
+        let Some((line, record)) = chunks.first().map_err(|error| error.in_file(&name))? else { return Ok(None) };
         let rates = if self.recording.velocity.is_some() { Rates::Time } else { Rates::Columns };
         let header = Header::read(&record, robot, rates).map_err(|error| {
             let place = error.location().unwrap_or(Location { line: 1, column: 1 });
@@ -279,84 +290,6 @@ impl Args {
             return Err(missing.in_file(name).hint("touchdowns need the time of each row").into());
         }
         Ok(Some(header))
-    }
-
-    /// Opens the output without a buffer; blocks of results are large enough.
-    fn open(&self) -> io::Result<Box<dyn Write>> {
-        match self.output.as_ref().filter(|path| path.as_os_str() != "-") {
-            Some(path) => Ok(Box::new(File::create(path).map_err(|error| named(path, error))?)),
-            None => standard_output(),
-        }
-    }
-
-    fn answer<W: Write>(
-        &self,
-        question: &Question,
-        chunks: Input,
-        thresholds: Thresholds,
-        dropped: &Mutex<Dropped>,
-        sink: &mut OutputSink<W>,
-    ) -> Result<(), Failure> {
-        let threads = self.threads.count();
-        let form = || Batch::new(question);
-        let ended = match (question.header, self.recording.difference(), question.touchdowns) {
-            (Some(header), difference, touchdowns) if difference.is_some() || touchdowns.is_some() => {
-                let samples = batch::samples(chunks, header, question.robot, &question.defaults);
-                let samples: Box<dyn Iterator<Item = _> + Send> = match header.is_spatial() {
-                    true => Box::new(gait::sagittal(samples, dropped)),
-                    false => Box::new(samples),
-                };
-                let samples: Box<dyn Iterator<Item = _> + Send> = match difference {
-                    Some(difference) => Box::new(gait::rates(samples, difference)),
-                    None => samples,
-                };
-                let states: Box<dyn Iterator<Item = Recorded> + Send> = match touchdowns {
-                    Some((at, touching)) => {
-                        let feet = &question.options.feet;
-                        let found = gait::find(samples, question.robot, feet, at, touching);
-                        let found = found.map_err(|error| error.in_file(input::name(&self.robot.robot)))?;
-                        Box::new(found.with(thresholds).map(Recorded::from))
-                    }
-                    None => Box::new(samples.map(Recorded::from)),
-                };
-                batch::run(Recording::new(states), threads, form, sink)
-            }
-            _ => batch::run(chunks, threads, form, sink),
-        };
-        ended.map_err(|broken| match broken {
-            Broken::Input(error) => Failure::Refused(input::cannot_read(&self.states, &error)),
-            Broken::Output(error) => Failure::Output(error),
-        })
-    }
-
-    /// Draws the margins or writes the page, if requested.
-    fn draw(&self, gait: &Gait, robot: &Robot) -> Result<(), Failure> {
-        if !self.plot.is_asked() {
-            return Ok(());
-        }
-        let page = |rendered| gait.page(&robot.name, rendered);
-        self.plot.draw(&gait.picture(&robot.name), "the input holds no states", page)
-    }
-
-    /// Writes the summary to standard error, for more than one state or if a file is requested, and to that file.
-    fn report(&self, summary: &Summary, file: Option<File>, thresholds: Thresholds) -> io::Result<()> {
-        if self.recording.touchdowns && summary.states == 0 {
-            let Thresholds { drop, slow, ground, .. } = thresholds;
-            // A failure to write to standard error cannot be reported anywhere.
-            let _ = writeln!(
-                io::stderr(),
-                "no touchdown found: a foot must descend {drop:.4} m or more, faster than {slow:.4} m/s, to at most \
-                 {ground:.4} m above the ground (see --drop, --ground-height)",
-            );
-        } else if summary.states > 1 || file.is_some() {
-            let _ = write!(io::stderr(), "{summary}");
-        }
-        if let (Some(mut file), Some(path)) = (file, &self.summary) {
-            let mut line = Vec::new();
-            write::append_line(&mut line, summary);
-            file.write_all(&line).map_err(|error| named(path, error))?;
-        }
-        Ok(())
     }
 }
 
@@ -375,14 +308,17 @@ fn note_columns(header: &Header, dropped: &Mutex<Dropped>) {
     }
 }
 
-/// Standard output without the line buffer of std, which would hide how much reached a full disk.
-#[cfg(unix)]
-fn standard_output() -> io::Result<Box<dyn Write>> {
-    use std::os::fd::AsFd;
-    Ok(Box::new(File::from(io::stdout().as_fd().try_clone_to_owned()?)))
-}
-
-#[cfg(not(unix))]
-fn standard_output() -> io::Result<Box<dyn Write>> {
+/// Opens the output without a buffer; blocks of results are large enough, and std's line buffer would hide how much
+/// reached a full disk.
+fn open(path: Option<&Path>) -> io::Result<Box<dyn Write>> {
+    if let Some(file) = create(path)? {
+        return Ok(Box::new(file));
+    }
+    #[cfg(unix)]
+    {
+        let standard_output = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
+        Ok(Box::new(std::fs::File::from(standard_output)))
+    }
+    #[cfg(not(unix))]
     Ok(Box::new(io::stdout()))
 }

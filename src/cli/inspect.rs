@@ -18,21 +18,19 @@ pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,
     #[command(flatten)]
-    plot: PlotOptions,
+    plot: PlotOptions<false>,
     #[command(flatten)]
     output: OutputOptions,
 }
 
 pub(super) fn run(args: &Args) -> Completion {
-    args.plot.check()?;
+    args.plot.claim(&[Some(&args.robot.robot)], args.output.path())?;
     // Its cautions are part of the output.
     let mut robot = args.robot.read()?;
     robot.reading.cautions.iter_mut().for_each(|caution| *caution = with_flags(caution));
     let feet = args.robot.feet(&robot)?;
     let inspection = Inspection::new(&robot, &feet);
-    args.output.spare(&[&args.robot.robot])?;
-    args.plot.claim(&[&args.robot.robot], args.output.output.as_deref())?;
-    if args.plot.is_asked() {
+    if args.plot.path().is_some() {
         args.plot.draw(&drawing::picture::robot(&robot, &feet), "the robot has no place in the plane")?;
     }
     args.output.write(&inspection, |palette| with_flags(&inspection.text(palette)))

@@ -8,7 +8,6 @@ mod progress;
 mod input;
 mod output;
 mod picture;
-mod page;
 mod options;
 mod meshes;
 mod robot;

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::input::InputFile;
-use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use heelstrike::Robot;
 use heelstrike::law::Friction;
 use heelstrike::pipeline;
@@ -89,47 +89,41 @@ impl DetailOptions {
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct ReductionOptions {
     /// Skip no computation that the scene does not need, or only these not; the outcomes are the same
-    #[arg(long, value_name = "WHICH", value_enum, num_args = 0.., require_equals = true, value_delimiter = ',')]
-    no_reduction: Option<Vec<Part>>,
+    #[arg(long, value_name = "WHICH", value_parser = choice(REDUCTIONS), num_args = 0.., require_equals = true)]
+    #[arg(value_delimiter = ',')]
+    no_reduction: Option<Vec<fn(&mut Reductions)>>,
 }
 
-/// A reduction.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Part {
-    /// Links on fixed and held joints are merged into their parents
-    Weld,
-    /// Massless links without shapes on such joints vanish
-    Massless,
-    /// Joints that a state holds have no column
-    Held,
-    /// Shapes too high to reach the ground are skipped
-    Reach,
-    /// The modes of a contact without friction share one elimination
-    Frictionless,
-    /// The condition of a lone contact is taken in closed form
-    Lone,
-}
+const REDUCTIONS: Choices<fn(&mut Reductions)> = &[
+    ("weld", "Links on fixed and held joints are merged into their parents", |all| all.weld = false),
+    ("massless", "Massless links without shapes on such joints vanish", |all| all.massless = false),
+    ("held", "Joints that a state holds have no column", |all| all.held = false),
+    ("reach", "Shapes too high to reach the ground are skipped", |all| all.reach = false),
+    ("frictionless", "The modes of a contact without friction share one elimination", |all| all.frictionless = false),
+    ("lone", "The condition of a lone contact is taken in closed form", |all| all.lone = false),
+];
 
 impl ReductionOptions {
     pub fn reductions(&self) -> Reductions {
         let parts = match self.no_reduction.as_deref() {
-            None => return Reductions::ALL,
             Some([]) => return Reductions::NONE,
-            Some(parts) => parts,
+            parts => parts.unwrap_or_default(),
         };
         let mut reductions = Reductions::ALL;
-        for part in parts {
-            *match part {
-                Part::Weld => &mut reductions.weld,
-                Part::Massless => &mut reductions.massless,
-                Part::Held => &mut reductions.held,
-                Part::Reach => &mut reductions.reach,
-                Part::Frictionless => &mut reductions.frictionless,
-                Part::Lone => &mut reductions.lone,
-            } = false;
-        }
+        parts.iter().for_each(|skip| skip(&mut reductions));
         reductions
     }
+}
+
+/// The values that an option may have: name, help and meaning of each.
+pub(super) type Choices<T> = &'static [(&'static str, &'static str, T)];
+
+/// Reads one of these names.
+pub(super) fn choice<T: Copy + Send + Sync + 'static>(choices: Choices<T>) -> impl TypedValueParser<Value = T> {
+    let values = choices.iter().map(|(name, help, _)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(values).try_map(|given| {
+        choices.iter().find(|(name, ..)| *name == given).map(|(.., value)| *value).ok_or("expected one of its values")
+    })
 }
 
 /// How many threads compute.

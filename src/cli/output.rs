@@ -1,6 +1,7 @@
 //! Standard output or a file, as text or JSON.
 
 use super::{Answered, Completion, Failure};
+use anstream::{AutoStream, ColorChoice};
 use heelstrike::write::{self, Palette};
 use heelstrike::{Error, Reason};
 use serde::Serialize;
@@ -14,10 +15,10 @@ use std::path::{Path, PathBuf};
 pub(super) struct OutputOptions {
     /// Text for people, or JSON, one line per result [default: by the output's ending, else text]
     #[arg(long, value_enum)]
-    pub format: Option<Format>,
+    format: Option<Format>,
     /// Write to this file, which is replaced; .json and .ndjson mean JSON
     #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    output: Option<PathBuf>,
 }
 
 /// The form of a result.
@@ -40,12 +41,9 @@ impl OutputOptions {
         self.format.or_else(|| self.output.as_ref().and_then(by_ending))
     }
 
-    /// Opens the output.
-    ///
-    /// # Errors
-    /// Whatever keeps the file from being created.
-    pub fn open(&self) -> io::Result<Output> {
-        Output::open(self.output.as_deref())
+    /// The file; `None` for standard output.
+    pub fn path(&self) -> Option<&Path> {
+        self.output.as_deref()
     }
 
     /// Writes the one result of a command, as text unless JSON is chosen.
@@ -53,26 +51,13 @@ impl OutputOptions {
     /// # Errors
     /// [`Failure::Output`].
     pub fn write(&self, result: &impl Serialize, text: impl FnOnce(&Palette) -> String) -> Completion {
-        let output = self.open()?;
-        match self.chosen().unwrap_or(Format::Text) {
-            Format::Text => {
-                let text = text(output.palette());
-                output.finish(text.as_bytes())
-            }
-            Format::Json => {
-                let mut line = Vec::new();
-                write::append_line(&mut line, result);
-                output.finish(&line)
-            }
+        let output = Output::open(self.path())?;
+        let mut bytes = Vec::new();
+        match self.chosen() {
+            Some(Format::Json) => write::append_line(&mut bytes, result),
+            Some(Format::Text) | None => bytes.extend(text(&output.palette).bytes()),
         }
-    }
-
-    /// Refuses to write over what is being read.
-    ///
-    /// # Errors
-    /// [`Reason::Io`], naming the file.
-    pub fn spare(&self, inputs: &[&Path]) -> heelstrike::Result<()> {
-        spare(self.output.as_deref(), inputs)
+        output.finish(&bytes)
     }
 }
 
@@ -81,10 +66,10 @@ impl OutputOptions {
 ///
 /// # Errors
 /// [`Reason::Io`], naming the file.
-pub(super) fn spare(output: Option<&Path>, inputs: &[&Path]) -> heelstrike::Result<()> {
+pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> heelstrike::Result<()> {
     let output = output.unwrap_or(Path::new("-"));
     let Some(written) = file_of(output, io::stdout()) else { return Ok(()) };
-    if inputs.iter().all(|input| file_of(input, io::stdin()).as_ref() != Some(&written)) {
+    if inputs.iter().flatten().all(|input| file_of(input, io::stdin()).as_ref() != Some(&written)) {
         return Ok(());
     }
     let reason = Reason::Io("is an input of this command, and the output would replace it".into());
@@ -145,10 +130,20 @@ fn file_of<S>(path: &Path, _standard: S) -> Option<PathBuf> {
     path.canonicalize().ok().filter(|path| path.is_file())
 }
 
+/// Creates the file of that path; `None` for standard output.
+///
+/// # Errors
+/// Whatever keeps the file from being created.
+pub(super) fn create(path: Option<&Path>) -> io::Result<Option<File>> {
+    let path = path.filter(|path| *path != Path::new("-"));
+    path.map(|path| File::create(path).map_err(|error| named(path, error))).transpose()
+}
+
 /// A buffered output; standard output is colored if it is a terminal that wants colors.
 pub(super) struct Output {
-    writer: BufWriter<Box<dyn Write>>,
-    palette: Palette,
+    pub writer: BufWriter<Box<dyn Write>>,
+    /// How text is marked here.
+    pub palette: Palette,
 }
 
 impl Output {
@@ -157,16 +152,10 @@ impl Output {
     /// # Errors
     /// Whatever keeps the file from being created.
     pub fn open(path: Option<&Path>) -> io::Result<Self> {
-        let (writer, palette): (Box<dyn Write>, _) = match path.filter(|path| path.as_os_str() != "-") {
-            Some(path) => (Box::new(File::create(path).map_err(|error| named(path, error))?), Palette::default()),
-            None => {
-                let stdout = io::stdout();
-                let palette = match anstream::AutoStream::choice(&stdout) {
-                    anstream::ColorChoice::Never => Palette::default(),
-                    _ => COLORS,
-                };
-                (Box::new(stdout.lock()), palette)
-            }
+        let (writer, palette): (Box<dyn Write>, _) = match (create(path)?, AutoStream::choice(&io::stdout())) {
+            (Some(file), _) => (Box::new(file), Palette::default()),
+            (None, ColorChoice::Never) => (Box::new(io::stdout().lock()), Palette::default()),
+            (None, _) => (Box::new(io::stdout().lock()), COLORS),
         };
         Ok(Self { writer: BufWriter::with_capacity(1 << 16, writer), palette })
     }
@@ -176,23 +165,9 @@ impl Output {
     /// # Errors
     /// [`Failure::Output`].
     pub fn finish(mut self, bytes: &[u8]) -> Completion {
-        self.write_all(bytes)?;
-        self.flush()?;
+        self.writer.write_all(bytes)?;
+        self.writer.flush()?;
         Ok(Answered::All)
-    }
-
-    /// How text is marked here.
-    pub fn palette(&self) -> &Palette {
-        &self.palette
-    }
-}
-
-impl Write for Output {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.writer.write(bytes)
-    }
-    fn flush(&mut self) -> io::Result<()> {
-        self.writer.flush()
     }
 }
 

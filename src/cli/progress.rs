@@ -1,71 +1,26 @@
 //! A progress bar for long inputs and sweeps, shown on a terminal.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{self, IsTerminal, Read};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
+use std::io::{self, IsTerminal};
 use std::path::Path;
 
-/// A bar on standard error, or nothing.
-pub(super) struct Progress(Option<ProgressBar>);
-
-impl Progress {
-    /// A bar for the bytes of `input`, if it is a file, standard error is a terminal, and the results go elsewhere: to
-    /// standard output unless `to_a_file`.
-    pub fn over(input: &Path, to_a_file: bool) -> Self {
-        let watched = io::stderr().is_terminal() && (to_a_file || !io::stdout().is_terminal());
-        let file = if watched { std::fs::metadata(input).ok().filter(std::fs::Metadata::is_file) } else { None };
-        Self(file.map(|file| bar(file.len(), "{wide_bar} {percent}% of {total_bytes}, {eta} left")))
-    }
-
-    /// A bar for so many pieces of work, if standard error is a terminal.
-    pub fn of(pieces: u64) -> Self {
-        Self(io::stderr().is_terminal().then(|| bar(pieces, "{wide_bar} {percent}%, {eta} left")))
-    }
-
-    /// Adds so many pieces.
-    pub fn expect(&self, pieces: u64) {
-        if let Some(bar) = &self.0 {
-            bar.inc_length(pieces);
-        }
-    }
-
-    /// Counts one piece as done.
-    pub fn step(&self) {
-        if let Some(bar) = &self.0 {
-            bar.inc(1);
-        }
-    }
-
-    /// The same input, watched.
-    pub fn watch(&self, input: Box<dyn Read + Send>) -> Box<dyn Read + Send> {
-        match &self.0 {
-            Some(bar) => Box::new(bar.wrap_read(input)),
-            None => input,
-        }
-    }
-
-    /// Writes to standard error without touching the bar.
-    pub fn suspended<T>(&self, write: impl FnOnce() -> T) -> T {
-        match &self.0 {
-            Some(bar) => bar.suspend(write),
-            None => write(),
-        }
-    }
-
-    /// Removes the bar.
-    pub fn clear(&self) {
-        if let Some(bar) = &self.0 {
-            bar.finish_and_clear();
-        }
-    }
+/// A bar for the bytes of `input`, if it is a file, standard error is a terminal, and the results go elsewhere: to
+/// standard output unless `to_a_file`; else one that is hidden.
+pub(super) fn over(input: &Path, to_a_file: bool) -> ProgressBar {
+    let watched = to_a_file || !io::stdout().is_terminal();
+    let file = if watched { std::fs::metadata(input).ok().filter(std::fs::Metadata::is_file) } else { None };
+    bar(file.map(|file| file.len()), "{wide_bar} {percent}% of {total_bytes}, {eta} left")
 }
 
-fn bar(length: u64, parts: &str) -> ProgressBar {
+/// A bar for so many pieces of work, if standard error is a terminal.
+pub(super) fn of(pieces: usize) -> ProgressBar {
+    bar(Some(pieces as u64), "{wide_bar} {percent}%, {eta} left")
+}
+
+/// It is removed when the last handle to it is dropped.
+fn bar(length: Option<u64>, parts: &str) -> ProgressBar {
+    let Some(length) = length.filter(|_| io::stderr().is_terminal()) else { return ProgressBar::hidden() };
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
+    let bar = bar.with_finish(ProgressFinish::AndClear);
     bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        self.clear();
-    }
 }

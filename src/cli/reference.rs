@@ -1,5 +1,6 @@
 //! `heelstrike schema`, `completions` and `man`: descriptions of the tool and its data.
 
+use super::options::{Choices, choice};
 use super::output::Output;
 use super::{Cli, Completion, Failure};
 use clap::{Command, CommandFactory};
@@ -7,6 +8,7 @@ use clap_complete::Shell;
 use clap_mangen::Man;
 use heelstrike::write::schema;
 use heelstrike::{Error, Reason};
+use serde_json::Value;
 
 /// Write the JSON Schema of a state, a result, a problem, a study, its sweep or a report on accuracy
 #[derive(Debug, clap::Args)]
@@ -16,37 +18,21 @@ Examples:
   heelstrike schema result > result.schema.json")]
 pub struct SchemaArgs {
     /// What the schema is of
-    #[arg(value_enum)]
-    of: Document,
+    #[arg(value_parser = choice(SCHEMAS))]
+    of: fn() -> Value,
 }
 
-/// What there are schemas of.
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum Document {
-    /// What `impact` and `batch` read
-    State,
-    /// A line of what `impact`, `batch` and `solve` write as JSON
-    Result,
-    /// What `solve` reads
-    Problem,
-    /// What `sweep` reads
-    Study,
-    /// What `sweep` writes as JSON
-    Sweep,
-    /// What `accuracy` writes as JSON
-    Accuracy,
-}
+const SCHEMAS: Choices<fn() -> Value> = &[
+    ("state", "What `impact` and `batch` read", schema::state),
+    ("result", "A line of what `impact`, `batch` and `solve` write as JSON", schema::result),
+    ("problem", "What `solve` reads", schema::problem),
+    ("study", "What `sweep` reads", schema::study),
+    ("sweep", "What `sweep` writes as JSON", schema::sweep),
+    ("accuracy", "What `accuracy` writes as JSON", schema::accuracy),
+];
 
 pub(super) fn schema(args: &SchemaArgs) -> Completion {
-    let schema = match args.of {
-        Document::State => schema::state(),
-        Document::Result => schema::result(),
-        Document::Problem => schema::problem(),
-        Document::Study => schema::study(),
-        Document::Sweep => schema::sweep(),
-        Document::Accuracy => schema::accuracy(),
-    };
-    Output::open(None)?.finish(format!("{schema:#}\n").as_bytes())
+    Output::open(None)?.finish(format!("{:#}\n", (args.of)()).as_bytes())
 }
 
 /// Write a shell's completions of commands and options
@@ -86,15 +72,13 @@ pub(super) fn man(args: &ManArgs) -> Completion {
     tool.build();
     let command = match &args.page {
         None => &tool,
-        Some(page) => tool.find_subcommand(page).ok_or_else(|| unknown(page, &tool))?,
+        Some(page) => tool.find_subcommand(page).ok_or_else(|| {
+            let reason = Reason::Inconsistent(format!("there is no command \"{page}\""));
+            Failure::Usage(Error::new(reason).did_you_mean(page, tool.get_subcommands().map(Command::get_name)))
+        })?,
     };
     let title = command.get_display_name().unwrap_or("heelstrike").to_owned();
     let mut page = Vec::new();
     Man::new(command.clone()).title(title.to_uppercase()).render(&mut page)?;
     Output::open(None)?.finish(&page)
-}
-
-fn unknown(page: &str, tool: &Command) -> Failure {
-    let reason = Reason::Inconsistent(format!("there is no command \"{page}\""));
-    Failure::Usage(Error::new(reason).did_you_mean(page, tool.get_subcommands().map(Command::get_name)))
 }

@@ -1,10 +1,10 @@
 //! The sink of a batch: results go to the output, refusals to standard error, counts to the summary.
 
-use super::diagnostic::report_with;
-use super::progress::Progress;
+use super::diagnostic::{note, report_with};
 use super::{Failure, status};
 use heelstrike::batch::{Block, RefusedRecord, Sink, Summary};
 use heelstrike::draw::page::Gait;
+use indicatif::ProgressBar;
 use std::io::{self, ErrorKind, Write};
 
 /// How many refusals are reported on standard error; the output has all of them.
@@ -15,7 +15,7 @@ pub(super) struct OutputSink<'a, W> {
     output: W,
     /// The name of the input in messages.
     input: &'a str,
-    progress: &'a Progress,
+    progress: &'a ProgressBar,
     /// The summary of all states so far.
     pub summary: Summary,
     /// The states for a page, if one is requested.
@@ -27,7 +27,7 @@ pub(super) struct OutputSink<'a, W> {
 
 impl<'a, W: Write> OutputSink<'a, W> {
     /// Answers to `input` go to `output`, which must not buffer, so that the number of written lines is known.
-    pub fn new(output: W, input: &'a str, progress: &'a Progress) -> Self {
+    pub fn new(output: W, input: &'a str, progress: &'a ProgressBar) -> Self {
         Self { output, input, progress, summary: Summary::default(), gait: Gait::default(), refused: 0, lines: 0 }
     }
 
@@ -61,36 +61,29 @@ impl<'a, W: Write> OutputSink<'a, W> {
     fn report(&mut self, RefusedRecord { error, excerpt }: RefusedRecord) {
         self.refused += 1;
         if self.refused <= REPORTED {
-            self.progress.suspended(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
+            self.progress.suspend(|| report_with(&error.in_file(self.input), excerpt.as_ref()));
         } else if self.refused == REPORTED + 1 {
-            self.progress.suspended(|| {
-                // A failure to write to standard error cannot be reported anywhere.
-                let _ = writeln!(io::stderr(), "note: further refusals stand in the output alone");
-            });
+            self.progress.suspend(|| note("further refusals stand in the output alone"));
         }
     }
-}
 
-impl<W: Write> OutputSink<'_, W> {
     /// Ends the process: the input may stay silent for ever, and waiting for more of it is of no use.
     fn end(&self, error: io::Error) -> ! {
-        self.progress.clear();
+        self.progress.finish_and_clear();
         std::process::exit(status(Failure::Output(error)).into())
     }
 }
 
 impl<W: Write> Sink for OutputSink<'_, W> {
-    fn block(&mut self, block: Block) -> io::Result<()> {
+    fn block(&mut self, block: Block) {
         self.write(&block.out).unwrap_or_else(|error| self.end(error));
         // On a terminal the answers come before the errors.
         block.refused.into_iter().for_each(|refused| self.report(refused));
         self.summary.merge(block.summary);
         block.keyframes.into_iter().for_each(|keyframe| self.gait.push(keyframe));
-        Ok(())
     }
 
-    fn idle(&mut self) -> io::Result<()> {
+    fn idle(&mut self) {
         self.output.flush().unwrap_or_else(|error| self.end(error));
-        Ok(())
     }
 }

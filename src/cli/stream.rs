@@ -2,13 +2,13 @@
 
 use super::diagnostic::{note, report, report_with, with_flags};
 use super::input::InputFile;
-use super::output::{Format, OutputOptions};
+use super::output::{Format, Output, OutputOptions};
 use super::{Answered, Completion, Failure};
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::read::documents::{Document, documents};
 use heelstrike::state::State;
-use heelstrike::write::{self, Palette, Refused};
-use heelstrike::{Error, Reason, Result};
+use heelstrike::write::{self, Detail, Palette, Refused, Report, Subject, text};
+use heelstrike::{Error, Reason};
 use std::io::Write;
 use std::path::Path;
 
@@ -22,28 +22,16 @@ const SHOWN: usize = 10;
 /// Of more refusals than this the rest is counted at the end.
 const REPORTED: usize = 100;
 
-/// A command that answers one JSON object after the other.
-pub(super) trait Answers {
-    /// What an object is, for messages.
-    const WHAT: &'static str;
-
-    /// Refuses impossible requests before anything is answered; `_several` is true for more than one object.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`], naming the option.
-    fn check(&self, _several: bool) -> std::result::Result<(), Failure> {
-        Ok(())
+/// Appends a report: as text if there is a palette, else as a line of JSON.
+pub(super) fn append(report: &Report, subject: &Subject, detail: Detail, palette: Option<&Palette>, out: &mut Vec<u8>) {
+    match palette {
+        Some(palette) => out.extend(with_flags(&text(report, subject, detail, palette)).bytes()),
+        None => report.append_json(detail, out),
     }
-
-    /// Appends the answer as one line of JSON; returns the error that it contains next to the matrices, if any.
-    fn json(&mut self, object: &str, out: &mut Vec<u8>) -> Result<Option<Error>>;
-
-    /// The answer as text, and the error that it contains, if any.
-    fn text(&mut self, object: &str, palette: &Palette) -> Result<(String, Option<Error>)>;
 }
 
 /// The one object of a file.
-pub(super) fn only_document(input: &InputFile) -> Result<Document<'_>> {
+pub(super) fn only_document(input: &InputFile) -> heelstrike::Result<Document<'_>> {
     let name = &input.name;
     let text = input.text().map_err(|error| error.in_file(name))?;
     let mut found = documents(text);
@@ -57,54 +45,54 @@ pub(super) fn only_document(input: &InputFile) -> Result<Document<'_>> {
     }
 }
 
-/// Answers every object of a file.
-pub(super) fn answer_all<A: Answers>(
-    answers: &mut A,
+/// Answers every object of the file at `path`, each of them a `what`; `several` is the answer to more than one.
+///
+/// `answer` appends the answer to an object, as text if there is a palette, else as a line of JSON, and returns the error
+/// that it contains, if any.
+pub(super) fn answer_all(
+    what: &str,
     path: &Path,
     format: Format,
-    options: &OutputOptions,
+    output: &OutputOptions,
+    several: Result<(), Failure>,
+    mut answer: impl FnMut(&str, Option<&Palette>, &mut Vec<u8>) -> heelstrike::Result<Option<Error>>,
 ) -> Completion {
     let input = InputFile::read(path, LARGEST)?;
     let name = &input.name;
     let whole = input.text().map_err(|error| error.in_file(name))?;
     if whole.trim_ascii().is_empty() {
-        let missing = Reason::Missing(format!("a {}", A::WHAT));
-        return Err(Error::new(missing).in_file(name).hint("the input is empty").into());
+        return Err(Error::new(Reason::Missing(format!("a {what}"))).in_file(name).hint("the input is empty").into());
     }
-
-    answers.check(documents(whole).nth(1).is_some())?;
-    let mut output = options.open()?;
+    if documents(whole).nth(1).is_some() {
+        several?;
+    }
+    let Output { mut writer, palette } = Output::open(output.path())?;
     let mut refused = 0;
     for (at, document) in documents(whole).enumerate() {
         let mut out = Vec::new();
-        let answer = match format {
-            Format::Json => answers.json(document.text, &mut out),
-            Format::Text => answers.text(document.text, output.palette()).map(|(text, error)| {
-                if at > 0 {
-                    out.push(b'\n');
-                }
-                out.extend_from_slice(with_flags(&text).as_bytes());
-                error
-            }),
-        };
-        if let (Err(error), Format::Json) = (&answer, format) {
-            write::append_line(&mut out, &Refused::new(State::id_in(document.text), document.line, error));
+        let answer = answer(document.text, (format == Format::Text).then_some(&palette), &mut out);
+        match (&answer, format) {
+            (Ok(_), Format::Text) if at > 0 => out.insert(0, b'\n'),
+            (Err(error), Format::Json) => {
+                write::append_line(&mut out, &Refused::new(State::id_in(document.text), document.line, error));
+            }
+            _ => {}
         }
-        output.write_all(&out)?;
+        writer.write_all(&out)?;
         if let Err(error) | Ok(Some(error)) = answer {
             // On a terminal the answers so far come before the error.
-            output.flush()?;
+            writer.flush()?;
             let error = document.locate(error).in_file(name);
             if refused < SHOWN {
                 let excerpt = error.location().and_then(|place| Excerpt::around(whole.as_bytes(), 1, place));
                 report_with(&error, excerpt.as_ref());
-            } else {
+            } else if refused < REPORTED {
                 report(&error);
             }
             refused += 1;
         }
     }
-    output.flush()?;
+    writer.flush()?;
     if refused > REPORTED {
         note(&format!("{} more were refused", refused - REPORTED));
     }

@@ -3,9 +3,9 @@
 use super::diagnostic::{note, report};
 use super::input::InputFile;
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, pipeline_options};
-use super::output::{Output, spare, writable};
-use super::page::PageOptions;
-use super::progress::Progress;
+use super::output::{Output, writable};
+use super::picture::PlotOptions;
+use super::progress;
 use super::robot::{RobotOptions, caution};
 use super::{Answered, Completion, Failure};
 use clap::ValueEnum;
@@ -13,8 +13,8 @@ use heelstrike::draw::page::{Page, Stops};
 use heelstrike::draw::sweep as picture;
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
+use heelstrike::write::append_line;
 use heelstrike::write::sweep::{Regions, Sample, columns};
-use heelstrike::write::{Detail, append_line};
 use heelstrike::{Error, Reason};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    plot: PageOptions,
+    plot: PlotOptions<true>,
     /// Text lists regions, JSON regions and samples, CSV samples [default: by the output's ending, else text]
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<SweepFormat>,
@@ -95,7 +95,10 @@ const LARGEST: u64 = 64 << 20;
 const TOGETHER: usize = 4096;
 
 pub(super) fn run(args: &Args) -> Completion {
-    args.plot.check()?;
+    let inputs = [Some(&args.robot.robot), Some(&args.study), args.loops.loops.as_ref()];
+    args.plot.claim(&inputs, args.output.as_deref())?;
+    writable(args.output.as_deref())?;
+    let format = SweepFormat::of(args)?;
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;
@@ -114,82 +117,62 @@ pub(super) fn run(args: &Args) -> Completion {
     for name in study.unused() {
         note(&format!("nothing in the state or the robot depends on {name}"));
     }
-    let inputs = [Some(&args.robot.robot), Some(&args.study), args.loops.loops.as_ref()];
-    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    spare(args.output.as_deref(), &inputs)?;
-    args.plot.claim(&inputs, args.output.as_deref())?;
-    writable(args.output.as_deref())?;
-
-    let format = SweepFormat::of(args)?;
     let pieces = Findings::work(&model) + if format == SweepFormat::Text { 0 } else { Sample::count(&model) };
-    let progress = Progress::of(pieces as u64);
-    let done = || progress.step();
+    let progress = progress::of(pieces);
+    let done = || progress.inc(1);
     let workers = Workers { threads: args.threads.count(), done: &done };
     let findings = Findings::of(&model, workers);
     let regions = Regions::new(study.parameters(), &findings);
     let regimes = findings.regimes();
-    if args.plot.is_asked() {
-        progress.expect(picture::work(&model, &findings) as u64);
+    if args.plot.path().is_some() {
+        progress.inc_length(picture::work(&model, &findings) as u64);
         let picture = picture::of(&model, &findings, workers);
         let stops = Stops::new(&model, &findings);
-        progress.expect(if args.plot.is_page() { stops.count() as u64 } else { 0 });
+        progress.inc_length(if args.plot.is_page() { stops.count() as u64 } else { 0 });
         let page = |rendered| Page::of_study(&model, &findings, &stops, rendered, workers);
-        args.plot.draw(&picture, "no region was found", page)?;
+        args.plot.draw_or_page(&picture, "no region was found", page)?;
     }
-    let mut output = Output::open(args.output.as_deref())?;
+    let Output { mut writer, palette } = Output::open(args.output.as_deref())?;
+    let mut head = Vec::new();
     let refused = match format {
         SweepFormat::Text => {
-            output.write_all(regions.text(&robot.name, output.palette()).as_bytes())?;
+            writer.write_all(regions.text(&robot.name, &palette).as_bytes())?;
             0
         }
         SweepFormat::Json => {
-            let mut head = Vec::new();
             append_line(&mut head, &regions);
-            json(&head, &mut output, &model, workers, args.detail.detail())?
+            // The samples are the last field of the object.
+            writer.write_all(head.strip_suffix(b"}\n").unwrap_or(&head))?;
+            writer.write_all(b",\"samples\":[")?;
+            let refused = samples(&mut writer, &model, workers, |solver, sample, out| {
+                out.extend(if sample.index == 0 { "" } else { "," }.bytes());
+                sample.append_json(solver, args.detail.detail(), out)
+            })?;
+            writer.write_all(b"]}\n")?;
+            refused
         }
         SweepFormat::Csv => {
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
             let columns = columns(&model, &feet, contacts);
-            let mut head = Vec::new();
             columns.append_header(&mut head);
-            output.write_all(&head)?;
-            let kind =
-                |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime).map(|(_, kind, _)| *kind);
-            samples(&mut output, &model, workers, |solver, sample, out| {
-                sample.append_rows(solver, &columns, |regime| kind(regime).map_or_else(String::new, letter), out)
+            writer.write_all(&head)?;
+            let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
+            let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
+            samples(&mut writer, &model, workers, |solver, sample, out| {
+                sample.append_rows(solver, &columns, letter, out)
             })?
         }
     };
-    output.flush()?;
-    progress.clear();
+    writer.flush()?;
+    progress.finish_and_clear();
     let refusals: Vec<&Error> = regimes.iter().filter_map(|(_, _, refused)| *refused).collect();
     refusals.iter().for_each(|error| report(error));
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }
 
-/// Writes the object of `head`, a line, with the list of all samples as its last field; returns how many were refused.
-fn json(
-    head: &[u8],
-    output: &mut Output,
-    model: &RobotStudy,
-    workers: Workers,
-    detail: Detail,
-) -> Result<usize, Failure> {
-    let open = head.strip_suffix(b"}\n").unwrap_or(head);
-    output.write_all(open)?;
-    output.write_all(b",\"samples\":[")?;
-    let refused = samples(output, model, workers, |solver, sample, out| {
-        let separator = if sample.index == 0 { "" } else { "," };
-        out.extend(separator.bytes());
-        sample.append_json(solver, detail, out)
-    })?;
-    output.write_all(b"]}\n")?;
-    Ok(refused)
-}
-
 /// Writes all samples in order; returns how many were refused.
 fn samples(
-    output: &mut Output,
+    writer: &mut impl Write,
     model: &RobotStudy,
     workers: Workers,
     append: impl Fn(&mut Solver, &Sample, &mut Vec<u8>) -> bool + Sync,
@@ -202,7 +185,7 @@ fn samples(
             (out, answered)
         };
         for (out, answered) in workers.map(TOGETHER.min(count - start), || Solver::new(model), answer) {
-            output.write_all(&out)?;
+            writer.write_all(&out)?;
             refused += usize::from(!answered);
         }
     }

@@ -3,16 +3,15 @@
 use super::carry::{Onward, on_line};
 use super::clip::{Clock, Step};
 use super::points::Points;
-use super::{At, Sample, Sampled, Thresholds, Touchdown, Touching};
+use super::{At, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
-use crate::state::State;
 use crate::{Error, Reason, Result};
 use std::collections::VecDeque;
 
-/// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it; refused samples in their
-/// place.
+/// The touchdowns in `samples`, states of `robot` with the `feet` that were added to it: each the sample at the moment
+/// of contact, with its landing. Refused samples stay in their place.
 ///
 /// # Errors
 /// [`Reason::Missing`] for a robot that has nothing to touch the ground with.
@@ -58,7 +57,7 @@ pub struct Touchdowns<'r, S, I> {
     window: VecDeque<Frame<S>>,
     /// One per point.
     descents: Vec<Descent>,
-    ready: VecDeque<std::result::Result<Touchdown<S>, (S, Error)>>,
+    ready: VecDeque<Sampled<S>>,
 }
 
 /// A sample and where its points are.
@@ -79,29 +78,23 @@ struct Descent {
     falling: bool,
 }
 
-/// When a descent becomes a touchdown.
+/// When a point's descent becomes a touchdown.
 #[derive(Debug, Clone, Copy)]
-enum Moment {
-    /// At a row as it is.
-    Row(usize),
-    /// After the row `at` of the window and before the next, where the point is at `height` \[m\]; the rows up to
-    /// `smooth` are before the impact.
-    After { at: usize, height: f64, smooth: usize },
-}
-
-impl Moment {
+struct Strike {
+    point: usize,
     /// The row of the window that it is, or the last one before it.
-    fn row(self) -> usize {
-        let (Self::Row(at) | Self::After { at, .. }) = self;
-        at
-    }
+    row: usize,
+    /// Of a moment between that row and the next, the point's height \[m\].
+    height: Option<f64>,
+    /// The last row before the impact.
+    smooth: usize,
 }
 
 /// So many rows before the moment of contact are used for the state at it.
 const BEFORE: usize = 3;
 
 impl<S: Clone, I: Iterator<Item = Sampled<S>>> Iterator for Touchdowns<'_, S, I> {
-    type Item = std::result::Result<Touchdown<S>, (S, Error)>;
+    type Item = Sampled<S>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
@@ -115,7 +108,7 @@ impl<S: Clone, I: Iterator<Item = Sampled<S>>> Iterator for Touchdowns<'_, S, I>
                     self.ready.push_back(Err((sample.source, error)));
                 }
                 Some(Ok(sample)) => self.take(sample),
-                Some(Err(refused)) => self.ready.push_back(Err(refused)),
+                Some(refused) => self.ready.push_back(refused),
                 None => {
                     self.end_clip();
                     return self.ready.pop_front();
@@ -134,7 +127,6 @@ impl<S, I> Touchdowns<'_, S, I> {
 }
 
 impl<S: Clone, I> Touchdowns<'_, S, I> {
-    /// Takes the next sample.
     fn take(&mut self, sample: Sample<S>) {
         let places = self.points.at(&sample.state.position);
         match self.clock.step(sample.time) {
@@ -143,9 +135,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 self.descents = places.iter().map(|place| Descent { from: place.z, falling: false }).collect();
             }
             Step::Impact => {
-                if let Some(last) = self.window.back_mut() {
-                    last.before_impact = true;
-                }
+                self.window.back_mut().into_iter().for_each(|last| last.before_impact = true);
             }
             Step::Later(passed) => self.follow(&places, passed),
         }
@@ -160,142 +150,118 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     /// Follows every point to its next place, `passed` \[s\] after the last.
     fn follow(&mut self, places: &[Vector<f64>], passed: f64) {
         let Thresholds { drop, slow, ground, above, .. } = self.thresholds;
-        // The point came to rest after the row before the last, or after the last.
-        let smooth = self.window.len().saturating_sub(2);
-        let mut struck = Vec::new();
-        for (point, place) in places.iter().enumerate() {
-            let Some(last) = self.window.back().map(|last| last.places[point].z) else {
-                return;
-            };
-            let (height, mut descent) = (place.z, self.descents[point]);
+        let Some(last) = self.window.back() else { return };
+        let mut ended = Vec::new();
+        for (point, (place, descent)) in places.iter().zip(&mut self.descents).enumerate() {
+            let (height, last) = (place.z, last.places[point].z);
             if (height - last) / passed < -slow {
                 descent.falling = true;
-            } else {
-                if descent.falling {
-                    if descent.from - last >= drop && last <= ground {
-                        struck.extend(self.moment(point, last + above, smooth).map(|moment| (point, moment)));
-                    }
-                    descent = Descent { from: height, falling: false };
-                }
-                descent.from = descent.from.max(height);
+                continue;
             }
-            self.descents[point] = descent;
+            if descent.falling {
+                if descent.from - last >= drop && last <= ground {
+                    ended.push((point, last + above));
+                }
+                *descent = Descent { from: height, falling: false };
+            }
+            descent.from = descent.from.max(height);
         }
-        self.strike(struck);
+        // The point came to rest after the row before the last, or after the last.
+        let smooth = self.window.len().saturating_sub(2);
+        self.strike(ended.into_iter().filter_map(|(point, height)| self.moment(point, height, smooth)).collect());
     }
 
     /// Ends the clip: a point that is still falling has reached the ground if it is at z = 0.
     fn end_clip(&mut self) {
         let Thresholds { drop, above, .. } = self.thresholds;
-        let mut struck = Vec::new();
-        for (point, &Descent { from, falling }) in self.descents.iter().enumerate() {
-            let Some(last) = self.window.back().map(|last| last.places[point].z).filter(|_| falling) else {
-                continue;
-            };
-            if from - last < drop || last > above {
-                continue;
-            }
-            let moment = match last >= -above {
-                true => Some(Moment::Row(self.last_before_impact())),
+        let end = self.window.len().saturating_sub(1);
+        // Of two rows with the same time the first.
+        let before_impact = end.checked_sub(1).filter(|&before| self.window[before].before_impact);
+        let strike = |(point, &Descent { from, falling }): (usize, &Descent)| {
+            let last = self.height(point, end);
+            if !falling || from - last < drop || last > above {
+                None
+            } else if last >= -above {
+                Some(Strike { point, row: before_impact.unwrap_or(end), height: None, smooth: end })
+            } else {
                 // It goes on through the ground, which this recording does not know of.
-                false => self.moment(point, 0.0, self.window.len() - 1),
-            };
-            struck.extend(moment.map(|moment| (point, moment)));
-        }
-        self.strike(struck);
+                self.moment(point, 0.0, end)
+            }
+        };
+        self.strike(self.descents.iter().enumerate().filter_map(strike).collect());
         self.window.clear();
         self.descents.clear();
     }
 
-    /// The last frame of the window, of two with the same time the first.
-    fn last_before_impact(&self) -> usize {
-        let last = self.window.len() - 1;
-        let twin = last.checked_sub(1).filter(|&before| self.window[before].before_impact);
-        twin.unwrap_or(last)
+    fn height(&self, point: usize, row: usize) -> f64 {
+        self.window[row].places[point].z
     }
 
     /// When the point was last as high as `height`; an impact that the recording itself marks after that is the moment.
-    fn moment(&self, point: usize, height: f64, smooth: usize) -> Option<Moment> {
-        let last = self.window.iter().rposition(|frame| frame.places[point].z >= height)?;
-        let marked = |&frame: &usize| {
-            let Frame { places, before_impact, .. } = &self.window[frame];
-            *before_impact && places[point].z < height
-        };
-        let after = Moment::After { at: last, height, smooth: smooth.max(last) };
-        Some((last..self.window.len()).find(marked).map_or(after, Moment::Row))
+    fn moment(&self, point: usize, height: f64, smooth: usize) -> Option<Strike> {
+        let row = self.window.iter().rposition(|frame| frame.places[point].z >= height)?;
+        let after = Strike { point, row, height: Some(height), smooth: smooth.max(row) };
+        let marked = |&row: &usize| self.window[row].before_impact && self.height(point, row) < height;
+        let marked = (row..self.window.len()).find(marked).map(|row| Strike { row, height: None, ..after });
+        Some(marked.unwrap_or(after))
     }
 
     /// Makes touchdowns of the points that strike and are free to; those that strike together are one.
-    fn strike(&mut self, mut struck: Vec<(usize, Moment)>) {
-        struck.retain(|&(point, moment)| {
-            self.points.is_free(point, &self.window[moment.row()].places, self.thresholds.together)
-        });
-        let mut left = VecDeque::from(struck);
-        while let Some((striking, moment)) = left.pop_front() {
-            let also = left.iter().filter(|&&other| self.together((striking, moment), other));
-            let also: Vec<usize> = also.map(|&(point, _)| point).collect();
-            left.retain(|(point, _)| !also.contains(point));
-            let (mut state, time, at) = self.state(striking, moment);
-            let together = self.thresholds.together;
-            let (shift_z, contact) = self.points.touch(&mut state, striking, &also, self.touching, together);
-            let Frame { sample, row, .. } = &self.window[at];
-            let (row, source) = (*row, sample.source.clone());
-            let finite = state.position.iter().chain(&state.velocity).all(|entry| entry.is_finite());
+    fn strike(&mut self, mut strikes: Vec<Strike>) {
+        let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
+        strikes.retain(|strike| self.points.is_free(strike.point, &self.window[strike.row].places, together));
+        while !strikes.is_empty() {
+            let first = strikes.remove(0);
+            let (also, later): (Vec<_>, Vec<_>) = strikes.into_iter().partition(|other| self.together(&first, other));
+            strikes = later;
+            let also: Vec<usize> = also.iter().map(|strike| strike.point).collect();
+            let mut sample = self.sample(&first);
+            let (shift_z, striking) = self.points.touch(&mut sample.state, first.point, &also, touching, together);
+            sample.landing = Some(Landing { row: self.window[first.row].row, striking, shift_z, at, touching });
+            let finite = sample.state.position.iter().chain(&sample.state.velocity).all(|entry| entry.is_finite());
             self.ready.push_back(if finite {
-                Ok(Touchdown { state, row, time, striking: contact, shift_z, source })
+                Ok(sample)
             } else {
                 let reason = "the robot is too far away or too fast to be placed on the ground".to_owned();
-                Err((source, Error::new(Reason::Inconsistent(reason))))
+                Err((sample.source, Error::new(Reason::Inconsistent(reason))))
             });
         }
     }
 
     /// Whether two points strike at the same moment.
-    fn together(&self, (one, when): (usize, Moment), (other, its): (usize, Moment)) -> bool {
+    fn together(&self, one: &Strike, other: &Strike) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= self.thresholds.together;
-        let alike = |at: usize| close(self.window[at].places[one].z, self.window[at].places[other].z);
-        match (when, its) {
-            (Moment::Row(at), Moment::Row(same)) => at == same && alike(at),
-            (Moment::After { at, height, .. }, Moment::After { at: same, height: its, .. }) => {
-                at == same && alike(at) && close(height, its)
+        one.row == other.row
+            && close(self.height(one.point, one.row), self.height(other.point, one.row))
+            && match (one.height, other.height) {
+                (Some(one), Some(other)) => close(one, other),
+                (one, other) => one == other,
             }
-            _ => false,
-        }
     }
 
-    /// The state of a point's touchdown, its time, and the frame that it is of.
-    fn state(&self, point: usize, moment: Moment) -> (State, f64, usize) {
-        let at = moment.row();
-        let Frame { sample, .. } = &self.window[at];
-        let (mut state, mut time) = (sample.state.clone(), sample.time);
-        if let (At::Crossing, Moment::After { height, smooth, .. }, Some(next)) =
-            (self.at, moment, self.window.get(at + 1))
-        {
-            let first = (0..at).rfind(|&row| self.window[row].before_impact).map_or(0, |impact| impact + 1);
-            let onward = if smooth > at { None } else { self.onward(point, first, at, height) };
-            match onward {
-                Some((onward, later)) => {
-                    time += later;
-                    for (entry, own) in state.position.iter_mut().enumerate() {
-                        *own = onward.value(|back| self.window[at - back].sample.state.position[entry], later);
-                    }
-                }
-                None => {
-                    let (above, below) = (self.height(point, at), self.height(point, at + 1));
-                    let part = if below < above { ((above - height) / (above - below)).clamp(0.0, 1.0) } else { 0.0 };
-                    time += part * (next.sample.time - time);
-                    for (own, next) in state.position.iter_mut().zip(&next.sample.state.position) {
-                        *own += part * (next - *own);
-                    }
-                }
+    /// The sample at the moment of a strike; its row and source are those of the row before.
+    fn sample(&self, &Strike { point, row, height, smooth }: &Strike) -> Sample<S> {
+        let mut sample = self.window[row].sample.clone();
+        let (At::Crossing, Some(height), Some(next)) = (self.at, height, self.window.get(row + 1)) else {
+            return sample;
+        };
+        let first = (0..row).rfind(|&row| self.window[row].before_impact).map_or(0, |impact| impact + 1);
+        let onward = if smooth > row { None } else { self.onward(point, first, row, height) };
+        if let Some((onward, later)) = onward {
+            sample.time += later;
+            for (entry, own) in sample.state.position.iter_mut().enumerate() {
+                *own = onward.value(|back| self.window[row - back].sample.state.position[entry], later);
             }
-            self.velocity(first, smooth, time, &mut state.velocity);
+        } else {
+            let (above, below) = (self.height(point, row), next.places[point].z);
+            let part = if below < above { ((above - height) / (above - below)).clamp(0.0, 1.0) } else { 0.0 };
+            sample.time += part * (next.sample.time - sample.time);
+            for (own, next) in sample.state.position.iter_mut().zip(&next.sample.state.position) {
+                *own += part * (next - *own);
+            }
         }
-        (state, time, at)
-    }
-
-    fn height(&self, point: usize, row: usize) -> f64 {
-        self.window[row].places[point].z
+        self.velocity(first, smooth, sample.time, &mut sample.state.velocity);
+        sample
     }
 
     /// How the motion of rows `first` to `at` goes on, and how much later the point is at `height`, if that is before

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!     samples in time --[sagittal, where the base is in 3-D]--> --[rates, where the table has none]--> --[find]-->
-//!     Touchdown: state, row, time, striking contact
+//!     touchdowns: time, state, Landing (row, striking contact)
 //! ```
 //!
 //! Recorded feet do not reach z = 0: they float or sink by centimetres, sink slowly while they stand, and may be
@@ -56,16 +56,13 @@ mod points;
 mod find;
 mod rates;
 pub mod spatial;
-mod sagittal;
 
 pub use find::{Touchdowns, find};
-pub use rates::{Difference, Differentiated, rates};
-pub use sagittal::{Dropped, Sagittal, sagittal};
+pub use rates::{Difference, rates};
+pub use spatial::{Dropped, sagittal};
 
 use crate::contact::Feet;
-use crate::gait::spatial::Spatial;
-use crate::state::NamedContact;
-use crate::state::State;
+use crate::state::{NamedContact, State};
 use crate::{Error, Reason, Robot};
 use std::fmt;
 use std::str::FromStr;
@@ -102,34 +99,34 @@ impl Thresholds {
 pub struct Sample<S> {
     /// When \[s\].
     pub time: f64,
-    /// The state; without contacts and without a stance.
+    /// The state; without a stance, and without contacts until it is that of a touchdown.
     pub state: State,
     /// From when to when its velocity was taken \[s\]: at its own time alone, or of differences between two rows.
     pub rate_over: [f64; 2],
     /// What the plane does not hold of a base in three dimensions, until the motion is projected (`sagittal`).
-    pub spatial: Option<Spatial>,
-    /// What the caller knows it by.
+    pub spatial: Option<spatial::Spatial>,
+    /// How it reaches the ground, of a touchdown.
+    pub landing: Option<Landing>,
+    /// What the caller knows it by; for a touchdown between two rows the first of them.
     pub source: S,
 }
 
 /// A sample, or what stands in its place where it was refused.
 pub type Sampled<S> = std::result::Result<Sample<S>, (S, Error)>;
 
-/// A state just before a foot reaches the ground.
+/// How a foot reaches the ground, just after a state.
 #[derive(Debug, Clone)]
-pub struct Touchdown<S> {
-    /// The state, with its contacts.
-    pub state: State,
+pub struct Landing {
     /// The sample that it is, or the last one before it, counted from 0 with the refused ones.
     pub row: usize,
-    /// The time of the state \[s\].
-    pub time: f64,
     /// The name of the contact that reaches the ground, as in the result; of several at once the first.
     pub striking: String,
     /// What was added to the base's z \[m\].
     pub shift_z: f64,
-    /// What the caller knows the sample by.
-    pub source: S,
+    /// Which state was taken.
+    pub at: At,
+    /// Which other points were taken to touch the ground.
+    pub touching: Touching,
 }
 
 /// Which state of a touchdown is taken.

@@ -6,8 +6,7 @@ use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Robot};
-use crate::state::NamedContact;
-use crate::state::State;
+use crate::state::{NamedContact, State};
 
 /// Ground and soles that are taken for level are so up to this slope.
 const SLOPE: f64 = 0.15;
@@ -17,7 +16,7 @@ const SLOPE: f64 = 0.15;
 pub(super) struct Points<'r> {
     robot: &'r Robot,
     plan: Plan,
-    posture: Configuration,
+    configuration: Configuration,
     workspace: Workspace,
     points: Vec<(usize, Point)>,
 }
@@ -25,16 +24,16 @@ pub(super) struct Points<'r> {
 impl<'r> Points<'r> {
     pub fn new(robot: &'r Robot, feet: &[NamedContact]) -> Self {
         let mut all: Vec<(usize, Point)> = Vec::new();
-        for foot in Feet::new(robot, feet).iter() {
-            for point in points(foot) {
-                // Shapes of a link may share a corner; it is one point all the same.
-                if !all.contains(&(foot.link, point)) {
-                    all.push((foot.link, point));
-                }
+        for (link, point) in Feet::new(robot, feet).iter().flat_map(|foot| points(foot).map(|point| (foot.link, point)))
+        {
+            // Shapes of a link may share a corner; it is one point all the same.
+            if !all.contains(&(link, point)) {
+                all.push((link, point));
             }
         }
         let plan = Plan::new(robot, &[], &[]);
-        Self { robot, plan, posture: Configuration::default(), workspace: Workspace::default(), points: all }
+        let (configuration, workspace) = Default::default();
+        Self { robot, plan, configuration, workspace, points: all }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -48,8 +47,8 @@ impl<'r> Points<'r> {
     }
 
     fn placement(&mut self, position: &[f64]) -> Placement {
-        self.posture.set(&self.plan, position);
-        kinematics(&self.plan, &self.posture, &mut self.workspace);
+        self.configuration.set(&self.plan, position);
+        kinematics(&self.plan, &self.configuration, &mut self.workspace);
         let base =
             if self.robot.base == Base::Floating { Vector::new(position[0], position[1]) } else { Vector::zero() };
         Placement::new(&self.plan, &self.workspace, base)
@@ -112,13 +111,11 @@ impl<'r> Points<'r> {
         let mut of_link = closed.iter().filter(|&&point| link(point) == link(striking));
         let at = of_link.clone().position(|&point| point == striking).unwrap_or(0);
         let name = if of_link.nth(1).is_some() { format!("{name}/{at}") } else { name };
-        let shift = match self.robot.base {
-            Base::Floating => -places[striking].z,
-            Base::Fixed => 0.0,
-        };
-        if self.robot.base == Base::Floating {
-            state.position[1] += shift;
+        if self.robot.base == Base::Fixed {
+            return (0.0, name);
         }
+        let shift = -places[striking].z;
+        state.position[1] += shift;
         (shift, name)
     }
 

@@ -6,7 +6,6 @@
 use super::clip::{Clock, Step};
 use super::{Sample, Sampled};
 use crate::{Error, Reason};
-use std::collections::VecDeque;
 
 /// Which rows a velocity is taken from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,88 +17,56 @@ pub enum Difference {
     Backward,
 }
 
-/// Gives every sample of `samples` the velocity from its neighbors; see [`Differentiated`].
-pub fn rates<S, I: Iterator<Item = Sampled<S>>>(samples: I, difference: Difference) -> Differentiated<S, I> {
-    Differentiated { samples, difference, clock: Clock::default(), before: None, pending: None, ready: VecDeque::new() }
-}
-
-/// The samples with their velocities, one sample late and in their order; one that has no neighbour is refused.
-#[derive(Debug)]
-pub struct Differentiated<S, I> {
-    samples: I,
-    difference: Difference,
-    clock: Clock,
-    /// Time and position of the neighbour before the pending sample.
-    before: Option<(f64, Vec<f64>)>,
-    pending: Option<Sample<S>>,
-    ready: VecDeque<Sampled<S>>,
-}
-
-impl<S, I: Iterator<Item = Sampled<S>>> Iterator for Differentiated<S, I> {
-    type Item = Sampled<S>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            if let Some(ready) = self.ready.pop_front() {
-                return Some(ready);
-            }
-            match self.samples.next() {
-                Some(Ok(sample)) => {
-                    let linked = matches!(self.clock.step(sample.time), Step::Later(_));
-                    self.settle(linked.then_some(&sample));
-                    self.pending = Some(sample);
-                }
-                Some(Err(refused)) => {
-                    self.settle(None);
-                    self.ready.push_back(Err(refused));
-                }
-                None => {
-                    self.settle(None);
-                    if self.ready.is_empty() {
-                        return None;
-                    }
-                }
-            }
-        }
-    }
-}
-
-impl<S, I> Differentiated<S, I> {
-    /// Gives the pending sample its velocity, `after` being the neighbour that follows.
-    fn settle(&mut self, after: Option<&Sample<S>>) {
-        let before = self.before.take();
-        let Some(mut sample) = self.pending.take() else {
-            return;
+/// Gives every sample the velocity from its neighbors, one sample late and in order; one without a neighbor is refused.
+pub fn rates<S>(samples: impl Iterator<Item = Sampled<S>>, difference: Difference) -> impl Iterator<Item = Sampled<S>> {
+    let mut pending = Pending { difference, sample: None, before: None };
+    let mut clock = Clock::default();
+    samples.map(Some).chain([None]).flat_map(move |next| {
+        let (sample, refused) = match next {
+            Some(Ok(sample)) => (Some(sample), None),
+            other => (None, other),
         };
+        let linked = |sample: &&Sample<S>| matches!(clock.step(sample.time), Step::Later(_));
+        let settled = pending.settle(sample.as_ref().filter(linked));
+        pending.sample = sample;
+        settled.into_iter().chain(refused)
+    })
+}
+
+/// The sample that waits for the one after it.
+struct Pending<S> {
+    difference: Difference,
+    sample: Option<Sample<S>>,
+    /// Time and position of the neighbor before it.
+    before: Option<(f64, Vec<f64>)>,
+}
+
+impl<S> Pending<S> {
+    /// Gives the sample its velocity, `after` being the neighbor that follows.
+    fn settle(&mut self, after: Option<&Sample<S>>) -> Option<Sampled<S>> {
+        let before = self.before.take();
+        let mut sample = self.sample.take()?;
         let own = (sample.time, &sample.state.position);
         let before = before.as_ref().map(|(time, position)| (*time, position));
-        let after = after.map(|after| (after.time, &after.state.position));
-        let ends = match (self.difference, before, after) {
+        let ends = match (self.difference, before, after.map(|after| (after.time, &after.state.position))) {
             (Difference::Central, Some(before), Some(after)) => Some((before, after)),
             (_, Some(before), _) => Some((before, own)),
-            (_, None, Some(after)) => Some((own, after)),
-            (_, None, None) => None,
+            (_, None, after) => after.map(|after| (own, after)),
         };
-        let velocity = ends.map(|((from, start), (to, end))| -> Vec<f64> {
-            start.iter().zip(end).map(|(start, end)| (end - start) / (to - from)).collect()
-        });
-        if let Some(((from, _), (to, _))) = ends {
-            sample.rate_over = [from, to];
-        }
+        let refused = match ends {
+            Some(((from, start), (to, end))) => {
+                sample.rate_over = [from, to];
+                let rates = start.iter().zip(end).map(|(start, end)| (end - start) / (to - from));
+                sample.state.velocity = rates.collect();
+                let finite = sample.state.velocity.iter().all(|rate| rate.is_finite());
+                (!finite).then_some("the velocity to the next row is beyond all numbers")
+            }
+            None => Some("the clip has no other row to find the velocity of this one from"),
+        };
         self.before = after.map(|_| (sample.time, sample.state.position.clone()));
-        self.ready.push_back(match velocity {
-            Some(velocity) if velocity.iter().all(|rate| rate.is_finite()) => {
-                sample.state.velocity = velocity;
-                Ok(sample)
-            }
-            Some(_) => {
-                let reason = "the velocity to the next row is beyond all numbers".to_owned();
-                Err((sample.source, Error::new(Reason::Inconsistent(reason)).at("time")))
-            }
-            None => {
-                let reason = "the clip has no other row to find the velocity of this one from".to_owned();
-                Err((sample.source, Error::new(Reason::Inconsistent(reason)).at("time")))
-            }
-        });
+        Some(match refused {
+            None => Ok(sample),
+            Some(reason) => Err((sample.source, Error::new(Reason::Inconsistent(reason.to_owned())).at("time"))),
+        })
     }
 }

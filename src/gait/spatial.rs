@@ -1,18 +1,25 @@
-//! The base of a three-dimensional recording, projected into the robot's plane.
+//! Motions in three dimensions, projected into the robot's plane row by row ([`project`]), and along the mean heading of
+//! each clip ([`sagittal`]).
 //!
 //! ```text
 //!     R = rotation(w, x, y, z) P^T        columns of R: the robot's forward f, normal and up in the world, z up
 //!     pitch = asin(-f_z)                  roll = atan2(normal_z, up_z)        heading: (f_x, f_y)
-//!     h = sum of (f_x, f_y) over a clip, of length one        along = h . (x, y)        across = h x (x, y)
+//!     h = sum of (f_x, f_y) over a clip, of length one        x = h . (x, y)
+//!     left out: h x (x, y), yaw from h, roll
 //! ```
 //!
 //! P are the axes of the robot's plane ([`Plane`]). Heading is the clip's, not the row's: a body that yaws in its
 //! stride does not walk in circles. So turning or shifting a whole clip about the world's z changes nothing but where x
-//! begins.
+//! begins. The heading is known at a clip's end, so a clip is held in memory.
 
+use super::clip::{Clock, Step};
+use super::{Sample, Sampled};
 use crate::description::{Matrix, apply};
 use crate::robot::Plane;
 use crate::{Error, Reason, Result};
+use std::fmt;
+use std::mem::take;
+use std::sync::Mutex;
 
 /// A quaternion whose length is off one by more is none of a rotation: rounding to two digits does not reach it.
 const UNIT: f64 = 0.01;
@@ -62,11 +69,11 @@ fn rotation([w, x, y, z]: [f64; 4]) -> Matrix {
 
 /// The mean direction of a clip, horizontal and of length one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Heading([f64; 2]);
+struct Heading([f64; 2]);
 
 impl Heading {
-    /// The mean of all these; `None` if it has no direction, as in a whole turn on the spot.
-    pub fn mean<'s>(clip: impl Iterator<Item = &'s Spatial>) -> Option<Self> {
+    /// `None` if the mean has no direction, as in a whole turn on the spot.
+    fn mean<'s>(clip: impl Iterator<Item = &'s Spatial>) -> Option<Self> {
         let (mut x, mut y, mut count) = (0.0, 0.0, 0.0);
         for Spatial { forward, .. } in clip {
             (x, y, count) = (x + forward[0], y + forward[1], count + 1.0);
@@ -77,15 +84,86 @@ impl Heading {
     }
 
     /// A horizontal vector along the heading and to the left of it.
-    pub fn along_and_across(self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn along_and_across(self, [x, y]: [f64; 2]) -> [f64; 2] {
         let Self([cos, sin]) = self;
         [cos * x + sin * y, cos * y - sin * x]
     }
 
     /// The yaw of a base from the heading, left is positive \[rad\].
-    pub fn yaw(self, base: &Spatial) -> f64 {
+    fn yaw(self, base: &Spatial) -> f64 {
         let [along, across] = self.along_and_across(base.forward);
         libm::atan2(across, along)
+    }
+}
+
+/// How much of a motion in three dimensions is not in the plane: of each the largest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Dropped {
+    /// The turn about the forward axis \[rad\].
+    pub roll: f64,
+    /// The turn about the vertical from the clip's heading \[rad\].
+    pub yaw: f64,
+    /// The distance from the line along the heading through the middle of the clip \[m\].
+    pub sideways: f64,
+}
+
+/// Projects the samples whose base is in three dimensions, a clip late and in order, and adds to `dropped` what is left
+/// out. Samples of a clip that has no heading are refused.
+pub fn sagittal<S>(
+    samples: impl Iterator<Item = Sampled<S>>,
+    dropped: &Mutex<Dropped>,
+) -> impl Iterator<Item = Sampled<S>> {
+    let (mut clock, mut clip) = (Clock::default(), Vec::new());
+    samples.map(Some).chain([None]).flat_map(move |next| {
+        let ended = match &next {
+            None => true,
+            Some(Ok(sample)) => clock.step(sample.time) == Step::NewClip,
+            Some(Err(_)) => false,
+        };
+        let whole: Vec<Sampled<S>> = if ended { take(&mut clip) } else { Vec::new() };
+        clip.extend(next);
+        let bases = || whole.iter().flatten().filter_map(|sample| sample.spatial.as_ref());
+        let heading = Heading::mean(bases());
+        if let (Some(heading), Ok(mut all)) = (heading, dropped.lock()) {
+            all.add(heading, bases);
+        }
+        whole.into_iter().map(move |sampled| along(heading, sampled?))
+    })
+}
+
+/// The sample with its x along the heading.
+fn along<S>(heading: Option<Heading>, mut sample: Sample<S>) -> Sampled<S> {
+    match (sample.spatial.take(), heading) {
+        (Some(Spatial { origin, .. }), Some(heading)) => {
+            [sample.state.position[0], _] = heading.along_and_across(origin);
+            Ok(sample)
+        }
+        (Some(_), None) => {
+            let reason = "the robot turns all the way round in its clip, which has no mean heading".to_owned();
+            let error = Error::new(Reason::Inconsistent(reason)).at("q_base_qw");
+            Err((sample.source, error.hint("cut the clip: a jump back in time begins another")))
+        }
+        (None, _) => Ok(sample),
+    }
+}
+
+impl Dropped {
+    /// Adds the bases of a clip.
+    fn add<'s, B: Iterator<Item = &'s Spatial>>(&mut self, heading: Heading, bases: impl Fn() -> B) {
+        let across = |base: &Spatial| heading.along_and_across(base.origin)[1];
+        let (sum, count) = bases().fold((0.0, 0.0), |(sum, count), base| (sum + across(base), count + 1.0));
+        for base in bases() {
+            self.roll = self.roll.max(base.roll.abs());
+            self.yaw = self.yaw.max(heading.yaw(base).abs());
+            self.sideways = self.sideways.max((across(base) - sum / count).abs());
+        }
+    }
+}
+
+impl fmt::Display for Dropped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { roll, yaw, sideways } = self;
+        write!(f, "roll up to {roll:.3} rad, yaw up to {yaw:.3} rad, {sideways:.3} m to the side")
     }
 }
 
@@ -94,65 +172,43 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// The quaternion of a turn by `angle` about a unit `axis`.
-    fn turn(angle: f64, axis: [f64; 3]) -> [f64; 4] {
-        let (sin, cos) = (0.5 * angle).sin_cos();
-        [cos, sin * axis[0], sin * axis[1], sin * axis[2]]
+    /// A base that is turned by roll about x, by pitch about y, and then by yaw about z, all axes of the world.
+    fn turned([yaw, pitch, roll]: [f64; 3], plane: Plane) -> (f64, Spatial) {
+        project([3.0, 4.0], quaternion([yaw, pitch, roll]), plane).unwrap()
     }
 
-    /// The turn `b` and then, about the world's axes, `a`.
-    fn after(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
-        let ([aw, ax, ay, az], [bw, bx, by, bz]) = (a, b);
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ]
+    fn quaternion(angles: [f64; 3]) -> [f64; 4] {
+        let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| (0.5 * angle).sin_cos());
+        let [w, x] = [cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr];
+        [w, x, cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr]
     }
-
-    const X: [f64; 3] = [1.0, 0.0, 0.0];
-    const Y: [f64; 3] = [0.0, 1.0, 0.0];
-    const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
     fn close(found: f64, expected: f64) {
-        // A handful of roundings of numbers of order one.
-        assert!((found - expected).abs() < 1e-15, "{found} {expected}");
-    }
-
-    #[test]
-    fn a_turn_about_y_is_the_pitch_alone() {
-        for pitch in [-1.5, -0.3, 0.0, 0.2, 1.4] {
-            let (found, Spatial { forward, roll, .. }) = project([0.0; 2], turn(pitch, Y), Plane::XZ).unwrap();
-            // The arcsine loses digits near its ends.
-            assert!((found - pitch).abs() < 1e-14, "{found} {pitch}");
-            close(forward[0], pitch.cos());
-            close(forward[1], 0.0);
-            close(roll, 0.0);
-        }
+        // A handful of roundings of numbers of order one; the arcsine loses digits near its ends.
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
     }
 
     #[test]
     fn yaw_pitch_and_roll_come_apart() {
-        let (yaw, pitch, roll) = (2.5, 0.4, -0.3);
-        let turned = after(turn(yaw, Z), after(turn(pitch, Y), turn(roll, X)));
-        let (found, spatial) = project([3.0, 4.0], turned, Plane::XZ).unwrap();
-        close(found, pitch);
-        close(spatial.roll, roll);
-        close(libm::atan2(spatial.forward[1], spatial.forward[0]), yaw);
-        assert_eq!(spatial.origin, [3.0, 4.0]);
+        let about_y = [-1.5, -0.3, 0.0, 0.2, 1.4].map(|pitch| [0.0, pitch, 0.0]);
+        for [yaw, pitch, roll] in about_y.into_iter().chain([[2.5, 0.4, -0.3]]) {
+            let (found, spatial) = turned([yaw, pitch, roll], Plane::XZ);
+            close(found, pitch);
+            close(spatial.roll, roll);
+            close(libm::atan2(spatial.forward[1], spatial.forward[0]), yaw);
+            assert_eq!(spatial.origin, [3.0, 4.0]);
+        }
     }
 
     #[test]
     fn a_robot_in_another_plane_stands_on_the_worlds_floor_all_the_same() {
         // One that faces its own y axis dips its nose about -x, and heads along the world's y.
-        let (pitch, spatial) = project([0.0; 2], turn(-0.3, X), Plane::YZ).unwrap();
+        let (pitch, spatial) = turned([0.0, 0.0, -0.3], Plane::YZ);
         close(pitch, 0.3);
         close(spatial.forward[0], 0.0);
         close(spatial.forward[1], 0.3_f64.cos());
         // One whose own y axis is up stands upright after a quarter turn about x.
-        let upright = turn(FRAC_PI_2, X);
-        let (pitch, spatial) = project([0.0; 2], after(turn(0.3, Y), upright), Plane::XY).unwrap();
+        let (pitch, spatial) = turned([0.0, 0.3, FRAC_PI_2], Plane::XY);
         close(pitch, 0.3);
         close(spatial.roll, 0.0);
         close(spatial.forward[0], 0.3_f64.cos());
@@ -160,32 +216,33 @@ mod tests {
 
     #[test]
     fn rounded_quaternions_are_normalised_and_others_refused() {
-        let exact = turn(0.7, Y);
-        let (pitch, _) = project([0.0; 2], exact.map(|part| 0.995 * part), Plane::XZ).unwrap();
-        close(pitch, 0.7);
-        let negative = exact.map(|part| -part);
-        close(project([0.0; 2], negative, Plane::XZ).unwrap().0, 0.7);
+        let of = |quaternion: [f64; 4]| project([0.0; 2], quaternion, Plane::XZ);
+        for factor in [0.995, -1.0] {
+            close(of(quaternion([0.0, 0.7, 0.0]).map(|part| factor * part)).unwrap().0, 0.7);
+        }
         for other in [[0.0; 4], [1.0, 0.2, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0], [1e200, 0.0, 0.0, 0.0]] {
-            let error = project([0.0; 2], other, Plane::XZ).unwrap_err();
+            let error = of(other).unwrap_err();
             assert!(matches!(error.reason(), Reason::OutOfRange { .. }), "{error}");
         }
-        let error = project([0.0; 2], turn(PI - 0.1, Y), Plane::XZ).unwrap_err();
+        let error = of(quaternion([0.0, PI - 0.1, 0.0])).unwrap_err();
         assert!(error.to_string().contains("upside down"), "{error}");
     }
 
     #[test]
     fn the_heading_is_the_mean_of_a_turning_clip() {
-        let facing = |yaw: f64| project([0.0; 2], turn(yaw, Z), Plane::XZ).unwrap().1;
+        let clip = |from: f64, step: f64, count: u32| -> Vec<Spatial> {
+            (0..count).map(|k| turned([from + f64::from(k) * step, 0.0, 0.0], Plane::XZ).1).collect()
+        };
         // A quarter turn from yaw 0.2, in even steps: half way.
-        let clip: Vec<Spatial> = (0..=90).map(|step| facing(0.2 + f64::from(step) * FRAC_PI_2 / 90.0)).collect();
-        let heading = Heading::mean(clip.iter()).unwrap();
+        let quarter = clip(0.2, FRAC_PI_2 / 90.0, 91);
+        let heading = Heading::mean(quarter.iter()).unwrap();
         let half = 0.2 + 0.25 * PI;
         let [along, across] = heading.along_and_across([half.cos(), half.sin()]);
-        assert!((along - 1.0).abs() < 1e-14 && across.abs() < 1e-14, "{along} {across}");
-        assert!((heading.yaw(&clip[0]) + 0.25 * PI).abs() < 1e-14);
+        close(along, 1.0);
+        close(across, 0.0);
+        close(heading.yaw(&quarter[0]), -0.25 * PI);
         // A whole turn has none.
-        let circle: Vec<Spatial> = (0..360).map(|step| facing(f64::from(step) * PI / 180.0)).collect();
-        assert_eq!(Heading::mean(circle.iter()), None);
+        assert_eq!(Heading::mean(clip(0.0, PI / 180.0, 360).iter()), None);
         assert_eq!(Heading::mean([].iter()), None);
     }
 }

@@ -7,7 +7,7 @@ mod sagittal;
 
 use crate::support::command::{heelstrike, read};
 use crate::support::impact::robot;
-use heelstrike::gait::{At, Difference, Sample, Sampled, Touchdown, Touching, find, rates};
+use heelstrike::gait::{At, Difference, Landing, Sample, Sampled, Touching, find, rates};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::table::{Header, Rates};
 use heelstrike::state::NamedContact;
@@ -58,7 +58,7 @@ fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
             let state = row.state(robot, &Defaults::default()).map_err(|error| (line, error))?;
             let time = row.time().map_err(|error| (line, error))?;
             let spatial = row.spatial().map_err(|error| (line, error))?;
-            Ok(Sample { time, state, rate_over: [time; 2], spatial, source: line })
+            Ok(Sample { time, state, rate_over: [time; 2], spatial, landing: None, source: line })
         })
         .collect()
 }
@@ -70,12 +70,12 @@ fn touchdowns(
     samples: Vec<Sampled<usize>>,
     at: At,
     touching: Touching,
-) -> Vec<Touchdown<usize>> {
+) -> Vec<Sample<usize>> {
     find(samples.into_iter(), robot, feet, at, touching).unwrap().map(Result::unwrap).collect()
 }
 
 /// The touchdowns of the rabbit.
-fn rabbit(at: At, touching: Touching) -> Vec<Touchdown<usize>> {
+fn rabbit(at: At, touching: Touching) -> Vec<Sample<usize>> {
     let robot = robot(&read(RABBIT));
     let foot = |link| NamedContact { link: robot.link(link).unwrap(), offset: [0.0, 0.0, 0.4], radius: 0.0 };
     let samples = samples(&read(WALK), &robot, Rates::Columns);
@@ -89,11 +89,11 @@ fn the_rabbits_touchdowns_are_those_of_the_reference() {
     let (robot, touchdowns) = (robot(&read(RABBIT)), rabbit(At::Row, Touching::default()));
     assert_eq!(touchdowns.len(), reference.states.len());
     for (touchdown, expected) in touchdowns.iter().zip(&reference.states) {
-        assert_eq!(touchdown.row, expected.csv_row);
+        let Landing { row, striking, shift_z, .. } = touchdown.landing.as_ref().unwrap();
+        assert_eq!((*row, striking), (expected.csv_row, &expected.striking));
         assert_eq!(touchdown.source, expected.csv_row + 2, "the line of the row");
-        assert_eq!(touchdown.striking, expected.striking);
         // Sums of five links' positions, each of order one, rounded.
-        assert!((touchdown.shift_z - expected.shift_z).abs() < 1e-14, "{} {}", touchdown.shift_z, expected.shift_z);
+        assert!((shift_z - expected.shift_z).abs() < 1e-14, "{shift_z} {}", expected.shift_z);
         for (friction, expected_outcomes) in &expected.by_friction {
             let mut state = touchdown.state.clone();
             let mu = friction.parse().map_or(Friction::Infinite, Friction::Finite);
@@ -109,7 +109,7 @@ fn the_rabbits_touchdowns_are_those_of_the_reference() {
             assert_eq!(analysis.outcomes.len(), expected_outcomes.outcomes.len());
             for (outcome, expected) in analysis.outcomes.iter().zip(&expected_outcomes.outcomes) {
                 let modes: Vec<String> = outcome.modes.iter().map(ToString::to_string).collect();
-                assert_eq!(modes, expected.modes, "row {} at friction {friction}", touchdown.row);
+                assert_eq!(modes, expected.modes, "row {row} at friction {friction}");
                 close(&outcome.velocity_after, &expected.velocity_after);
                 assert!((outcome.margin.unwrap() - expected.margin.unwrap()).abs() < 1e-12);
             }
@@ -130,7 +130,7 @@ fn rows_of_one_time_are_taken_as_they_are_also_by_crossing() {
     let [row, crossing] = [At::Row, At::Crossing].map(|at| rabbit(at, Touching::Strike));
     assert_eq!(row.len(), 4);
     for (row, crossing) in row.iter().zip(&crossing) {
-        assert_eq!((row.row, row.time), (crossing.row, crossing.time));
+        assert_eq!((row.source, row.time), (crossing.source, crossing.time));
         assert_eq!(row.state.position, crossing.state.position);
     }
 }

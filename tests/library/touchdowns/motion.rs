@@ -4,7 +4,7 @@ use super::{samples, touchdowns};
 use crate::support::impact::robot;
 use crate::support::urdf::{self, Axis, collision, joint, link};
 use heelstrike::Robot;
-use heelstrike::gait::{At, Difference, SMALL, Sampled, Thresholds, Touchdown, Touching, find, rates};
+use heelstrike::gait::{At, Difference, Landing, SMALL, Sample, Sampled, Thresholds, Touching, find, rates};
 use heelstrike::read::table::Rates;
 
 /// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own; in a unit of length of which
@@ -29,11 +29,11 @@ fn differences(table: &str, robot: &Robot, difference: Difference) -> Vec<Sample
 }
 
 /// The touchdowns of both feet: rows of time, height of a, height of b.
-fn lifted(rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Touchdown<usize>> {
+fn lifted(rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Sample<usize>> {
     lifted_at(1.0, rows, at, touching)
 }
 
-fn lifted_at(scale: f64, rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Touchdown<usize>> {
+fn lifted_at(scale: f64, rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<Sample<usize>> {
     let robot = lift(scale);
     let mut table = "time,q_base_z,q_ja,q_jb\n".to_owned();
     // The sphere's lowest point is its radius below its link.
@@ -46,6 +46,10 @@ fn assert_near(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() < within, "{found} {expected}");
 }
 
+fn landing(touchdown: &Sample<usize>) -> &Landing {
+    touchdown.landing.as_ref().unwrap()
+}
+
 /// Rows of 10 ms at which foot a has these heights and foot b stands at 0.
 fn one_foot(heights: &[f64]) -> Vec<[f64; 3]> {
     (0..).zip(heights).map(|(at, height)| [f64::from(at) * 0.01, *height, 0.0]).collect()
@@ -55,7 +59,8 @@ fn one_foot(heights: &[f64]) -> Vec<[f64; 3]> {
 fn the_state_is_the_last_row_above_the_level_on_which_the_foot_comes_to_rest() {
     let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.005, 0.005, 0.05]);
     let touchdowns = lifted(&rows, At::Row, Touching::Strike);
-    let [Touchdown { row: 4, striking, shift_z, state, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    let [touchdown @ Sample { state, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    let Landing { row: 4, striking, shift_z, .. } = landing(touchdown) else { panic!("{touchdown:?}") };
     assert_eq!(striking, "a");
     assert_near(*shift_z, -0.01, 1e-15);
     assert_near(state.position[1], 0.09, 1e-15);
@@ -67,7 +72,8 @@ fn the_state_is_the_last_row_above_the_level_on_which_the_foot_comes_to_rest() {
 fn crossing_goes_on_as_the_foot_fell_and_not_as_it_was_stopped() {
     let rows = one_foot(&[0.05, 0.04, 0.03, 0.02, 0.01, 0.004, 0.004, 0.004]);
     let touchdowns = lifted(&rows, At::Crossing, Touching::Strike);
-    let [Touchdown { row: 4, time, shift_z, state, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    let [touchdown @ Sample { time, state, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    let Landing { row: 4, shift_z, .. } = landing(touchdown) else { panic!("{touchdown:?}") };
     // At 1 m/s from 10 mm down to what counts as touching, which is above the row at 4 mm.
     assert_near(*time, 0.04 + (0.01 - (0.004 + above())), 1e-12);
     assert_near(state.position[3], 0.004 + above(), 1e-12);
@@ -85,7 +91,7 @@ fn crossing_lies_between_rows_that_are_both_before_the_impact() {
         .collect();
     let high = [[-2e-3, 0.03, 0.0], [-1e-3, 0.02, 0.0]];
     let touchdowns = lifted(&[&high[..], &rows].concat(), At::Crossing, Touching::Strike);
-    let [Touchdown { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
+    let [Sample { state, time, .. }] = &touchdowns[..] else { panic!("{touchdowns:?}") };
     assert_near(state.position[3], above(), 1e-15);
     assert_near(*time, (0.0056 - above()) / 0.2, 1e-12);
     assert_near(state.velocity[3], -0.2, 1e-9);
@@ -100,7 +106,7 @@ fn what_was_before_another_foots_impact_is_not_carried_on() {
     let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
     table.extend(rows.iter().chain(&stopped).map(|[time, a, rate]| format!("{time},0.1,{a},{rate}\n")));
     let found = touchdowns(&robot, &[], samples(&table, &robot, Rates::Columns), At::Crossing, Touching::Strike);
-    let [Touchdown { state, time, .. }] = &found[..] else { panic!("one touchdown: {found:?}") };
+    let [Sample { state, time, .. }] = &found[..] else { panic!("one touchdown: {found:?}") };
     assert_near(*time, 0.03 + (0.01 - 0.004 - above()), 1e-12);
     assert_near(state.velocity[3], -1.0, 1e-12);
 }
@@ -160,7 +166,7 @@ fn small_robots_have_the_touchdowns_of_large_ones_in_proportion() {
         };
         swings.map(|heights| {
             let touchdowns = lifted_at(scale, &rows(heights), At::Crossing, Touching::Strike);
-            touchdowns.iter().map(|touchdown| touchdown.row).collect::<Vec<_>>()
+            touchdowns.iter().map(|touchdown| landing(touchdown).row).collect::<Vec<_>>()
         })
     };
     let expected = found(1.0, 1.0);
@@ -195,7 +201,7 @@ fn what_another_point_of_the_foot_keeps_from_the_ground_does_not_strike() {
         let along: Vec<f64> = contacts.iter().map(|contact| (contact.offset[0] * 1e3).round()).collect();
         let radii: Vec<f64> = contacts.iter().map(|contact| contact.radius).collect();
         assert_eq!((along, radii), (vec![0.0, 200.0], vec![0.0; 2]), "heel and toe of the sole, rest at {rest}");
-        assert_eq!(found[0].striking, "body/1");
+        assert_eq!(landing(&found[0]).striking, "body/1");
     }
 }
 
@@ -217,7 +223,7 @@ fn a_clip_may_end_with_the_touchdown() {
     let swing = [0.05, 0.04, 0.03, 0.02, 0.01, 0.0];
     let ends = |heights: &[f64], at| {
         let touchdowns = lifted(&one_foot(heights), at, Touching::Strike);
-        touchdowns.iter().map(|touchdown| (touchdown.row, touchdown.time)).collect::<Vec<_>>()
+        touchdowns.iter().map(|touchdown| (landing(touchdown).row, touchdown.time)).collect::<Vec<_>>()
     };
     assert_eq!(ends(&swing, At::Row), [(5, 0.05)]);
     assert_eq!(ends(&swing, At::Crossing), [(5, 0.05)]);
@@ -251,7 +257,7 @@ fn who_touches_is_asked_of_every_other_foot() {
         let touching: Touching = touching.parse().unwrap();
         let touchdowns = lifted(&rows, At::Row, touching);
         let contacts = touchdowns[0].state.scene.contacts.as_ref().unwrap();
-        (touchdowns[0].striking.clone(), contacts.iter().map(|contact| contact.link).collect::<Vec<_>>())
+        (landing(&touchdowns[0]).striking.clone(), contacts.iter().map(|contact| contact.link).collect::<Vec<_>>())
     };
     let [a, b] = [1, 2];
     assert_eq!(with(|_| 0.005, "strike"), ("a".into(), vec![a]));
@@ -287,7 +293,7 @@ fn a_refused_row_stays_in_its_place() {
     assert_eq!(found.len(), 2);
     let (line, error) = found[0].as_ref().unwrap_err();
     assert_eq!((*line, error.to_string().as_str()), (4, "4:10: q_ja: expected a number, found \"x\""));
-    assert_eq!(found[1].as_ref().unwrap().row, 4);
+    assert_eq!(landing(found[1].as_ref().unwrap()).row, 4);
 }
 
 #[test]
@@ -300,7 +306,7 @@ fn numbers_beyond_all_measure_are_refused_and_end() {
         for at in [At::Row, At::Crossing] {
             let samples = samples(&table, &robot, Rates::Columns);
             for found in find(samples.into_iter(), &robot, &[], at, Touching::default()).unwrap() {
-                let finite = |Touchdown { state, .. }: &Touchdown<usize>| {
+                let finite = |Sample { state, .. }: &Sample<usize>| {
                     state.position.iter().chain(&state.velocity).all(|entry| entry.is_finite())
                 };
                 assert!(found.as_ref().map_or(true, finite));
