@@ -1,101 +1,45 @@
-//! XML elements -> names, places, references, and a strict copy of all values for urdf-rs.
-//!
-//! The strict copy is URDF text that holds numbers, joint types and shapes alone: each checked, each element where
-//! urdf-rs wants it, and no names, which need no reading. What urdf-rs would misread cannot reach it: it drops words
-//! from a vector that are no numbers, and wants a `velocity` in every `<limit>`.
+//! XML elements -> links and joints: checked, named and located, with the values that urdf-rs reads of their strict copy.
 
 use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, undefined_world};
 use super::repair::Repaired;
-use super::strict::{Range, copy, copy_axis, copy_origin, copy_required, write_attribute};
+use super::strict::{ANY, copy, copy_axis, copy_collision, copy_inertial, copy_origin, geometry, pose, values};
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
-use super::{Ignored, JointKind, joint_place, link_place};
+use super::{Collision, Description, Inertial, Joint, JointKind, Link, Mimic, joint_place, link_place};
 use crate::error::{Location, Reason, Result};
 use roxmltree::{Document, Node};
 
 /// The most joints that move: a chain of n of them takes n^3 / 3 steps to factorize.
 const MOST_MOVING: usize = 2000;
-/// The links or joints in one part of the strict copy; parts bound the memory that urdf-rs needs.
-const PART: usize = 1000;
-/// How a part of the strict copy begins.
-const OPENING: &str = "<robot name=\"\">";
-/// How a part of the strict copy ends.
-const CLOSING: &str = "</robot>";
+/// What Drake calls a spherical joint.
+const DRAKES_SPHERICAL: &str = "ball";
 
-/// All that is known of a file before its values are read.
-pub(super) struct Draft {
-    pub(super) name: String,
-    pub(super) links: Vec<Link>,
-    pub(super) joints: Vec<Joint>,
-    pub(super) ignored: Vec<Ignored>,
-    /// The strict copy, in parts that are URDF texts of their own: first all of `links`, then all of `joints`, in
-    /// order.
-    pub(super) strict: Vec<String>,
-}
-
-/// A link without its values.
-pub(super) struct Link {
-    pub(super) name: String,
-    pub(super) location: Location,
-    pub(super) inertial: Stated,
-    pub(super) shapes: Vec<Shape>,
-}
-
-/// How much of an inertia the file states.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stated {
-    /// No `<inertial>`.
-    Nothing,
-    /// `<inertial>` without `<inertia>`.
-    Mass,
-    /// Both.
-    Everything,
-}
-
-/// What urdf-rs is not asked about a shape.
-pub(super) enum Shape {
-    /// A shape whose sizes are all there is to know.
-    Simple,
-    /// A mesh and its file.
-    Mesh(String),
-    /// A shape of this tag, which URDF does not have; a mesh stands in its place in the strict copy.
-    Unknown(String),
-}
-
-/// A joint without its values.
-pub(super) struct Joint {
-    pub(super) name: String,
-    pub(super) location: Location,
-    pub(super) kind: JointKind,
-    pub(super) parent: usize,
-    pub(super) child: usize,
-    pub(super) mimic: Option<usize>,
-}
-
-/// Reads and checks `text`; see [`super::Description::from_urdf`] for what is refused.
-pub(super) fn read(text: &str) -> Result<Draft> {
+/// The description of `text`, its links and joints not yet connected; see [`Description::from_urdf`] for what is
+/// refused.
+pub(super) fn read(text: &str) -> Result<Description> {
     let mut repaired = Repaired::new(text);
     loop {
         match xml::parse(&repaired.text) {
             Ok(document) => {
-                let draft = read_document(&document).map_err(|error| repaired.refusal(error));
-                return draft.map(|draft| draft.moved(|place| repaired.in_file(place)));
+                let mut description = read_document(&document).map_err(|error| repaired.refusal(error))?;
+                let links = description.links.iter_mut().map(|link| &mut link.location);
+                let places = links.chain(description.joints.iter_mut().map(|joint| &mut joint.location));
+                places.for_each(|place| *place = repaired.in_file(*place));
+                return Ok(description);
             }
-            Err(Unparsed::Prefix(prefix, refused)) => {
+            Err(Unparsed { prefix, refused }) => {
                 let refused = repaired.refusal(refused);
-                repaired = repaired.declaring(&prefix).ok_or(refused)?;
+                repaired = prefix.and_then(|prefix| repaired.declaring(&prefix)).ok_or(refused)?;
             }
-            Err(Unparsed::Refused(refused)) => return Err(repaired.refusal(refused)),
         }
     }
 }
 
-fn read_document(document: &Document<'_>) -> Result<Draft> {
-    let text = document.input_text();
+fn read_document(document: &Document<'_>) -> Result<Description> {
     let robot = document.root_element();
     require_urdf(robot)?;
     refuse_xacro(robot)?;
 
-    let mut cursor = Cursor::new(text);
+    let mut cursor = Cursor::new(document.input_text());
     let (mut links, mut joints) = (ByName::new("link"), ByName::new("joint"));
     let mut ignored = IgnoredCount::default();
     for element in robot.children().filter(Node::is_element) {
@@ -114,42 +58,34 @@ fn read_document(document: &Document<'_>) -> Result<Draft> {
     links.by_name.extend(world.map(|_| (WORLD, links.elements.len())));
     refuse_many_joints(&joints)?;
 
-    let mut strict = Vec::new();
+    let mut description = Description {
+        name: robot.attribute("name").unwrap_or_default().to_owned(),
+        links: Vec::with_capacity(links.elements.len() + 1),
+        joints: Vec::with_capacity(joints.elements.len()),
+        root: 0,
+        ignored: Vec::new(),
+    };
     let mut shapes = 0;
-    let mut draft_links = Vec::with_capacity(links.elements.len());
-    for part in links.elements.chunks(PART) {
-        let mut copy = String::from(OPENING);
-        for &(name, element, location) in part {
-            let link = read_link(name, element, location, &mut ignored, &mut copy);
-            let link = link.map_err(|error| error.at(link_place(name)))?;
-            shapes += link.shapes.len();
-            if shapes > MOST_LINKS {
-                let refused = xml::refuse(element, Reason::TooMany { what: "collision shapes", limit: MOST_LINKS });
-                return Err(refused.at(link_place(name)));
-            }
-            draft_links.push(link);
-        }
-        copy.push_str(CLOSING);
-        strict.push(copy);
+    for &(name, element, location) in &links.elements {
+        let link = read_link(name, element, location, &mut ignored).and_then(|link| {
+            shapes += link.collisions.len();
+            let many = Reason::TooMany { what: "collision shapes", limit: MOST_LINKS };
+            if shapes > MOST_LINKS { Err(xml::refuse(element, many)) } else { Ok(link) }
+        });
+        description.links.push(link.map_err(|error| error.at(link_place(name)))?);
     }
-    if let Some(location) = world {
-        draft_links.push(Link { name: WORLD.into(), location, inertial: Stated::Nothing, shapes: Vec::new() });
-        strict.push(format!("{OPENING}<link name=\"\"/>{CLOSING}"));
+    description.links.extend(world.map(|location| Link {
+        name: WORLD.into(),
+        inertial: None,
+        collisions: Vec::new(),
+        joint: None,
+        location,
+    }));
+    for &(name, element, location) in &joints.elements {
+        let joint = read_joint((name, element, location), &links, &joints, &mut ignored);
+        description.joints.push(joint.map_err(|error| error.at(joint_place(name)))?);
     }
-    let mut draft_joints = Vec::with_capacity(joints.elements.len());
-    for part in joints.elements.chunks(PART) {
-        let mut copy = String::from(OPENING);
-        for &(name, element, location) in part {
-            let joint = JointElement { name, element, location };
-            let joint = joint.read(&links, &joints, &mut ignored, &mut copy);
-            draft_joints.push(joint.map_err(|error| error.at(joint_place(name)))?);
-        }
-        copy.push_str(CLOSING);
-        strict.push(copy);
-    }
-
-    let name = robot.attribute("name").unwrap_or_default().to_owned();
-    Ok(Draft { name, links: draft_links, joints: draft_joints, ignored: ignored.kinds, strict })
+    Ok(Description { ignored: ignored.kinds, ..description })
 }
 
 /// Before the costly part: a tree has fewer joints than links, but this is no tree yet.
@@ -215,165 +151,82 @@ fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
     (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
 }
 
-impl Draft {
-    /// The draft with all places changed.
-    fn moved(mut self, place: impl Fn(Location) -> Location) -> Self {
-        for link in &mut self.links {
-            link.location = place(link.location);
-        }
-        for joint in &mut self.joints {
-            joint.location = place(joint.location);
-        }
-        self
-    }
-}
-
-fn read_link(
-    name: &str,
-    element: Node<'_, '_>,
-    location: Location,
-    ignored: &mut IgnoredCount,
-    strict: &mut String,
-) -> Result<Link> {
-    strict.push_str("<link name=\"\">");
-    let inertial = match xml::child(element, "inertial")? {
-        // An empty one says no more than none.
-        Some(inertial) if inertial.children().any(|child| child.is_element()) => read_inertial(inertial, strict)?,
-        _ => Stated::Nothing,
-    };
+fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mut IgnoredCount) -> Result<Link> {
+    let mut strict = String::from("<link name=\"\">");
+    // An empty one says no more than none.
+    let inertial =
+        xml::child(element, "inertial")?.filter(|inertial| inertial.children().any(|child| child.is_element()));
+    let has_inertia = inertial.map(|inertial| copy_inertial(inertial, &mut strict)).transpose()?;
     let mut shapes = Vec::new();
     for child in element.children().filter(Node::is_element) {
         match tag(element, child) {
-            Some("collision") => shapes.push(read_collision(child, strict)?),
+            Some("collision") => shapes.push(copy_collision(child, &mut strict)?),
             Some("inertial" | "visual") => {}
             _ => ignored.count("link", child)?,
         }
     }
     strict.push_str("</link>");
-    Ok(Link { name: name.into(), location, inertial, shapes })
+
+    let urdf_rs::Link { inertial, collision, .. } = values(&strict, |mut robot| robot.links.pop())?;
+    let urdf_rs::Inertia { ixx, ixy, ixz, iyy, iyz, izz } = inertial.inertia;
+    let inertial = has_inertia.map(|has_inertia| Inertial {
+        origin: pose(&inertial.origin),
+        mass: inertial.mass.value,
+        inertia: has_inertia.then_some([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]]),
+    });
+    let collisions = shapes.into_iter().zip(&collision);
+    let collisions = collisions
+        .map(|(shape, values)| Collision { origin: pose(&values.origin), geometry: geometry(shape, &values.geometry) });
+    Ok(Link { inertial, collisions: collisions.collect(), name: name.into(), joint: None, location })
 }
 
-fn read_inertial(element: Node<'_, '_>, strict: &mut String) -> Result<Stated> {
-    strict.push_str("<inertial>");
-    copy_origin(element, strict)?;
-    let mass = xml::required_child(element, "mass")?;
-    strict.push_str("<mass");
-    copy_required(mass, "value", 1, Range::NotNegative, strict)?;
-    strict.push_str("/><inertia");
-    let inertia = xml::child(element, "inertia")?;
-    for moment in ["ixx", "iyy", "izz"] {
-        match inertia {
-            Some(inertia) => copy_required(inertia, moment, 1, Range::Any, strict)?,
-            None => write_attribute(moment, "0", strict),
+fn read_joint(
+    (name, element, location): (&str, Node<'_, '_>, Location),
+    links: &ByName,
+    joints: &ByName,
+    ignored: &mut IgnoredCount,
+) -> Result<Joint> {
+    let kind = joint_kind(element)?;
+    let parent = links.find(xml::required_child(element, "parent")?, "link")?;
+    let child = links.find(xml::required_child(element, "child")?, "link")?;
+    let mut strict = format!("<joint name=\"\" type=\"{}\">", kind.name());
+    copy_origin(element, &mut strict)?;
+    strict.push_str("<parent link=\"\"/><child link=\"\"/>");
+    if let Some(axis) = xml::child(element, "axis")? {
+        copy_axis(axis, kind, &mut strict)?;
+    }
+    let mut mimicked = None;
+    if let Some(mimic) = xml::child(element, "mimic")? {
+        mimicked = Some(joints.find(mimic, "joint")?);
+        strict.push_str("<mimic joint=\"\"");
+        copy(mimic, "multiplier", 1, ANY, &mut strict)?;
+        copy(mimic, "offset", 1, ANY, &mut strict)?;
+        strict.push_str("/>");
+    }
+    strict.push_str("</joint>");
+    for child in element.children().filter(Node::is_element) {
+        match tag(element, child) {
+            Some("origin" | "parent" | "child" | "axis" | "mimic") => {}
+            _ => ignored.count("joint", child)?,
         }
     }
-    for product in ["ixy", "ixz", "iyz"] {
-        // A file that leaves out the products of inertia means that there are none.
-        let given = inertia.map_or(Ok(false), |inertia| copy(inertia, product, 1, Range::Any, strict))?;
-        if !given {
-            write_attribute(product, "0", strict);
-        }
-    }
-    strict.push_str("/></inertial>");
-    Ok(if inertia.is_some() { Stated::Everything } else { Stated::Mass })
-}
 
-fn read_collision(element: Node<'_, '_>, strict: &mut String) -> Result<Shape> {
-    strict.push_str("<collision>");
-    copy_origin(element, strict)?;
-    let geometry = xml::required_child(element, "geometry")?;
-    let mut shapes = geometry.children().filter(Node::is_element);
-    let shape = shapes.next().ok_or_else(|| xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into())))?;
-    if let Some(second) = shapes.next() {
-        let reason = format!("<{}> is a second shape in one <geometry>", second.tag_name().name());
-        return Err(xml::refuse(second, Reason::Inconsistent(reason)).hint("give each shape a <collision> of its own"));
-    }
-
-    strict.push_str("<geometry><");
-    let (tag, sizes): (&str, &[(&str, usize)]) = match shape.tag_name().name() {
-        "box" => ("box", &[("size", 3)]),
-        "sphere" => ("sphere", &[("radius", 1)]),
-        "cylinder" => ("cylinder", &[("radius", 1), ("length", 1)]),
-        "capsule" => ("capsule", &[("radius", 1), ("length", 1)]),
-        _ => ("mesh", &[]),
-    };
-    strict.push_str(tag);
-    for &(size, count) in sizes {
-        copy_required(shape, size, count, Range::NotNegative, strict)?;
-    }
-    let shape = match shape.tag_name().name() {
-        "mesh" => {
-            copy(shape, "scale", 3, Range::Any, strict)?;
-            Shape::Mesh(xml::required_attribute(shape, "filename")?.into())
-        }
-        unknown if tag == "mesh" => Shape::Unknown(unknown.into()),
-        _ => Shape::Simple,
-    };
-    if tag == "mesh" {
-        write_attribute("filename", "-", strict);
-    }
-    strict.push_str("/></geometry></collision>");
-    Ok(shape)
-}
-
-/// A joint's element, about to be read.
-struct JointElement<'a, 'input> {
-    name: &'a str,
-    element: Node<'a, 'input>,
-    location: Location,
-}
-
-impl JointElement<'_, '_> {
-    fn read(self, links: &ByName, joints: &ByName, ignored: &mut IgnoredCount, strict: &mut String) -> Result<Joint> {
-        let Self { name, element, location } = self;
-        let kind = joint_kind(element)?;
-        let parent = links.find(xml::required_child(element, "parent")?, "link")?;
-        let child = links.find(xml::required_child(element, "child")?, "link")?;
-
-        strict.push_str(&format!("<joint name=\"\" type=\"{}\">", kind.name()));
-        copy_origin(element, strict)?;
-        strict.push_str("<parent link=\"\"/><child link=\"\"/>");
-        if let Some(axis) = xml::child(element, "axis")? {
-            copy_axis(axis, kind, strict)?;
-        }
-        let mut mimic = None;
-        if let Some(own) = xml::child(element, "mimic")? {
-            let mimicked = joints.find(own, "joint")?;
-            strict.push_str("<mimic joint=\"\"");
-            copy(own, "multiplier", 1, Range::Any, strict)?;
-            copy(own, "offset", 1, Range::Any, strict)?;
-            strict.push_str("/>");
-            mimic = Some(mimicked);
-        }
-        strict.push_str("</joint>");
-
-        for child in element.children().filter(Node::is_element) {
-            match tag(element, child) {
-                Some("origin" | "parent" | "child" | "axis" | "mimic") => {}
-                _ => ignored.count("joint", child)?,
-            }
-        }
-        Ok(Joint { name: name.into(), location, kind, parent, child, mimic })
-    }
+    let values = values(&strict, |mut robot| robot.joints.pop())?;
+    let mimic = mimicked.zip(values.mimic).map(|(joint, values)| Mimic {
+        joint,
+        multiplier: values.multiplier.unwrap_or(1.0),
+        offset: values.offset.unwrap_or(0.0),
+    });
+    let (origin, axis) = (pose(&values.origin), values.axis.xyz.0);
+    Ok(Joint { name: name.into(), kind, parent, child, origin, axis, mimic, location })
 }
 
 /// The joint's type.
 fn joint_kind(element: Node<'_, '_>) -> Result<JointKind> {
-    // Drake calls a spherical joint a ball.
-    const KINDS: [(&str, JointKind); 8] = [
-        ("fixed", JointKind::Fixed),
-        ("revolute", JointKind::Revolute),
-        ("continuous", JointKind::Continuous),
-        ("prismatic", JointKind::Prismatic),
-        ("planar", JointKind::Planar),
-        ("floating", JointKind::Floating),
-        ("spherical", JointKind::Spherical),
-        ("ball", JointKind::Spherical),
-    ];
     let word = xml::required_attribute(element, "type")?;
-    match KINDS.iter().find(|(known, _)| *known == word) {
-        Some(&(_, kind)) => Ok(kind),
-        None => Err(xml::refuse(element, Reason::Unsupported(format!("unknown joint type \"{word}\"")))
-            .did_you_mean(word, KINDS.map(|(known, _)| known))),
-    }
+    let known = |kind: &JointKind| kind.name() == word || (*kind, word) == (JointKind::Spherical, DRAKES_SPHERICAL);
+    JointKind::ALL.into_iter().find(known).ok_or_else(|| {
+        let words = JointKind::ALL.map(JointKind::name).into_iter().chain([DRAKES_SPHERICAL]);
+        xml::refuse(element, Reason::Unsupported(format!("unknown joint type \"{word}\""))).did_you_mean(word, words)
+    })
 }

@@ -2,7 +2,7 @@
 //! one tree. The only user of urdf-rs and roxmltree.
 //!
 //! ```text
-//!     text --repair, xml--> elements --draft--> names, places, strict copy --urdf-rs--> values --tree--> Description
+//!     text --repair, xml--> elements --draft: strict copy, urdf-rs--> links, joints --tree--> Description
 //! ```
 //!
 //! urdf-rs alone is too trusting and too strict: it drops non-numbers from a vector, reads a missing `<inertial>` as a
@@ -14,10 +14,9 @@ mod pose;
 mod xml;
 mod repair;
 mod elements;
+mod mesh;
 mod strict;
 mod draft;
-mod mesh;
-mod values;
 mod mimic;
 mod tree;
 
@@ -54,7 +53,6 @@ pub struct Description {
 /// A link of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Link {
-    /// Its name.
     pub name: String,
     /// Its inertia; `None` if the file has no `<inertial>`, which differs from a mass of zero.
     pub inertial: Option<Inertial>,
@@ -83,59 +81,31 @@ pub struct Inertial {
 pub struct Collision {
     /// The shape's frame in the link's frame.
     pub origin: Pose,
-    /// The shape.
     pub geometry: Geometry,
 }
 
-/// A shape about the origin of its own frame; all sizes are finite and none is negative.
+/// A shape about the origin of its own frame; all sizes are finite and none is negative \[m\].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
-    /// A box.
-    Box {
-        /// Whole lengths of its sides along x, y and z \[m\].
-        size: [f64; 3],
-    },
+    /// A box with sides of these whole lengths along x, y and z.
+    Box { size: [f64; 3] },
     /// A cylinder about the z axis.
-    Cylinder {
-        /// Radius \[m\].
-        radius: f64,
-        /// Length along z \[m\].
-        length: f64,
-    },
-    /// A cylinder about the z axis with a half ball on each end.
-    Capsule {
-        /// Radius \[m\].
-        radius: f64,
-        /// Length along z without the half balls \[m\].
-        length: f64,
-    },
+    Cylinder { radius: f64, length: f64 },
+    /// A cylinder about the z axis with a half ball on each end, which `length` does not count.
+    Capsule { radius: f64, length: f64 },
     /// A ball; a radius of 0 is a point.
-    Sphere {
-        /// Radius \[m\].
-        radius: f64,
-    },
-    /// A mesh.
-    Mesh {
-        /// The file's name as given.
-        file: String,
-        /// Factors along x, y and z; a negative one mirrors.
-        scale: [f64; 3],
-        /// What was read of the file, before the factors.
-        mesh: Mesh,
-    },
-    /// A shape that URDF does not know.
-    Unknown {
-        /// The element's tag.
-        tag: String,
-    },
+    Sphere { radius: f64 },
+    /// A mesh: the file's name as given, factors along x, y and z (a negative one mirrors), and what was read of the
+    /// file, before the factors.
+    Mesh { file: String, scale: [f64; 3], mesh: Mesh },
+    /// A shape that URDF does not know, by its element's tag.
+    Unknown { tag: String },
 }
 
 /// A joint of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
-    /// Its name.
     pub name: String,
-    /// How it moves.
     pub kind: JointKind,
     /// Its parent link (an index into [`Description::links`]).
     pub parent: usize,
@@ -172,12 +142,12 @@ pub enum JointKind {
 }
 
 impl JointKind {
+    pub(crate) const ALL: [Self; 7] =
+        [Self::Fixed, Self::Revolute, Self::Continuous, Self::Prismatic, Self::Planar, Self::Floating, Self::Spherical];
+
     /// Whether the joint's motion depends on its axis.
     pub fn has_axis(self) -> bool {
-        match self {
-            Self::Revolute | Self::Continuous | Self::Prismatic | Self::Planar => true,
-            Self::Fixed | Self::Floating | Self::Spherical => false,
-        }
+        matches!(self, Self::Revolute | Self::Continuous | Self::Prismatic | Self::Planar)
     }
 
     /// Its name in URDF.
@@ -205,14 +175,11 @@ pub struct Mimic {
     pub offset: f64,
 }
 
-/// Elements of one kind that were ignored.
+/// Elements of one tag that were ignored, below elements of the tag `parent`: `robot`, `link` or `joint`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
-    /// The tag of their parent element: `robot`, `link` or `joint`.
     pub parent: &'static str,
-    /// Their tag.
     pub tag: String,
-    /// How many there are.
     pub count: usize,
 }
 
@@ -233,8 +200,7 @@ impl Description {
     /// * text in place of a number, a number that is not finite, a negative mass or size, a zero axis.
     pub fn from_urdf(text: &str) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let draft = draft::read(text)?;
-        let mut description = values::join(draft)?;
+        let mut description = draft::read(text)?;
         description.root = tree::connect(&mut description.links, &description.joints)?;
         Ok(description)
     }
@@ -242,25 +208,6 @@ impl Description {
     /// The joint of that name (an index into [`Description::joints`]).
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
-    }
-
-    /// All joints from the root outward, those of one link in the file's order and each branch before the next.
-    pub fn outward(&self) -> Vec<usize> {
-        tree::outward(self, self.root)
-    }
-
-    /// The joints outward from `link`, in the order of [`Description::outward`].
-    pub fn outward_from(&self, link: usize) -> Vec<usize> {
-        tree::outward(self, link)
-    }
-
-    /// For each mimic joint the joint at the end of its chain, which mimics none, with the multiplier and offset of the
-    /// whole chain.
-    ///
-    /// # Errors
-    /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) for joints that mimic each other in a circle.
-    pub fn leaders(&self) -> Result<Vec<Option<Mimic>>> {
-        mimic::leaders(&self.joints)
     }
 }
 
@@ -303,11 +250,6 @@ mod tests {
         let stated = read(&format!("<link name=\"a\">{zero}</link>"));
         let inertial = stated.links[0].inertial.as_ref().expect("stated");
         assert_eq!((inertial.mass, inertial.inertia), (0.0, Some([[0.0; 3]; 3])));
-        let mass = read("<link name=\"a\"><inertial><mass value=\"2\"/></inertial></link>");
-        assert_eq!(
-            mass.links[0].inertial.as_ref().map(|inertial| (inertial.mass, inertial.inertia)),
-            Some((2.0, None))
-        );
     }
 
     #[test]
@@ -350,10 +292,8 @@ mod tests {
 
         let [j, k] = robot.joints.as_slice() else { panic!("two joints") };
         assert_eq!((j.kind, j.parent, j.child, j.axis), (JointKind::Prismatic, 0, 1, [0.0, 0.0, -3.0]));
-        assert_eq!(
-            (k.axis, k.mimic.clone()),
-            ([1.0, 0.0, 0.0], Some(Mimic { joint: 0, multiplier: -2.0, offset: 0.0 }))
-        );
+        let mimic = Some(Mimic { joint: 0, multiplier: -2.0, offset: 0.0 });
+        assert_eq!((k.axis, &k.mimic), ([1.0, 0.0, 0.0], &mimic));
         assert_eq!((robot.root, robot.links[0].joint, robot.links[2].joint), (0, None, Some(1)));
     }
 
@@ -371,18 +311,5 @@ mod tests {
         let ignored: Vec<_> =
             robot.ignored.iter().map(|Ignored { parent, tag, count }| (*parent, tag.as_str(), *count)).collect();
         assert_eq!(ignored, [("robot", "link", 1), ("robot", "gazebo", 2), ("joint", "limit", 1)]);
-    }
-
-    #[test]
-    fn a_chain_of_10_000_links_is_read_without_recursion() {
-        let link = |k: usize| format!("<link name=\"l{k}\"/>");
-        let joint = |k: usize| {
-            let parent = k - 1;
-            format!("<joint name=\"j{k}\" type=\"fixed\"><parent link=\"l{parent}\"/><child link=\"l{k}\"/></joint>")
-        };
-        let count = 10_000;
-        let text: String = (0..count).map(link).chain((1..count).map(joint)).collect();
-        let robot = read(&text);
-        assert_eq!((robot.links.len(), robot.joints.len(), robot.root), (count, count - 1, 0));
     }
 }

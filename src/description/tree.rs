@@ -28,31 +28,34 @@ pub(super) fn connect(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
         return Err(links[other].refuse(Reason::NotATree(reason)).hint("make one of them the child of a joint"));
     }
 
-    match (root, first_in_cycle(links, joints)) {
-        (Some(root), None) => Ok(root),
-        (_, Some(link)) => Err(cycle(links, joints, link)),
-        // Without a root every link is a child, so there is a cycle; without links there is nothing to connect.
-        (None, None) => Err(Reason::Missing("a <link>".into()).into()),
+    if let Some((link, joint)) = first_in_cycle(links, joints) {
+        let name = &links[link].name;
+        let reason = Reason::NotATree(format!("link \"{name}\" is its own ancestor: the joints form a cycle"));
+        return Err(joints[joint].refuse(reason).hint("cut the cycle open: one link must be no joint's child"));
+    }
+    // Without a root every link is a child, so there is a cycle; without links there is nothing to connect.
+    root.ok_or_else(|| Reason::Missing("a <link>".into()).into())
+}
+
+impl Description {
+    /// All joints outward from `link`, those of one link in the file's order and each branch before the next.
+    pub fn outward(&self, link: usize) -> Vec<usize> {
+        let mut joints_of = vec![Vec::new(); self.links.len()];
+        // Backward, since a stack is emptied from its end.
+        for (index, joint) in self.joints.iter().enumerate().rev() {
+            joints_of[joint.parent].push(index);
+        }
+        let (mut order, mut waiting) = (Vec::with_capacity(self.joints.len()), joints_of[link].clone());
+        while let Some(index) = waiting.pop() {
+            order.push(index);
+            waiting.extend(&joints_of[self.joints[index].child]);
+        }
+        order
     }
 }
 
-/// The joints outward from `link`: see [`Description::outward`].
-pub(super) fn outward(description: &Description, link: usize) -> Vec<usize> {
-    let mut joints_of = vec![Vec::new(); description.links.len()];
-    // Backward, since a stack is emptied from its end.
-    for (index, joint) in description.joints.iter().enumerate().rev() {
-        joints_of[joint.parent].push(index);
-    }
-    let (mut order, mut waiting) = (Vec::with_capacity(description.joints.len()), joints_of[link].clone());
-    while let Some(index) = waiting.pop() {
-        order.push(index);
-        waiting.extend(&joints_of[description.joints[index].child]);
-    }
-    order
-}
-
-/// A link that is its own ancestor, if any.
-fn first_in_cycle(links: &[Link], joints: &[Joint]) -> Option<usize> {
+/// A link that is its own ancestor, if any, and its joint.
+fn first_in_cycle(links: &[Link], joints: &[Joint]) -> Option<(usize, usize)> {
     // The walk toward the root in which a link was first met, counted from 1.
     let mut met = vec![0; links.len()];
     for start in 0..links.len() {
@@ -64,19 +67,9 @@ fn first_in_cycle(links: &[Link], joints: &[Joint]) -> Option<usize> {
                 None => break,
             }
         }
-        if met[at] == walk && links[at].joint.is_some() {
-            return Some(at);
+        if let (true, Some(joint)) = (met[at] == walk, links[at].joint) {
+            return Some((at, joint));
         }
     }
     None
-}
-
-/// The refusal of the cycle through `link`.
-fn cycle(links: &[Link], joints: &[Joint], link: usize) -> crate::error::Error {
-    let name = &links[link].name;
-    let reason = Reason::NotATree(format!("link \"{name}\" is its own ancestor: the joints form a cycle"));
-    match links[link].joint {
-        Some(joint) => joints[joint].refuse(reason).hint("cut the cycle open: one link must be no joint's child"),
-        None => links[link].refuse(reason),
-    }
 }

@@ -18,27 +18,10 @@ const MOST_NAMESPACES: usize = 1000;
 /// The remedy for what is something else altogether.
 const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
 
-/// Why a text has no XML tree.
-pub(super) enum Unparsed {
-    /// A prefix that is not declared, and the refusal if that cannot be repaired.
-    Prefix(String, Error),
-    /// Anything else.
-    Refused(Error),
-}
-
-impl Unparsed {
-    /// The refusal of a text that cannot be repaired.
-    pub(super) fn into_error(self) -> Error {
-        match self {
-            Self::Prefix(_, refused) | Self::Refused(refused) => refused,
-        }
-    }
-}
-
-impl From<Error> for Unparsed {
-    fn from(refused: Error) -> Self {
-        Self::Refused(refused)
-    }
+/// Why a text has no XML tree; with the prefix that is not declared, if declaring it may help.
+pub(super) struct Unparsed {
+    pub(super) prefix: Option<String>,
+    pub(super) refused: Error,
 }
 
 /// The XML tree of `text`.
@@ -46,13 +29,15 @@ impl From<Error> for Unparsed {
 /// # Errors
 /// Text that is no XML, a document type definition, too deep nesting, too many links, attributes or nodes.
 pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, Unparsed> {
-    refuse_many(text)?;
+    let refused = |refused| Unparsed { prefix: None, refused };
+    refuse_many(text).map_err(refused)?;
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options).map_err(|error| match &error {
-        roxmltree::Error::UnknownNamespace(prefix, _) => Unparsed::Prefix(prefix.clone(), refusal(text, &error)),
-        _ => refusal(text, &error).into(),
+    let document = Document::parse_with_options(text, options).map_err(|error| {
+        let refused = refusal(text, &error);
+        let prefix = if let roxmltree::Error::UnknownNamespace(prefix, _) = error { Some(prefix) } else { None };
+        Unparsed { prefix, refused }
     })?;
-    refuse_deep_nesting(&document)?;
+    refuse_deep_nesting(&document).map_err(refused)?;
     Ok(document)
 }
 

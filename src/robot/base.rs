@@ -116,7 +116,7 @@ impl Welded {
         let mass = |link: usize| links[link].inertial.as_ref().map_or(0.0, |inertial| inertial.mass);
         let mut group = vec![0; links.len()];
         let (mut masses, mut exits) = (vec![mass(*root)], vec![Vec::new()]);
-        for index in description.outward() {
+        for index in description.outward(description.root) {
             let joint = &description.joints[index];
             let parent = group[joint.parent];
             if let Role::Frozen(_) = roles[index] {

@@ -38,7 +38,7 @@ impl Posture {
                 return Err(joint.refuse(Reason::NotFinite { what: "the value at which it is held".into(), value }));
             }
         }
-        let leaders = description.leaders()?;
+        let leaders = description.mimicked()?;
         for (index, leader) in leaders.iter().enumerate() {
             if let Some(&Mimic { joint, multiplier, offset }) = leader.as_ref() {
                 held[index] = held[joint].map(|value| multiplier * value + offset);
@@ -46,7 +46,7 @@ impl Posture {
         }
         let mut axes = vec![[0.0; 3]; joints.len()];
         let mut rotations = vec![Pose::default().rotation(); description.links.len()];
-        for index in description.outward() {
+        for index in description.outward(description.root) {
             let joint = &joints[index];
             let origin = product(&rotations[joint.parent], &joint.origin.rotation());
             axes[index] = unit(apply(&origin, unit(joint.axis)));

@@ -65,7 +65,7 @@ impl Tree {
         reductions: Reductions,
     ) -> Self {
         let links = &description.links;
-        let outward = description.outward_from(root);
+        let outward = description.outward(root);
         // What each joint of the file moves with: coordinates and followers are numbered in its order.
         let mut movers = vec![None; roles.len()];
         let (mut coordinates, mut followers) = (0, 0);
