@@ -108,7 +108,7 @@ fn velocity_after(bencher: Bencher) {
 fn enumeration(bencher: Bencher) {
     let robot = ramone();
     let problem = problem(&robot, &state(&robot));
-    let mut tableau = Tableau::new();
+    let mut tableau = Tableau::default();
     bencher.bench_local(move || {
         tableau.load(black_box(&problem));
         let mut sum = 0.0;

@@ -377,7 +377,7 @@ fn outcome_error<T: Number>(
     let size = |row: usize| exact.delassus(row, row).to_f64().sqrt();
     let speeds = (0..2 * contacts).map(|row| exact.velocity_free()[row / 2][row % 2].to_f64().abs() / size(row));
     let scale = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    let (mut tableau, mut reference) = (Tableau::<T>::new(), Tableau::<Interval>::new());
+    let (mut tableau, mut reference) = (Tableau::<T>::default(), Tableau::<Interval>::default());
     tableau.load(problem);
     reference.load(exact);
     let mut errors = Vec::new();

@@ -12,7 +12,7 @@
 //! 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
 use super::articulated_inertia::ArticulatedInertia;
-use super::contact_point::ContactPoint;
+use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan, PlanBody};
 use crate::planar::{Inertia, Vector};
@@ -172,27 +172,25 @@ fn to_root<T: Real>(
     workspace: &Workspace<T>,
     body: usize,
     mut force: Force<T>,
-    mut tell: impl FnMut(usize, T, T),
+    mut visit: impl FnMut(usize, T, T),
 ) {
-    let mut at = body;
-    loop {
-        let PlanBody { motion, column, parent, rotor, .. } = plan.bodies[at];
+    for (at, &PlanBody { motion, column, parent, rotor, .. }) in plan.way_to_root(body) {
         let own = &workspace.articulated[at];
         match (motion, column) {
             (Motion::Root, Some(column)) => {
                 let pitch = force.moment / workspace.pivots[column];
-                tell(column, force.moment, pitch);
+                visit(column, force.moment, pitch);
                 let Vector { x, z } = force.linear - own.coupling * pitch;
                 let [_, xz, _] = own.without_turn(T::zero(), own.moment).linear;
                 let up = z / workspace.pivots[1];
-                tell(1, z, up);
+                visit(1, z, up);
                 let rest = x - xz * up;
-                tell(0, rest, rest / workspace.pivots[0]);
+                visit(0, rest, rest / workspace.pivots[0]);
             }
             (Motion::Fixed, _) | (_, None) => {}
             (Motion::Revolute { sign, .. }, Some(column)) => {
                 let rate = force.moment / workspace.pivots[column];
-                tell(column, sign * force.moment, sign * rate);
+                visit(column, sign * force.moment, sign * rate);
                 // n - A_nn n / D without the cancellation: nothing at all is passed on where there is no rotor.
                 force.moment = rotor * rate;
                 force.linear = force.linear - own.coupling * rate;
@@ -201,14 +199,14 @@ fn to_root<T: Real>(
                 let along = workspace.direction[at];
                 let push = along.dot(force.linear);
                 let rate = push / workspace.pivots[column];
-                tell(column, push, rate);
+                visit(column, push, rate);
                 force.moment = force.moment - along.dot(own.coupling) * rate;
                 force.linear = force.linear - own.stretch(along) * rate;
             }
         }
-        let Some(parent) = parent else { return };
-        force.moment = force.moment + workspace.arm[at].perpendicular().dot(force.linear);
-        at = parent;
+        if parent.is_some() {
+            force.moment = force.moment + workspace.arm[at].perpendicular().dot(force.linear);
+        }
     }
 }
 
@@ -220,9 +218,8 @@ fn shared_columns<T: Real>(plan: &Plan<T>, a: usize, b: usize) -> impl Iterator<
         let outer = if a > b { &mut a } else { &mut b };
         *outer = plan.bodies[*outer].parent.unwrap_or(0);
     }
-    let body =
-        std::iter::successors(Some(a), |&body| plan.bodies[body].parent).find_map(|body| plan.bodies[body].column);
-    std::iter::successors(body, |&column| plan.parents[column])
+    let outermost = plan.way_to_root(a).find_map(|(_, body)| body.column);
+    std::iter::successors(outermost, |&column| plan.parents[column])
 }
 
 impl<T: Real> Force<T> {

@@ -72,8 +72,8 @@ struct Stretched {
 }
 
 impl Bounds {
-    /// Takes the lengths of a posture and of its contacts; the others read them.
-    pub fn stretch(&mut self, plan: &Plan, posture: &Configuration, contacts: impl Iterator<Item = Arm>) {
+    /// Takes the lengths of a configuration and of its contacts; the others read them.
+    pub fn stretch(&mut self, plan: &Plan, configuration: &Configuration, contacts: impl Iterator<Item = Arm>) {
         self.contacts.clear();
         self.contacts.extend(contacts);
         let length = |Vector { x, z }: Vector<f64>| x.abs() + z.abs();
@@ -81,11 +81,11 @@ impl Bounds {
         for body in &plan.bodies {
             let shift = match (body.motion, body.mimic) {
                 (Motion::Prismatic { direction, .. }, None) => {
-                    posture.displacement[body.place].abs() * length(direction)
+                    configuration.displacement[body.place].abs() * length(direction)
                 }
                 (Motion::Prismatic { direction, .. }, Some(tie)) => {
-                    let terms = (tie.multiplier * posture.displacement[body.coordinate]).abs() + tie.offset.abs();
-                    terms * length(direction)
+                    let value = configuration.displacement[body.coordinate];
+                    ((tie.multiplier * value).abs() + tie.offset.abs()) * length(direction)
                 }
                 (Motion::Root | Motion::Revolute { .. } | Motion::Fixed, _) => 0.0,
             };
@@ -145,12 +145,8 @@ impl Bounds {
     pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
         let nv = plan.columns();
         let (eta, gamma) = (self.entry_error(plan), 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
-        let mut tau = 0.0;
         self.ease.clear();
-        for column in 0..nv {
-            let ease = squared_ease(plan, workspace, column, &mut self.scratch);
-            self.ease.push(ease.sqrt());
-        }
+        self.ease.extend((0..nv).map(|column| squared_ease(plan, workspace, column, &mut self.scratch).sqrt()));
         self.roots.clear();
         self.roots.resize(nv, 0.0);
         for (body, stretched) in plan.bodies.iter().zip(&self.bodies) {
@@ -166,9 +162,7 @@ impl Bounds {
             };
             self.roots[column] += moment.sqrt();
         }
-        for (root, ease) in self.roots.iter().zip(&self.ease) {
-            tau += (root * ease) * (root * ease);
-        }
+        let tau = self.roots.iter().zip(&self.ease).fold(0.0, |tau, (root, ease)| tau + (root * ease) * (root * ease));
         let solve = gamma * (nv as f64 * tau).sqrt();
         let short = 1.0 - solve;
         let eps = nv as f64 * (eta + gamma) * tau / (short * short);
@@ -196,29 +190,22 @@ impl Bounds {
 
     /// Walks from a contact to the root and reports each joint's column, coordinate and stretched arm (1 of a slide),
     /// times its rate if it follows another.
-    fn walk(&self, plan: &Plan, contact: Arm, mut tell: impl FnMut(Option<usize>, usize, f64)) {
+    fn walk(&self, plan: &Plan, contact: Arm, mut visit: impl FnMut(Option<usize>, usize, f64)) {
         let mut arm = contact.length;
-        let mut at = contact.body;
-        loop {
-            let body = &plan.bodies[at];
+        for (index, body) in plan.way_to_root(contact.body) {
             match body.motion {
                 Motion::Root => break,
-                Motion::Revolute { rate, .. } => tell(body.column, body.coordinate, arm * rate.abs()),
+                Motion::Revolute { rate, .. } => visit(body.column, body.coordinate, arm * rate.abs()),
                 Motion::Prismatic { .. } => {
-                    let rate = body.mimic.map_or(1.0, |tie| tie.multiplier.abs());
-                    tell(body.column, body.coordinate, rate);
+                    visit(body.column, body.coordinate, body.mimic.map_or(1.0, |tie| tie.multiplier.abs()));
                 }
                 Motion::Fixed => {}
             }
-            arm += self.bodies[at].arm;
-            match body.parent {
-                Some(parent) => at = parent,
-                None => break,
-            }
+            arm += self.bodies[index].arm;
         }
         if plan.floating {
             for (coordinate, arm) in [1.0, 1.0, arm].into_iter().enumerate() {
-                tell(Some(coordinate), coordinate, arm);
+                visit(Some(coordinate), coordinate, arm);
             }
         }
     }
@@ -232,16 +219,12 @@ fn squared_ease(plan: &Plan, workspace: &Workspace, column: usize, y: &mut Vec<f
     y.resize(nv, 0.0);
     y[column] = 1.0;
     let mut sum = 0.0;
-    let mut at = Some(column);
-    while let Some(i) = at {
+    for i in std::iter::once(column).chain(plan.ancestors(column)) {
         // Entries off the branch of the column stay zero.
-        let mut below = plan.parents[i];
-        while let Some(j) = below {
+        for j in plan.ancestors(i) {
             y[j] -= factor.entry(i, j) * y[i];
-            below = plan.parents[j];
         }
         sum += y[i] * y[i] / factor.pivot(i);
-        at = plan.parents[i];
     }
     sum
 }

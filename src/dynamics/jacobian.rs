@@ -1,14 +1,39 @@
-//! Contact Jacobian at the material points, and the contact velocities c = J v.
+//! Contact Jacobian at the material points, the contact velocities c = J v, and the kinetic energy.
 //!
 //! A column is the velocity of the contact point for a unit rate of one joint: turned(r) of a revolute joint at
 //! distance r, the direction of a prismatic one. r is summed from the contact inward, so that no large positions are
 //! subtracted. Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
 
-use super::contact_point::ContactPoint;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan};
-use crate::planar::Vector;
+use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
+
+/// A material point in touch with the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint<T = f64> {
+    /// The body, an index into the plan's bodies (those of [`Robot::bodies`](crate::Robot)).
+    pub body: usize,
+    /// The point, or the center of the circle, in the body's frame \[m\].
+    pub centre: Vector<T>,
+    /// Radius of the circle \[m\]: the point is at the center - radius * normal.
+    pub radius: T,
+    /// Turn from the world's axes to the ground's (tangent, normal) at the contact.
+    pub ground: Rotation<T>,
+}
+
+impl<T: Real> ContactPoint<T> {
+    /// The ground's unit tangent and normal in the world's axes.
+    pub fn axes(&self) -> [Vector<T>; 2] {
+        Vector::axes().map(|axis| self.ground.apply(axis))
+    }
+
+    /// The point from its body's origin, in the world's axes \[m\].
+    pub fn arm(&self, workspace: &Workspace<T>) -> Vector<T> {
+        let [_, normal] = self.axes();
+        workspace.rotation[self.body].apply(self.centre) - normal * self.radius
+    }
+}
 
 /// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity` (dq/dt by
 /// coordinate).
@@ -71,35 +96,28 @@ pub(super) fn walk<T: Real>(
     arm: Vector<T>,
     velocity: &[T],
     workspace: &Workspace<T>,
-    mut tell: impl FnMut(usize, Vector<T>),
+    mut visit: impl FnMut(usize, Vector<T>),
 ) -> Vector<T> {
-    let (mut at, mut arm) = (body, arm);
-    let mut speed = Vector::zero();
-    loop {
-        let body = &plan.bodies[at];
+    let (mut arm, mut speed) = (arm, Vector::zero());
+    for (index, body) in plan.way_to_root(body) {
         let unit = match body.motion {
             Motion::Root => break,
             Motion::Revolute { rate, .. } => Some(arm.perpendicular() * rate),
-            Motion::Prismatic { .. } => Some(workspace.direction[at]),
+            Motion::Prismatic { .. } => Some(workspace.direction[index]),
             Motion::Fixed => None,
         };
         if let Some(unit) = unit {
             if let Some(column) = body.column {
-                tell(column, unit);
+                visit(column, unit);
             }
             speed += unit * velocity[body.coordinate];
         }
-        arm += workspace.arm[at];
-        match body.parent {
-            Some(parent) => at = parent,
-            None => break,
-        }
+        arm += workspace.arm[index];
     }
     if plan.floating {
         let [x, z] = Vector::axes();
-        let units = [x, z, arm.perpendicular()];
-        for (column, unit) in units.into_iter().enumerate() {
-            tell(column, unit);
+        for (column, unit) in [x, z, arm.perpendicular()].into_iter().enumerate() {
+            visit(column, unit);
             speed += unit * velocity[column];
         }
     }
@@ -107,15 +125,34 @@ pub(super) fn walk<T: Real>(
 }
 
 /// Rate at which a body turns about the plane's normal \[rad/s\].
-pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
-    let mut rate = if plan.floating { velocity[2] } else { T::zero() };
-    let mut at = Some(body);
-    while let Some(index) = at {
-        let body = &plan.bodies[index];
-        if let Motion::Revolute { rate: own, .. } = body.motion {
-            rate = rate + own * velocity[body.coordinate];
+fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
+    let base = if plan.floating { velocity[2] } else { T::zero() };
+    plan.way_to_root(body).fold(base, |rate, (_, body)| match body.motion {
+        Motion::Revolute { rate: own, .. } => rate + own * velocity[body.coordinate],
+        _ => rate,
+    })
+}
+
+/// Kinetic energy \[J\] for `velocity` (dq/dt by coordinate, braked joints included), after `kinematics`: body by body,
+/// independent of the mass matrix.
+///
+/// ```text
+///     T = sum of 1/2 (m u.u + 2 omega u.turned(h) + I omega^2) + 1/2 rotor rate^2
+/// ```
+///
+/// with u the velocity of a body's origin, h and I its first and second moments about it.
+pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> T {
+    let mut twice = T::zero();
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let rate = spin(plan, index, velocity);
+        let origin = point_velocity(plan, index, Vector::zero(), velocity, workspace);
+        let first = workspace.rotation[index].apply(body.inertia.first);
+        let cross = rate * origin.dot(first.perpendicular());
+        twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * rate * rate;
+        if !matches!(body.motion, Motion::Root | Motion::Fixed) {
+            let own = velocity[body.coordinate];
+            twice = twice + body.rotor * own * own;
         }
-        at = body.parent;
     }
-    rate
+    T::from_f64(0.5) * twice
 }

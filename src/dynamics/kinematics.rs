@@ -11,38 +11,33 @@ use crate::scalar::Real;
 /// joint).
 ///
 /// Only differences of position enter the dynamics, so the base's x and z are not read.
-pub fn kinematics<T: Real>(plan: &Plan<T>, posture: &Configuration<T>, workspace: &mut Workspace<T>) {
+pub fn kinematics<T: Real>(plan: &Plan<T>, configuration: &Configuration<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, .. } = workspace;
     rotation.clear();
     arm.clear();
     direction.clear();
     for body in &plan.bodies {
         let Some(parent) = body.parent else {
-            rotation.push(if plan.floating { posture.turn(2) } else { Rotation::identity() });
+            rotation.push(if plan.floating { configuration.turn(2) } else { Rotation::identity() });
             arm.push(Vector::zero());
             direction.push(Vector::zero());
             continue;
         };
         let base = rotation[parent];
-        match body.motion {
-            Motion::Root => {}
+        arm.push(base.apply(match body.motion {
+            Motion::Prismatic { direction, .. } => body.origin + direction * configuration.displacement[body.place],
+            _ => body.origin,
+        }));
+        rotation.push(match body.motion {
             Motion::Revolute { sign, .. } => {
-                let Rotation { cos, sin } = posture.turn(body.place);
-                rotation.push(base.then(Rotation { cos, sin: sign * sin }));
-                arm.push(base.apply(body.origin));
-                direction.push(Vector::zero());
+                let Rotation { cos, sin } = configuration.turn(body.place);
+                base.then(Rotation { cos, sin: sign * sin })
             }
-            Motion::Prismatic { direction: along, rate } => {
-                let displaced = body.origin + along * posture.displacement[body.place];
-                rotation.push(base);
-                arm.push(base.apply(displaced));
-                direction.push(base.apply(rate));
-            }
-            Motion::Fixed => {
-                rotation.push(base);
-                arm.push(base.apply(body.origin));
-                direction.push(Vector::zero());
-            }
-        }
+            _ => base,
+        });
+        direction.push(match body.motion {
+            Motion::Prismatic { rate, .. } => base.apply(rate),
+            _ => Vector::zero(),
+        });
     }
 }

@@ -15,13 +15,13 @@
 //! before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT form).
 //! Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
 
-use super::contact_point::ContactPoint;
 use super::delassus::{from_half, products};
-use super::jacobian::{point_velocity, walk};
+use super::jacobian::{ContactPoint, point_velocity, walk};
 use super::workspace::{LoopRows, Workspace};
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
 use crate::scalar::Real;
+use std::ops::Add;
 
 /// Two material points that stay together; impulses act on `a` and, reversed, on `b`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,14 +58,11 @@ impl<T: Real> Loop<T> {
 
     /// From b to a: how far the pose leaves the loop open \[m\].
     pub fn gap(&self, plan: &Plan<T>, workspace: &Workspace<T>) -> Vector<T> {
-        let arms = self.arms(workspace);
+        let arms_to_points = self.arms(workspace);
         let [a, b] = [0, 1].map(|end| {
-            let (mut place, mut at) = (arms[end], self.bodies[end]);
-            while let Some(parent) = plan.bodies[at].parent {
-                place += workspace.arm[at];
-                at = parent;
-            }
-            place
+            // The root has no arm.
+            let arms = plan.way_to_root(self.bodies[end]).filter(|(_, body)| body.parent.is_some());
+            arms.map(|(index, _)| workspace.arm[index]).fold(arms_to_points[end], Vector::add)
         });
         a - b
     }

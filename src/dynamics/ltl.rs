@@ -7,16 +7,10 @@ use super::plan::Plan;
 use crate::scalar::Real;
 
 /// L below the diagonal (its own diagonal is one) and D on it, by rows. nv x nv
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct LtlFactor<T = f64> {
     entries: Vec<T>,
     columns: usize,
-}
-
-impl<T> Default for LtlFactor<T> {
-    fn default() -> Self {
-        Self { entries: Vec::new(), columns: 0 }
-    }
 }
 
 impl<T: Real> LtlFactor<T> {
@@ -28,17 +22,13 @@ impl<T: Real> LtlFactor<T> {
         h.clear();
         h.extend_from_slice(mass_matrix);
         for k in (0..nv).rev() {
-            let mut ancestor = plan.parents[k];
-            while let Some(i) = ancestor {
+            for i in plan.ancestors(k) {
                 // u (u / D), never u u (1 / D): the latter underflows for small masses.
                 let a = h[k * nv + i] / h[k * nv + k];
-                let mut below = Some(i);
-                while let Some(j) = below {
+                for j in std::iter::once(i).chain(plan.ancestors(i)) {
                     h[i * nv + j] = h[i * nv + j] - a * h[k * nv + j];
-                    below = plan.parents[j];
                 }
                 h[k * nv + i] = a;
-                ancestor = plan.parents[i];
             }
         }
     }
@@ -61,10 +51,8 @@ impl<T: Real> LtlFactor<T> {
     /// y := L^-T y.
     pub fn half_solve(&self, plan: &Plan<T>, y: &mut [T]) {
         for i in (0..self.columns).rev() {
-            let mut ancestor = plan.parents[i];
-            while let Some(j) = ancestor {
+            for j in plan.ancestors(i) {
                 y[j] = y[j] - self.entry(i, j) * y[i];
-                ancestor = plan.parents[j];
             }
         }
     }
@@ -72,10 +60,8 @@ impl<T: Real> LtlFactor<T> {
     /// x := L^-1 x.
     pub fn other_half_solve(&self, plan: &Plan<T>, x: &mut [T]) {
         for i in 0..self.columns {
-            let mut ancestor = plan.parents[i];
-            while let Some(j) = ancestor {
+            for j in plan.ancestors(i) {
                 x[i] = x[i] - self.entry(i, j) * x[j];
-                ancestor = plan.parents[j];
             }
         }
     }

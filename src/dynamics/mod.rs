@@ -13,11 +13,9 @@ pub mod plan;
 mod ltl;
 mod articulated_inertia;
 mod workspace;
-mod contact_point;
 mod kinematics;
 mod crba;
 mod jacobian;
-mod energy;
 mod delassus;
 mod loops;
 mod articulated;
@@ -26,11 +24,9 @@ mod bounds;
 pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
 pub use articulated_inertia::ArticulatedInertia;
 pub use bounds::{Arm, Bounds};
-pub use contact_point::ContactPoint;
 pub use crba::{factorize, mass_matrix};
 pub use delassus::{add_impulse, delassus};
-pub use energy::kinetic_energy;
-pub use jacobian::{contact_jacobian, point_velocity};
+pub use jacobian::{ContactPoint, contact_jacobian, kinetic_energy, point_velocity};
 pub use kinematics::kinematics;
 pub use loops::{
     Closed, Constraints, Loop, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize, spent_energy,

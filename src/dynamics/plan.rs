@@ -84,7 +84,7 @@ pub(crate) struct MimicRatio {
 
 /// Cosines, sines and displacements of a configuration: one entry per coordinate of q, then one per mimic joint of the
 /// robot: of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Configuration<T = f64> {
     /// Cosine of each angle.
     pub cos: Vec<T>,
@@ -92,12 +92,6 @@ pub struct Configuration<T = f64> {
     pub sin: Vec<T>,
     /// Each displacement \[m\].
     pub displacement: Vec<T>,
-}
-
-impl<T> Default for Configuration<T> {
-    fn default() -> Self {
-        Self { cos: Vec::new(), sin: Vec::new(), displacement: Vec::new() }
-    }
 }
 
 impl<T: Trigonometry> Configuration<T> {
@@ -264,12 +258,9 @@ impl<T: Real> Plan<T> {
             // Whatever comes before the greatest is its ancestor already, as x and z are the pitch's.
             Some(other) if other < column => self.join(column, other),
             Some(_) => {
-                let mut at = Some(parent);
-                while let Some(body) = at {
-                    if let Some(other) = self.bodies[body].column {
-                        self.join(column.max(other), column.min(other));
-                    }
-                    at = self.bodies[body].parent;
+                let others: Vec<usize> = self.way_to_root(parent).filter_map(|(_, body)| body.column).collect();
+                for other in others {
+                    self.join(column.max(other), column.min(other));
                 }
             }
             None => {}
@@ -299,6 +290,16 @@ impl<T: Real> Plan<T> {
     #[inline]
     pub(crate) fn bring(&self, entry: &mut T, part: T) {
         *entry = if self.has_mimics { *entry + part } else { part };
+    }
+
+    /// The ancestors of a column in the elimination tree, the nearest first.
+    pub(crate) fn ancestors(&self, column: usize) -> impl Iterator<Item = usize> {
+        std::iter::successors(self.parents[column], |&column| self.parents[column])
+    }
+
+    /// A body and those between it and the root, with their indices.
+    pub(crate) fn way_to_root(&self, body: usize) -> impl Iterator<Item = (usize, &PlanBody<T>)> {
+        std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
     }
 
     /// Number of columns: the coordinates whose joints are not braked.

@@ -5,7 +5,7 @@ use super::ltl::LtlFactor;
 use crate::planar::{Inertia, Pair, Rotation, Vector};
 
 /// Everything that the dynamics of one state computes; nb bodies, nv columns of the plan, n contacts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Workspace<T = f64> {
     // Computed by `kinematics`.
     /// Turn of each body from the world's axes. nb
@@ -50,30 +50,9 @@ pub struct Workspace<T = f64> {
     pub delassus: Vec<T>,
 }
 
-impl<T> Default for Workspace<T> {
-    fn default() -> Self {
-        Self {
-            rotation: Vec::new(),
-            arm: Vec::new(),
-            direction: Vec::new(),
-            composite: Vec::new(),
-            mass_matrix: Vec::new(),
-            factor: LtlFactor::default(),
-            articulated: Vec::new(),
-            pivots: Vec::new(),
-            contact_jacobian: Vec::new(),
-            contact_velocity: Vec::new(),
-            loops: LoopRows::default(),
-            half: Vec::new(),
-            half_by_d: Vec::new(),
-            delassus: Vec::new(),
-        }
-    }
-}
-
 /// The constraints of joints that keep their rates, one row each, and of all loops, two rows (x and z in the world's
 /// axes) per loop, as `orthogonalize` leaves them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct LoopRows<T = f64> {
     /// Coordinates that keep their rates; their rows come first.
     pub(super) kept: Vec<usize>,
@@ -87,17 +66,4 @@ pub struct LoopRows<T = f64> {
     pub(super) squares: Vec<T>,
     /// C below its unit diagonal, by rows of the full square.
     pub(super) coupling: Vec<T>,
-}
-
-impl<T> Default for LoopRows<T> {
-    fn default() -> Self {
-        Self {
-            kept: Vec::new(),
-            rows: Vec::new(),
-            basis: Vec::new(),
-            basis_by_d: Vec::new(),
-            squares: Vec::new(),
-            coupling: Vec::new(),
-        }
-    }
 }

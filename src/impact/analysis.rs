@@ -67,7 +67,7 @@ impl Scratch {
         let options = AnalysisOptions { prove: options.prove && source.is_exact(), ..options };
         let errors = source.errors();
         self.scale.measure(problem, errors);
-        self.tableau.share_equal_impulses(options.reductions.frictionless);
+        self.tableau.separately = !options.reductions.frictionless;
         self.tableau.load(problem);
         self.bounds.load(&self.tableau, &self.scale, errors.delassus, self.scale.noise);
         let name = |contact| source.contact_name(contact);

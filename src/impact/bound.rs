@@ -247,7 +247,7 @@ mod tests {
             let bound = self.bounds.at(leaf.depth());
             let mobility = &self.scale.mobility;
             Interval::scope(512, || {
-                let mut tableau = Tableau::<Interval>::new();
+                let mut tableau = Tableau::<Interval>::default();
                 tableau.load(&self.problem.map(Interval::from_f64));
                 let exact = tableau.leaf(leaf.modes);
                 for (row, mobility) in mobility.iter().enumerate() {
@@ -282,7 +282,7 @@ mod tests {
             let problem = ContactProblem::new(delassus, before, friction, vec![0.5, 0.0, 0.0]).unwrap();
             let mut scale = Scale::default();
             scale.measure(&problem, Errors::NONE);
-            let mut tableau = Tableau::new();
+            let mut tableau = Tableau::default();
             tableau.load(&problem);
             let mut bounds = Bounds::default();
             bounds.load(&tableau, &scale, 0.0, 0.0);

@@ -18,12 +18,12 @@ use crate::planar::Pair;
 use crate::scalar::Real;
 
 /// Scratch of the enumeration; it is reused from problem to problem and then allocates nothing.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Tableau<T> {
     contacts: usize,
     laws: Vec<Law>,
-    /// Whether modes with the same impulses are visited as one.
-    shares: bool,
+    /// Whether every mode is visited by itself, also if others have the same impulses.
+    pub separately: bool,
     /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns
     /// of decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and
     /// lambda where it slides; L_t and L_n where it sticks.
@@ -61,16 +61,6 @@ impl<T, F: FnMut(&Leaf<'_, T>)> Visitor<T> for F {
 }
 
 impl<T: Real> Tableau<T> {
-    /// Scratch without a problem.
-    pub fn new() -> Self {
-        Self { contacts: 0, laws: Vec::new(), shares: true, depths: Vec::new(), modes: Vec::new(), pivots: Vec::new() }
-    }
-
-    /// Whether modes with the same impulses are visited as one (the default).
-    pub fn share_equal_impulses(&mut self, shares: bool) {
-        self.shares = shares;
-    }
-
     /// Takes over a problem.
     pub fn load(&mut self, problem: &ContactProblem<T>) {
         let n = problem.contacts();
@@ -132,7 +122,7 @@ impl<T: Real> Tableau<T> {
             return;
         }
         for group in self.laws[contact].modes() {
-            for &mode in if self.shares { &group[..1] } else { group } {
+            for &mode in if self.separately { group } else { &group[..1] } {
                 self.modes[contact] = mode;
                 let depth = self.decide(contact, mode, source);
                 if depth != source {
@@ -205,12 +195,6 @@ impl<T: Copy> Tableau<T> {
     pub fn row(&self, depth: usize, row: usize) -> &[T] {
         let width = 2 * self.contacts + 1;
         &self.depths[depth][row * width..(row + 1) * width]
-    }
-}
-
-impl<T: Real> Default for Tableau<T> {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

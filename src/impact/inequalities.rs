@@ -32,7 +32,7 @@ impl Inequalities {
     /// Those of `problem`; combinations and their inequalities are always in the same order as long as the frictions
     /// are zero, finite or infinite as before. Those of a combination that is singular up to rounding are all zero.
     pub fn of(problem: &ContactProblem) -> Self {
-        let mut tableau = Tableau::<f64>::new();
+        let mut tableau = Tableau::<f64>::default();
         let mut labels = Labels::default();
         let mut all = Self::default();
         tableau.load(problem);

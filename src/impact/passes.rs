@@ -136,7 +136,7 @@ struct Solver<'e, T> {
 
 impl<'e, T: Ordered> Solver<'e, T> {
     fn new(exact: &'e ContactProblem<T>) -> Self {
-        let mut tableau = Tableau::<T>::new();
+        let mut tableau = Tableau::<T>::default();
         tableau.load(exact);
         Self { exact, tableau }
     }

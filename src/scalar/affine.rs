@@ -109,6 +109,12 @@ impl<const N: usize> Affine<N> {
     }
 }
 
+impl<const N: usize> Default for Affine<N> {
+    fn default() -> Self {
+        Self::zero()
+    }
+}
+
 impl<const N: usize> Real for Affine<N> {
     fn from_f64(value: f64) -> Self {
         if value.is_finite() { Self { centre: value, slopes: [0.0; N], error: 0.0 } } else { Self::unknown() }

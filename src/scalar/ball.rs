@@ -11,7 +11,7 @@ use super::{Enclosure, Midpoint, Ordered, Real, Sign, Trigonometry, series};
 /// so that structural zeros stay zeros. A quotient by a ball that contains zero has an infinite radius.
 ///
 /// Cost: about 5 operations of the midpoint.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Ball<M = f64> {
     /// The center.
     pub mid: M,

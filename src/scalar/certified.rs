@@ -9,7 +9,7 @@ use super::{Ordered, Real, Residue, Sign, Trigonometry};
 /// digits decide every sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds.
 ///
 /// Cost: that of both numbers.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Certified<B> {
     enclosure: B,
     residue: Residue,

@@ -11,7 +11,7 @@ use super::{Midpoint, Real, Sign};
 /// not a number; it is never silently wrong. Below 2^-969 a product loses digits, by less than 2^-1022 in all.
 ///
 /// It encloses nothing by itself; [`Ball`](super::Ball) adds the bound. Cost: about 20 f64 operations.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DoubleDouble {
     hi: f64,
     lo: f64,

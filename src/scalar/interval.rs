@@ -34,7 +34,7 @@ struct Enclosed {
 /// scope. So it is a [`Real`] like the others, and the hot path over `f64` passes values, not references.
 ///
 /// Cost: an operation of `dashu-float` and a new entry of the storage, some 100 f64 operations at 256 bits.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Interval(Option<usize>);
 
 /// Frees a scope's numbers at its end, however it ends.

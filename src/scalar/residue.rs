@@ -16,7 +16,7 @@ use super::{Real, Trigonometry};
 /// After a division by a residue of zero nothing is known modulo that prime.
 ///
 /// Cost: about 20 integer operations; a quotient some 500.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Residue([u64; 2]);
 
 /// The primes 2^61 - c for these c are the largest that are 3 modulo 8 and whose (p + 1) / 4 is prime, too. So -1 is no

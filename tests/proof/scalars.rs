@@ -17,7 +17,7 @@ thread_local! {
 }
 
 /// An exact rational by its place in the thread's arena, so that it is `Copy`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Exact(usize);
 
 impl Exact {
@@ -75,7 +75,7 @@ impl Real for Exact {
 }
 
 /// Four states side by side.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Lanes([f64; 4]);
 
 impl Lanes {
@@ -172,7 +172,7 @@ fn run<T: Real>(half_tangents: [T; 5]) -> Vec<T> {
 
 /// The numbers of all combinations of a problem given in f64.
 fn combinations<T: Real>(problem: &ContactProblem) -> Vec<T> {
-    let mut tableau = Tableau::<T>::new();
+    let mut tableau = Tableau::<T>::default();
     tableau.load(&problem.map(T::from_f64));
     let mut numbers = Vec::new();
     tableau.visit(&mut |leaf: &Leaf<'_, T>| (0..2).for_each(|contact| numbers.extend(leaf.numbers(contact))));

@@ -204,7 +204,7 @@ mod tests {
                     .map(|mu| mu.map_or(Law::Unbounded, |mu| Law::Coulomb(ball(mu))))
                     .into(),
             };
-            let (mut tableau, mut found) = (Tableau::<f64>::new(), BoxCombination::default());
+            let (mut tableau, mut found) = (Tableau::<f64>::default(), BoxCombination::default());
             tableau.load(&problem);
             for modes in lists() {
                 numbers.combine(&modes, &mut found);
