@@ -1,13 +1,12 @@
 //! A robot and its state seen another way: mirrored, in other units, under other names, with axes flipped, on a slope.
 
 use super::problems::mirror;
-use crate::support::impact::velocities_after;
+use crate::support::impact::{impact, robot, velocities_after};
+use crate::support::mechanism::{Kind, Mechanism, Point};
 use crate::support::random::Random;
-use crate::support::urdf::{self, Axis};
-use heelstrike::Robot;
+use crate::support::scaled::largest;
 use heelstrike::impact::{Analysis, Mode, Outcome, Verdict};
-use heelstrike::pipeline::{Impact, Options, Pipeline};
-use heelstrike::state::{Defaults, State};
+use heelstrike::pipeline::Impact;
 use serde_json::{Value, json};
 
 const MODELS: u64 = 400;
@@ -15,40 +14,14 @@ const MODELS: u64 = 400;
 /// A tree of links, each but the root on a moving joint of its own, in a state, with contacts on different links.
 #[derive(Debug, Clone)]
 struct Model {
-    links: Vec<Link>,
-    base: Coordinates,
+    mechanism: Mechanism,
+    q: Vec<f64>,
+    v: Vec<f64>,
     slope: f64,
-    contacts: Vec<Contact>,
-}
-
-/// A link and the joint that moves it; the root has no use for the latter.
-#[derive(Debug, Clone)]
-struct Link {
-    name: String,
-    mass: f64,
-    com: [f64; 2],
-    moment: f64,
-    joint: String,
-    parent: usize,
-    origin: [f64; 2],
-    axis: Axis,
-    position: f64,
-    velocity: f64,
-}
-
-#[derive(Debug, Clone)]
-struct Coordinates {
-    position: [f64; 3],
-    velocity: [f64; 3],
-}
-
-#[derive(Debug, Clone)]
-struct Contact {
-    link: usize,
-    offset: [f64; 2],
-    radius: f64,
-    friction: Value,
-    restitution: f64,
+    contacts: Vec<(usize, Point, f64)>,
+    /// By contact.
+    friction: Vec<Value>,
+    restitution: Vec<f64>,
 }
 
 impl Model {
@@ -56,84 +29,54 @@ impl Model {
         let random = &mut Random::new(seed);
         let count = random.whole(2, 5) as usize;
         let pair = |random: &mut Random| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
-        let links = (0..count).map(|index| Link {
-            name: format!("link_{index}"),
-            mass: random.between(0.5, 4.0),
-            com: pair(random),
-            moment: random.between(0.05, 0.5),
-            joint: format!("joint_{index}"),
-            parent: if index > 0 { random.whole(0, index as i64 - 1) as usize } else { 0 },
-            origin: pair(random),
-            axis: if random.once_in(5) {
-                Axis::Prismatic(pair(random))
-            } else {
-                Axis::Revolute(random.pick(&[1.0, -1.0]))
-            },
-            position: random.between(-2.0, 2.0),
-            velocity: random.between(-2.0, 2.0),
-        });
-        let links: Vec<Link> = links.collect();
-        let contacts =
-            random.permutation(count).into_iter().take(random.whole(1, 3).min(1 + count as i64 / 2) as usize);
-        let contacts: Vec<usize> = contacts.collect();
-        let contacts = contacts.into_iter().map(|link| Contact {
-            link,
-            offset: pair(random),
-            radius: random.pick(&[0.0, 0.125]),
-            friction: random.pick(&[json!(0), json!(0.4), json!(1.5), json!("infinite"), json!("infinite")]),
-            restitution: random.pick(&[0.0, 0.0, 0.3]),
-        });
-        let contacts = contacts.collect();
-        let fall = random.between(-3.0, 0.5);
-        let base = Coordinates {
-            position: [random.between(-1.0, 1.0), random.between(0.0, 1.0), random.between(-2.0, 2.0)],
-            velocity: [random.between(-2.0, 2.0), fall, random.between(-2.0, 2.0)],
-        };
-        Self { links, base, slope: 0.0, contacts }
-    }
-
-    fn urdf(&self) -> String {
-        let links = self.links.iter().map(|link| urdf::link(&link.name, link.mass, link.com, link.moment, ""));
-        let joints = self.links.iter().skip(1).map(|link| {
-            let ends = [&self.links[link.parent].name, &link.name].map(String::as_str);
-            urdf::joint(&link.joint, link.axis, ends, link.origin, "")
-        });
-        urdf::robot(&links.chain(joints).collect::<Vec<_>>())
+        let mut mechanism = Mechanism::of(random.between(0.5, 4.0), pair(random), random.between(0.05, 0.5));
+        for k in 1..count {
+            let parent = mechanism.links[random.whole(0, k as i64 - 1) as usize].name.clone();
+            let mass = random.between(0.5, 4.0);
+            mechanism = mechanism.with(&format!("link_{k}"), &parent, pair(random), mass, pair(random)).but(|link| {
+                link.moment = random.between(0.05, 0.5);
+                let (sin, cos) = random.between(-3.0, 3.0).sin_cos();
+                link.kind =
+                    if random.once_in(5) { Kind::Slide([cos, sin]) } else { Kind::Turn(random.pick(&[1.0, -1.0])) };
+            });
+        }
+        let of = [0.0, 0.4, 1.5, f64::INFINITY, f64::INFINITY];
+        let contacts = random.whole(1, 3).min(1 + count as i64 / 2) as usize;
+        let links = random.permutation(count).into_iter().take(contacts);
+        let friction = |mu: f64| if mu.is_finite() { json!(mu) } else { json!("infinite") };
+        Self {
+            mechanism,
+            q: (0..count + 2).map(|_| random.between(-2.0, 2.0)).collect(),
+            v: (0..count + 2).map(|k| random.between(-2.0, if k == 1 { 0.5 } else { 2.0 })).collect(),
+            slope: 0.0,
+            contacts: links.map(|link| (link, pair(random), random.pick(&[0.0, 0.125]))).collect(),
+            friction: (0..contacts).map(|_| friction(random.pick(&of))).collect(),
+            restitution: (0..contacts).map(|_| random.pick(&[0.0, 0.0, 0.3])).collect(),
+        }
     }
 
     fn state(&self) -> Value {
-        let joints = |value: &dyn Fn(&Link) -> f64| -> Value {
-            self.links.iter().skip(1).map(|link| (link.joint.clone(), json!(value(link)))).collect()
-        };
-        let base = |[x, z, pitch]: [f64; 3]| json!({"x": x, "z": z, "pitch": pitch});
-        let by_link = |value: &dyn Fn(&Contact) -> Value| -> Value {
-            self.contacts.iter().map(|contact| (self.links[contact.link].name.clone(), value(contact))).collect()
-        };
-        let contacts = self.contacts.iter().map(|contact| {
-            let [x, z] = contact.offset;
-            json!({"link": self.links[contact.link].name, "offset": [x, 0, z], "radius": contact.radius})
-        });
-        json!({
-            "position": {"base": base(self.base.position), "joints": joints(&|link| link.position)},
-            "velocity": {"base": base(self.base.velocity), "joints": joints(&|link| link.velocity)},
-            "friction": by_link(&|contact| contact.friction.clone()),
-            "restitution": by_link(&|contact| json!(contact.restitution)),
-            "ground": {"slope": self.slope},
-            "contacts": contacts.collect::<Vec<_>>(),
-        })
+        let names = self.contacts.iter().map(|(link, ..)| self.mechanism.links[*link].name.clone());
+        let mut state = self.mechanism.state(0, &self.q, &self.v, &self.contacts);
+        state["friction"] = names.clone().zip(self.friction.clone()).collect();
+        state["restitution"] = names.zip(self.restitution.iter().map(|e| json!(e))).collect();
+        state["ground"] = json!({"slope": self.slope});
+        state
     }
 
     fn impact(&self) -> Impact {
-        let robot = Robot::from_urdf(&self.urdf()).unwrap_or_else(|error| panic!("{error}\n{}", self.urdf()));
-        let state = State::from_json(&self.state().to_string(), &robot, &Defaults::default());
-        let state = state.unwrap_or_else(|error| panic!("{error}\n{}", self.state()));
-        let impact = Pipeline::new(&robot, Options::default()).impact(&state);
-        impact.unwrap_or_else(|error| panic!("{error}\n{}{}", self.urdf(), self.state()))
+        impact(&robot(&self.mechanism.urdf(0)), self.state())
     }
 
     /// What `impact` of the command line needs to repeat a failure.
     fn report(&self, seed: u64) -> String {
-        format!("seed {seed}\n{}{}", self.urdf(), self.state())
+        format!("seed {seed}\n{}{}", self.mechanism.urdf(0), self.state())
+    }
+
+    /// Contacts and links with their points changed.
+    fn map_points(&mut self, change: impl Fn(Point) -> Point) {
+        self.contacts.iter_mut().for_each(|(_, point, _)| *point = change(*point));
+        self.mechanism.map_points(change);
     }
 }
 
@@ -176,15 +119,10 @@ impl View<'_> {
             let before = largest(&turned(&impact.velocity_before, self.contact_velocity));
             let after = turned(&outcome.velocity_after, self.contact_velocity);
             assert_near(&after, &twin.velocity_after.concat(), before, "velocity after", context);
-            let before = model.links.iter().map(|link| link.velocity).chain(model.base.velocity);
-            let scale = largest(&before.collect::<Vec<f64>>());
-            assert_near(velocity, &(self.velocity)(&velocities_after(other)[place]), scale, "v after", context);
+            let other = (self.velocity)(&velocities_after(other)[place]);
+            assert_near(velocity, &other, largest(&model.v), "v after", context);
         }
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Both equal to 1e-9 of the largest entry or `scale`.
@@ -215,27 +153,17 @@ fn for_every_model(check: impl Fn(u64, &Model, &Impact)) {
 fn a_mirrored_robot_slides_the_other_way() {
     for_every_model(|seed, model, impact| {
         let mut mirrored = model.clone();
-        for link in &mut mirrored.links {
-            link.com[0] = -link.com[0];
-            link.origin[0] = -link.origin[0];
-            match &mut link.axis {
-                Axis::Revolute(_) | Axis::Fixed => (link.position, link.velocity) = (-link.position, -link.velocity),
-                Axis::Prismatic(direction) => direction[0] = -direction[0],
+        mirrored.map_points(|[x, z]| [-x, z]);
+        for link in &mut mirrored.mechanism.links {
+            match &mut link.kind {
+                Kind::Slide(along) => along[0] = -along[0],
+                Kind::Turn(sign) => *sign = -*sign,
+                _ => {}
             }
         }
-        mirrored.contacts.iter_mut().for_each(|contact| contact.offset[0] = -contact.offset[0]);
-        for k in [0, 2] {
-            mirrored.base.position[k] = -mirrored.base.position[k];
-            mirrored.base.velocity[k] = -mirrored.base.velocity[k];
-        }
-        let turns: Vec<bool> = model.links.iter().skip(1).map(|link| !link.axis.slides()).collect();
-        let signs = |k: usize| if k == 0 || k == 2 || (k > 2 && turns[k - 3]) { -1.0 } else { 1.0 };
-        let view = View {
-            mode: mirror,
-            impulse: [-1.0, 1.0],
-            contact_velocity: [-1.0, 1.0],
-            velocity: &|v| v.iter().enumerate().map(|(k, v)| signs(k) * v).collect(),
-        };
+        let seen = |v: &[f64]| [&[-v[0], v[1], -v[2]], &v[3..]].concat();
+        (mirrored.q, mirrored.v) = (seen(&model.q), seen(&model.v));
+        let view = View { mode: mirror, impulse: [-1.0, 1.0], contact_velocity: [-1.0, 1.0], velocity: &seen };
         view.check(model, impact, &mirrored, &|| model.report(seed));
     });
 }
@@ -243,40 +171,27 @@ fn a_mirrored_robot_slides_the_other_way() {
 #[test]
 fn units_change_no_verdict_and_no_margin_of_a_robot() {
     for_every_model(|seed, model, impact| {
-        let one = [1.0, 1.0, 1.0];
-        let units = (0..3).flat_map(|k| {
-            [1e6, 1e-6].map(|factor| {
-                let mut units = one;
-                units[k] = factor;
-                units
-            })
-        });
-        for [mass, length, time] in units {
+        let one = [1.0; 3];
+        for (k, factor) in [0, 1, 2].into_iter().flat_map(|k| [(k, 1e6), (k, 1e-6)]) {
+            let mut units = one;
+            units[k] = factor;
+            let [mass, length, time] = units;
             let mut scaled = model.clone();
-            for link in &mut scaled.links {
+            scaled.map_points(|point| point.map(|x| x * length));
+            scaled.contacts.iter_mut().for_each(|(.., radius)| *radius *= length);
+            for link in &mut scaled.mechanism.links {
                 link.mass *= mass;
                 link.moment *= mass * length * length;
-                link.com.iter_mut().chain(&mut link.origin).for_each(|x| *x *= length);
-                link.velocity /= time;
-                if link.axis.slides() {
-                    link.position *= length;
-                    link.velocity *= length;
-                }
             }
-            for contact in &mut scaled.contacts {
-                contact.offset.iter_mut().for_each(|x| *x *= length);
-                contact.radius *= length;
-            }
-            scaled.base.position[..2].iter_mut().for_each(|x| *x *= length);
-            scaled.base.velocity.iter_mut().for_each(|v| *v /= time);
-            scaled.base.velocity[..2].iter_mut().for_each(|v| *v *= length);
-            let slides: Vec<bool> = model.links.iter().skip(1).map(|link| link.axis.slides()).collect();
-            let unit = |k: usize| if k < 2 || (k > 2 && slides[k - 3]) { length / time } else { 1.0 / time };
+            let slides = |k: usize| k < 2 || (k > 2 && matches!(model.mechanism.links[k - 2].kind, Kind::Slide(_)));
+            let unit = |k: usize| if slides(k) { length } else { 1.0 };
+            scaled.q.iter_mut().enumerate().for_each(|(k, q)| *q *= unit(k));
+            scaled.v.iter_mut().enumerate().for_each(|(k, v)| *v *= unit(k) / time);
             let view = View {
                 mode: |mode| mode,
                 impulse: [mass * length / time; 2],
                 contact_velocity: [length / time; 2],
-                velocity: &|v| v.iter().enumerate().map(|(k, v)| v / unit(k)).collect(),
+                velocity: &|v| v.iter().enumerate().map(|(k, v)| v * time / unit(k)).collect(),
             };
             let units = format!("units of mass {mass}, length {length}, time {time}");
             view.check(model, impact, &scaled, &|| format!("{units}, {}", model.report(seed)));
@@ -287,23 +202,18 @@ fn units_change_no_verdict_and_no_margin_of_a_robot() {
 #[test]
 fn a_flipped_axis_with_its_coordinate_negated_is_the_same_joint() {
     for_every_model(|seed, model, impact| {
-        let flips = |k: usize| (seed as usize + k).is_multiple_of(2);
+        let sign = |k: usize| if k > 2 && (seed as usize + k).is_multiple_of(2) { -1.0 } else { 1.0 };
+        let seen = |v: &[f64]| v.iter().enumerate().map(|(k, v)| sign(k) * v).collect::<Vec<f64>>();
         let mut flipped = model.clone();
-        for (_, link) in flipped.links.iter_mut().enumerate().skip(1).filter(|(k, _)| flips(*k)) {
-            match &mut link.axis {
-                Axis::Revolute(sign) => *sign = -*sign,
-                Axis::Prismatic(direction) => *direction = direction.map(|x| -x),
-                Axis::Fixed => {}
+        for (k, link) in flipped.mechanism.links.iter_mut().enumerate().skip(1) {
+            match &mut link.kind {
+                Kind::Turn(about) => *about *= sign(k + 2),
+                Kind::Slide(along) => *along = along.map(|x| sign(k + 2) * x),
+                _ => {}
             }
-            (link.position, link.velocity) = (-link.position, -link.velocity);
         }
-        let sign = |k: usize| if k > 2 && flips(k - 2) { -1.0 } else { 1.0 };
-        let view = View {
-            mode: |mode| mode,
-            impulse: [1.0; 2],
-            contact_velocity: [1.0; 2],
-            velocity: &|v| v.iter().enumerate().map(|(k, v)| sign(k) * v).collect(),
-        };
+        (flipped.q, flipped.v) = (seen(&model.q), seen(&model.v));
+        let view = View { mode: |mode| mode, impulse: [1.0; 2], contact_velocity: [1.0; 2], velocity: &seen };
         view.check(model, impact, &flipped, &|| model.report(seed));
     });
 }
@@ -312,11 +222,10 @@ fn a_flipped_axis_with_its_coordinate_negated_is_the_same_joint() {
 fn names_do_not_matter() {
     for_every_model(|seed, model, impact| {
         let mut renamed = model.clone();
-        let order = Random::new(seed).permutation(model.links.len());
-        for (link, number) in renamed.links.iter_mut().zip(order) {
-            // Another order of the alphabet, names of joints and links the same.
+        let order = Random::new(seed).permutation(model.mechanism.links.len());
+        for (link, number) in renamed.mechanism.links.iter_mut().zip(order) {
+            // Another order of the alphabet.
             link.name = format!("{number} glied");
-            link.joint = format!("{number} glied");
         }
         let unnamed = |outcome: &Outcome| Outcome { joint_velocity_after: None, ..outcome.clone() };
         let outcomes = |impact: &Impact| -> Vec<Outcome> { analysis(impact).outcomes.iter().map(unnamed).collect() };
@@ -337,10 +246,8 @@ fn a_slope_is_level_ground_seen_askew() {
         let turn = |v: [f64; 2], sin: f64| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
         let mut askew = model.clone();
         askew.slope = slope;
-        askew.base.position[2] -= slope;
-        let [x, z, rate] = model.base.velocity;
-        let [x, z] = turn([x, z], sin);
-        askew.base.velocity = [x, z, rate];
+        askew.q[2] -= slope;
+        askew.v[..2].copy_from_slice(&turn([model.v[0], model.v[1]], sin));
         let view = View {
             mode: |mode| mode,
             impulse: [1.0; 2],

@@ -1,19 +1,27 @@
-//! Random mechanisms in the plane, written as a URDF from any of their links as the root.
+//! Mechanisms in the plane, written twice: as a URDF from any of their links as the root, and as velocities of their
+//! points, by which M = sum m J'J + I w'w is summed up body by body, without recursion.
 //!
 //! All geometry is kept in the world where every joint is at zero; a frame stands at the joint that leads to its link
 //! (at the link's own anchor for the root), so that another root moves frames, turns joints round, and moves no matter.
+//! q and v are x, z and pitch of link 0 for the frame at its anchor, then an entry per joint.
 
-use std::fmt::Write;
-
+use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
 /// A point of the plane: forward, up \[m\].
 pub type Point = [f64; 2];
 
-/// A body of the mechanism; link 0 is the root that it was drawn from.
+/// A body of the mechanism and the joint, called the same, that ties it to an earlier one; link 0 has none.
 #[derive(Debug, Clone)]
 pub struct Link {
+    pub name: String,
+    pub parent: usize,
+    /// Of the joint.
+    pub place: Point,
+    pub kind: Kind,
+    /// The joint that it follows, multiplier, offset.
+    pub follows: Option<(String, f64, f64)>,
     /// Mass \[kg\]; 0 for a link without inertial.
     pub mass: f64,
     pub com: Point,
@@ -23,7 +31,7 @@ pub struct Link {
     pub anchor: Point,
     /// Pitch of the frame's axes \[rad\].
     pub turn: f64,
-    /// Collision spheres: centre, radius \[m\].
+    /// Collision spheres: center, radius \[m\].
     pub spheres: Vec<(Point, f64)>,
 }
 
@@ -40,25 +48,9 @@ pub enum Kind {
     OffPlane,
 }
 
-/// Joint `k` ties link `k` + 1 to an earlier one.
-#[derive(Debug, Clone)]
-pub struct Joint {
-    pub parent: usize,
-    pub place: Point,
-    pub kind: Kind,
-}
-
 #[derive(Debug, Clone)]
 pub struct Mechanism {
     pub links: Vec<Link>,
-    pub joints: Vec<Joint>,
-}
-
-/// Coordinates, or their rates: the root's x, z and pitch for the frame at its anchor, then an entry per joint.
-#[derive(Debug, Clone)]
-pub struct Motion {
-    pub base: [f64; 3],
-    pub joints: Vec<f64>,
 }
 
 /// The pitch and the place of every link, each with its rate.
@@ -87,37 +79,75 @@ fn swept([x, z]: Point, rate: f64) -> Point {
     [rate * z, -rate * x]
 }
 
-impl Mechanism {
-    /// Whether a joint has a coordinate.
-    pub fn moves(&self, joint: usize) -> bool {
-        matches!(self.joints[joint].kind, Kind::Turn(_) | Kind::Slide(_))
+/// A point of a link, as states name it.
+pub fn point(link: &str, [x, z]: Point) -> Value {
+    json!({"link": link, "offset": [x, 0.0, z]})
+}
+
+impl Link {
+    fn new(name: &str, parent: usize, place: Point, mass: f64, com: Point, moment: f64) -> Self {
+        let (kind, name) = (Kind::Turn(1.0), name.to_owned());
+        let (anchor, turn, spheres) = ([0.0; 2], 0.0, Vec::new());
+        Self { name, parent, place, kind, follows: None, mass, com, moment, anchor, turn, spheres }
     }
 
-    /// Joints in the order of a walk from `root`, each with whether it is passed from its child to its parent.
-    fn outward(&self, root: usize) -> Vec<(usize, bool)> {
-        let mut order = Vec::new();
-        let mut reached = vec![root];
-        let mut next = 0;
-        while let Some(&link) = reached.get(next) {
-            next += 1;
-            for (index, joint) in self.joints.iter().enumerate() {
-                let far = if joint.parent == link { index + 1 } else { joint.parent };
-                let touches = joint.parent == link || index + 1 == link;
-                if touches && !reached.contains(&far) {
-                    order.push((index, joint.parent != link));
-                    reached.push(far);
-                }
+    pub fn moves(&self) -> bool {
+        matches!(self.kind, Kind::Turn(_) | Kind::Slide(_))
+    }
+}
+
+impl Mechanism {
+    /// A root with its frame at the world's origin.
+    pub fn of(mass: f64, com: Point, moment: f64) -> Self {
+        Self { links: vec![Link::new("root", 0, [0.0; 2], mass, com, moment)] }
+    }
+
+    /// With a link behind a hinge: its frame is at `origin` of its parent's, its CoG at `com` of its own; with some
+    /// moment.
+    pub fn with(mut self, name: &str, parent: &str, origin: Point, mass: f64, com: Point) -> Self {
+        let parent = self.index(parent);
+        let place = plus(self.links[parent].place, origin);
+        self.links.push(Link::new(name, parent, place, mass, plus(place, com), 0.02 * mass));
+        self
+    }
+
+    /// With the last link changed.
+    pub fn but(mut self, change: impl FnOnce(&mut Link)) -> Self {
+        change(self.links.last_mut().expect("a link"));
+        self
+    }
+
+    /// With the last joint following another.
+    pub fn following(self, mimicked: &str, multiplier: f64, offset: f64) -> Self {
+        self.but(|link| link.follows = Some((mimicked.to_owned(), multiplier, offset)))
+    }
+
+    fn index(&self, name: &str) -> usize {
+        self.links.iter().position(|link| link.name == name).expect("a link of this name")
+    }
+
+    /// All points of links, changed.
+    pub fn map_points(&mut self, change: impl Fn(Point) -> Point) {
+        for link in &mut self.links {
+            let spheres = link.spheres.iter_mut().map(|(center, _)| center);
+            for point in spheres.chain([&mut link.place, &mut link.com, &mut link.anchor]) {
+                *point = change(*point);
             }
         }
-        order
+    }
+
+    /// Parent and child of a link's joint, seen from this root.
+    fn ends(&self, link: usize, root: usize) -> [usize; 2] {
+        let mut way = std::iter::successors(Some(root), |&at| (at > 0).then(|| self.links[at].parent));
+        let parent = self.links[link].parent;
+        if way.any(|at| at == link) { [link, parent] } else { [parent, link] }
     }
 
     /// Where each link's frame stands in the world of zero.
     fn frames(&self, root: usize) -> Vec<Point> {
         let mut frames: Vec<Point> = self.links.iter().map(|link| link.anchor).collect();
-        for (joint, back) in self.outward(root) {
-            let child = if back { self.joints[joint].parent } else { joint + 1 };
-            frames[child] = self.joints[joint].place;
+        for (index, link) in self.links.iter().enumerate().skip(1) {
+            frames[self.ends(index, root)[1]] = link.place;
         }
         frames
     }
@@ -128,36 +158,29 @@ impl Mechanism {
         [x, 0.0, z]
     }
 
-    /// The URDF with this root; joints and links are named by their numbers.
+    /// The URDF with this root.
     pub fn urdf(&self, root: usize) -> String {
         let frames = self.frames(root);
         let mut out = "<robot name=\"mechanism\">\n".to_owned();
         let triple = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
         for (index, link) in self.links.iter().enumerate() {
-            let local = |point| triple(self.local(&frames, index, point));
-            write!(out, "<link name=\"link{index}\">").unwrap();
-            let Link { mass, com, moment, .. } = link;
+            let origin = |point| format!("<origin xyz=\"{}\"/>", triple(self.local(&frames, index, point)));
+            let Link { name, mass, com, moment, .. } = link;
+            out += &format!("<link name=\"{name}\">");
             if *mass > 0.0 {
-                write!(
-                    out,
-                    "<inertial><origin xyz=\"{}\"/><mass value=\"{mass}\"/><inertia ixx=\"{moment}\" ixy=\"0\" ixz=\"0\" \
-                     iyy=\"{moment}\" iyz=\"0\" izz=\"{moment}\"/></inertial>",
-                    local(*com)
-                )
-                .unwrap();
+                let inertia = format!("<inertia ixx=\"{moment}\" iyy=\"{moment}\" izz=\"{moment}\"/>");
+                out += &format!("<inertial>{}<mass value=\"{mass}\"/>{inertia}</inertial>", origin(*com));
             }
-            for &(centre, radius) in &link.spheres {
+            for &(center, radius) in &link.spheres {
                 let sphere = format!("<geometry><sphere radius=\"{radius}\"/></geometry>");
-                write!(out, "<collision><origin xyz=\"{}\"/>{sphere}</collision>", local(centre)).unwrap();
+                out += &format!("<collision>{}{sphere}</collision>", origin(center));
             }
-            out.push_str("</link>\n");
+            out += "</link>\n";
         }
-        for (index, back) in self.outward(root) {
-            let joint = &self.joints[index];
-            let (parent, child) = if back { (index + 1, joint.parent) } else { (joint.parent, index + 1) };
-            let turn = self.links[child].turn;
-            let sign = if back { -1.0 } else { 1.0 };
-            let (kind, axis) = match joint.kind {
+        for (index, link) in self.links.iter().enumerate().skip(1) {
+            let [parent, child] = self.ends(index, root);
+            let (turn, sign) = (self.links[child].turn, if child == index { 1.0 } else { -1.0 });
+            let (kind, axis) = match link.kind {
                 Kind::Turn(about) => ("continuous", [0.0, sign * about, 0.0]),
                 Kind::Slide(along) => {
                     let [x, z] = turned(along, -turn);
@@ -169,37 +192,36 @@ impl Mechanism {
                     ("continuous", [x, 0.0, z])
                 }
             };
-            let limit =
-                if kind == "prismatic" { "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>" } else { "" };
-            writeln!(
-                out,
-                "<joint name=\"joint{index}\" type=\"{kind}\"><parent link=\"link{parent}\"/><child link=\"link{child}\"/>\
-                 <origin xyz=\"{}\" rpy=\"0 {} 0\"/><axis xyz=\"{}\"/>{limit}</joint>",
-                triple(self.local(&frames, parent, joint.place)),
+            let limit = "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>";
+            let mimic = link.follows.as_ref().map_or(String::new(), |(mimicked, multiplier, offset)| {
+                format!("<mimic joint=\"{mimicked}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>")
+            });
+            out += &format!(
+                "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/>\
+                 <origin xyz=\"{}\" rpy=\"0 {} 0\"/><axis xyz=\"{}\"/>{}{mimic}</joint>\n",
+                link.name,
+                self.links[parent].name,
+                self.links[child].name,
+                triple(self.local(&frames, parent, link.place)),
                 turn - self.links[parent].turn,
-                triple(axis)
-            )
-            .unwrap();
+                triple(axis),
+                if kind == "prismatic" { limit } else { "" }
+            );
         }
-        out.push_str("</robot>\n");
-        out
+        out + "</robot>\n"
     }
 
-    /// Where all links are, from the root that the mechanism was drawn from.
-    fn poses(&self, position: &Motion, velocity: &Motion) -> Poses {
-        let root = &self.links[0];
-        let [x, z, pitch] = position.base;
-        let [dx, dz, rate] = velocity.base;
+    /// Where all links are.
+    fn poses(&self, q: &[f64], v: &[f64]) -> Poses {
         // The frame's pitch counts, so that the matter has turned by less.
-        let pitch = pitch - root.turn;
-        let arm = turned(root.anchor, pitch);
-        let mut poses =
-            Poses { pitch: vec![[pitch, rate]], origin: vec![[minus([x, z], arm), minus([dx, dz], swept(arm, rate))]] };
-        for (index, joint) in self.joints.iter().enumerate() {
-            let [pitch, rate] = poses.pitch[joint.parent];
-            let [place, speed] = poses.point(joint.parent, joint.place);
-            let (q, v) = (position.joints[index], velocity.joints[index]);
-            let (pitch, rate, place, speed) = match joint.kind {
+        let (pitch, arm) = (q[2] - self.links[0].turn, self.links[0].anchor);
+        let arm = turned(arm, pitch);
+        let origin = [minus([q[0], q[1]], arm), minus([v[0], v[1]], swept(arm, v[2]))];
+        let mut poses = Poses { pitch: vec![[pitch, v[2]]], origin: vec![origin] };
+        for (link, (&q, &v)) in self.links.iter().skip(1).zip(q[3..].iter().zip(&v[3..])) {
+            let [pitch, rate] = poses.pitch[link.parent];
+            let [place, speed] = poses.point(link.parent, link.place);
+            let (pitch, rate, place, speed) = match link.kind {
                 Kind::Turn(about) => (pitch + about * q, rate + about * v, place, speed),
                 Kind::Slide(along) => {
                     let along = turned(along, pitch);
@@ -209,50 +231,89 @@ impl Mechanism {
                 }
                 Kind::Fixed | Kind::OffPlane => (pitch, rate, place, speed),
             };
-            let arm = turned(joint.place, pitch);
+            let arm = turned(link.place, pitch);
             poses.pitch.push([pitch, rate]);
             poses.origin.push([minus(place, arm), minus(speed, swept(arm, rate))]);
         }
         poses
     }
 
-    /// The place and velocity of a link's point.
-    pub fn point(&self, position: &Motion, velocity: &Motion, link: usize, point: Point) -> [Point; 2] {
-        self.poses(position, velocity).point(link, point)
+    /// Where a link's point is.
+    pub fn point(&self, q: &[f64], link: usize, point: Point) -> Point {
+        self.poses(q, q).point(link, point)[0]
+    }
+
+    /// Velocities for a unit rate of every joint.
+    fn rates<const ROWS: usize>(&self, q: &[f64], of: impl Fn(&Poses) -> [f64; ROWS]) -> DMatrix<f64> {
+        let unit = |column: usize| -> Vec<f64> { (0..q.len()).map(|k| f64::from(k == column)).collect() };
+        let columns = (0..q.len()).map(|column| DVector::from_row_slice(&of(&self.poses(q, &unit(column)))));
+        DMatrix::from_columns(&columns.collect::<Vec<_>>())
+    }
+
+    /// Velocity of a point of a link's frame for a unit rate of every joint (2 rows).
+    pub fn point_rates(&self, q: &[f64], name: &str, offset: Point) -> DMatrix<f64> {
+        let link = self.index(name);
+        self.rates(q, |poses| poses.point(link, plus(self.links[link].place, offset))[1])
+    }
+
+    /// M of all joints, as if none followed another.
+    pub fn mass_matrix(&self, q: &[f64]) -> DMatrix<f64> {
+        let bodies = self.links.iter().enumerate().map(|(index, link)| {
+            let rates = self.rates(q, |poses| {
+                let [x, z] = poses.point(index, link.com)[1];
+                [x, z, poses.pitch[index][1]]
+            });
+            let inertia = DVector::from_vec(vec![link.mass, link.mass, link.moment]);
+            rates.transpose() * DMatrix::from_diagonal(&inertia) * rates
+        });
+        bodies.reduce(|sum, body| sum + body).expect("a body")
+    }
+
+    /// The coordinates of all joints from those that are independent, and T of v_all = T v.
+    pub fn tied(&self, q: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
+        let independent = |link: &&Link| link.follows.is_none();
+        let columns: Vec<&str> = self.links[1..].iter().filter(independent).map(|link| link.name.as_str()).collect();
+        let mut all = q[..3].to_vec();
+        let mut map = DMatrix::identity(2 + self.links.len(), 3 + columns.len());
+        for (row, link) in (3..).zip(&self.links[1..]) {
+            let own = (link.name.clone(), 1.0, 0.0);
+            let (mimicked, multiplier, offset) = link.follows.as_ref().unwrap_or(&own);
+            let column = 3 + columns.iter().position(|name| name == mimicked).expect("an independent joint");
+            all.push(multiplier * q[column] + offset);
+            map.row_mut(row).fill(0.0);
+            map[(row, column)] = *multiplier;
+        }
+        (all, map)
     }
 
     /// The ends of a loop, as JSON for the URDF with this root: a point of one link, and the point of another that is
     /// there in this position.
-    pub fn meeting(&self, root: usize, position: &Motion, (link, point): (usize, Point), other: usize) -> Value {
+    pub fn meeting(&self, root: usize, q: &[f64], (link, point): (usize, Point), other: usize) -> Value {
         let frames = self.frames(root);
-        let poses = self.poses(position, position);
+        let poses = self.poses(q, q);
         let there = poses.point(link, point)[0];
         let there = turned(minus(there, poses.origin[other][0]), -poses.pitch[other][0]);
-        let end = |link, point| json!({"link": format!("link{link}"), "offset": self.local(&frames, link, point)});
+        let end =
+            |link: usize, point| json!({"link": self.links[link].name, "offset": self.local(&frames, link, point)});
         json!({"a": end(link, point), "b": end(other, there)})
     }
 
     /// The state, as JSON for the URDF with this root, with contacts at points of links.
-    pub fn state(&self, root: usize, position: &Motion, velocity: &Motion, contacts: &[(usize, Point, f64)]) -> Value {
-        let frames = self.frames(root);
-        let poses = self.poses(position, velocity);
+    pub fn state(&self, root: usize, q: &[f64], v: &[f64], contacts: &[(usize, Point, f64)]) -> Value {
+        let (frames, poses) = (self.frames(root), self.poses(q, v));
         let [place, speed] = poses.point(root, self.links[root].anchor);
         let [pitch, rate] = poses.pitch[root];
-        let joints = |values: &[f64]| {
-            let moving = (0..values.len()).filter(|&joint| self.moves(joint));
-            Value::Object(moving.map(|joint| (format!("joint{joint}"), json!(values[joint]))).collect())
+        let part = |[x, z]: Point, pitch: f64, values: &[f64]| {
+            let moving = self.links.iter().skip(1).zip(&values[3..]);
+            let moving = moving.filter(|(link, _)| link.moves() && link.follows.is_none());
+            let joints: Value = moving.map(|(link, value)| (link.name.clone(), json!(value))).collect();
+            json!({"base": {"x": x, "z": z, "pitch": pitch}, "joints": joints})
         };
-        let base = |[x, z]: Point, pitch: f64| json!({"x": x, "z": z, "pitch": pitch});
-        let contacts: Vec<Value> = contacts
-            .iter()
-            .map(|&(link, point, radius)| {
-                json!({"link": format!("link{link}"), "offset": self.local(&frames, link, point), "radius": radius})
-            })
-            .collect();
+        let contact = |&(link, point, radius): &(usize, Point, f64)| json!({"link": self.links[link].name, "offset": self.local(&frames, link, point), "radius": radius});
         json!({
-            "position": {"base": base(place, pitch + self.links[root].turn), "joints": joints(&position.joints)},
-            "velocity": {"base": base(speed, rate), "joints": joints(&velocity.joints)},
-            "contacts": contacts,
+            "position": part(place, pitch + self.links[root].turn, q),
+            "velocity": part(speed, rate, v),
+            "contacts": contacts.iter().map(contact).collect::<Vec<_>>(),
         })
     }
 }
@@ -266,6 +327,7 @@ impl Poses {
     }
 }
 
+// What is drawn, in this order, is what `tests/proptest-regressions` repeats.
 prop_compose! {
     fn link()(
         mass in prop_oneof![1 => Just(0.0), 4 => 0.2..2.0f64],
@@ -277,48 +339,44 @@ prop_compose! {
         high in prop::option::weighted(0.3, (-0.4..0.4f64, 0.01..0.1f64)),
     ) -> Link {
         let spheres = low.into_iter().chain(high.map(|(x, radius)| ([x, 1.5], radius))).collect();
-        Link { mass, com, moment, anchor, turn, spheres }
+        Link { anchor, turn, spheres, ..Link::new("link0", 0, [0.0; 2], mass, com, moment) }
     }
 }
 
 prop_compose! {
-    fn joint_and_link()(
+    fn jointed()(
         parent in any::<prop::sample::Index>(),
         place in prop::array::uniform2(-0.6..0.6f64),
         what in 0..10u8,
         sign in prop::bool::ANY,
         angle in -3.0..3.0f64,
         link in link(),
-    ) -> (prop::sample::Index, Joint, Link) {
+    ) -> (prop::sample::Index, Link) {
         let kind = match what {
             0 | 1 => Kind::Fixed,
             2 => Kind::OffPlane,
             3 => Kind::Slide(turned([1.0, 0.0], angle)),
             _ => Kind::Turn(if sign { 1.0 } else { -1.0 }),
         };
-        (parent, Joint { parent: 0, place, kind }, link)
+        (parent, Link { place, kind, ..link })
     }
 }
 
 prop_compose! {
     /// A tree of 3 to 8 links; massless ones are on joints that do not move.
-    pub fn mechanism()(root in link(), parts in prop::collection::vec(joint_and_link(), 2..8)) -> Mechanism {
-        let mut mechanism = Mechanism { links: vec![root], joints: Vec::new() };
-        mechanism.links[0].mass += 1.0;
-        for (parent, joint, mut link) in parts {
-            let moves = matches!(joint.kind, Kind::Turn(_) | Kind::Slide(_));
-            if moves {
-                link.mass = link.mass.max(0.3);
-            }
-            mechanism.joints.push(Joint { parent: parent.index(mechanism.links.len()), ..joint });
-            mechanism.links.push(link);
+    pub fn mechanism()(root in link(), parts in prop::collection::vec(jointed(), 2..8)) -> Mechanism {
+        let mut links = vec![Link { mass: root.mass + 1.0, ..root }];
+        for (parent, link) in parts {
+            let mass = if link.moves() { link.mass.max(0.3) } else { link.mass };
+            let (name, parent) = (format!("link{}", links.len()), parent.index(links.len()));
+            links.push(Link { name, parent, mass, ..link });
         }
-        mechanism
+        Mechanism { links }
     }
 }
 
 /// Coordinates or rates of a mechanism with `joints` joints.
-pub fn motion(joints: usize, base: f64, range: f64) -> impl Strategy<Value = Motion> {
+pub fn motion(joints: usize, base: f64, range: f64) -> impl Strategy<Value = Vec<f64>> {
     let joints = prop::collection::vec(-range..range, joints);
-    (prop::array::uniform3(-base..base), joints).prop_map(|(base, joints)| Motion { base, joints })
+    (prop::array::uniform3(-base..base), joints).prop_map(|(base, joints)| [&base[..], &joints].concat())
 }

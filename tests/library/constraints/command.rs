@@ -1,12 +1,12 @@
 //! `--loops FILE` and the fields of results.
 
-use crate::constraints::four_bar::{WIDTH, parallelogram, pin, state};
+use crate::constraints::four_bar::{CRANKS, WIDTH, parallelogram, pin, state};
 use crate::support::command::{Run, file, heelstrike_reads, place};
 use serde_json::{Value, json};
 
 /// Runs a command on the parallelogram.
 fn run(command: &str, arguments: &[&str], input: &str) -> Run {
-    let robot = file("robot.urdf", parallelogram(&[("front", 0.0), ("rear", WIDTH)]).urdf());
+    let robot = file("robot.urdf", parallelogram(&CRANKS).urdf(0));
     heelstrike_reads(&[&[command, &robot, "-", "--base", "fixed"], arguments].concat(), input)
 }
 
@@ -16,7 +16,7 @@ fn loops() -> String {
 }
 
 fn open_state() -> Value {
-    let mut state = state(&parallelogram(&[("front", 0.0), ("rear", WIDTH)]), 0.6, -2.0, json!([]));
+    let mut state = state(&parallelogram(&CRANKS), 0.6, -2.0, json!([]));
     state.as_object_mut().expect("an object").remove("loops");
     state
 }

@@ -1,8 +1,10 @@
 //! A leg of five bars (torso, two thighs, two shanks) that the tree has to cut open, against the same leg without the
 //! loop: its dependent rates are solved for (implicit differentiation), v = T v_red with T = [1; -K_d^-1 K_i].
 
-use crate::constraints::mechanism::{Mechanism, Part, assert_near, flat, impact, matrix, part, point};
-use crate::support::impact::{loop_impulses, velocities_after};
+use crate::constraints::{assert_near, flat, impact, matrices};
+use crate::support::impact::{loop_impulses, modes, outcomes, robot, velocities_after};
+use crate::support::mechanism::{Mechanism, Point, point};
+use crate::support::scaled::matrix;
 use heelstrike::pipeline::Impact;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -15,31 +17,38 @@ const THIGH: f64 = 0.4;
 const SHANK: f64 = 0.5;
 const WIDTH: f64 = 0.2;
 
+/// With both thighs and the left shank of a leg that hangs this far behind the root's middle.
+fn open_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
+    let left = format!("{leg}left_thigh");
+    mechanism
+        .with(&left, "root", [-0.5 * WIDTH - behind, 0.0], 0.8, [0.01, -0.15])
+        .with(&format!("{leg}left_shank"), &left, [0.0, -THIGH], 0.4, [0.0, -0.2])
+        .with(&format!("{leg}right_thigh"), "root", [0.5 * WIDTH - behind, 0.0], 0.7, [-0.01, -0.18])
+}
+
 /// The shanks' ends are one pin. Its foot is that of the left shank.
+fn with_leg(mechanism: Mechanism, leg: &str, behind: f64) -> Mechanism {
+    let (thigh, shank) = (format!("{leg}right_thigh"), format!("{leg}right_shank"));
+    open_leg(mechanism, leg, behind).with(&shank, &thigh, [0.0, -THIGH], 0.3, [0.02, -0.25])
+}
+
+fn root() -> Mechanism {
+    Mechanism::of(5.0, [0.02, 0.15], 0.3)
+}
+
 fn cut_at_the_pin() -> Mechanism {
-    Mechanism {
-        root: (5.0, [0.02, 0.15], 0.3),
-        parts: vec![
-            part("left_thigh", "root", [-0.5 * WIDTH, 0.0], 0.8, [0.01, -0.15]),
-            part("left_shank", "left_thigh", [0.0, -THIGH], 0.4, [0.0, -0.2]),
-            part("right_thigh", "root", [0.5 * WIDTH, 0.0], 0.7, [-0.01, -0.18]),
-            part("right_shank", "right_thigh", [0.0, -THIGH], 0.3, [0.02, -0.25]),
-        ],
-    }
+    with_leg(root(), "", 0.0)
 }
 
 /// The same leg with the pin as a joint and the right knee open: the right shank is attached to the left one's end.
 fn cut_at_the_knee() -> Mechanism {
-    let mut mechanism = cut_at_the_pin();
-    let upside_down =
-        Part { parent: "left_shank", origin: [0.0, -SHANK], com: [0.02, SHANK - 0.25], ..mechanism.parts[3].clone() };
-    mechanism.parts[3] = upside_down;
-    mechanism
+    open_leg(root(), "", 0.0).with("right_shank", "left_shank", [0.0, -SHANK], 0.3, [0.02, SHANK - 0.25])
 }
 
-/// Ends of the loop: (part, point) of a and b.
-type Ends = [(&'static str, [f64; 2]); 2];
+/// Ends of the loop: (link, point) of a and b.
+type Ends = [(&'static str, Point); 2];
 const PIN: Ends = [("left_shank", [0.0, -SHANK]), ("right_shank", [0.0, -SHANK])];
+const HIND_PIN: Ends = [("hind_left_shank", [0.0, -SHANK]), ("hind_right_shank", [0.0, -SHANK])];
 const KNEE: Ends = [("right_thigh", [0.0, -THIGH]), ("right_shank", [0.0, SHANK])];
 
 /// The coordinates of the tree that is cut at the pin, from pitch and the angles of both thighs: two circles about the
@@ -70,7 +79,7 @@ fn velocity_map(rows: &DMatrix<f64>) -> DMatrix<f64> {
     let dependent = rows.select_columns(&solved).try_inverse().expect("bent knees") * rows.select_columns(&kept);
     DMatrix::from_fn(7, 5, |i, j| match solved.iter().position(|&row| row == i) {
         Some(row) => -dependent[(row, j)],
-        None => f64::from(u8::from(kept[j] == i)),
+        None => f64::from(kept[j] == i),
     })
 }
 
@@ -81,11 +90,22 @@ fn named(ends: Ends) -> Value {
 
 const FEET: [(&str, [f64; 2]); 2] = [("left_shank", [0.0, -SHANK]), ("root", [0.3, -0.5])];
 
-fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: Value) -> Value {
-    let mut state = mechanism.state(q, v);
+/// J of the feet.
+fn jacobian(mechanism: &Mechanism, q: &[f64]) -> DMatrix<f64> {
+    let feet = FEET.map(|(name, offset)| mechanism.point_rates(q, name, offset));
+    DMatrix::from_fn(4, q.len(), |i, j| feet[i / 2][(i % 2, j)])
+}
+
+fn state(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: &[Ends]) -> Value {
+    let mut state = mechanism.state(0, q, v, &[]);
+    state["friction"] = json!(0.7);
     state["contacts"] = FEET.map(|(link, offset)| point(link, offset)).into_iter().collect();
-    state["loops"] = loops;
+    state["loops"] = loops.iter().copied().map(named).collect();
     state
+}
+
+fn strike(mechanism: &Mechanism, q: &[f64], v: &[f64], loops: &[Ends]) -> Impact {
+    proven(impact(&robot(&mechanism.urdf(0)), &state(mechanism, q, v, loops)))
 }
 
 fn case() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
@@ -100,10 +120,9 @@ fn rates_of_the_tree(q: &[f64], rates: &[f64]) -> DVector<f64> {
     map * DVector::from_row_slice(rates)
 }
 
-fn outcomes(impact: &Impact) -> Vec<Vec<heelstrike::impact::Mode>> {
-    let analysis = impact.analysis.as_ref().expect("an answer");
-    assert!(analysis.proven);
-    analysis.outcomes.iter().map(|outcome| outcome.modes.clone()).collect()
+fn proven(found: Impact) -> Impact {
+    assert!(found.analysis.as_ref().expect("an answer").proven);
+    found
 }
 
 #[track_caller]
@@ -122,26 +141,22 @@ proptest! {
         let rows = loop_rows(&mechanism, &q, PIN);
         let map = velocity_map(&rows);
         let v = &map * DVector::from_vec(rates.clone());
-        let found = impact(&mechanism.robot(), &strike(&mechanism, &q, v.as_slice(), json!([named(PIN)])));
-        let matrices = found.matrices.as_ref().expect("asked for");
+        let found = strike(&mechanism, &q, v.as_slice(), &[PIN]);
+        let matrices = matrices(&found);
 
         // Those of the tree are the tree's.
-        let mass = mechanism.mass_matrix(&q);
-        assert_near(&matrix(&matrices.mass_matrix), &mass, ROUNDINGS);
-        let feet = FEET.map(|(name, offset)| mechanism.point_rates(&q, name, offset));
-        let jacobian = DMatrix::from_fn(4, 7, |i, j| feet[i / 2][(i % 2, j)]);
-        assert_near(&matrix(&matrices.contact_jacobian), &jacobian, ROUNDINGS);
+        let (mass, jacobian) = (mechanism.mass_matrix(&q), jacobian(&mechanism, &q));
+        assert_near(&matrices.mass_matrix, &mass, ROUNDINGS);
+        assert_near(&matrices.contact_jacobian, &jacobian, ROUNDINGS);
         // G is that of the leg without the loop.
         let reduced = (map.transpose() * &mass * &map).try_inverse().expect("positive definite");
         let feet = &jacobian * &map;
-        assert_near(&matrix(&matrices.delassus), &(&feet * &reduced * feet.transpose()), ROUNDINGS);
+        assert_near(&matrices.delassus, &(&feet * &reduced * feet.transpose()), ROUNDINGS);
 
         let energy = 0.5 * v.dot(&(&mass * &v));
         prop_assert!((found.kinetic_energy - energy).abs() <= ROUNDINGS * f64::EPSILON * energy);
-        outcomes(&found);
-        let analysis = found.analysis.as_ref().expect("an answer");
-        for ((outcome, after), loops) in analysis.outcomes.iter().zip(velocities_after(&found)).zip(loop_impulses(&found)) {
-            let (after, impulse) = (DVector::from_vec(after.clone()), flat(&outcome.impulse));
+        for ((outcome, after), loops) in outcomes(&found).iter().zip(velocities_after(&found)).zip(loop_impulses(&found)) {
+            let (after, impulse) = (DVector::from_vec(after), flat(&outcome.impulse));
             let size = after.amax().max(v.amax());
             // v+ = T (v_red + M_red^-1 J_red' L).
             let expected = &v + &map * &reduced * feet.transpose() * &impulse;
@@ -159,22 +174,16 @@ proptest! {
     #[test]
     fn where_the_loop_is_cut_does_not_matter((q, rates) in case()) {
         let v = rates_of_the_tree(&q, &rates);
-        let one = impact(&cut_at_the_pin().robot(), &strike(&cut_at_the_pin(), &q, v.as_slice(), json!([named(PIN)])));
+        let one = strike(&cut_at_the_pin(), &q, v.as_slice(), &[PIN]);
         // The right shank's coordinate is now its angle from the left shank.
         let turned = |list: &[f64]| {
             let mut list = list.to_vec();
             list[6] = list[5] + list[6] - list[3] - list[4];
             list
         };
-        let mechanism = cut_at_the_knee();
-        let state = strike(&mechanism, &turned(&q), &turned(v.as_slice()), json!([named(KNEE)]));
-        let other = impact(&mechanism.robot(), &state);
-        prop_assert_eq!(outcomes(&one), outcomes(&other));
-        assert_near(
-            &matrix(&other.matrices.as_ref().expect("asked for").delassus),
-            &matrix(&one.matrices.as_ref().expect("asked for").delassus),
-            ROUNDINGS,
-        );
+        let other = strike(&cut_at_the_knee(), &turned(&q), &turned(v.as_slice()), &[KNEE]);
+        prop_assert_eq!(modes(&one), modes(&other));
+        assert_near(&matrices(&other).delassus, &matrix(&matrices(&one).delassus), ROUNDINGS);
         for (one, other) in velocities_after(&one).iter().zip(velocities_after(&other)) {
             assert_vectors_near(&other, &turned(one), 10.0);
         }
@@ -183,10 +192,8 @@ proptest! {
     #[test]
     fn exchanging_the_ends_turns_the_impulse_round((q, rates) in case()) {
         let (mechanism, v) = (cut_at_the_pin(), rates_of_the_tree(&q, &rates));
-        let robot = mechanism.robot();
-        let of = |ends: Ends| impact(&robot, &strike(&mechanism, &q, v.as_slice(), json!([named(ends)])));
-        let (one, other) = (of(PIN), of([PIN[1], PIN[0]]));
-        prop_assert_eq!(outcomes(&one), outcomes(&other));
+        let [one, other] = [PIN, [PIN[1], PIN[0]]].map(|ends| strike(&mechanism, &q, v.as_slice(), &[ends]));
+        prop_assert_eq!(modes(&one), modes(&other));
         for (one, other) in loop_impulses(&one).iter().flatten().zip(loop_impulses(&other).iter().flatten()) {
             assert_vectors_near(other, &one.map(|entry| -entry), 10.0);
         }
@@ -198,24 +205,12 @@ proptest! {
     /// Two legs of five bars, one behind the other: the loops' order is the order of their impulses and nothing else.
     #[test]
     fn the_order_of_the_loops_is_that_of_their_impulses((q, rates) in case()) {
-        let mut mechanism = cut_at_the_pin();
-        let second = ["hind_left_thigh", "hind_left_shank", "hind_right_thigh", "hind_right_shank"];
-        for (index, name) in second.into_iter().enumerate() {
-            let own = mechanism.parts[index].clone();
-            let parent = if index % 2 == 0 { "root" } else { second[index - 1] };
-            let origin = [own.origin[0] - if index % 2 == 0 { 0.7 } else { 0.0 }, own.origin[1]];
-            mechanism.parts.push(Part { name, parent, origin, ..own });
-        }
-        let robot = mechanism.robot();
+        let mechanism = with_leg(cut_at_the_pin(), "hind_", 0.7);
         let both = |list: &[f64]| [list, &list[3..]].concat();
         let v = rates_of_the_tree(&q, &rates);
-        let hind: Ends = [(second[1], [0.0, -SHANK]), (second[3], [0.0, -SHANK])];
-        let of = |loops: [Ends; 2]| {
-            let loops = loops.map(named).into_iter().collect();
-            impact(&robot, &strike(&mechanism, &both(&q), &both(v.as_slice()), loops))
-        };
-        let (one, other) = (of([PIN, hind]), of([hind, PIN]));
-        prop_assert_eq!(outcomes(&one), outcomes(&other));
+        let loops = [[PIN, HIND_PIN], [HIND_PIN, PIN]];
+        let [one, other] = loops.map(|loops| strike(&mechanism, &both(&q), &both(v.as_slice()), &loops));
+        prop_assert_eq!(modes(&one), modes(&other));
         for (one, other) in loop_impulses(&one).iter().zip(loop_impulses(&other)) {
             assert_vectors_near(&[other[1], other[0]].concat(), &one.concat(), 10.0);
         }
@@ -227,12 +222,12 @@ proptest! {
         let mechanism = cut_at_the_pin();
         let map = velocity_map(&loop_rows(&mechanism, &q, PIN));
         let v = &map * DVector::from_vec(rates);
-        let mut state = strike(&mechanism, &q, v.as_slice(), json!([named(PIN)]));
+        let mut state = state(&mechanism, &q, v.as_slice(), &[PIN]);
         state["contacts"] = json!([]);
         let mut applied = point("right_shank", [0.1, -0.2]);
         applied["vector"] = json!(push);
         state["impulse"] = json!([applied]);
-        let found = impact(&mechanism.robot(), &state);
+        let found = impact(&robot(&mechanism.urdf(0)), &state);
         let mass = mechanism.mass_matrix(&q);
         let reduced = (map.transpose() * &mass * &map).try_inverse().expect("positive definite");
         let arm = mechanism.point_rates(&q, "right_shank", [0.1, -0.2]) * &map;
@@ -247,35 +242,32 @@ proptest! {
         let mechanism = cut_at_the_pin();
         let mut v = rates_of_the_tree(&q, &rates);
         v[4] += noise;
-        let mut state = strike(&mechanism, &q, v.as_slice(), json!([named(PIN)]));
+        let mut state = state(&mechanism, &q, v.as_slice(), &[PIN]);
         state["stance"] = json!("left_shank");
         for field in ["position", "velocity"] {
             state[field]["base"] = json!({"pitch": state[field]["base"]["pitch"]});
         }
-        let found = impact(&mechanism.robot(), &state);
+        let found = proven(impact(&robot(&mechanism.urdf(0)), &state));
         prop_assert_eq!(found.velocity_before[0], [0.0; 2]);
-        outcomes(&found);
         for after in velocities_after(&found) {
-            let opens = loop_rows(&mechanism, &q, PIN) * DVector::from_vec(after.clone());
+            let opens = loop_rows(&mechanism, &q, PIN) * DVector::from_vec(after);
             assert_vectors_near(opens.as_slice(), &[0.0; 2], 10.0);
         }
     }
 }
 
 #[test]
-fn a_rate_with_noise_is_told_and_mended_by_the_least_energy() {
+fn a_rate_with_noise_is_noted_and_mended_by_the_least_energy() {
     let (mechanism, q) = (cut_at_the_pin(), closed(0.1, 0.4, -0.3));
     let mut v = rates_of_the_tree(&q, &[0.2, -1.0, 0.3, 0.5, -0.4]);
     v[6] += 1e-3;
-    let found = impact(&mechanism.robot(), &strike(&mechanism, &q, v.as_slice(), json!([named(PIN)])));
+    let found = impact(&robot(&mechanism.urdf(0)), &state(&mechanism, &q, v.as_slice(), &[PIN]));
     let [note] = &found.notes[..] else { panic!("{:?}", found.notes) };
     assert!(note.starts_with("loops[0] (left_shank - right_shank) opens at 5.0e-4 m/s before the impact"), "{note}");
     let (rows, mass) = (loop_rows(&mechanism, &q, PIN), mechanism.mass_matrix(&q));
     let inverse = mass.try_inverse().expect("positive definite");
     let mobility = (&rows * &inverse * rows.transpose()).try_inverse().expect("independent rows");
     let mended = &v - inverse * rows.transpose() * mobility * &rows * &v;
-    let feet = FEET.map(|(name, offset)| mechanism.point_rates(&q, name, offset) * &mended);
-    for (found, expected) in found.velocity_before.iter().zip(feet) {
-        assert_vectors_near(found, expected.as_slice(), 10.0);
-    }
+    let expected = jacobian(&mechanism, &q) * mended;
+    assert_vectors_near(found.velocity_before.as_flattened(), expected.as_slice(), 10.0);
 }

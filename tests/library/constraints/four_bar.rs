@@ -11,8 +11,10 @@
 //! and m_c dv_z = a_z - f_z + L_n (a from crank 1; L_n goes through the middle), so f_z = (L_n - m_c dv_z) / 2; the
 //! crank's moment about its pivot, m l^2 / 3 dq' = l f . d, gives f_x.
 
-use crate::constraints::mechanism::{Joint, Mechanism, Part, impact, part, point};
+use crate::constraints::{impact, matrices};
 use crate::support::impact::{loop_impulses, velocities_after};
+use crate::support::mechanism::{Kind, Mechanism, Point, point};
+use heelstrike::description::Description;
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
 use heelstrike::robot::{Base, Reduction, Robot};
@@ -23,26 +25,32 @@ pub const M: f64 = 1.5;
 pub const M_COUPLER: f64 = 2.0;
 pub const WIDTH: f64 = 0.8;
 
+pub const CRANKS: [(&str, f64); 2] = [("front", 0.0), ("rear", WIDTH)];
+
+/// With a rod of mass M and length L.
+fn rod(mechanism: Mechanism, name: &str, parent: &str, origin: Point) -> Mechanism {
+    mechanism.with(name, parent, origin, M, [0.0, -0.5 * L]).but(|rod| rod.moment = M * L * L / 12.0)
+}
+
 /// Cranks hang from the root at these places; the coupler on the first, its middle `WIDTH` / 2 in front of that.
-pub fn parallelogram(cranks: &[(&'static str, f64)]) -> Mechanism {
-    let crank = |&(name, x): &(&'static str, f64)| Part {
-        moment: M * L * L / 12.0,
-        ..part(name, "root", [x, 0.0], M, [0.0, -0.5 * L])
-    };
-    let coupler = part("coupler", cranks[0].0, [0.0, -L], M_COUPLER, [0.5 * WIDTH, 0.0]);
-    Mechanism { root: (1.0, [0.0; 2], 1.0), parts: cranks.iter().map(crank).chain([coupler]).collect() }
+pub fn parallelogram(cranks: &[(&str, f64)]) -> Mechanism {
+    let root = Mechanism::of(1.0, [0.0; 2], 1.0);
+    let hung = cranks.iter().fold(root, |mechanism, &(name, x)| rod(mechanism, name, "root", [x, 0.0]));
+    hung.with("coupler", cranks[0].0, [0.0, -L], M_COUPLER, [0.5 * WIDTH, 0.0])
 }
 
 pub fn bolted(mechanism: &Mechanism) -> Robot {
-    let description = heelstrike::description::Description::from_urdf(&mechanism.urdf()).expect("a description");
+    let description = Description::from_urdf(&mechanism.urdf(0)).expect("a description");
     Robot::reduce(&description, &Reduction { base: Some(Base::Fixed), ..Reduction::default() }).expect("a robot")
 }
 
 /// All cranks at q and q', the coupler level; a foot below the coupler's middle.
 pub fn state(mechanism: &Mechanism, q: f64, rate: f64, loops: Value) -> Value {
     let joints = |value: f64| {
-        let named = mechanism.parts.iter().map(|part| (part.name, if part.name == "coupler" { -value } else { value }));
-        json!({"joints": named.map(|(name, value)| (name.to_owned(), json!(value))).collect::<serde_json::Map<_, _>>()})
+        let value = |name: &String| if name == "coupler" { -value } else { value };
+        let joints: Value =
+            mechanism.links[1..].iter().map(|link| (link.name.clone(), json!(value(&link.name)))).collect();
+        json!({"joints": joints})
     };
     json!({"position": joints(q), "velocity": joints(rate), "friction": 0, "loops": loops,
         "contacts": [point("coupler", [0.5 * WIDTH, -0.1])]})
@@ -53,18 +61,30 @@ pub fn pin(crank: &str, x: f64) -> Value {
     json!({"a": point(crank, [0.0, -L]), "b": point("coupler", [x, 0.0])})
 }
 
+/// G must be d d' times this.
+#[track_caller]
+fn assert_delassus(found: &Impact, q: f64, expected: f64) {
+    let direction = [-q.cos(), q.sin()];
+    for (row, along) in matrices(found).delassus.iter().zip(direction) {
+        for (entry, across) in row.iter().zip(direction) {
+            assert!((entry - expected * along * across).abs() < 1e-14, "{entry}");
+        }
+    }
+}
+
+/// The impulse on the only loop must be this.
+#[track_caller]
+fn assert_loop(found: &Impact, [x, z]: Point) {
+    let [[found_x, found_z]] = loop_impulses(found)[0][..] else { panic!("{:?}", loop_impulses(found)) };
+    assert!((found_x - x).abs() < 1e-13 && (found_z - z).abs() < 1e-13, "{found_x} {found_z}, not {x} {z}");
+}
+
 /// The outcome's impulse and rates as they must be for `cranks` cranks; gives the normal impulse.
 #[track_caller]
 pub fn assert_stops(found: &Impact, q: f64, rate: f64, cranks: f64) -> f64 {
     let mass = (cranks * M / 3.0 + M_COUPLER) * L * L;
     let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
-    let direction = [-q.cos(), q.sin()];
-    let delassus = &found.matrices.as_ref().expect("asked for").delassus;
-    for (row, along) in delassus.iter().zip(direction) {
-        for (entry, across) in row.iter().zip(direction) {
-            near(*entry, L * L * along * across / mass);
-        }
-    }
+    assert_delassus(found, q, L * L / mass);
     let analysis = found.analysis.as_ref().expect("an answer");
     assert!(analysis.proven);
     let [outcome] = &analysis.outcomes[..] else { panic!("{:?}", analysis.outcomes) };
@@ -77,7 +97,7 @@ pub fn assert_stops(found: &Impact, q: f64, rate: f64, cranks: f64) -> f64 {
 
 #[test]
 fn a_parallelogram_strikes_the_ground_as_on_paper() {
-    let mechanism = parallelogram(&[("front", 0.0), ("rear", WIDTH)]);
+    let mechanism = parallelogram(&CRANKS);
     let robot = bolted(&mechanism);
     // sin q > 0 and q' < 0: it comes down.
     let (q, rate) = (0.6, -2.0);
@@ -87,39 +107,27 @@ fn a_parallelogram_strikes_the_ground_as_on_paper() {
     let change = -rate;
     let f_z = 0.5 * (normal - M_COUPLER * L * change * q.sin());
     let f_x = (M * L * change / 3.0 - f_z * q.sin()) / -q.cos();
-    let [[x, z]] = loop_impulses(&found)[0][..] else { panic!("{:?}", loop_impulses(&found)) };
-    assert!((x - f_x).abs() < 1e-13 && (z - f_z).abs() < 1e-13, "{x} {z}, not {f_x} {f_z}");
+    assert_loop(&found, [f_x, f_z]);
 }
 
 #[test]
 fn a_rod_pinned_to_the_ground_by_a_loop_is_a_pendulum() {
     // Its joint is free to slide in the tree; the loop holds its upper end to the root. G at the free end, at the angle
     // q: l^2 d d' / (m l^2 / 3), d as above.
-    let slide = |name, parent, direction| Part {
-        joint: Joint::Slide(direction),
-        mass: 0.0,
-        moment: 0.0,
-        ..part(name, parent, [0.0; 2], 0.0, [0.0; 2])
-    };
-    let rod = Part { moment: M * L * L / 12.0, ..part("rod", "up", [0.0; 2], M, [0.0, -0.5 * L]) };
-    let mechanism = Mechanism {
-        root: (1.0, [0.0; 2], 1.0),
-        parts: vec![slide("along", "root", [1.0, 0.0]), slide("up", "along", [0.0, 1.0]), rod],
-    };
+    let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)
+        .with("along", "root", [0.0; 2], 0.0, [0.0; 2])
+        .but(|link| link.kind = Kind::Slide([1.0, 0.0]))
+        .with("up", "along", [0.0; 2], 0.0, [0.0; 2])
+        .but(|link| link.kind = Kind::Slide([0.0, 1.0]));
+    let mechanism = rod(mechanism, "rod", "up", [0.0; 2]);
     let (q, rate) = (0.6_f64, -2.0);
     let state = json!({"position": {"joints": {"rod": q}}, "velocity": {"joints": {"rod": rate}}, "friction": 0,
         "loops": [{"a": point("rod", [0.0; 2]), "b": point("root", [0.0; 2])}], "contacts": [point("rod", [0.0, -L])]});
     let found = impact(&bolted(&mechanism), &state);
-    let direction = [-q.cos(), q.sin()];
-    for (row, along) in found.matrices.as_ref().expect("asked for").delassus.iter().zip(direction) {
-        for (entry, across) in row.iter().zip(direction) {
-            assert!((entry - along * across / (M / 3.0)).abs() < 1e-14, "{entry}");
-        }
-    }
+    assert_delassus(&found, q, 3.0 / M);
     // What the rod's middle gains comes from the ground and the pivot together.
     let analysis = found.analysis.as_ref().expect("an answer");
     let normal = analysis.outcomes[0].impulse[0][1];
-    let [[x, z]] = loop_impulses(&found)[0][..] else { panic!("{:?}", loop_impulses(&found)) };
-    let gained = [-q.cos(), q.sin()].map(|along| M * 0.5 * L * -rate * along);
-    assert!((x - gained[0]).abs() < 1e-13 && (z + normal - gained[1]).abs() < 1e-13, "{x} {z} {normal}");
+    let [x, z] = [-q.cos(), q.sin()].map(|along| M * 0.5 * L * -rate * along);
+    assert_loop(&found, [x, z - normal]);
 }

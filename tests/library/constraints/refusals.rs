@@ -1,13 +1,13 @@
 //! What is refused of loops: names, poses and velocities that leave them open, coordinates that they alone would hold.
 
-use crate::constraints::four_bar::{WIDTH, bolted, parallelogram, pin, state};
-use crate::constraints::mechanism::{Part, try_impact};
+use crate::constraints::four_bar::{CRANKS, WIDTH, bolted, parallelogram, pin, state};
+use crate::constraints::try_impact;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 #[test]
 fn states_that_break_a_loop_are_refused_word_for_word() {
-    let mechanism = parallelogram(&[("front", 0.0), ("rear", WIDTH)]);
+    let mechanism = parallelogram(&CRANKS);
     let robot = bolted(&mechanism);
     let sound = state(&mechanism, 0.6, -2.0, json!([pin("rear", WIDTH)]));
     let ends = |end: &str, value: Value| {
@@ -42,8 +42,8 @@ fn states_that_break_a_loop_are_refused_word_for_word() {
 
 #[test]
 fn a_massless_coordinate_that_only_a_loop_holds() {
-    let mut mechanism = parallelogram(&[("front", 0.0), ("rear", WIDTH)]);
-    mechanism.parts[1] = Part { mass: 0.0, moment: 0.0, ..mechanism.parts[1].clone() };
+    let mut mechanism = parallelogram(&CRANKS);
+    (mechanism.links[2].mass, mechanism.links[2].moment) = (0.0, 0.0);
     let state = state(&mechanism, 0.6, -2.0, json!([pin("rear", WIDTH)]));
     let error = try_impact(&bolted(&mechanism), &state).expect_err("refused");
     assert_eq!(
