@@ -12,7 +12,7 @@ use super::ltl::LtlFactor;
 use super::workspace::Workspace;
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
-use crate::scalar::Real;
+use crate::scalar::{Real, dot};
 
 /// Computes G (2n x 2n) from the factorized mass matrix and the contact Jacobian.
 pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
@@ -43,17 +43,11 @@ pub(super) fn from_half<T: Real>(
     delassus.resize(rows * rows, T::zero());
     for row in 0..rows {
         for column in 0..=row {
-            let (y, z) = (&half[row * nv..(row + 1) * nv], &half_by_d[column * nv..(column + 1) * nv]);
-            let entry = products(y, z);
+            let entry = dot(&half[row * nv..(row + 1) * nv], &half_by_d[column * nv..(column + 1) * nv]);
             delassus[row * rows + column] = entry;
             delassus[column * rows + row] = entry;
         }
     }
-}
-
-/// The inner product of two columns.
-pub(super) fn products<T: Real>(a: &[T], b: &[T]) -> T {
-    a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
 }
 
 /// Adds to `velocity` (dq/dt by coordinate) what `impulse` \[N s\] at a point does to it: M^-1 J^T p. The point lies at

@@ -15,12 +15,12 @@
 //! before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT form).
 //! Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
 
-use super::delassus::{from_half, products};
+use super::delassus::from_half;
 use super::jacobian::{ContactPoint, point_velocity, walk};
 use super::workspace::{LoopRows, Workspace};
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
-use crate::scalar::Real;
+use crate::scalar::{Real, dot};
 use std::ops::Add;
 
 /// Two material points that stay together; impulses act on `a` and, reversed, on `b`.
@@ -122,7 +122,7 @@ pub fn independent_rows(
     let scaled = |row: &[f64]| -> Vec<f64> {
         row.iter().zip(&greatest).map(|(entry, &most)| if most > 0.0 { entry / most } else { 0.0 }).collect()
     };
-    let square = |row: &[f64]| products(row, row);
+    let square = |row: &[f64]| dot(row, row);
     let mut rest: Vec<(usize, f64, Vec<f64>)> = rows(&[0, 1])
         .iter()
         .enumerate()
@@ -138,7 +138,7 @@ pub fn independent_rows(
         let (row, _, own) = rest.remove(place);
         let own_square = square(&own);
         for (_, _, left) in &mut rest {
-            let along = products(left, &own) / own_square;
+            let along = dot(left, &own) / own_square;
             subtract(left, &own, along);
         }
         chosen.push(row);
@@ -180,12 +180,12 @@ pub fn orthogonalize<T: Real>(
     for (i, mut y) in all.into_iter().enumerate() {
         workspace.factor.half_solve(plan, &mut y);
         for k in 0..i {
-            let along = products(&y, &basis_by_d[k * nv..(k + 1) * nv]) / squares[k];
+            let along = dot(&y, &basis_by_d[k * nv..(k + 1) * nv]) / squares[k];
             subtract(&mut y, &basis[k * nv..(k + 1) * nv], along);
             coupling[i * count + k] = along;
         }
         let y_by_d: Vec<T> = workspace.factor.divided(&y).collect();
-        squares.push(products(&y, &y_by_d));
+        squares.push(dot(&y, &y_by_d));
         basis.extend(y);
         basis_by_d.extend(y_by_d);
     }
@@ -198,7 +198,7 @@ pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let Workspace { factor, half, half_by_d, delassus, loops, contact_velocity, .. } = workspace;
     for y in half.chunks_exact_mut(nv.max(1)) {
         for k in 0..loops.kept.len() + loops.rows.len() {
-            let along = products(y, &loops.basis_by_d[k * nv..(k + 1) * nv]) / loops.squares[k];
+            let along = dot(y, &loops.basis_by_d[k * nv..(k + 1) * nv]) / loops.squares[k];
             subtract(y, &loops.basis[k * nv..(k + 1) * nv], along);
         }
     }

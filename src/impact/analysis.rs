@@ -10,9 +10,8 @@
 
 use super::bound::Bounds;
 use super::collected::{AnalysisOptions, Collected, ListedRejections};
-use super::enumerate::Tableau;
+use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
-use super::labels::Labels;
 use super::outcome::{Analysis, Outcome, Verdict};
 use super::passes::{CoarsePass, F64Pass, UndecidedPass};
 use super::problem::{ContactProblem, Precision, Source, escalate};

@@ -41,43 +41,52 @@ impl Solved {
 
     /// Whether some number of a rejected combination is not finite.
     pub fn is_vague(&self) -> bool {
-        match self {
-            Self::Regular { reading, motion, .. } => !(motion.is_finite() && reading.margin.is_none_or(f64::is_finite)),
-            Self::Singular(SingularCase::Rejected(Rejection { margin, motion, .. })) => {
-                !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
-            }
-            Self::Singular(_) => false,
-        }
+        let (motion, margin) = match self {
+            Self::Regular { reading, motion, .. } => (Some(motion), reading.margin),
+            Self::Singular(SingularCase::Rejected(Rejection { margin, motion, .. })) => (motion.as_ref(), *margin),
+            Self::Singular(_) => return false,
+        };
+        !(motion.is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
     }
 }
 
-/// Solves a combination in these numbers; `exact` is `problem` in them.
-///
-/// # Errors
-/// [`Unsettled`] if a sign needs more digits.
-pub fn solve_combination<T: Ordered>(
-    tableau: &mut Tableau<T>,
-    exact: &ContactProblem<T>,
-    problem: &ContactProblem,
-    scale: &Scale,
-    modes: &[Mode],
-) -> Result<Solved, Unsettled> {
-    let leaf = tableau.leaf(modes);
-    let mut index = 1;
-    for &pivot in leaf.pivots {
-        match pivot.sign() {
-            Sign::Undecided => return Err(Unsettled),
-            Sign::Zero => return solve_singular(exact, problem, scale, modes).map(Solved::Singular),
-            Sign::Negative => index = -index,
-            Sign::Positive => {}
-        }
+/// A problem in these numbers and its elimination.
+pub struct Solver<'e, T> {
+    exact: &'e ContactProblem<T>,
+    tableau: Tableau<T>,
+}
+
+impl<'e, T: Ordered> Solver<'e, T> {
+    pub fn new(exact: &'e ContactProblem<T>) -> Self {
+        let mut tableau = Tableau::<T>::default();
+        tableau.load(exact);
+        Self { exact, tableau }
     }
-    let reading = read_signed(&leaf, modes, problem, scale);
-    if reading.sign == Sign::Undecided {
-        return Err(Unsettled);
+
+    /// Solves a combination; `problem` is the same in f64.
+    ///
+    /// # Errors
+    /// [`Unsettled`] if a sign needs more digits.
+    pub fn solve(&mut self, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Result<Solved, Unsettled> {
+        T::freeing(|| {
+            let leaf = self.tableau.leaf(modes);
+            let mut index = 1;
+            for &pivot in leaf.pivots {
+                match pivot.sign() {
+                    Sign::Undecided => return Err(Unsettled),
+                    Sign::Zero => return solve_singular(self.exact, problem, scale, modes).map(Solved::Singular),
+                    Sign::Negative => index = -index,
+                    Sign::Positive => {}
+                }
+            }
+            let reading = read_signed(&leaf, modes, problem, scale);
+            if reading.sign == Sign::Undecided {
+                return Err(Unsettled);
+            }
+            let contacts = 0..modes.len();
+            let velocity = contacts.clone().flat_map(|contact| leaf.velocity(contact));
+            let error = scale.error(velocity, contacts.flat_map(|contact| leaf.impulse(contact)));
+            Ok(Solved::Regular { reading, index, motion: motion(&leaf, modes, problem, T::to_f64), error })
+        })
     }
-    let contacts = 0..modes.len();
-    let velocity = contacts.clone().flat_map(|contact| leaf.velocity(contact));
-    let error = scale.error(velocity, contacts.flat_map(|contact| leaf.impulse(contact)));
-    Ok(Solved::Regular { reading, index, motion: motion(&leaf, modes, problem, T::to_f64), error })
 }

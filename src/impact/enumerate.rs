@@ -239,3 +239,36 @@ impl<T: Real> Leaf<'_, T> {
         }
     }
 }
+
+/// The lists of modes that one leaf stands for: all whose impulses are the same. Memory that is reused.
+#[derive(Debug, Clone, Default)]
+pub struct Labels {
+    modes: Vec<Mode>,
+    /// Contacts whose mode varies, and the modes.
+    open: Vec<(usize, &'static [Mode])>,
+}
+
+impl Labels {
+    /// Visits every list of a leaf's `modes`; `shares` is whether modes with the same impulses are visited as one.
+    pub fn visit(&mut self, modes: &[Mode], laws: &[Law], shares: bool, mut visit: impl FnMut(&[Mode])) {
+        self.modes.clear();
+        self.modes.extend_from_slice(modes);
+        self.open.clear();
+        let group = |(contact, (mode, law)): (usize, (&Mode, &Law))| {
+            let group = law.modes().iter().find(|group| group[0] == *mode)?;
+            (shares && group.len() > 1).then_some((contact, *group))
+        };
+        self.open.extend(modes.iter().zip(laws).enumerate().filter_map(group));
+        loop {
+            visit(&self.modes);
+            let advances = self.open.iter().any(|&(contact, group)| {
+                let next = group.iter().position(|&mode| mode == self.modes[contact]).map_or(0, |place| place + 1);
+                self.modes[contact] = group[next % group.len()];
+                next < group.len()
+            });
+            if !advances {
+                return;
+            }
+        }
+    }
+}

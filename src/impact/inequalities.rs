@@ -9,8 +9,7 @@
 //!
 //! Cost: as the enumeration's, 4^n combinations of n contacts.
 
-use super::enumerate::{Leaf, Tableau};
-use super::labels::Labels;
+use super::enumerate::{Labels, Leaf, Tableau};
 use super::problem::{ContactProblem, Errors};
 use super::slack::{Scale, slacks};
 use crate::law::Impulse;
@@ -37,30 +36,25 @@ impl Inequalities {
         let mut all = Self::default();
         tableau.load(problem);
         let mut scale = Scale::default();
-        scale.measure(problem, Errors { delassus: 0.0, velocity: None });
+        scale.measure(problem, Errors::NONE);
         tableau.visit(&mut |leaf: &Leaf<'_, f64>| {
-            let determinant = match is_singular(leaf, problem) {
-                true => 0.0,
-                false => leaf.pivots.iter().product::<f64>(),
-            };
-            labels.start(leaf.modes, problem.laws(), true);
-            while let Some(modes) = labels.next() {
+            let determinant = if is_singular(leaf, problem) { 0.0 } else { leaf.pivots.iter().product::<f64>() };
+            labels.visit(leaf.modes, problem.laws(), true, |modes| {
                 slacks(leaf, modes, problem.laws(), |slack| {
-                    let scaled = scale.scaled(slack);
+                    let scaled = scale.scaled(&slack, slack.number);
                     all.numerators.push(if determinant == 0.0 { 0.0 } else { slack.number * determinant });
                     all.negligible.push(determinant == 0.0 || scaled.abs() < NEGLIGIBLE);
                 });
                 all.determinants.push(determinant);
                 all.ends.push(all.numerators.len());
-            }
+            });
         });
         all
     }
 
     /// The numerators of a combination.
     pub fn of_combination(&self, combination: usize) -> std::ops::Range<usize> {
-        let start = if combination == 0 { 0 } else { self.ends[combination - 1] };
-        start..self.ends[combination]
+        combination.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[combination]
     }
 }
 

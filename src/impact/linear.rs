@@ -4,7 +4,7 @@
 //! (Chvatal, *Linear Programming*, 1983, chapters 2, 3 and 8). No tolerance decides anything: a number that may be
 //! zero in its precision ends the work as [`Unsettled`], and the caller starts again with more digits.
 
-use crate::scalar::{Ordered, Real, Sign};
+use crate::scalar::{Ordered, Real, Sign, dot};
 use std::cmp::Ordering;
 
 /// A sign that needs more digits than the numbers have.
@@ -44,6 +44,16 @@ impl<T: Real> Affine<T> {
     fn from(&self, constant: T, y: &[T]) -> T {
         self.coefficients.iter().zip(y).fold(constant, |sum, (&coefficient, &entry)| sum + coefficient * entry)
     }
+
+    /// A function of one more entry of y, with this `coefficient`.
+    pub fn extended(&self, constant: T, coefficient: T) -> Self {
+        Self { constant, coefficients: extended(&self.coefficients, coefficient) }
+    }
+}
+
+/// The list and one entry more.
+pub fn extended<T: Real>(list: &[T], last: T) -> Vec<T> {
+    [list, &[last]].concat()
 }
 
 impl<T: Ordered> Affine<T> {
@@ -70,16 +80,16 @@ pub struct Solutions<T> {
 impl<T: Real> Solutions<T> {
     /// `constant + coefficients . x` on the solutions, as a function of y.
     pub fn affine(&self, constant: T, coefficients: &[T]) -> Affine<T> {
-        let along = |x: &[T]| coefficients.iter().zip(x).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
-        Affine {
-            constant: constant + along(&self.origin),
-            coefficients: self.directions.iter().map(|direction| along(direction)).collect(),
-        }
+        let along = |x: &Vec<T>| dot(coefficients, x);
+        Affine { constant: constant + along(&self.origin), coefficients: self.directions.iter().map(along).collect() }
     }
 
     /// The solution at `y`.
     pub fn at(&self, y: &[T]) -> Vec<T> {
-        let mut x = self.origin.clone();
+        self.moved(self.origin.clone(), y)
+    }
+
+    fn moved(&self, mut x: Vec<T>, y: &[T]) -> Vec<T> {
         for (direction, &factor) in self.directions.iter().zip(y) {
             for (entry, &part) in x.iter_mut().zip(direction) {
                 *entry = *entry + factor * part;
@@ -92,22 +102,10 @@ impl<T: Real> Solutions<T> {
 impl<T: Ordered> Solutions<T> {
     /// The solutions on which `function`, one of y, is also zero; `None` if there are none.
     pub fn where_zero(&self, function: &Affine<T>) -> Result<Option<Self>, Unsettled> {
-        let mut equation = function.coefficients.clone();
-        equation.push(-function.constant);
+        let equation = extended(&function.coefficients, -function.constant);
         let Some(inner) = solve(self.directions.len(), vec![equation])? else { return Ok(None) };
-        let directions = inner
-            .directions
-            .iter()
-            .map(|z| {
-                let mut direction = vec![T::zero(); self.origin.len()];
-                for (outer, &factor) in self.directions.iter().zip(z) {
-                    for (entry, &part) in direction.iter_mut().zip(outer) {
-                        *entry = *entry + factor * part;
-                    }
-                }
-                direction
-            })
-            .collect();
+        let direction = |z: &Vec<T>| self.moved(vec![T::zero(); self.origin.len()], z);
+        let directions = inner.directions.iter().map(direction).collect();
         Ok(Some(Self { origin: self.at(&inner.origin), directions }))
     }
 }
@@ -177,14 +175,7 @@ fn largest<T: Ordered>(rows: &[Vec<T>], column: usize) -> Result<Option<usize>, 
 pub fn maximize<T: Ordered>(functions: &[Affine<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
     let free = objective.len();
     let mut dictionary = Dictionary {
-        rows: functions
-            .iter()
-            .map(|function| {
-                let mut row = function.coefficients.clone();
-                row.push(function.constant);
-                row
-            })
-            .collect(),
+        rows: functions.iter().map(|function| extended(&function.coefficients, function.constant)).collect(),
         gain: objective.to_vec(),
         // Labels below `free` are entries of y, which may take any sign; the others are the functions' own values.
         basic: (free..free + functions.len()).collect(),
@@ -287,22 +278,12 @@ pub fn widest<T: Ordered>(functions: &[Affine<T>], dimension: usize, cap: T) -> 
         }
     }
     // Unknowns y and s = rise above `least`; at y = 0, s = 0 every function is where it must be.
-    let one = T::one();
-    let mut rows: Vec<Affine<T>> = functions
-        .iter()
-        .map(|function| {
-            let mut coefficients = function.coefficients.clone();
-            coefficients.push(-one);
-            Affine { constant: function.constant - least, coefficients }
-        })
-        .collect();
-    let mut top = vec![T::zero(); dimension];
-    top.push(-one);
-    rows.push(Affine { constant: cap - least, coefficients: top });
-    let mut objective = vec![T::zero(); dimension];
-    objective.push(one);
+    let (one, still) = (T::one(), vec![T::zero(); dimension]);
+    let shifted = functions.iter().map(|function| function.extended(function.constant - least, -one));
+    let top = Affine { constant: cap - least, coefficients: extended(&still, -one) };
+    let rows: Vec<Affine<T>> = shifted.chain([top]).collect();
     // The cap bounds the program.
-    let mut y = maximize(&rows, &objective)?.ok_or(Unsettled)?;
+    let mut y = maximize(&rows, &extended(&still, one))?.ok_or(Unsettled)?;
     let rise = y.pop().ok_or(Unsettled)?;
     Ok((y, least + rise))
 }

@@ -8,7 +8,6 @@ pub mod problem;
 pub mod enumerate;
 pub mod slack;
 mod bound;
-mod labels;
 pub mod inequalities;
 mod reading;
 mod kernel;

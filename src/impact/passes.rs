@@ -2,11 +2,9 @@
 
 use super::bound::Bounds;
 use super::collected::{Collected, Pending};
-use super::combination::{Solved, solve_combination};
-use super::enumerate::{Leaf, Tableau, Visitor};
+use super::combination::Solver;
+use super::enumerate::{Labels, Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
-use super::labels::Labels;
-use super::linear::Unsettled;
 use super::outcome::Rejection;
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{motion, read_f64};
@@ -40,28 +38,28 @@ impl Visitor<f64> for F64Pass<'_, '_> {
     }
 
     fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
-        let Collected { problem, scale, options, .. } = self.collected;
-        let bound = self.bounds.at(leaf.depth());
+        let Self { bounds, labels, shares, regular, undecided, coarse, collected } = self;
+        let Collected { problem, scale, options, .. } = *collected;
+        let bound = bounds.at(leaf.depth());
         // If every impulse is free, the pivots are those of the whole matrix.
-        self.regular |= bound.impulse_error().is_finite()
+        *regular |= bound.impulse_error().is_finite()
             && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
-        self.labels.start(leaf.modes, problem.laws(), self.shares);
-        while let Some(modes) = self.labels.next() {
-            let number = self.collected.total;
+        labels.visit(leaf.modes, problem.laws(), *shares, |modes| {
+            let number = collected.total;
             let pending = || Pending { number, modes: modes.to_vec() };
             let reading = read_f64(leaf, modes, problem, scale, bound, options.rejections.contain(modes));
             if reading.sign == Sign::Undecided {
-                self.undecided.push(pending());
+                undecided.push(pending());
             } else {
                 if reading.sign != Sign::Negative && bound.growth() > F64_SERVES {
-                    self.coarse.push(pending());
+                    coarse.push(pending());
                 }
                 let index = leaf.pivots.iter().fold(1, |sign, &pivot| if pivot < 0.0 { -sign } else { sign });
                 let motion = || motion(leaf, modes, problem, |number| number);
-                self.collected.add_regular(number, modes, reading, index, motion);
+                collected.add_regular(number, modes, reading, index, motion);
             }
-            self.collected.total += 1;
-        }
+            collected.total += 1;
+        });
     }
 }
 
@@ -90,7 +88,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
                 return true;
             }
             left -= 1;
-            let Ok(solved) = solver.solve(pending, collected) else { return true };
+            let Ok(solved) = solver.solve(&pending.modes, collected.problem, collected.scale) else { return true };
             let listed = collected.options.rejections.contain(&pending.modes);
             if listed && precision != Precision::Interval && solved.is_vague() {
                 return true;
@@ -116,7 +114,7 @@ impl PrecisionTask for CoarsePass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, _: Precision) -> bool {
         let mut solver = Solver::new(exact);
         let Self { coarse, collected } = self;
-        coarse.retain(|pending| match solver.solve(pending, collected) {
+        coarse.retain(|pending| match solver.solve(&pending.modes, collected.problem, collected.scale) {
             Ok(solved) if solved.error().is_some_and(|error| error <= DIGITS) => {
                 collected.remove(pending.number);
                 collected.add(pending, solved);
@@ -125,24 +123,5 @@ impl PrecisionTask for CoarsePass<'_, '_> {
             _ => true,
         });
         coarse.is_empty()
-    }
-}
-
-/// A problem in these numbers and its elimination.
-struct Solver<'e, T> {
-    exact: &'e ContactProblem<T>,
-    tableau: Tableau<T>,
-}
-
-impl<'e, T: Ordered> Solver<'e, T> {
-    fn new(exact: &'e ContactProblem<T>) -> Self {
-        let mut tableau = Tableau::<T>::default();
-        tableau.load(exact);
-        Self { exact, tableau }
-    }
-
-    fn solve(&mut self, pending: &Pending, collected: &Collected<'_>) -> Result<Solved, Unsettled> {
-        let Collected { problem, scale, .. } = *collected;
-        T::freeing(|| solve_combination(&mut self.tableau, self.exact, problem, scale, &pending.modes))
     }
 }

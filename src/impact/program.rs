@@ -5,7 +5,7 @@
 //! ```
 
 use super::linear::{Affine, Unsettled, settled, solve};
-use crate::scalar::Ordered;
+use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
 /// The y that makes |L0 + D y| least among those where no function is negative, by a primal active-set method (Nocedal
@@ -53,7 +53,6 @@ fn least_on_face<T: Ordered>(
     functions: &[Affine<T>],
     binding: &[usize],
 ) -> Result<(Vec<T>, Vec<T>), Unsettled> {
-    let dot = |a: &[T], b: &[T]| a.iter().zip(b).fold(T::zero(), |sum, (&x, &y)| sum + x * y);
     let free = directions.len();
     // D'D y - A' m = -D' L0,  A y = -constants: what is orthogonal to the face is pushed by the multipliers alone.
     let mut equations: Vec<Vec<T>> = Vec::with_capacity(free + binding.len());

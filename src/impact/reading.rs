@@ -33,14 +33,14 @@ pub fn read_f64(
     let (velocity, impulse) = (bound.velocity_error(), bound.impulse_error());
     let speed = |contact: usize, c_t: f64| Sign::within(c_t / scale.speed / scale.mobility[2 * contact], velocity);
     read(leaf, modes, problem.laws(), complete, speed, |slack| {
-        let scaled = scale.scaled(*slack);
+        let scaled = scale.scaled(slack, slack.number);
         (Sign::within(scaled, if slack.condition.inequality.is_strict() { velocity } else { impulse }), scaled)
     })
 }
 
 /// Reads a leaf whose numbers know their own sign.
 pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Reading {
-    let scaled = |slack: &Slack<T>| scale.scaled((*slack).map(T::to_f64));
+    let scaled = |slack: &Slack<T>| scale.scaled(slack, slack.number.to_f64());
     read(leaf, modes, problem.laws(), true, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
 }
 
@@ -62,11 +62,8 @@ fn read<T: Real>(
                 Sign::Undecided => reading.sign = Sign::Undecided,
                 Sign::Positive | Sign::Negative => {
                     // Two equations for one impulse: no slack measures how far they are from agreeing.
-                    return Reading {
-                        sign: Sign::Negative,
-                        because: RejectionReason::NothingHolds { contact },
-                        ..reading
-                    };
+                    let because = RejectionReason::NothingHolds { contact };
+                    return Reading { sign: Sign::Negative, because, ..reading };
                 }
             }
         }

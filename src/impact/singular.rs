@@ -13,7 +13,7 @@
 
 use super::generators::Generators;
 use super::index::index;
-use super::linear::{Affine, Solutions, Unsettled, maximize, settled, solve, widest};
+use super::linear::{Affine, Solutions, Unsettled, extended, maximize, settled, solve, widest};
 use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
@@ -70,13 +70,8 @@ pub fn solve_singular<T: Ordered>(
     modes: &[Mode],
 ) -> Result<SingularCase, Unsettled> {
     let generators = Generators::of(modes, problem.laws());
-    let equations = zero_rows(modes)
-        .map(|row| {
-            let mut equation = generators.velocity_row(problem, row);
-            equation.push(-problem.free_row(row));
-            equation
-        })
-        .collect();
+    let equations =
+        zero_rows(modes).map(|row| extended(&generators.velocity_row(problem, row), -problem.free_row(row))).collect();
     let Some(solutions) = solve(generators.count(), equations)? else {
         return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
     };
@@ -102,13 +97,13 @@ impl<T: Ordered> Equations<'_, T> {
     fn weigh(&self, solutions: &Solutions<T>) -> Result<SingularCase, Unsettled> {
         let inequalities = self.inequalities(solutions);
         let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
-        for inequality in inequalities.iter().filter(|inequality| inequality.inequality.is_strict()) {
-            if inequality.function.is_constant()? && settled(inequality.function.constant)?.is_eq() {
+        for Constraint { function, .. } in inequalities.iter().filter(|own| own.inequality.is_strict()) {
+            if function.is_constant()? && settled(function.constant)?.is_eq() {
                 return Ok(SingularCase::Rejected(Rejection::of(self.modes, RejectionReason::RedundantTwin)));
             }
         }
         let dimension = solutions.directions.len();
-        let functions: Vec<Affine<T>> = inequalities.iter().map(|inequality| inequality.function.clone()).collect();
+        let functions: Vec<Affine<T>> = inequalities.iter().map(|own| own.function.clone()).collect();
         let (inside, least) = widest(&functions, dimension, T::from_f64(UNBOUNDED))?;
         let standing = settled(least)?;
         if standing.is_lt() {
@@ -125,9 +120,8 @@ impl<T: Ordered> Equations<'_, T> {
         if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
             return Ok(SingularCase::Rejected(Rejection::of(self.modes, RejectionReason::RedundantTwin)));
         }
-        let ends = [T::one(), -T::one()].map(|sign| self.end(solutions, &inside, sign));
-        let [greatest, least] = ends;
-        let (greatest, least) = (greatest?, least?);
+        let greatest = self.end(solutions, &inside, T::one())?;
+        let least = self.end(solutions, &inside, -T::one())?;
         if self.has_velocity(&greatest, |row| self.velocity(&least, row).constant)? {
             // What the equations leave free, the inequalities do not.
             return Ok(SingularCase::Valid(SingularOutcome { margin: Some(0.0), ..self.end_outcome(&greatest)? }));
@@ -183,18 +177,14 @@ impl<T: Ordered> Equations<'_, T> {
     /// Whether some point without a negative inequality has every strict one above zero.
     fn has_own_velocity(&self, inequalities: &[Constraint<T>], inside: &[T]) -> Result<bool, Unsettled> {
         // Unknowns y and s, s at most every strict inequality and at most 1: can it be positive?
-        let shifted = |inequality: &Constraint<T>| {
-            let mut coefficients = inequality.function.coefficients.clone();
-            coefficients.push(if inequality.inequality.is_strict() { -T::one() } else { T::zero() });
-            Affine { constant: inequality.function.at(inside), coefficients }
+        let shifted = |own: &Constraint<T>| {
+            let strictly = if own.inequality.is_strict() { -T::one() } else { T::zero() };
+            own.function.extended(own.function.at(inside), strictly)
         };
-        let mut rows: Vec<Affine<T>> = inequalities.iter().map(shifted).collect();
-        let mut rise = vec![T::zero(); inside.len()];
-        rise.push(-T::one());
-        rows.push(Affine { constant: T::one(), coefficients: rise });
-        let mut objective = vec![T::zero(); inside.len()];
-        objective.push(T::one());
-        let best = maximize(&rows, &objective)?.ok_or(Unsettled)?;
+        let still = vec![T::zero(); inside.len()];
+        let top = Affine { constant: T::one(), coefficients: extended(&still, -T::one()) };
+        let rows: Vec<Affine<T>> = inequalities.iter().map(shifted).chain([top]).collect();
+        let best = maximize(&rows, &extended(&still, T::one()))?.ok_or(Unsettled)?;
         best.last().map_or(Ok(false), |&rise| Ok(settled(rise)?.is_gt()))
     }
 
@@ -262,21 +252,20 @@ impl<T: Ordered> Equations<'_, T> {
         let inequalities = self.inequalities(space);
         let dimension = space.directions.len();
         // Velocities are settled; only impulses still depend on y.
-        let pressing: Vec<&Constraint<T>> =
-            inequalities.iter().filter(|inequality| !inequality.inequality.is_strict()).collect();
+        let pressing: Vec<&Constraint<T>> = inequalities.iter().filter(|own| !own.inequality.is_strict()).collect();
         let shifted: Vec<Affine<T>> = pressing
             .iter()
             .map(|each| Affine { constant: each.function.at(inside), coefficients: each.function.coefficients.clone() })
             .collect();
         let mut at_zero: Vec<(usize, Inequality)> = Vec::new();
         if settled(least)?.is_eq() {
-            for (inequality, function) in pressing.iter().zip(&shifted) {
+            for (own, function) in pressing.iter().zip(&shifted) {
                 let vanishes = settled(function.constant)?.is_eq()
                     && match maximize(&shifted, &function.coefficients)? {
                         Some(best) => settled(function.at(&best))?.is_eq(),
                         None => false,
                     };
-                let entry = (inequality.contact, inequality.inequality);
+                let entry = (own.contact, own.inequality);
                 if vanishes && !at_zero.contains(&entry) {
                     at_zero.push(entry);
                 }

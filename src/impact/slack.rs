@@ -17,14 +17,6 @@ pub struct Slack<T> {
     pub number: T,
 }
 
-impl<T> Slack<T> {
-    /// The same in another number.
-    #[inline]
-    pub fn map<U>(self, number: impl FnOnce(T) -> U) -> Slack<U> {
-        Slack { contact: self.contact, condition: self.condition, number: number(self.number) }
-    }
-}
-
 /// Calls `visitor` with every slack of the combination `modes`, which the leaf's modes stand for.
 pub fn slacks<T: Real>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], mut visitor: impl FnMut(Slack<T>)) {
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
@@ -82,10 +74,10 @@ impl Scale {
         }
     }
 
-    /// A slack's value free of units.
+    /// A slack's value free of units; `number` is the nearest f64.
     #[inline]
-    pub fn scaled(&self, slack: Slack<f64>) -> f64 {
-        slack.number / self.speed * self.factor(slack.contact, &slack.condition)
+    pub fn scaled<T>(&self, slack: &Slack<T>, number: f64) -> f64 {
+        number / self.speed * self.factor(slack.contact, &slack.condition)
     }
 
     /// What the value of a contact's inequality, divided by S, is multiplied by to be free of units.

@@ -84,6 +84,11 @@ impl Real for f64 {
     }
 }
 
+/// The inner product of two lists.
+pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
+}
+
 /// The sign of a number that may be known inexactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sign {

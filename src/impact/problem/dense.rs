@@ -5,7 +5,7 @@ use super::{ContactProblem, Origin};
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::Law;
 use crate::planar::Pair;
-use crate::scalar::Real;
+use crate::scalar::{Real, dot};
 
 /// M, J and v as they were given, every digit meant; of M only what is on and below its diagonal.
 #[derive(Debug, Clone)]
@@ -46,7 +46,6 @@ impl Dynamics {
                 right[i] = known / mass[i][i];
             }
         }
-        let dot = |a: &[T], b: &[T]| a.iter().zip(b).fold(T::zero(), |sum, (&x, &y)| sum + x * y);
         let delassus = jacobian.iter().flat_map(|row| solved.iter().map(|column| dot(row, column))).collect();
         let velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
         let before =
