@@ -56,12 +56,10 @@ impl Default for AnalysisOptions<'_> {
     }
 }
 
-/// A combination that needs more digits.
+/// A combination that needs more digits, with its number among all, from 0.
 #[derive(Debug, Clone)]
 pub struct Pending {
-    /// Its number among all, from 0.
     pub number: usize,
-    /// One mode per contact.
     pub modes: Vec<Mode>,
 }
 
@@ -109,7 +107,7 @@ impl<'a> Collected<'a> {
             Solved::Singular(SingularCase::Rejected(rejection)) => self.reject(number, modes, || rejection),
             Solved::Singular(SingularCase::Valid(own)) => {
                 let outcome = self.singular_outcome(own);
-                self.outcomes.push(Numbered { number, on_rim: false, outcome });
+                self.push(number, outcome);
             }
             Solved::Singular(SingularCase::Family(ends)) => {
                 for end in ends {
@@ -142,6 +140,10 @@ impl<'a> Collected<'a> {
         let mut outcome = self.outcome(modes.to_vec(), motion(), &reading.at_zero);
         outcome.index = reading.at_zero.is_empty().then_some(index);
         outcome.margin = reading.margin.map(|margin| margin + 0.0);
+        self.push(number, outcome);
+    }
+
+    fn push(&mut self, number: usize, outcome: Outcome) {
         self.outcomes.push(Numbered { number, on_rim: false, outcome });
     }
 
@@ -150,7 +152,7 @@ impl<'a> Collected<'a> {
         let velocity_after = self.problem.velocity_free().to_vec();
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
         let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, motion, &[]) };
-        self.outcomes.push(Numbered { number, on_rim: false, outcome });
+        self.push(number, outcome);
     }
 
     /// Adds a rejected combination, if it is to be listed.
@@ -225,14 +227,12 @@ impl<'a> Collected<'a> {
                 let again = end.on_rim || own.number == end.number;
                 end.outcome.family && other != index && again && same(&own.outcome, &end.outcome)
             });
-            match twin {
-                Some(twin) => {
-                    let outcome = &mut self.outcomes[twin].outcome;
-                    outcome.family = true;
-                    outcome.index = None;
-                    self.outcomes.remove(index);
-                }
-                None => index += 1,
+            if let Some(twin) = twin {
+                let outcome = &mut self.outcomes[twin].outcome;
+                (outcome.family, outcome.index) = (true, None);
+                self.outcomes.remove(index);
+            } else {
+                index += 1;
             }
         }
     }

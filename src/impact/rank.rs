@@ -28,13 +28,14 @@ pub fn rank_and_condition<S: Source>(
         return (0, None);
     }
     let mobility = &scale.mobility;
-    let [least, greatest] = match problem.contacts() {
-        1 if reductions.lone => eigenvalues_of_one(problem, mobility),
-        _ => {
-            let scaled = DMatrix::from_fn(rows, rows, |i, j| problem.delassus(i, j) / (mobility[i] * mobility[j]));
-            let values = scaled.symmetric_eigenvalues();
-            [values.min(), values.max()]
-        }
+    let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
+    let [least, greatest] = if problem.contacts() == 1 && reductions.lone {
+        // G of a single contact scaled to a unit diagonal: [[1, r], [r, 1]].
+        let coupling = scaled(0, 1).abs();
+        [1.0 - coupling, 1.0 + coupling]
+    } else {
+        let values = DMatrix::from_fn(rows, rows, scaled).symmetric_eigenvalues();
+        [values.min(), values.max()]
     };
     if regular && greatest < F64_CONDITION_LIMIT * least {
         return (rows, Some(greatest / least));
@@ -56,13 +57,6 @@ pub fn rank_and_condition<S: Source>(
 /// Beyond this the least eigenvalue of G has lost half of its digits.
 const F64_CONDITION_LIMIT: f64 = 1e8;
 
-/// The least and the greatest eigenvalue of a single contact's G, scaled to a unit diagonal: [[1, r], [r, 1]].
-fn eigenvalues_of_one(problem: &ContactProblem, mobility: &[f64]) -> [f64; 2] {
-    // Twice the same off-diagonal entry, as it was given.
-    let coupling = problem.delassus(0, 1) / (mobility[0] * mobility[1]);
-    [1.0 - coupling.abs(), 1.0 + coupling.abs()]
-}
-
 /// The rank of G, and its inverse in the scale if it is regular.
 #[derive(Debug, Default)]
 struct Inverse {
@@ -78,19 +72,14 @@ impl PrecisionTask for Inverse {
     fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, _: Precision) -> bool {
         let count = 2 * problem.contacts();
         let equations = |right: Option<usize>| -> Vec<Vec<T>> {
-            let row = |i: usize| {
-                let entries = (0..count).map(|j| problem.delassus(i, j));
-                entries.chain([if right == Some(i) { T::one() } else { T::zero() }]).collect()
-            };
+            let one = |i: usize| if right == Some(i) { T::one() } else { T::zero() };
+            let row = |i: usize| (0..count).map(|j| problem.delassus(i, j)).chain([one(i)]).collect();
             (0..count).map(row).collect()
         };
         let Ok(Some(kernel)) = solve(count, equations(None)) else { return false };
         self.rank = Some(count - kernel.directions.len());
         if self.rank == Some(count) {
-            let columns = (0..count).map(|column| match solve(count, equations(Some(column))) {
-                Ok(Some(found)) => Some(found.origin),
-                _ => None,
-            });
+            let columns = (0..count).map(|column| Some(solve(count, equations(Some(column))).ok()??.origin));
             let Some(columns) = columns.collect::<Option<Vec<Vec<T>>>>() else { return false };
             let entry = |i: usize, j: usize| columns[j][i].to_f64() * self.mobility[i] * self.mobility[j];
             self.rows = (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect();

@@ -25,6 +25,10 @@ const LARGEST_MOBILITY: f64 = 1e120;
 /// Beyond this |c| / sqrt(G) its square, an energy, comes near overflow \[sqrt J\].
 const LARGEST_SPEED: f64 = 1e145;
 
+fn out_of_range(what: String, allowed: &'static str, value: f64) -> Error {
+    Error::new(Reason::OutOfRange { what, allowed, value })
+}
+
 impl ContactProblem {
     /// Products of two entries of G must stay far from overflow and underflow.
     pub(super) fn check_range(&self) -> Result<()> {
@@ -32,17 +36,15 @@ impl ContactProblem {
         for row in 0..rows {
             let diagonal = finite(self.delassus(row, row), || format!("delassus[{row}][{row}]"))?;
             if diagonal > 0.0 && !(SMALLEST_MOBILITY..LARGEST_MOBILITY).contains(&diagonal) {
-                let what = format!("delassus[{row}][{row}]");
-                let allowed = "0 or between 1e-120 and 1e120 1/kg";
-                return Err(Error::new(Reason::OutOfRange { what, allowed, value: diagonal })
-                    .hint("choose units of mass and length nearer to the robot's own"));
+                let error =
+                    out_of_range(format!("delassus[{row}][{row}]"), "0 or between 1e-120 and 1e120 1/kg", diagonal);
+                return Err(error.hint("choose units of mass and length nearer to the robot's own"));
             }
             let (before, free) = (self.velocity_before[row / 2][row % 2], self.velocity_free[row / 2][row % 2]);
             let speed = before.abs().max(free.abs()) / if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
             if speed > LARGEST_SPEED {
                 let what = format!("velocity_before of contact {}", row / 2);
-                let allowed = "small enough for its energy to be a number";
-                return Err(Error::new(Reason::OutOfRange { what, allowed, value: before })
+                return Err(out_of_range(what, "small enough for its energy to be a number", before)
                     .hint("choose units of length and time nearer to the robot's own"));
             }
         }
@@ -60,14 +62,12 @@ impl ContactProblem {
             if let Friction::Finite(mu) = self.laws[contact].friction()
                 && !(mu.is_finite() && mu >= 0.0)
             {
-                let allowed = "zero, positive or \"infinite\"";
-                return Err(Error::new(Reason::OutOfRange { what: "friction".into(), allowed, value: mu })
+                return Err(out_of_range("friction".into(), "zero, positive or \"infinite\"", mu)
                     .at(format!("friction of contact {contact}")));
             }
             let restitution = self.restitution[contact];
             if !(0.0..=1.0).contains(&restitution) {
-                let allowed = "between 0 and 1";
-                return Err(Error::new(Reason::OutOfRange { what: "restitution".into(), allowed, value: restitution })
+                return Err(out_of_range("restitution".into(), "between 0 and 1", restitution)
                     .at(format!("restitution of contact {contact}")));
             }
         }
@@ -86,31 +86,28 @@ impl ContactProblem {
             for j in 0..i {
                 symmetric &= rest[(i, j)] == rest[(j, i)];
                 if (rest[(i, j)] - rest[(j, i)]).abs() > rounding {
-                    return Err(Error::new(Reason::Inconsistent(format!(
-                        "the Delassus matrix is not symmetric: {} against {}",
-                        rest[(i, j)],
-                        rest[(j, i)]
-                    )))
-                    .at(format!("delassus[{i}][{j}]"))
-                    .hint("G = J M^-1 J^T is symmetric; check the order of rows and columns"));
+                    let (own, other) = (rest[(i, j)], rest[(j, i)]);
+                    let reason = format!("the Delassus matrix is not symmetric: {own} against {other}");
+                    return Err(Error::new(Reason::Inconsistent(reason))
+                        .at(format!("delassus[{i}][{j}]"))
+                        .hint("G = J M^-1 J^T is symmetric; check the order of rows and columns"));
                 }
             }
         }
         let mut beyond_doubt = 0;
         for _ in 0..rows {
             let Some(pivot) = (0..rows).max_by(|&i, &j| rest[(i, i)].total_cmp(&rest[(j, j)])) else { break };
-            let indefinite = (0..rows).find(|&i| rest[(i, i)] < -rounding);
-            let coupled = || (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j)));
-            let stray = (rest[(pivot, pivot)] <= rounding)
-                .then(|| coupled().find(|&(i, j)| rest[(i, j)].abs() > 4.0 * rounding))
-                .flatten();
-            if let Some((i, j)) = indefinite.map(|i| (i, i)).or(stray) {
-                let (i, j) = self.offending(rounding).unwrap_or((i, j));
-                return Err(Error::new(Reason::Inconsistent(
-                    "the Delassus matrix is indefinite: an impulse there would gain energy".into(),
-                ))
-                .at(format!("delassus[{i}][{j}]"))
-                .hint("G = J M^-1 J^T is positive semidefinite; check signs and units"));
+            let indefinite = (0..rows).find(|&i| rest[(i, i)] < -rounding).map(|i| (i, i));
+            let stray = || {
+                let mut coupled = (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j)));
+                coupled.find(|&(i, j)| rest[(pivot, pivot)] <= rounding && rest[(i, j)].abs() > 4.0 * rounding)
+            };
+            if let Some(place) = indefinite.or_else(stray) {
+                let (i, j) = self.offending(rounding).unwrap_or(place);
+                let reason = "the Delassus matrix is indefinite: an impulse there would gain energy";
+                return Err(Error::new(Reason::Inconsistent(reason.into()))
+                    .at(format!("delassus[{i}][{j}]"))
+                    .hint("G = J M^-1 J^T is positive semidefinite; check signs and units"));
             }
             let diagonal = rest[(pivot, pivot)];
             if diagonal <= rounding {
@@ -139,8 +136,8 @@ impl ContactProblem {
         let diagonal = (0..rows).map(|i| (i, i));
         let below = (0..rows).flat_map(|i| (0..i).map(move |j| (i, j)));
         let worst = |places: &mut dyn Iterator<Item = (usize, usize)>| {
-            let places = places.map(|place| (place, excess(place))).filter(|(_, excess)| *excess > rounding);
-            places.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+            let places = places.filter(|&place| excess(place) > rounding);
+            places.max_by(|&a, &b| excess(a).total_cmp(&excess(b)))
         };
         worst(&mut diagonal.into_iter()).or_else(|| worst(&mut below.into_iter()))
     }

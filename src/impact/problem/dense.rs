@@ -70,16 +70,12 @@ impl ContactProblem {
         let dofs = velocity.len();
         check_matrix_size(friction.len())?;
         let shape = |place: &'static str, matrix: &[Vec<f64>], rows: usize| {
-            let fits = matrix.len() == rows && matrix.iter().all(|row| row.len() == dofs);
-            if fits {
-                return matrix
-                    .iter()
-                    .flatten()
-                    .try_for_each(|&entry| finite(entry, || format!("an entry of {place}")).map(drop));
+            if matrix.len() != rows || matrix.iter().any(|row| row.len() != dofs) {
+                let reason = Reason::Inconsistent(format!("{place} must have {rows} rows of {dofs} numbers"));
+                return Err(Error::new(reason).at(place).hint("its columns are the entries of `velocity`"));
             }
-            Err(Error::new(Reason::Inconsistent(format!("{place} must have {rows} rows of {dofs} numbers")))
-                .at(place)
-                .hint("its columns are the entries of `velocity`"))
+            let mut entries = matrix.iter().flatten();
+            entries.try_for_each(|&entry| finite(entry, || format!("an entry of {place}")).map(drop))
         };
         shape("mass_matrix", mass_matrix, dofs)?;
         shape("contact_jacobian", contact_jacobian, 2 * friction.len())?;
@@ -87,14 +83,8 @@ impl ContactProblem {
             finite(entry, || "an entry of velocity".into())?;
         }
         let cholesky = dense_cholesky(mass_matrix)?;
-        let mut rows = Vec::with_capacity(contact_jacobian.len() * dofs);
-        for row in contact_jacobian {
-            rows.extend(forward_substituted(&cholesky, row));
-        }
-        let entry = |i: usize, j: usize| -> f64 {
-            let [one, other] = [i, j].map(|row| &rows[row * dofs..(row + 1) * dofs]);
-            one.iter().zip(other).map(|(a, b)| a * b).sum()
-        };
+        let rows: Vec<Vec<f64>> = contact_jacobian.iter().map(|row| forward_substituted(&cholesky, row)).collect();
+        let entry = |i: usize, j: usize| -> f64 { rows[i].iter().zip(&rows[j]).map(|(a, b)| a * b).sum() };
         let count = contact_jacobian.len();
         let mut delassus = vec![0.0; count * count];
         for i in 0..count {

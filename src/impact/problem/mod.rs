@@ -154,12 +154,12 @@ impl ContactProblem {
         check_matrix_size(contacts)?;
         let rows = 2 * contacts;
         if delassus.len() != rows * rows {
-            return Err(Error::new(Reason::Inconsistent(format!(
-                "{contacts} contacts need a Delassus matrix of {rows} x {rows} entries, not {}",
-                delassus.len()
-            )))
-            .at("delassus")
-            .hint("give two rows and columns per contact: tangential, normal"));
+            let entries = delassus.len();
+            let reason =
+                format!("{contacts} contacts need a Delassus matrix of {rows} x {rows} entries, not {entries}");
+            return Err(Error::new(Reason::Inconsistent(reason))
+                .at("delassus")
+                .hint("give two rows and columns per contact: tangential, normal"));
         }
         for (index, &entry) in delassus.iter().enumerate() {
             finite(entry, || format!("entry [{}][{}] of delassus", index / rows, index % rows))?;

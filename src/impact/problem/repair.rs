@@ -4,7 +4,7 @@
 use super::ContactProblem;
 use super::precision::{Precision, PrecisionTask, escalate};
 use crate::impact::linear::{Unsettled, settled};
-use crate::scalar::{Ordered, Real};
+use crate::scalar::{Ordered, Real, dot};
 
 /// Rows Z of G = Z Z^T, taken exactly.
 #[derive(Debug, Clone)]
@@ -43,10 +43,9 @@ impl Rows {
 
     /// G by rows.
     pub fn delassus<T: Real>(&self) -> Vec<T> {
-        let dot = |a: &[f64], b: &[f64]| {
-            a.iter().zip(b).fold(T::zero(), |sum, (&x, &y)| sum + T::from_f64(x) * T::from_f64(y))
-        };
-        self.0.iter().flat_map(|row| self.0.iter().map(|other| dot(row, other))).collect()
+        let rows: Vec<Vec<T>> =
+            self.0.iter().map(|row| row.iter().map(|&entry| T::from_f64(entry)).collect()).collect();
+        rows.iter().flat_map(|row| rows.iter().map(|other| dot(row, other))).collect()
     }
 }
 
@@ -56,24 +55,19 @@ pub(super) fn is_semidefinite(problem: &ContactProblem) -> bool {
     if rows.clone().any(|i| rows.clone().any(|j| problem.delassus(i, j) != problem.delassus(j, i))) {
         return false;
     }
-    let mut definiteness = Definiteness { found: false };
+    let mut definiteness = Definiteness(false);
     escalate(problem, Precision::Ball, &mut definiteness);
-    definiteness.found
+    definiteness.0
 }
 
-struct Definiteness {
-    found: bool,
-}
+/// Whether it was shown.
+struct Definiteness(bool);
 
 impl PrecisionTask for Definiteness {
     fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, _: Precision) -> bool {
-        match semidefinite(problem) {
-            Ok(found) => {
-                self.found = found;
-                true
-            }
-            Err(Unsettled) => false,
-        }
+        let found = semidefinite(problem);
+        self.0 = found == Ok(true);
+        found.is_ok()
     }
 }
 
