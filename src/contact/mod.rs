@@ -15,12 +15,12 @@ mod profile;
 mod surface;
 mod detect;
 
-pub use detect::{Stance, clearances, detect, left_behind, nearest, out_of_reach, stance};
+pub(crate) use detect::Footing;
 pub use feet::{Feet, Foot};
 pub use placement::Placement;
 pub(crate) use plane::Plane;
 pub(crate) use point::{Circle, Point, points};
-pub use surface::Surface;
+pub(crate) use surface::Surface;
 
 use crate::planar::{Rotation, Vector};
 

@@ -20,10 +20,6 @@ use super::point::Touch;
 use super::terrain::Terrain;
 use crate::planar::Vector;
 
-/// A foot deeper in the ground than the tolerance, by how much \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct TooDeep(pub f64);
-
 /// What is touching, and how exactly that is known.
 #[derive(Debug, Clone, Copy)]
 struct Closeness {
@@ -42,12 +38,12 @@ pub(super) fn touching(
     foot: &Foot,
     placement: &Placement,
     (tolerance, rounding): (f64, f64),
-) -> Result<Vec<Touch>, TooDeep> {
+) -> Result<Vec<Touch>, f64> {
     let outline = Outline::new(foot, placement);
     let near = within_reach(terrain, foot, &outline, tolerance);
     let deepest = depth(terrain, &outline, &near);
     if deepest > tolerance {
-        return Err(TooDeep(deepest));
+        return Err(deepest);
     }
     let close = Closeness { tolerance, rounding };
     let mut touches: Vec<Touch> = Vec::new();

@@ -7,18 +7,14 @@ use super::outline::Outline;
 use super::placement::Placement;
 use super::plane::Plane;
 use super::point::{Point, Touch, points};
-use super::profile::{self, TooDeep};
+use super::profile;
 use super::terrain::Terrain;
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
 use crate::state::Ground;
 
 /// A ground, compiled once for all feet of a state.
-#[derive(Debug, Clone)]
-pub struct Surface(Kind);
-
-#[derive(Debug, Clone)]
-enum Kind {
+pub(crate) enum Surface {
     Plane(Plane),
     Profile(Terrain),
 }
@@ -32,10 +28,10 @@ pub(super) struct Sunk {
 impl Surface {
     /// The ground of a scene.
     pub fn new(ground: &Ground) -> Self {
-        Self(match ground {
-            Ground::Slope(slope) => Kind::Plane(Plane::sloped(*slope)),
-            Ground::Profile(profile) => Kind::Profile(Terrain::new(profile)),
-        })
+        match ground {
+            Ground::Slope(slope) => Self::Plane(Plane::sloped(*slope)),
+            Ground::Profile(profile) => Self::Profile(Terrain::new(profile)),
+        }
     }
 
     /// The plane on which the foot of a stance is placed, and the point of the ground that it is placed at \[m\].
@@ -43,9 +39,9 @@ impl Surface {
     /// # Errors
     /// [`Reason::Inconsistent`] where a profile does not reach to x = 0.
     pub(super) fn stance(&self) -> Result<(Plane, Vector<f64>)> {
-        match &self.0 {
-            Kind::Plane(plane) => Ok((*plane, Vector::zero())),
-            Kind::Profile(terrain) => {
+        match self {
+            Self::Plane(plane) => Ok((*plane, Vector::zero())),
+            Self::Profile(terrain) => {
                 let (axes, point) = terrain.at_origin().ok_or_else(|| {
                     let [Vector { x: rear, .. }, Vector { x: front, .. }] = terrain.ends();
                     let reason =
@@ -61,9 +57,9 @@ impl Surface {
 
     /// The contact of a circle or point that was named, whatever its height.
     pub(super) fn touch(&self, placement: &Placement, named: Point, tolerance: f64) -> Touch {
-        match &self.0 {
-            Kind::Plane(plane) => plane.touch(placement, named),
-            Kind::Profile(terrain) => {
+        match self {
+            Self::Plane(plane) => plane.touch(placement, named),
+            Self::Profile(terrain) => {
                 // A circle's place is the same whatever the normal.
                 let circle = placement.circle(named, Vector::new(0.0, 1.0));
                 terrain.nearest_touch(circle, placement.world(circle.body, circle.centre), tolerance)
@@ -73,9 +69,9 @@ impl Surface {
 
     /// How far heights are off by rounding alone \[m\].
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
-        match &self.0 {
-            Kind::Plane(plane) => plane.rounding(placement, size),
-            Kind::Profile(_) => profile::rounding(placement, size),
+        match self {
+            Self::Plane(plane) => plane.rounding(placement, size),
+            Self::Profile(_) => profile::rounding(placement, size),
         }
     }
 
@@ -90,35 +86,28 @@ impl Surface {
         tolerance: f64,
         rounding: f64,
     ) -> Result<std::result::Result<Vec<Touch>, Sunk>> {
-        match &self.0 {
-            Kind::Plane(plane) => {
+        let (found, how) = match self {
+            Self::Plane(plane) => {
                 let touches = plane.touching(foot, placement, tolerance)?;
                 let deep = touches.iter().map(|touch| -touch.gap).find(|&depth| depth > tolerance);
-                Ok(deep.map_or(Ok(touches), |depth| {
-                    let remedy = format!(
-                        "raise the base by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`"
-                    );
-                    Err(Sunk { depth, remedy })
-                }))
+                (deep.map_or(Ok(touches), Err), "raise the base")
             }
-            Kind::Profile(terrain) => {
-                let found = profile::touching(terrain, foot, placement, (tolerance, rounding));
-                Ok(found.map_err(|TooDeep(depth)| {
-                    let remedy = format!(
-                        "move the base or the profile by {depth:?} m, correct the pose, or accept it by a greater \
-                         `contact_tolerance`"
-                    );
-                    Sunk { depth, remedy }
-                }))
+            Self::Profile(terrain) => {
+                (profile::touching(terrain, foot, placement, (tolerance, rounding)), "move the base or the profile")
             }
-        }
+        };
+        Ok(found.map_err(|depth| {
+            let remedy =
+                format!("{how} by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
+            Sunk { depth, remedy }
+        }))
     }
 
     /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
     pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
-        match &self.0 {
-            Kind::Plane(plane) => plane.is_out_of_reach(foot, placement, tolerance),
-            Kind::Profile(terrain) => {
+        match self {
+            Self::Plane(plane) => plane.is_out_of_reach(foot, placement, tolerance),
+            Self::Profile(terrain) => {
                 profile::within_reach(terrain, foot, &Outline::new(foot, placement), tolerance).is_empty()
             }
         }
@@ -126,41 +115,39 @@ impl Surface {
 
     /// What contacts of a link are in the order of: the place along a plane, x along a profile \[m\].
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
-        match &self.0 {
-            Kind::Plane(plane) => plane.along(point),
-            Kind::Profile(_) => point.x,
+        match self {
+            Self::Plane(plane) => plane.along(point),
+            Self::Profile(_) => point.x,
         }
     }
 
     /// Whether two contacts of a link are one: the same point, and on a profile the same place with the same normal up
     /// to `rounding` \[m\], because a side's point at a corner is found and not given.
     pub(super) fn is_same(&self, a: &Contact, b: &Contact, rounding: f64) -> bool {
-        let same_foot = (a.link, a.body, a.radius) == (b.link, b.body, b.radius);
-        same_foot
-            && match &self.0 {
-                Kind::Plane(_) => a.centre == b.centre,
-                Kind::Profile(_) => {
-                    distance(a.centre, b.centre) <= rounding && distance(a.normal(), b.normal()) <= PARALLEL
-                }
+        let same_place = match self {
+            Self::Plane(_) => a.centre == b.centre,
+            Self::Profile(_) => {
+                distance(a.centre, b.centre) <= rounding && distance(a.normal(), b.normal()) <= PARALLEL
             }
+        };
+        same_place && (a.link, a.body, a.radius) == (b.link, b.body, b.radius)
     }
 
-    /// The end of the profile that a foot reaches beyond, not higher than `tolerance` above it: there is no ground
-    /// there.
+    /// The end of the profile that a foot reaches beyond, not higher than `tolerance` above it.
     pub(super) fn left_behind(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Option<f64> {
-        match &self.0 {
-            Kind::Plane(_) => None,
-            Kind::Profile(terrain) => profile::left_behind(terrain, &Outline::new(foot, placement), tolerance),
+        match self {
+            Self::Plane(_) => None,
+            Self::Profile(terrain) => profile::left_behind(terrain, &Outline::new(foot, placement), tolerance),
         }
     }
 
     /// How far a foot is from the ground \[m\].
-    pub(super) fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
-        match &self.0 {
-            Kind::Plane(plane) => {
+    pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
+        match self {
+            Self::Plane(plane) => {
                 points(foot).map(|point| plane.height(placement, point)).fold(f64::INFINITY, f64::min)
             }
-            Kind::Profile(terrain) => profile::clearance(terrain, &Outline::new(foot, placement)),
+            Self::Profile(terrain) => profile::clearance(terrain, &Outline::new(foot, placement)),
         }
     }
 }

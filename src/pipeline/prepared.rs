@@ -9,7 +9,7 @@
 use super::assembly::Assembly;
 use super::exact::ExactState;
 use super::{CONTACT_TOLERANCE, Pipeline};
-use crate::contact::{self, Contact, Placement, Surface};
+use crate::contact::{Contact, Footing, Placement, Surface};
 use crate::dynamics::plan::Plan;
 use crate::dynamics::{Arm, Constraints, kinetic_energy};
 use crate::error::{Error, Reason, Result, finite};
@@ -94,7 +94,10 @@ impl Pipeline<'_> {
         let Prepared { placement, contacts, problem, .. } = self.prepare(state)?;
         let clearance = match state.scene.contacts {
             Some(_) => Vec::new(),
-            None => contact::clearances(&self.feet, &placement, &Surface::new(&state.scene.ground)),
+            None => {
+                let surface = Surface::new(&state.scene.ground);
+                self.feet.iter().map(|foot| surface.clearance(foot, &placement)).collect()
+            }
         };
         Ok(Unsolved { contacts, problem, clearance })
     }
@@ -246,13 +249,16 @@ impl Pipeline<'_> {
         let Some(link) = state.scene.stance else {
             return Ok((Vector::new(state.position[0], state.position[1]), velocity, None));
         };
-        let at_zero = Placement::new(&self.assembly.plan, &self.assembly.workspace, Vector::zero());
-        let named = state.scene.contacts.as_deref();
+        let placement = &Placement::new(&self.assembly.plan, &self.assembly.workspace, Vector::zero());
+        let footing = self.footing(&state.scene, placement, surface);
         // A side is flat by the rounding of its corners, whatever the contact tolerance is.
-        let flat = CONTACT_TOLERANCE * self.feet.size();
-        let stance = contact::stance(self.robot, &self.feet, named, link, (&at_zero, surface), flat)?;
+        let stance = footing.stance(link, CONTACT_TOLERANCE * self.feet.size())?;
         self.assembly.rest(&stance.foot.point_of(), &mut velocity);
         Ok((stance.base, velocity, Some(stance.foot)))
+    }
+
+    fn footing<'a>(&'a self, scene: &'a Scene, placement: &'a Placement, surface: &'a Surface) -> Footing<'a> {
+        Footing { robot: self.robot, feet: &self.feet, named: scene.contacts.as_deref(), placement, surface }
     }
 
     /// The closed contacts, and how many shapes were too far from the ground to be asked.
@@ -263,13 +269,13 @@ impl Pipeline<'_> {
         surface: &Surface,
         notes: &mut Vec<String>,
     ) -> Result<(Vec<Contact>, usize)> {
-        let (named, tolerance) = (scene.contacts.as_deref(), self.tolerance());
-        let contacts = contact::detect(self.robot, &self.feet, named, (placement, surface), tolerance)?;
+        let (footing, tolerance) = (self.footing(scene, placement, surface), self.tolerance());
+        let contacts = footing.contacts(tolerance)?;
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;
         }
-        if contacts.is_empty() && named.is_none() {
-            notes.push(match (contact::nearest(self.robot, &self.feet, placement, surface), &scene.ground) {
+        if contacts.is_empty() && footing.named.is_none() {
+            notes.push(match (footing.nearest(), &scene.ground) {
                 (Some((link, height)), Ground::Slope(_)) => {
                     format!("nothing touches the ground: the lowest foot, {link}, is {height:?} m above it")
                 }
@@ -282,10 +288,9 @@ impl Pipeline<'_> {
             });
         }
         let mut out_of_reach = 0;
-        if named.is_none() {
-            out_of_reach = contact::out_of_reach(&self.feet, placement, surface, tolerance);
-            let ends = contact::left_behind(self.robot, &self.feet, placement, surface, tolerance);
-            notes.extend(ends.into_iter().map(|(link, end)| {
+        if footing.named.is_none() {
+            out_of_reach = footing.out_of_reach(tolerance);
+            notes.extend(footing.left_behind(tolerance).into_iter().map(|(link, end)| {
                 format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
             }));
         }
