@@ -44,18 +44,13 @@ impl Tracked {
     fn is_in(self, watched: &Watched, node: &Watched) -> bool {
         match self {
             Self::Clearance(at) => at < watched.clearance.len(),
-            Self::Determinant(_) | Self::Numerator(_) => {
-                watched.inequalities.ends == node.inequalities.ends && watched.contacts == node.contacts
-            }
+            Self::Determinant(_) | Self::Numerator(_) => same_combinations(watched, node),
         }
     }
 
     /// Whether it is zero up to rounding.
     fn is_negligible(self, watched: &Watched) -> bool {
-        match self {
-            Self::Numerator(at) => watched.inequalities.negligible.get(at).is_some_and(|&negligible| negligible),
-            Self::Determinant(_) | Self::Clearance(_) => false,
-        }
+        matches!(self, Self::Numerator(at) if watched.inequalities.negligible.get(at).is_some_and(|&negligible| negligible))
     }
 
     fn values(self, nodes: &[Watched]) -> [f64; NODES] {
@@ -69,40 +64,35 @@ impl Tracked {
             Self::Clearance(at) => watched.clearance[at],
         }
     }
-}
 
-/// A quantity and the combination that it belongs to.
-#[derive(Debug, Clone, Copy)]
-struct Followed {
-    quantity: Tracked,
-    combination: Option<usize>,
-}
-
-impl Followed {
     /// Whether other inequalities clearly exclude its combination at both of two places, given between 0 and 4.
     fn is_excluded(self, nodes: &[Watched], places: [f64; 2]) -> bool {
-        let Some(combination) = self.combination else { return false };
+        let inequalities = &nodes[0].inequalities;
+        let combination = match self {
+            Self::Determinant(at) => at,
+            Self::Numerator(at) => inequalities.ends.partition_point(|&end| end <= at),
+            Self::Clearance(_) => return false,
+        };
         // The sign that a quantity clearly has at both places, or 0.
-        let sign = |quantity: Tracked| {
+        let sign = |quantity: Self| {
             let values = quantity.values(nodes);
             let room = 2.0 * fourth_difference(&values).abs() + ROUNDING * largest(&values);
             let [a, b] = places.map(|place| quartic(&values, place));
-            if a > room && b > room {
-                1
-            } else if a < -room && b < -room {
-                -1
-            } else {
-                0
-            }
+            i32::from(a > room && b > room) - i32::from(a < -room && b < -room)
         };
-        let determinant = sign(Tracked::Determinant(combination));
-        let numerators = nodes[0].inequalities.of_combination(combination).map(Tracked::Numerator);
-        let signs: Vec<i32> = numerators.filter(|&quantity| quantity != self.quantity).map(sign).collect();
+        let determinant = sign(Self::Determinant(combination));
+        let numerators = inequalities.of_combination(combination).map(Self::Numerator);
+        let signs: Vec<i32> = numerators.filter(|&quantity| quantity != self).map(sign).collect();
         match determinant {
             0 => signs.contains(&1) && signs.contains(&-1),
             determinant => signs.contains(&-determinant),
         }
     }
+}
+
+/// Whether both have the inequalities of the same combinations of the same contacts.
+fn same_combinations(one: &Watched, other: &Watched) -> bool {
+    one.inequalities.ends == other.inequalities.ends && one.contacts == other.contacts
 }
 
 /// Places between `a` and `b`, in ascending order, at which the regime may differ from that at both ends; zeros nearer
@@ -133,20 +123,18 @@ struct Zeros {
 impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
     fn interval(&mut self, a: f64, b: f64, halvings: usize) {
         let place = |k: f64| a + (b - a) * (k / (NODES - 1) as f64);
-        let nodes: Vec<Option<Watched>> = (0..NODES).map(|k| (self.watch)(place(k as f64))).collect();
-        let nodes = nodes.into_iter().collect::<Option<Vec<Watched>>>();
+        let nodes: Option<Vec<Watched>> = (0..NODES).map(|k| (self.watch)(place(k as f64))).collect();
         let alike = |one: &Watched, other: &Watched| {
-            let ends = [&one.inequalities.ends, &other.inequalities.ends];
-            ends[0] == ends[1] && one.contacts == other.contacts && one.clearance.len() == other.clearance.len()
+            same_combinations(one, other) && one.clearance.len() == other.clearance.len()
         };
         let Some(nodes) = nodes.filter(|nodes| nodes.iter().all(|node| alike(node, &nodes[0]))) else {
             self.found.extend((1..NODES - 1).map(|k| place(k as f64)));
             return;
         };
         let mut followed = followed(&nodes);
-        followed.retain(|(followed, values)| {
+        followed.retain(|(quantity, values)| {
             let known = values.iter().all(|value| value.is_finite());
-            known && !is_clear(values) && !nodes.iter().all(|node| followed.quantity.is_negligible(node))
+            known && !is_clear(values) && !nodes.iter().all(|node| quantity.is_negligible(node))
         });
         let rough = followed.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
         if rough && halvings > 0 && b - a > self.resolution {
@@ -157,8 +145,8 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
             return;
         }
         let mut zeros = Zeros::default();
-        for (followed, values) in &followed {
-            self.zeros(*followed, values, &nodes, place, &mut zeros);
+        for (quantity, values) in &followed {
+            self.zeros(*quantity, values, &nodes, place, &mut zeros);
             if zeros.crossed.len() + zeros.touched.len() > MOST {
                 break;
             }
@@ -178,13 +166,13 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
     /// Adds the places where a quantity with these `values` at the nodes is zero or comes near zero.
     fn zeros(
         &mut self,
-        followed: Followed,
+        quantity: Tracked,
         values: &[f64; NODES],
         nodes: &[Watched],
         place: impl Fn(f64) -> f64,
         Zeros { crossed, touched }: &mut Zeros,
     ) {
-        let (quantity, resolution) = (followed.quantity, self.resolution);
+        let resolution = self.resolution;
         let mut real = |x: f64| {
             let watched = (self.watch)(x).filter(|watched| quantity.is_in(watched, &nodes[0]));
             watched.map_or(f64::NAN, |watched| quantity.value(&watched))
@@ -194,7 +182,7 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
         let fine: Vec<f64> = (0..=FINE).map(|k| quartic(values, node(k))).collect();
         for k in 0..FINE {
             let passes = (fine[k] < 0.0) != (fine[k + 1] < 0.0);
-            if passes && !followed.is_excluded(nodes, [node(k), node(k + 1)]) {
+            if passes && !quantity.is_excluded(nodes, [node(k), node(k + 1)]) {
                 crossed.push(zero(&mut real, at(k), at(k + 1), resolution));
             }
         }
@@ -205,7 +193,7 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
             let [before, here, after] = [fine[last], fine[k], fine[next]];
             let least = here.abs() <= before.abs() && here.abs() <= after.abs() && here.abs() <= near_zero;
             let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
-            if least && same && !followed.is_excluded(nodes, [node(last), node(next)]) {
+            if least && same && !quantity.is_excluded(nodes, [node(last), node(next)]) {
                 let sign = if here < 0.0 { -1.0 } else { 1.0 };
                 let bottom = least_place(&mut |x| sign * real(x), at(last), at(next), resolution);
                 touched.push(bottom);
@@ -219,12 +207,9 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
 }
 
 /// The quantities of all combinations that no inequality clearly excludes, and their values at the nodes.
-fn followed(nodes: &[Watched]) -> Vec<(Followed, [f64; NODES])> {
+fn followed(nodes: &[Watched]) -> Vec<(Tracked, [f64; NODES])> {
     let inequalities = &nodes[0].inequalities;
-    let mut all: Vec<Followed> = Vec::new();
-    all.extend(
-        (0..nodes[0].clearance.len()).map(|at| Followed { quantity: Tracked::Clearance(at), combination: None }),
-    );
+    let mut all: Vec<Tracked> = (0..nodes[0].clearance.len()).map(Tracked::Clearance).collect();
     for combination in 0..inequalities.ends.len() {
         let determinant = Tracked::Determinant(combination).values(nodes);
         let numerators = inequalities.of_combination(combination).map(Tracked::Numerator);
@@ -232,13 +217,12 @@ fn followed(nodes: &[Watched]) -> Vec<(Followed, [f64; NODES])> {
             let values = quantity.values(nodes);
             is_clear(&values) && (values[0] < 0.0) != (determinant[0] < 0.0)
         };
-        if is_clear(&determinant) && numerators.clone().any(violated) {
-            continue;
+        if !is_clear(&determinant) || !numerators.clone().any(violated) {
+            all.push(Tracked::Determinant(combination));
+            all.extend(numerators);
         }
-        let own = std::iter::once(Tracked::Determinant(combination)).chain(numerators);
-        all.extend(own.map(|quantity| Followed { quantity, combination: Some(combination) }));
     }
-    all.into_iter().map(|followed| (followed, followed.quantity.values(nodes))).collect()
+    all.into_iter().map(|quantity| (quantity, quantity.values(nodes))).collect()
 }
 
 /// Whether the curve through these values clearly keeps its sign; one that is zero throughout has none to change.
@@ -266,8 +250,7 @@ fn quartic(values: &[f64; NODES], x: f64) -> f64 {
             differences[k] -= differences[k - 1];
         }
     }
-    let mut sum = 0.0;
-    let mut factor = 1.0;
+    let (mut sum, mut factor) = (0.0, 1.0);
     for (k, difference) in differences.iter().enumerate() {
         sum += factor * difference;
         factor *= (x - k as f64) / (k + 1) as f64;
@@ -343,14 +326,6 @@ mod tests {
     use super::*;
     use crate::impact::Inequalities;
 
-    /// One combination with these inequalities, det A = 1.
-    fn watched(numerators: &[f64]) -> Option<Watched> {
-        let ends = vec![numerators.len()];
-        let inequalities =
-            Inequalities { determinants: vec![1.0], numerators: numerators.to_vec(), ends, ..Inequalities::default() };
-        Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
-    }
-
     #[test]
     fn a_quartic_is_what_it_interpolates() {
         let polynomial = |x: f64| 2.0 - x + 0.5 * x * x * x - 0.25 * x * x * x * x;
@@ -363,15 +338,14 @@ mod tests {
     #[test]
     fn a_clearly_violated_combination_is_not_followed() {
         let mut asked = 0;
-        let places = suspects(
-            &mut |x| {
-                asked += 1;
-                watched(&[-1.0 - 0.1 * x, libm::sin(40.0 * x)])
-            },
-            0.0,
-            1.0,
-            1e-12,
-        );
+        let mut watch = |x: f64| {
+            asked += 1;
+            let numerators = vec![-1.0 - 0.1 * x, libm::sin(40.0 * x)];
+            let inequalities =
+                Inequalities { determinants: vec![1.0], ends: vec![2], numerators, ..Inequalities::default() };
+            Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
+        };
+        let places = suspects(&mut watch, 0.0, 1.0, 1e-12);
         assert_eq!((places, asked), (Vec::new(), NODES));
     }
 }

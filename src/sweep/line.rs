@@ -17,7 +17,6 @@ const SEARCHES: usize = 3;
 
 /// What is asked along a line of parameters.
 pub trait Landscape {
-    /// What happens at a place.
     fn regime(&mut self, at: f64) -> Arc<Regime>;
     /// The quantities that are followed from place to place; `None` if the place is refused.
     fn watched(&mut self, at: f64) -> Option<Watched>;
@@ -43,18 +42,14 @@ impl<P: Fn(f64) -> Vec<f64>> Landscape for Along<'_, '_, P> {
 /// A place and what happens there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
-    /// The place.
     pub at: f64,
-    /// What happens.
     pub regime: Arc<Regime>,
 }
 
 /// Two neighboring places of different regimes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bracket {
-    /// The lower one.
     pub below: Probe,
-    /// The upper one.
     pub above: Probe,
 }
 
@@ -68,11 +63,8 @@ impl Bracket {
 /// A stretch of one regime; of positive width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stretch {
-    /// Where it begins.
     pub from: f64,
-    /// Where it ends.
     pub to: f64,
-    /// What happens in it.
     pub regime: Arc<Regime>,
 }
 
@@ -97,20 +89,15 @@ fn search_between(
     resolution: f64,
     searches: usize,
 ) -> Vec<Bracket> {
-    if searches == 0 {
-        return found;
-    }
-    let begins: Vec<Probe> = std::iter::once(a).chain(found.iter().map(|bracket| &bracket.above)).cloned().collect();
-    let ends: Vec<Probe> = found.iter().map(|bracket| &bracket.below).chain([b]).cloned().collect();
-    let mut all = Vec::new();
-    let mut borders = found.into_iter();
-    for (from, to) in begins.iter().zip(&ends) {
-        let inner = hidden(line, from, to, resolution);
-        all.extend(match inner.is_empty() {
-            true => inner,
-            false => search_between(line, from, to, inner, resolution, searches - 1),
-        });
-        all.extend(borders.next());
+    let (mut all, mut from) = (Vec::new(), a.clone());
+    for border in found.into_iter().map(Some).chain([None]) {
+        let to = border.as_ref().map_or(b, |border| &border.below);
+        let inner = if searches == 0 { Vec::new() } else { hidden(line, &from, to, resolution) };
+        if !inner.is_empty() {
+            all.extend(search_between(line, &from, to, inner, resolution, searches - 1));
+        }
+        from = border.as_ref().map_or(from, |border| border.above.clone());
+        all.extend(border);
     }
     all
 }
@@ -186,34 +173,31 @@ mod tests {
     use crate::impact::Inequalities;
     use crate::law::Mode;
 
-    /// A landscape of one contact, which sticks where all its numbers are positive, and slides where they are not.
-    struct Made<F>(F);
+    /// A landscape of one contact: its regime, and whether it is closed, its inequalities, and its clearance.
+    struct Made<R, W>(R, W);
 
-    fn regime(mode: Mode) -> Arc<Regime> {
-        let outcomes = vec![vec![mode]];
-        Arc::new(Regime::Answered { contacts: vec!["foot".into()], outcomes, undecided: Vec::new() })
-    }
-
-    /// One combination with these inequalities, det A = 1.
-    fn watched(contacts: Vec<String>, numerators: Vec<f64>, clearance: Vec<f64>) -> Watched {
-        let ends = vec![numerators.len()];
-        let inequalities = Inequalities { determinants: vec![1.0], ends, numerators, ..Inequalities::default() };
-        Watched { contacts, inequalities, clearance }
-    }
-
-    impl<F: Fn(f64) -> Vec<f64>> Landscape for Made<F> {
+    impl<R: Fn(f64) -> Option<Mode>, W: Fn(f64) -> (bool, Vec<f64>, Vec<f64>)> Landscape for Made<R, W> {
         fn regime(&mut self, at: f64) -> Arc<Regime> {
-            regime(if (self.0)(at).iter().all(|&number| number > 0.0) { Mode::Stick } else { Mode::SlidePlus })
+            let modes: Vec<Mode> = (self.0)(at).into_iter().collect();
+            let contacts = modes.iter().map(|_| "foot".to_owned()).collect();
+            Arc::new(Regime::Answered { contacts, outcomes: vec![modes], undecided: Vec::new() })
         }
 
+        /// One combination, det A = 1.
         fn watched(&mut self, at: f64) -> Option<Watched> {
-            Some(watched(Vec::new(), (self.0)(at), Vec::new()))
+            let (closed, numerators, clearance) = (self.1)(at);
+            let (determinants, ends) = (vec![1.0], vec![numerators.len()]);
+            let inequalities = Inequalities { determinants, ends, numerators, ..Inequalities::default() };
+            let contacts = if closed { vec!["foot".to_owned()] } else { Vec::new() };
+            Some(Watched { contacts, inequalities, clearance })
         }
     }
 
-    /// The borders of a landscape from 0 to 1, sampled at 11 places.
-    fn borders(numbers: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
-        let mut line = Made(numbers);
+    /// Checks the borders from 0 to 1, sampled at 11 places, of a contact that sticks where all numbers are positive.
+    fn check(numbers: impl Fn(f64) -> Vec<f64>, expected: &[f64]) {
+        let sticks = |at: f64| numbers(at).iter().all(|&number| number > 0.0);
+        let regime = |at: f64| Some(if sticks(at) { Mode::Stick } else { Mode::SlidePlus });
+        let mut line = Made(regime, |at: f64| (false, numbers(at), Vec::new()));
         let points: Vec<Probe> =
             (0..=10).map(|k| f64::from(k) / 10.0).map(|at| Probe { at, regime: line.regime(at) }).collect();
         let mut all = Vec::new();
@@ -224,73 +208,50 @@ mod tests {
         assert_eq!((list[0].from, list[list.len() - 1].to), (0.0, 1.0));
         assert!(list.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].regime != pair[1].regime));
         assert_eq!(list.len(), borders.len() + 1);
-        borders.iter().map(Bracket::at).collect()
+        near(&borders, expected);
     }
 
-    fn near(found: &[f64], expected: &[f64]) {
+    fn near(found: &[Bracket], expected: &[f64]) {
+        let found: Vec<f64> = found.iter().map(Bracket::at).collect();
         assert_eq!(found.len(), expected.len(), "{found:?}");
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 2e-12), "{found:?} {expected:?}");
     }
 
     #[test]
     fn borders_lie_where_a_number_passes_zero() {
-        near(&borders(|x| vec![x - 0.123_456_789]), &[0.123_456_789]);
-        near(&borders(|x| vec![(x - 0.31) * (0.32 - x)]), &[0.31, 0.32]);
-        near(&borders(|_| vec![1.0]), &[]);
+        check(|x| vec![x - 0.123_456_789], &[0.123_456_789]);
+        check(|x| vec![(x - 0.31) * (0.32 - x)], &[0.31, 0.32]);
+        // Behind the border that hides it: between 0.4 and 0.5 the number is negative, positive, negative, positive.
+        check(|x| vec![(x - 0.41) * (x - 0.410_01) * (x - 0.48)], &[0.41, 0.410_01, 0.48]);
+        // A single place is no region.
+        check(|x| vec![(x - 0.3).abs()], &[]);
+        check(|x| vec![x], &[]);
     }
 
     #[test]
     fn thin_regions_between_two_samples_are_found() {
         for width in [1e-3, 5e-6, 1e-9] {
-            near(&borders(|x| vec![x - 0.55, 0.55 + width - x]), &[0.55, 0.55 + width]);
-            near(&borders(|x| vec![-1.0, x - 0.55, 0.55 + width - x]), &[]);
+            check(|x| vec![x - 0.55, 0.55 + width - x], &[0.55, 0.55 + width]);
+            check(|x| vec![-1.0, x - 0.55, 0.55 + width - x], &[]);
         }
         for half in [1e-3, 2.5e-6] {
-            near(&borders(|x| vec![half * half - (x - 0.444) * (x - 0.444)]), &[0.444 - half, 0.444 + half]);
-        }
-    }
-
-    #[test]
-    fn a_region_at_a_sample_s_side_is_found_behind_the_border_that_hides_it() {
-        // Between 0.4 and 0.5 the number is negative, positive, negative, positive.
-        let numbers = |x: f64| vec![(x - 0.41) * (x - 0.410_01) * (x - 0.48)];
-        near(&borders(numbers), &[0.41, 0.410_01, 0.48]);
-    }
-
-    /// The foot is down between two samples; while it is, it sticks, except on a thin stretch.
-    struct Stepping;
-
-    const THIN: [f64; 2] = [0.4512, 0.451_201];
-
-    impl Landscape for Stepping {
-        fn regime(&mut self, at: f64) -> Arc<Regime> {
-            match (0.41..0.49).contains(&at) {
-                true if THIN[0] < at && at < THIN[1] => regime(Mode::SlidePlus),
-                true => regime(Mode::Stick),
-                false => Arc::new(Regime::Answered { contacts: vec![], outcomes: vec![vec![]], undecided: Vec::new() }),
-            }
-        }
-
-        fn watched(&mut self, at: f64) -> Option<Watched> {
-            let down = (0.41..0.49).contains(&at);
-            let (contacts, numerators) = match down {
-                true => (vec!["foot".to_owned()], vec![at - THIN[0], THIN[1] - at]),
-                false => (Vec::new(), Vec::new()),
-            };
-            Some(watched(contacts, numerators, vec![(at - 0.41) * (at - 0.49)]))
+            check(|x| vec![half * half - (x - 0.444) * (x - 0.444)], &[0.444 - half, 0.444 + half]);
         }
     }
 
     #[test]
     fn a_thin_region_among_contacts_that_no_sample_has_is_found() {
-        let ends = [0.4, 0.5].map(|at| Probe { at, regime: Stepping.regime(at) });
-        let found = brackets(&mut Stepping, &ends[0], &ends[1], RESOLUTION);
-        near(&found.iter().map(Bracket::at).collect::<Vec<_>>(), &[0.41, THIN[0], THIN[1], 0.49]);
-    }
-
-    #[test]
-    fn a_single_place_is_no_region() {
-        near(&borders(|x| vec![(x - 0.3).abs()]), &[]);
-        near(&borders(|x| vec![x]), &[]);
+        // The foot is down between two samples; while it is, it sticks, except on a thin stretch.
+        const THIN: [f64; 2] = [0.4512, 0.451_201];
+        let down = |at: f64| (0.41..0.49).contains(&at);
+        let mode = |at: f64| if THIN[0] < at && at < THIN[1] { Mode::SlidePlus } else { Mode::Stick };
+        let watched = |at: f64| {
+            let numerators = if down(at) { vec![at - THIN[0], THIN[1] - at] } else { Vec::new() };
+            (down(at), numerators, vec![(at - 0.41) * (at - 0.49)])
+        };
+        let mut stepping = Made(|at| down(at).then(|| mode(at)), watched);
+        let ends = [0.4, 0.5].map(|at| Probe { at, regime: stepping.regime(at) });
+        let found = brackets(&mut stepping, &ends[0], &ends[1], RESOLUTION);
+        near(&found, &[0.41, THIN[0], THIN[1], 0.49]);
     }
 }

@@ -224,10 +224,10 @@ impl Map {
             dependent |= inner.dependent;
         }
         let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
-        let curve = |line: super::polyline::Polyline| {
-            let sides = [index(&line.left)?, index(&line.right)?];
-            let points = line.points.into_iter().map(|point| grid.outward(point)).collect();
-            Some(BorderCurve { sides, points, transition: line.transition })
+        let curve = |(segment, points): (&Segment, Vec<[f64; 2]>)| {
+            let sides = [index(&segment.left)?, index(&segment.right)?];
+            let points = points.into_iter().map(|point| grid.outward(point)).collect();
+            Some(BorderCurve { sides, points, transition: segment.transition.as_deref().cloned().unwrap_or_default() })
         };
         let curves: Vec<BorderCurve> = polylines(&segments).into_iter().filter_map(curve).collect();
         for BorderCurve { sides, transition, .. } in &curves {

@@ -73,14 +73,10 @@ impl RobotStudy<'_> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
         let mut read = |part: f64| {
-            let point: Vec<f64> =
-                parameters.iter().map(|parameter| parameter.from + part * parameter.range()).collect();
-            solver.at(&point, |_, _, _| ())
+            let point = parameters.iter().map(|parameter| parameter.from + part * parameter.range());
+            solver.at(&point.collect::<Vec<_>>(), |_, _, _| Ok(()))
         };
-        match (read(0.0), read(0.5), read(1.0)) {
-            (Err(first), Err(_), Err(_)) => Err(first),
-            _ => Ok(()),
-        }
+        read(0.0).or_else(|first| read(0.5).or_else(|_| read(1.0)).map_err(|_| first))
     }
 }
 
@@ -94,21 +90,21 @@ impl<'a> Solver<'a> {
     /// Asks about the state at a point.
     ///
     /// # Errors
-    /// Refusals of the robot or the state of that point.
+    /// Refusals of the robot or the state of that point, and those of `ask`.
     pub fn at<T>(
         &mut self,
         point: &[f64],
-        ask: impl for<'p> FnOnce(&'p Robot, State, &mut Pipeline<'p>) -> T,
+        ask: impl for<'p> FnOnce(&'p Robot, State, &mut Pipeline<'p>) -> Result<T>,
     ) -> Result<T> {
         let RobotStudy { study, description, reduction, robot, options, defaults } = self.model;
         let names = study.names(point);
         if let Some(pipeline) = &mut self.pipeline {
-            return Ok(ask(robot, study.state(&names, robot, defaults)?, pipeline));
+            return ask(robot, study.state(&names, robot, defaults)?, pipeline);
         }
         let description: Cow<Description> = study.describe(&names, description)?;
         let robot = Robot::reduce(&description, reduction)?;
         let state = study.state(&names, &robot, defaults)?;
-        Ok(ask(&robot, state, &mut Pipeline::new(&robot, options.clone())))
+        ask(&robot, state, &mut Pipeline::new(&robot, options.clone()))
     }
 
     /// The impact at a point, without regard to the state's uncertainty.
@@ -116,7 +112,7 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// Refusals of the point.
     pub fn impact(&mut self, point: &[f64]) -> Result<Impact> {
-        self.at(point, |_, state, pipeline| pipeline.impact(&State { uncertainty: None, ..state }))?
+        self.at(point, |_, state, pipeline| pipeline.impact(&State { uncertainty: None, ..state }))
     }
 
     /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
@@ -124,25 +120,25 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// Refusals of the point.
     pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
-        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))??;
+        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))?;
         let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
         Ok((names, impact.into_analysis()?))
     }
 
     /// Properties of a region, found at a point in it.
     pub(super) fn inner(&mut self, point: &[f64]) -> Inner {
-        match self.explained(point, &[]) {
-            Ok((contacts, analysis)) => {
-                Inner { dependent: analysis.rank < 2 * contacts.len(), verdict: Some(analysis.verdict), refused: None }
-            }
-            Err(error) => Inner { dependent: false, verdict: None, refused: Some(error) },
+        let found = self.explained(point, &[]);
+        let dependent = |(contacts, analysis): &(Vec<String>, Analysis)| analysis.rank < 2 * contacts.len();
+        Inner {
+            dependent: found.as_ref().is_ok_and(dependent),
+            verdict: found.as_ref().ok().map(|(_, analysis)| analysis.verdict),
+            refused: found.err(),
         }
     }
 
     /// The regime of a point.
     pub fn regime(&mut self, point: &[f64]) -> Arc<Regime> {
-        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, &[]));
-        let regime = Regime::of(&impact.and_then(|impact| impact));
+        let regime = Regime::of(&self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, &[])));
         if let Some(known) = self.known.iter().find(|known| ***known == regime) {
             return Arc::clone(known);
         }
@@ -152,9 +148,8 @@ impl<'a> Solver<'a> {
 
     /// The quantities that are followed; `None` if the point is refused.
     pub fn watched(&mut self, point: &[f64]) -> Option<Watched> {
-        let unsolved = self
-            .at(point, |_, state, pipeline| pipeline.unsolved(&state).map(|unsolved| (unsolved, pipeline.tolerance())));
-        let (Unsolved { contacts, problem, clearance }, tolerance) = unsolved.and_then(|inner| inner).ok()?;
+        let unsolved = self.at(point, |_, state, pipeline| Ok((pipeline.unsolved(&state)?, pipeline.tolerance())));
+        let (Unsolved { contacts, problem, clearance }, tolerance) = unsolved.ok()?;
         Some(Watched {
             inequalities: match contacts.len() <= WATCHED_CONTACTS {
                 true => Inequalities::of(&problem),

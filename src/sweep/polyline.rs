@@ -2,18 +2,8 @@
 
 use super::edge::Segment;
 use super::regime::Regime;
-use super::transition::Transition;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// Segments of one border, joined.
-#[derive(Debug, Clone)]
-pub struct Polyline {
-    pub left: Arc<Regime>,
-    pub right: Arc<Regime>,
-    pub points: Vec<[f64; 2]>,
-    pub transition: Transition,
-}
 
 /// A point by its digits: ends that meet are the same numbers.
 type PointKey = [u64; 2];
@@ -22,8 +12,9 @@ fn key(point: [f64; 2]) -> PointKey {
     point.map(f64::to_bits)
 }
 
-/// The curves that segments of the same regimes and transitions join to.
-pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
+/// The curves that segments of the same regimes and transitions join to: one of the segments, and the points in its
+/// direction.
+pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
     let mut starts: HashMap<PointKey, Vec<(usize, bool)>> = HashMap::new();
     for (index, segment) in segments.iter().enumerate() {
         starts.entry(key(segment.from)).or_default().push((index, true));
@@ -32,10 +23,9 @@ pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
     let mut used = vec![false; segments.len()];
     let mut polylines = Vec::new();
     for first in 0..segments.len() {
-        if used[first] {
+        if std::mem::replace(&mut used[first], true) {
             continue;
         }
-        used[first] = true;
         let own = &segments[first];
         // On from its end, then back from its beginning; each segment may stand in either direction.
         let mut grow = |mut point: [f64; 2], forward: bool| {
@@ -51,12 +41,8 @@ pub fn polylines(segments: &[Segment]) -> Vec<Polyline> {
             }
         };
         let onward = grow(own.to, true);
-        let mut points = grow(own.from, false);
-        points.reverse();
-        points.extend([own.from, own.to]);
-        points.extend(onward);
-        let transition = own.transition.as_deref().cloned().unwrap_or_default();
-        polylines.push(Polyline { left: Arc::clone(&own.left), right: Arc::clone(&own.right), points, transition });
+        let back = grow(own.from, false);
+        polylines.push((own, back.into_iter().rev().chain([own.from, own.to]).chain(onward).collect()));
     }
     polylines
 }

@@ -29,16 +29,13 @@ pub enum Regime {
 impl Regime {
     /// That of an answer.
     pub fn of(answer: &Result<Impact>) -> Self {
-        let refused = |error: &Error| Self::Refused {
-            reason: discriminant(error.reason()),
-            place: error.place().map(str::to_owned),
-        };
-        let (impact, analysis) = match answer {
-            Err(error) => return refused(error),
-            Ok(impact) => match impact.analysed() {
-                Err(error) => return refused(&error),
-                Ok(analysis) => (impact, analysis),
-            },
+        let analysed = answer.as_ref().map_err(Error::clone).and_then(|impact| Ok((impact, impact.analysed()?)));
+        let (impact, analysis) = match analysed {
+            Ok(analysed) => analysed,
+            Err(error) => {
+                let place = error.place().map(str::to_owned);
+                return Self::Refused { reason: discriminant(error.reason()), place };
+            }
         };
         let list = |decided: bool| {
             let chosen = analysis.outcomes.iter().filter(|outcome| outcome.decided == decided);
@@ -56,17 +53,13 @@ impl Regime {
 
     /// The modes of every outcome; `None` if the state is refused.
     pub fn outcomes(&self) -> Option<&[Vec<Mode>]> {
-        match self {
-            Self::Answered { outcomes, .. } => Some(outcomes),
-            Self::Refused { .. } => None,
-        }
+        let Self::Answered { outcomes, .. } = self else { return None };
+        Some(outcomes)
     }
 
     /// Names of the closed contacts; empty if the state is refused.
     pub fn contacts(&self) -> &[String] {
-        match self {
-            Self::Answered { contacts, .. } => contacts,
-            Self::Refused { .. } => &[],
-        }
+        let Self::Answered { contacts, .. } = self else { return &[] };
+        contacts
     }
 }

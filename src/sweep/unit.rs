@@ -8,8 +8,7 @@ use super::model::{RobotStudy, Solver};
 use crate::Robot;
 use crate::description::{Description, Inertial};
 use crate::robot::{Axis, Base};
-use crate::state::Ground;
-use crate::state::State;
+use crate::state::{Ground, State};
 
 /// A unit and a number that has it.
 type Measured = (&'static str, f64);
@@ -56,7 +55,7 @@ impl RobotStudy<'_> {
         let point: Vec<f64> = self.study.parameters().iter().enumerate().map(place).collect();
         let description = self.study.describe(&self.study.names(&point), self.description).ok()?;
         let mut all = of_robot(&description);
-        Solver::new(self).at(&point, |robot, state, _| all.extend(of_state(robot, &state))).ok()?;
+        all.extend(Solver::new(self).at(&point, |robot, state, _| Ok(of_state(robot, &state))).ok()?);
         Some(all)
     }
 }

@@ -134,7 +134,7 @@ fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Re
             Ok(impact) => Keyframe::of_impact(robot, &model.options.feet, &state, &impact),
             Err(error) => Keyframe::refused(error),
         };
-        (keyframe, regime)
+        Ok((keyframe, regime))
     });
     seen.unwrap_or_else(|error| (Keyframe::refused(error.clone()), Regime::of(&Err(error))))
 }

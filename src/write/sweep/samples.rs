@@ -55,8 +55,7 @@ impl<'a> Sample<'a> {
         let answered = solver.at(&self.point, |robot, state, pipeline| {
             answer(robot, &state, pipeline, detail, |report| report.append_json(detail, &mut result))
         });
-        let refused = answered.and_then(|answered| answered).err();
-        if let Some(error) = &refused
+        if let Err(error) = &answered
             && result.is_empty()
         {
             append_line(&mut result, &RefusedSample { error: ErrorObject::new(error) });
@@ -65,7 +64,7 @@ impl<'a> Sample<'a> {
         append_line(out, &SampleRecord { sample: self, result: result.as_deref() });
         // The line break is the list's.
         out.pop();
-        refused.is_none()
+        answered.is_ok()
     }
 
     /// Appends the rows of the sample, with the letter that `letter` gives to its regime; returns whether it was
@@ -84,7 +83,7 @@ impl<'a> Sample<'a> {
             let impact = impact?;
             columns.append_result(&Report::of_state(robot, &state, &impact, Detail::default())?, Some(&carried), out)
         });
-        match answered.and_then(|answered| answered) {
+        match answered {
             Ok(()) => true,
             Err(error) => {
                 let regime = Regime::of(&Err(error.clone()));
