@@ -20,6 +20,27 @@ thread_local! {
 #[derive(Clone, Copy, Default)]
 struct Exact(usize);
 
+/// The operators of a number, by its `zip` with another.
+macro_rules! operators {
+    ($number:ty: $($operator:ident $function:ident),*) => {
+        $(impl $operator for $number {
+            type Output = Self;
+            fn $function(self, other: Self) -> Self {
+                self.zip(other, $operator::$function)
+            }
+        })*
+        impl Neg for $number {
+            type Output = Self;
+            fn neg(self) -> Self {
+                self.zip(self, |own, _| -own)
+            }
+        }
+    };
+}
+
+operators!(Exact: Add add, Sub sub, Mul mul, Div div);
+operators!(Lanes: Add add, Sub sub, Mul mul, Div div);
+
 impl Exact {
     fn new(value: RBig) -> Self {
         ARENA.with_borrow_mut(|arena| {
@@ -31,40 +52,9 @@ impl Exact {
     fn value(self) -> RBig {
         ARENA.with_borrow(|arena| arena[self.0].clone())
     }
-}
 
-impl Add for Exact {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self::new(self.value() + other.value())
-    }
-}
-
-impl Sub for Exact {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self::new(self.value() - other.value())
-    }
-}
-
-impl Mul for Exact {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        Self::new(self.value() * other.value())
-    }
-}
-
-impl Div for Exact {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        Self::new(self.value() / other.value())
-    }
-}
-
-impl Neg for Exact {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self::new(-self.value())
+    fn zip(self, other: Self, operation: impl Fn(RBig, RBig) -> RBig) -> Self {
+        Self::new(operation(self.value(), other.value()))
     }
 }
 
@@ -84,50 +74,10 @@ impl Lanes {
     }
 }
 
-impl Add for Lanes {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-}
-
-impl Sub for Lanes {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-
-impl Mul for Lanes {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-}
-
-impl Div for Lanes {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        self.zip(other, |a, b| a / b)
-    }
-}
-
-impl Neg for Lanes {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(self.0.map(|entry| -entry))
-    }
-}
-
 impl Real for Lanes {
     fn from_f64(value: f64) -> Self {
         Self([value; 4])
     }
-}
-
-/// RAMone; angles by the tangent of their half, so that cosine and sine are rational.
-fn ramone() -> Robot {
-    Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot")
 }
 
 /// Tangents of half angles of pitch and the four joints, state by state.
@@ -139,18 +89,18 @@ const HALF_TANGENTS: [[f64; 5]; 4] = [
 ];
 const VELOCITY: [f64; 7] = [0.5, -0.25, 1.0, -0.5, 0.75, 0.0, -1.5];
 
-/// M (lower triangle), G, c and the numbers of all combinations at friction 0.75 and infinite.
+/// M (lower triangle), G and c of RAMone; angles by the tangent of their half, so that cosine and sine are rational.
 fn run<T: Real>(half_tangents: [T; 5]) -> Vec<T> {
-    let robot = ramone();
+    let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot");
     let plan = Plan::<T>::new(&robot, &[], &[]);
     let one = T::one();
     let cos = half_tangents.map(|t| (one - t * t) / (one + t * t));
     let sin = half_tangents.map(|t| (t + t) / (one + t * t));
     // x and z have no angle; their entries are not read.
     let padded = |values: [T; 5]| [[T::zero(); 2].as_slice(), values.as_slice()].concat();
-    let posture = Configuration { cos: padded(cos), sin: padded(sin), displacement: vec![T::zero(); 7] };
+    let configuration = Configuration { cos: padded(cos), sin: padded(sin), displacement: vec![T::zero(); 7] };
     let mut workspace = Workspace::default();
-    kinematics(&plan, &posture, &mut workspace);
+    kinematics(&plan, &configuration, &mut workspace);
     mass_matrix(&plan, &mut workspace);
     factorize(&plan, &mut workspace);
     let contacts = ["left_foot", "right_foot"].map(|name| {

@@ -2,10 +2,10 @@
 //! reference states, and the touchdowns found in the tables, planar and in three dimensions, with options as a user
 //! gives them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::support::answers::answers;
 use crate::support::command::{heelstrike, read};
@@ -16,20 +16,21 @@ const FRICTIONS: [&str; 3] = ["0.4", "0.8", "infinite"];
 /// Of the largest velocity or impulse: Delassus matrices here have conditions up to 1e4.
 const TOLERANCE: f64 = 1e-12;
 
-/// A gait and how its robot is given.
-struct Gait {
-    name: &'static str,
-    /// The robot's file, then feet for a robot without shapes.
-    robot: &'static [&'static str],
+/// A gait and how its robot is given: the file, then feet for a robot without shapes.
+struct Gait<'a> {
+    name: &'a str,
+    robot: &'a [&'a str],
 }
 
-const RABBIT: Gait = Gait {
-    name: "rabbit_walk",
-    robot: &["robots/rabbit/five_link_walker.urdf", "--contact=right_shin:0,0,0.4", "--contact=left_shin:0,0,0.4"],
-};
-const A1: Gait = Gait { name: "a1_walk", robot: &["robots/a1/a1.urdf"] };
-const H1_WALK: Gait = Gait { name: "h1_walk", robot: &["robots/h1/h1.urdf"] };
-const H1_RUN: Gait = Gait { name: "h1_run", robot: &["robots/h1/h1.urdf"] };
+/// How a table's name ends, the options that it needs, and whether it has velocities.
+struct Table {
+    ending: &'static str,
+    options: &'static [&'static str],
+    has_velocities: bool,
+}
+
+const PLANAR: Table = Table { ending: ".csv", options: &[], has_velocities: true };
+const SPATIAL: Table = Table { ending: ".3d.csv", options: &["--velocity", "central"], has_velocities: false };
 
 #[derive(Deserialize)]
 struct Reference {
@@ -74,7 +75,7 @@ fn path(name: &str) -> String {
     format!("tests/data/{name}")
 }
 
-impl Gait {
+impl Gait<'_> {
     fn reference(&self) -> Vec<Expected> {
         let text = read(&path(&format!("gaits/{}.reference.json", self.name)));
         let Reference { states } = serde_json::from_str(&text).expect("the reference is readable");
@@ -91,22 +92,15 @@ impl Gait {
                 let place = format!("{} at friction {friction}", expected.state["id"]);
                 let answer = answer.unwrap_or_else(|error| panic!("{place}: {error}"));
                 assert!(answer.proven, "{place}");
-                let found: BTreeMap<_, _> =
-                    answer.outcomes.iter().map(|outcome| (outcome.modes.clone(), outcome)).collect();
-                let expected_outcomes = &expected.by_friction[friction].outcomes;
-                let modes: BTreeSet<_> = expected_outcomes.iter().map(|outcome| outcome.modes.clone()).collect();
-                assert_eq!(found.keys().cloned().collect::<BTreeSet<_>>(), modes, "{place}");
-                assert_eq!(answer.outcomes.len(), expected_outcomes.len(), "{place}");
-                for should in expected_outcomes {
-                    let is = found[&should.modes];
+                let mut found: Vec<_> = answer.outcomes.iter().collect();
+                let mut outcomes: Vec<_> = expected.by_friction[friction].outcomes.iter().collect();
+                found.sort_by_key(|outcome| &outcome.modes);
+                outcomes.sort_by_key(|outcome| &outcome.modes);
+                assert!(found.iter().map(|is| &is.modes).eq(outcomes.iter().map(|should| &should.modes)), "{place}");
+                for (is, should) in found.into_iter().zip(outcomes) {
                     let mut compare = |what: &str, is: &[[f64; 2]], should: &[[f64; 2]]| {
-                        let size = largest(should.as_flattened());
-                        differences.compare(
-                            &format!("{place}: {what}"),
-                            is.as_flattened(),
-                            should.as_flattened(),
-                            TOLERANCE * size,
-                        );
+                        let (is, should) = (is.as_flattened(), should.as_flattened());
+                        differences.compare(&format!("{place}: {what}"), is, should, TOLERANCE * largest(should));
                     };
                     compare("velocity_after", &is.velocity_after, &should.velocity_after);
                     if let Some(impulse) = &should.impulse {
@@ -123,23 +117,22 @@ impl Gait {
         differences.finish();
     }
 
-    /// The touchdowns that `batch` finds in the table of this ending.
-    fn touchdowns(&self, table: &str, options: &[&str]) -> Vec<Value> {
-        let (robot, table) = (path(self.robot[0]), path(&format!("gaits/{}{table}", self.name)));
-        let first = ["batch", &robot, &table];
-        let arguments = [&first[..], &self.robot[1..], &["--touchdowns", "--at", "row"], options].concat();
+    /// The touchdowns that `batch` finds in the table.
+    fn touchdowns(&self, table: &Table, options: &[&str]) -> Vec<Value> {
+        let (robot, file) = (path(self.robot[0]), path(&format!("gaits/{}{}", self.name, table.ending)));
+        let first = ["batch", &robot, &file, "--touchdowns", "--at", "row"];
+        let arguments = [&first[..], &self.robot[1..], table.options, options].concat();
         heelstrike(&arguments).well().lines()
     }
 
     /// Every touchdown of the reference is found, and none beyond, with the same end of the same foot.
-    fn touchdowns_are_those_of_the_reference(&self, table: &str, options: &[&str]) {
-        let options = [options, &["--friction", "0.8", "--touching", "strike"]].concat();
-        let found = self.touchdowns(table, &options);
+    fn touchdowns_are_those_of_the_reference(&self, table: &Table) {
+        let found = self.touchdowns(table, &["--friction", "0.8", "--touching", "strike"]);
         let expected: BTreeMap<(usize, String), Expected> =
             self.reference().into_iter().map(|state| ((state.csv_row, state.striking.clone()), state)).collect();
-        assert_eq!(found.len(), expected.len(), "{}{table}", self.name);
+        assert_eq!(found.len(), expected.len(), "{}{}", self.name, table.ending);
         for expected in expected.values() {
-            let place = format!("{}{table}: {} at row {}", self.name, expected.striking, expected.csv_row);
+            let place = format!("{}{}: {} at row {}", self.name, table.ending, expected.striking, expected.csv_row);
             let [touchdown] = found.iter().filter(|found| expected.is(found)).collect::<Vec<_>>()[..] else {
                 panic!("{place}")
             };
@@ -163,34 +156,28 @@ impl Gait {
     }
 
     /// The same feet take part, by each rule of the reference; with recorded velocities they end in the same modes.
-    fn feet_that_touch_are_those_of_the_reference(&self, table: &str, options: &[&str], velocities_recorded: bool) {
+    fn feet_that_touch_are_those_of_the_reference(&self, table: &Table) {
         let expected = self.reference();
         for (rule, touching) in [("stance", "slow"), ("5mm", "near:0.005"), ("20mm", "near:0.02")] {
             for friction in FRICTIONS {
-                let options = [options, &["--friction", friction, "--touching", touching]].concat();
-                let found = self.touchdowns(table, &options);
+                let found = self.touchdowns(table, &["--friction", friction, "--touching", touching]);
                 for expected in expected.iter().filter(|expected| expected.rule == rule) {
-                    let place = format!("{}{table}, {rule}, row {}", self.name, expected.csv_row);
+                    let place = format!("{}{}, {rule}, row {}", self.name, table.ending, expected.csv_row);
                     let touchdown = found.iter().find(|found| expected.is(found)).unwrap_or_else(|| panic!("{place}"));
-                    let contacts = touchdown["contacts"].as_array().expect("contacts");
-                    let mut feet: Vec<&str> = contacts.iter().filter_map(|contact| contact["link"].as_str()).collect();
+                    let each = |list: &str, field: &str| -> Vec<Value> {
+                        let entries = touchdown[list].as_array().expect("a list");
+                        entries.iter().map(|entry| entry[field].clone()).collect()
+                    };
+                    let feet = each("contacts", "link");
+                    let mut feet: Vec<&str> = feet.iter().filter_map(Value::as_str).collect();
                     let mut should: Vec<&str> = expected.touching.iter().map(|contact| link(contact)).collect();
                     feet.sort_unstable();
                     should.sort_unstable();
                     assert_eq!(feet, should, "{place}");
-                    if velocities_recorded {
-                        let modes: Vec<Value> = touchdown["outcomes"]
-                            .as_array()
-                            .expect("outcomes")
-                            .iter()
-                            .map(|outcome| outcome["modes"].clone())
-                            .collect();
-                        let should: Vec<Value> = expected.by_friction[friction]
-                            .outcomes
-                            .iter()
-                            .map(|outcome| Value::from(outcome.modes.clone()))
-                            .collect();
-                        assert_eq!(modes, should, "{place} at friction {friction}");
+                    if table.has_velocities {
+                        let outcomes = &expected.by_friction[friction].outcomes;
+                        let should: Vec<Value> = outcomes.iter().map(|outcome| json!(outcome.modes)).collect();
+                        assert_eq!(each("outcomes", "modes"), should, "{place} at friction {friction}");
                     }
                 }
             }
@@ -203,44 +190,39 @@ fn link(contact: &str) -> &str {
     contact.split('/').next().unwrap_or_default()
 }
 
-const CENTRAL: &[&str] = &["--velocity", "central"];
+/// Checks a gait on the robot's file and feet.
+fn check(name: &str, robot: &[&str], tables: &[Table]) {
+    let gait = Gait { name, robot };
+    gait.outcomes_are_those_of_the_reference();
+    for table in tables {
+        gait.touchdowns_are_those_of_the_reference(table);
+        gait.feet_that_touch_are_those_of_the_reference(table);
+    }
+}
 
 #[test]
 fn the_rabbits_walk() {
-    RABBIT.outcomes_are_those_of_the_reference();
-    RABBIT.touchdowns_are_those_of_the_reference(".csv", &[]);
-    RABBIT.feet_that_touch_are_those_of_the_reference(".csv", &[], true);
+    let feet = ["--contact=right_shin:0,0,0.4", "--contact=left_shin:0,0,0.4"];
+    check("rabbit_walk", &["robots/rabbit/five_link_walker.urdf", feet[0], feet[1]], &[PLANAR]);
 }
 
 #[test]
 fn a_quadrupeds_trot() {
-    A1.outcomes_are_those_of_the_reference();
-    A1.touchdowns_are_those_of_the_reference(".csv", &[]);
-    A1.touchdowns_are_those_of_the_reference(".3d.csv", CENTRAL);
-    A1.feet_that_touch_are_those_of_the_reference(".csv", &[], true);
-    A1.feet_that_touch_are_those_of_the_reference(".3d.csv", CENTRAL, false);
+    check("a1_walk", &["robots/a1/a1.urdf"], &[PLANAR, SPATIAL]);
 }
 
 #[test]
 fn a_humanoids_walk() {
-    H1_WALK.outcomes_are_those_of_the_reference();
-    H1_WALK.touchdowns_are_those_of_the_reference(".csv", &[]);
-    H1_WALK.touchdowns_are_those_of_the_reference(".3d.csv", CENTRAL);
-    H1_WALK.feet_that_touch_are_those_of_the_reference(".csv", &[], true);
-    H1_WALK.feet_that_touch_are_those_of_the_reference(".3d.csv", CENTRAL, false);
+    check("h1_walk", &["robots/h1/h1.urdf"], &[PLANAR, SPATIAL]);
 }
 
 #[test]
 fn a_humanoids_run() {
-    H1_RUN.outcomes_are_those_of_the_reference();
-    H1_RUN.touchdowns_are_those_of_the_reference(".csv", &[]);
-    H1_RUN.touchdowns_are_those_of_the_reference(".3d.csv", CENTRAL);
-    H1_RUN.feet_that_touch_are_those_of_the_reference(".csv", &[], true);
-    H1_RUN.feet_that_touch_are_those_of_the_reference(".3d.csv", CENTRAL, false);
+    check("h1_run", &["robots/h1/h1.urdf"], &[PLANAR, SPATIAL]);
 }
 
 #[test]
-fn what_a_motion_in_three_dimensions_loses_is_told_once() {
+fn what_a_spatial_motion_loses_is_noted_once() {
     let (robot, table) = (path("robots/a1/a1.urdf"), path("gaits/a1_walk.3d.csv"));
     let options = ["--velocity", "central", "--touchdowns", "--friction", "0.8"];
     let stderr = heelstrike(&[&["batch", &robot, &table], &options[..]].concat()).well().stderr;

@@ -3,84 +3,19 @@
 //!
 //! Both sides use different coordinates; [`to_reference`] holds the transformation.
 
-use std::collections::BTreeMap;
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::sync::LazyLock;
 
 use nalgebra::DMatrix;
-use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::support::answers::{Answer, answers};
 use crate::support::command::{file, read};
+use crate::support::paper::{At, MODELS, Model, REFERENCE};
 use crate::support::scaled::{Differences, largest, matrix};
 
 /// To this share of the largest entry, contact velocity or impulse of the case.
 const TOLERANCE: f64 = 1e-11;
-
-/// Lower leg, knee to foot centre, and upper leg of RAMone \[m\].
-const SHANK: f64 = 0.2385;
-const THIGH: f64 = 0.2;
-
-#[derive(Clone, Copy, PartialEq)]
-enum Legs {
-    Straight,
-    Kneed,
-}
-
-/// A model of the reference and the URDF file it is read from.
-struct Model {
-    name: &'static str,
-    urdf: &'static str,
-    /// The legs' inertia that takes the place of the file's.
-    inertia: Option<&'static str>,
-    legs: Legs,
-}
-
-const MODELS: [Model; 6] = [
-    Model { name: "minimalistic", urdf: "minimalistic", inertia: None, legs: Legs::Straight },
-    Model { name: "pdw_j0.04", urdf: "pdw", inertia: None, legs: Legs::Straight },
-    Model { name: "pdw_j0.24", urdf: "pdw", inertia: Some("0.24"), legs: Legs::Straight },
-    Model { name: "pdw_j0.44", urdf: "pdw", inertia: Some("0.44"), legs: Legs::Straight },
-    Model { name: "ramone_table1_script_precision", urdf: "ramone", inertia: None, legs: Legs::Kneed },
-    Model { name: "ramone_as_computed_in_paper", urdf: "ramone_paper", inertia: None, legs: Legs::Kneed },
-];
-
-/// What the reference says about a model: states by leg angle, and regions `[start, "modes|modes"]` by friction.
-#[derive(Deserialize)]
-struct Reference {
-    at: BTreeMap<String, At>,
-    regions: BTreeMap<String, Vec<(String, String)>>,
-}
-
-/// One state; contact rows are [trailing x, y, leading x, y].
-#[derive(Deserialize)]
-struct At {
-    mass_matrix: Vec<Vec<f64>>,
-    contact_jacobian: Vec<Vec<f64>>,
-    delassus: Vec<Vec<f64>>,
-    contact_velocity_before: [f64; 4],
-    three_cases: BTreeMap<String, [f64; 4]>,
-    outcomes: BTreeMap<String, Vec<Expected>>,
-    pose: Option<Pose>,
-}
-
-#[derive(Deserialize)]
-struct Expected {
-    modes: [String; 2],
-    impulse: [f64; 4],
-    velocity_after: [f64; 4],
-}
-
-#[derive(Deserialize)]
-struct Pose {
-    hip: [f64; 2],
-    knee: f64,
-    pitch: f64,
-}
-
-static REFERENCE: LazyLock<BTreeMap<String, Reference>> =
-    LazyLock::new(|| serde_json::from_str(include_str!("../data/paper.json")).expect("the reference is readable"));
 
 /// A state of the reference and what the binary answers for it.
 struct Case {
@@ -102,7 +37,7 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
             .collect();
         let states: Vec<Value> = listed
             .iter()
-            .map(|&(alpha, at, friction)| state(model, alpha.parse().unwrap(), at.pose.as_ref(), friction))
+            .map(|&(alpha, at, friction)| model.state(alpha.parse().unwrap(), at.pose.as_ref(), friction))
             .collect();
         for ((alpha, reference, friction), answer) in listed.into_iter().zip(impact(model, &states)) {
             let place = format!("{}, alpha {alpha}, friction {friction}", model.name);
@@ -111,13 +46,6 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     }
     cases
 });
-
-impl Case {
-    /// The answer, or the reason that there is none as a difference.
-    fn answer(&self, differences: &mut Differences) -> Option<&Answer> {
-        self.answer.as_ref().map_err(|refusal| differences.note(&self.place, refusal)).ok()
-    }
-}
 
 /// Runs `impact` on a model's states.
 fn impact(model: &Model, states: &[Value]) -> Vec<Result<Answer, String>> {
@@ -136,50 +64,16 @@ fn urdf(model: &Model) -> String {
     file(&format!("{}.urdf", model.name), text.replace(of_file, &format!("iyy=\"{inertia}\"")))
 }
 
-/// The trailing foot at rest on the ground, the robot turning about it at 1 rad/s counter-clockwise, joints at rest.
-fn state(model: &Model, alpha: f64, pose: Option<&Pose>, friction: &str) -> Value {
-    let friction = friction.parse().map_or(json!(friction), |number: f64| json!(number));
-    let id = format!("{} {alpha} {friction}", model.name);
-    let (stance, pitch, joints) = match model.legs {
-        // Angles from straight down: trailing +alpha, leading -alpha; the root is the trailing leg.
-        Legs::Straight => ("left_leg", -alpha, json!({"hip": -2.0 * alpha})),
-        Legs::Kneed => {
-            let bend = (SHANK / THIGH).atan();
-            let computed = Pose { hip: [bend + alpha, bend - alpha], knee: -std::f64::consts::FRAC_PI_2, pitch: 0.0 };
-            let Pose { hip: [trailing, leading], knee, pitch } = *pose.unwrap_or(&computed);
-            let joints = json!({"left_hip": trailing, "left_knee": knee, "right_hip": leading, "right_knee": knee});
-            ("left_foot", -pitch, joints)
-        }
-    };
-    json!({
-        "id": id,
-        "position": {"base": {"pitch": pitch}, "joints": joints},
-        "velocity": {"base": {"pitch": -1.0}},
-        "stance": stance,
-        "friction": friction,
-    })
-}
-
 /// T of q_reference = T q_tool. Reference: angles counter-clockwise, the walkers' legs absolute [x, y, trailing,
 /// leading]. Tool: pitch clockwise, joints relative.
-fn to_reference(legs: Legs) -> DMatrix<f64> {
-    match legs {
-        Legs::Straight => DMatrix::from_row_slice(
-            4,
-            4,
-            &[
-                1.0, 0.0, 0.0, 0.0, //
-                0.0, 1.0, 0.0, 0.0, //
-                0.0, 0.0, -1.0, 0.0, //
-                0.0, 0.0, -1.0, 1.0,
-            ],
-        ),
-        Legs::Kneed => {
-            let mut signs = DMatrix::identity(7, 7);
-            signs[(2, 2)] = -1.0;
-            signs
-        }
+fn to_reference(kneed: bool) -> DMatrix<f64> {
+    let dofs = if kneed { 7 } else { 4 };
+    let mut transformation = DMatrix::identity(dofs, dofs);
+    transformation[(2, 2)] = -1.0;
+    if !kneed {
+        transformation[(3, 2)] = -1.0;
     }
+    transformation
 }
 
 /// Modes in one order, to compare as sets.
@@ -187,6 +81,11 @@ fn sorted(modes: impl Iterator<Item = String>) -> Vec<String> {
     let mut modes: Vec<String> = modes.collect();
     modes.sort();
     modes
+}
+
+/// The modes of all outcomes.
+fn found(answer: &Answer) -> Vec<String> {
+    sorted(answer.outcomes.iter().map(|outcome| outcome.modes.join("/")))
 }
 
 /// The numbers of the combination of modes, be it an outcome or rejected: impulse and velocity after.
@@ -201,20 +100,16 @@ fn combination(answer: &Answer, modes: [&str; 2]) -> Option<(Vec<f64>, Vec<f64>)
 fn matrices_are_those_of_the_paper_in_the_tools_coordinates() {
     let mut differences = Differences::default();
     for case in CASES.iter() {
-        let Some(answer) = case.answer(&mut differences) else { continue };
+        let Some(answer) = differences.accepted(&case.place, case.answer.as_ref()) else { continue };
         let (place, at) = (&case.place, case.reference);
-        let turn = to_reference(case.model.legs);
-        let (coordinates, links): (&[&str], _) = match case.model.legs {
-            Legs::Straight => (&["x", "z", "pitch", "hip"], ["left_leg", "right_leg"]),
-            Legs::Kneed => {
-                (&["x", "z", "pitch", "left_hip", "left_knee", "right_hip", "right_knee"], ["left_foot", "right_foot"])
-            }
-        };
-        if answer.coordinates != coordinates {
+        let turn = to_reference(case.model.kneed);
+        let joints: &[&str] =
+            if case.model.kneed { &["left_hip", "left_knee", "right_hip", "right_knee"] } else { &["hip"] };
+        if answer.coordinates != [&["x", "z", "pitch"], joints].concat() {
             differences.note(place, format!("coordinates {:?}", answer.coordinates));
         }
         let touching: Vec<_> = answer.contacts.iter().filter_map(|contact| contact.link.as_deref()).collect();
-        if touching != links {
+        if touching != case.model.feet() {
             differences.note(place, format!("contacts {touching:?}"));
         }
         let mass = turn.transpose() * matrix(&at.mass_matrix) * &turn;
@@ -234,7 +129,7 @@ fn matrices_are_those_of_the_paper_in_the_tools_coordinates() {
 fn the_three_cases_are_among_outcomes_and_rejections() {
     let mut differences = Differences::default();
     for case in CASES.iter().filter(|case| case.friction == "infinite") {
-        let Some(answer) = case.answer(&mut differences) else { continue };
+        let Some(answer) = differences.accepted(&case.place, case.answer.as_ref()) else { continue };
         for (name, &[c_x, c_y, l_x, l_y]) in &case.reference.three_cases {
             let place = format!("{}: {name}", case.place);
             let trailing = match name.as_str() {
@@ -270,9 +165,9 @@ fn the_three_cases_are_among_outcomes_and_rejections() {
 fn every_outcome_is_found_and_no_other() {
     let mut differences = Differences::default();
     for case in CASES.iter() {
-        let Some(answer) = case.answer(&mut differences) else { continue };
+        let Some(answer) = differences.accepted(&case.place, case.answer.as_ref()) else { continue };
         let (place, expected) = (&case.place, &case.reference.outcomes[case.friction]);
-        let found = sorted(answer.outcomes.iter().map(|outcome| outcome.modes.join("/")));
+        let found = found(answer);
         let should = sorted(expected.iter().map(|outcome| outcome.modes.join("/")));
         if found != should {
             differences.note(place, format!("outcomes {found:?} instead of {should:?}"));
@@ -313,25 +208,21 @@ fn regions_of_the_leg_angle_begin_and_end_where_the_reference_says() {
             for (index, (from, outcomes)) in regions.iter().enumerate() {
                 let from: f64 = from.parse().expect("an angle");
                 let next = start(index + 1);
-                let middle = 0.5 * (from + next.unwrap_or(std::f64::consts::FRAC_PI_2));
+                let middle = 0.5 * (from + next.unwrap_or(FRAC_PI_2));
                 // The two outer ends are limits of the study, not borders.
                 let first = (index > 0).then_some(from + BESIDE);
                 for alpha in [first, Some(middle), next.map(|next| next - BESIDE)].into_iter().flatten() {
-                    states.push(state(model, alpha, None, friction));
+                    states.push(model.state(alpha, None, friction));
                     expected.push(sorted(outcomes.split('|').map(String::from)));
                 }
             }
         }
         for ((state, should), answer) in states.iter().zip(expected).zip(impact(model, &states)) {
             let place = state["id"].as_str().expect("a name");
-            match answer {
-                Err(refusal) => differences.note(place, refusal),
-                Ok(answer) => {
-                    let found = sorted(answer.outcomes.iter().map(|outcome| outcome.modes.join("/")));
-                    if found != should {
-                        differences.note(place, format!("{:?}: {found:?} instead of {should:?}", answer.verdict));
-                    }
-                }
+            let Some(answer) = differences.accepted(place, answer) else { continue };
+            let found = found(&answer);
+            if found != should {
+                differences.note(place, format!("{:?}: {found:?} instead of {should:?}", answer.verdict));
             }
         }
     }
@@ -368,8 +259,10 @@ fn table_2_of_the_paper_comes_out_to_its_printed_digits() {
 #[test]
 fn the_degenerate_walker_is_proven_however_near_its_border_is() {
     let model = MODELS.iter().find(|model| model.name == "pdw_j0.24").expect("the walker");
-    let state = state(model, FRAC_PI_4, None, "infinite");
-    let answer = impact(model, &[state]).pop().expect("a line").expect("an answer without null among its numbers");
+    let answer = impact(model, &[model.state(FRAC_PI_4, None, "infinite")])
+        .pop()
+        .expect("a line")
+        .expect("an answer without null among its numbers");
     assert!(answer.proven, "{answer:#?}");
     let least = answer.outcomes.iter().filter_map(|outcome| outcome.margin).fold(f64::INFINITY, f64::min);
     // pi/4 is off by 6e-17.
@@ -380,7 +273,7 @@ fn the_degenerate_walker_is_proven_however_near_its_border_is() {
 /// 2]]. An external impulse L_ext acts like the velocity before G L_ext; each region of its angle has its own outcomes.
 #[test]
 fn the_single_body_ends_as_its_region_says() {
-    let model = Model { name: "block", urdf: "block", inertia: None, legs: Legs::Straight };
+    let model = Model { name: "block", urdf: "block", inertia: None, kneed: false };
     let regions: [(&str, [f64; 2], &[&str]); 4] = [
         ("A", [0.0, 1.0], &["separate"]),
         ("B", [-4.0, 1.0], &["slide-"]),
@@ -396,16 +289,10 @@ fn the_single_body_ends_as_its_region_says() {
         .collect();
     let mut differences = Differences::default();
     for ((region, [l_t, l_n], modes), answer) in regions.into_iter().zip(impact(&model, &states)) {
-        let answer = match answer {
-            Ok(answer) => answer,
-            Err(refusal) => {
-                differences.note(region, refusal);
-                continue;
-            }
-        };
+        let Some(answer) = differences.accepted(region, answer) else { continue };
         let delassus = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]);
         differences.compare_matrix(&format!("{region}: G"), &answer.delassus, &delassus, TOLERANCE);
-        let found = sorted(answer.outcomes.iter().map(|outcome| outcome.modes.join("/")));
+        let found = found(&answer);
         if found != modes {
             differences.note(region, format!("{found:?} instead of {modes:?}"));
         }

@@ -2,7 +2,7 @@
 //! `solve`: modes, velocities, least impulses and their ranges, borders, families, indices, rank; and all of it proven.
 
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::support::answers::{Answer, Outcome, answers};
 use crate::support::scaled::{Differences, largest};
@@ -13,10 +13,7 @@ const TOLERANCE: f64 = 1e-9;
 #[derive(Deserialize)]
 struct Problem {
     id: String,
-    delassus: Vec<Vec<f64>>,
     velocity_before: Vec<[f64; 2]>,
-    friction: Value,
-    restitution: Value,
     expected: Expected,
 }
 
@@ -44,32 +41,16 @@ struct ExpectedOutcome {
 
 #[test]
 fn the_problems_of_others_have_exactly_their_outcomes() {
-    let problems: Vec<Problem> =
-        serde_json::from_str(include_str!("../data/problems.json")).expect("the problems are readable");
-    let inputs: Vec<Value> = problems
-        .iter()
-        .map(|problem| {
-            json!({
-                "id": problem.id,
-                "delassus": problem.delassus,
-                "velocity_before": problem.velocity_before,
-                "friction": problem.friction,
-                "restitution": problem.restitution,
-            })
-        })
-        .collect();
+    let text = include_str!("../data/problems.json");
+    let problems: Vec<Problem> = serde_json::from_str(text).expect("the problems are readable");
+    // What is expected is no field of a problem and not read.
+    let inputs: Vec<Value> = serde_json::from_str(text).expect("JSON");
     let mut differences = Differences::default();
-    let mut compared = 0;
     for (problem, answer) in problems.iter().zip(answers(&["solve", "-", "--format", "json"], &inputs)) {
-        match answer {
-            Err(refusal) => differences.note(&problem.id, refusal),
-            Ok(answer) => {
-                compare(problem, &answer, &mut differences);
-                compared += 1;
-            }
+        if let Some(answer) = differences.accepted(&problem.id, answer) {
+            compare(problem, &answer, &mut differences);
         }
     }
-    eprintln!("{compared} of {} problems compared", problems.len());
     differences.finish();
 }
 
@@ -85,7 +66,7 @@ fn compare(problem: &Problem, answer: &Answer, differences: &mut Differences) {
     if answer.rank != Some(expected.rank) {
         differences.note(id, format!("rank {:?} instead of {}", answer.rank, expected.rank));
     }
-    // The references tell no sum where a contact's share in it is defined by regularization.
+    // The references have no sum where a contact's share in it is defined by regularization.
     if expected.index_sum.is_some() && answer.index_sum != expected.index_sum {
         differences.note(id, format!("index sum {:?} instead of {:?}", answer.index_sum, expected.index_sum));
     }
@@ -110,8 +91,8 @@ fn compare_outcome(place: &str, found: &Outcome, should: &ExpectedOutcome, diffe
     if flags != expected {
         differences.note(place, format!("(impulse unique, border, family) {flags:?} instead of {expected:?}"));
     }
-    if !found.proven || found.index != should.index.or(should.index_extended) {
-        let expected = should.index.or(should.index_extended);
+    let expected = should.index.or(should.index_extended);
+    if !found.proven || found.index != expected {
         differences.note(place, format!("proven {}, index {:?} instead of {expected:?}", found.proven, found.index));
     }
     let (impulse, least) = (found.impulse.concat(), should.impulse.concat());
@@ -120,10 +101,7 @@ fn compare_outcome(place: &str, found: &Outcome, should: &ExpectedOutcome, diffe
     match (&found.impulse_range, &should.impulse_range) {
         (None, None) => {}
         (Some(found), Some(should)) => {
-            let ends = |range: &[[[Option<f64>; 2]; 2]]| -> Vec<Option<f64>> {
-                range.iter().flatten().flatten().copied().collect()
-            };
-            let (found, should) = (ends(found), ends(should));
+            let [found, should] = [found, should].map(|range| range.concat().concat());
             let bounded = |range: &[Option<f64>]| range.iter().map(Option::is_some).collect::<Vec<_>>();
             if bounded(&found) != bounded(&should) {
                 differences.note(place, format!("range {found:?} instead of {should:?}"));

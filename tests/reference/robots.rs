@@ -3,12 +3,14 @@
 //! taken that the rules of `robot` mean: `default` where the root link floats.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::support::answers::{Answer, Outcome, answers};
+use crate::support::answers::{Outcome, answers};
+use crate::support::command::read;
 use crate::support::scaled::{Differences, largest, matrix};
 
 /// To this share of the largest entry.
@@ -34,7 +36,7 @@ struct Base {
     mode: String,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct Contact {
     link: String,
     offset: [f64; 3],
@@ -71,38 +73,36 @@ struct Struck {
 
 /// A robot of `tests/data/robots`.
 struct Robot {
+    name: &'static str,
     urdf: String,
     variant: Variant,
 }
 
 impl Robot {
-    fn read(name: &str, variant: &str) -> Self {
-        let folder = format!("{}/tests/data/robots/{name}", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(format!("{folder}/reference.json")).expect("the robot's reference");
-        let Reference { urdf, mut variants } = serde_json::from_str(&text).expect("the reference is readable");
+    fn read(name: &'static str, variant: &str) -> Self {
+        let folder = format!("tests/data/robots/{name}");
+        let reference = read(&format!("{folder}/reference.json"));
+        let Reference { urdf, mut variants } = serde_json::from_str(&reference).expect("the reference is readable");
         let variant = variants.remove(variant).expect("the variant");
         let variant = serde_json::from_value(variant).expect("the variant is readable");
-        Self { urdf: format!("{folder}/{urdf}"), variant }
+        Self { name, urdf: format!("{folder}/{urdf}"), variant }
     }
 
     /// The state of a configuration with these contacts.
     fn state(&self, id: &str, config: &Config, contacts: &[Contact], friction: f64) -> Value {
         let named = |values: &[f64]| {
-            let named = self.variant.coordinates.iter().zip(values).map(|(name, &value)| (name.clone(), value));
-            let (base, joints) = named.enumerate().partition::<Vec<_>, _>(|(index, _)| *index < self.base_dofs());
-            let [base, joints] = [base, joints].map(|part| part.into_iter().map(|(_, entry)| entry));
-            let [base, joints] = [base, joints].map(BTreeMap::from_iter);
-            match self.base_dofs() {
-                0 => json!({"joints": joints}),
-                _ => json!({"base": base, "joints": joints}),
+            let named = |range: Range<usize>| -> BTreeMap<_, _> {
+                range.map(|index| (&self.variant.coordinates[index], values[index])).collect()
+            };
+            let mut named =
+                json!({"base": named(0..self.base_dofs()), "joints": named(self.base_dofs()..values.len())});
+            if self.base_dofs() == 0 {
+                named.as_object_mut().map(|named| named.remove("base"));
             }
+            named
         };
-        let contacts: Vec<Value> = contacts
-            .iter()
-            .map(|contact| json!({"link": contact.link, "offset": contact.offset, "radius": contact.radius}))
-            .collect();
         json!({
-            "id": id,
+            "id": format!("{}, {id}", self.name),
             "position": named(&config.q),
             "velocity": named(&config.v),
             "friction": friction,
@@ -127,72 +127,34 @@ impl Robot {
 }
 
 #[test]
-fn a1_equals_its_reference() {
-    compare("a1", "default");
-}
-
-#[test]
-fn acrobot_equals_its_reference() {
-    compare("acrobot", "fixed");
-}
-
-#[test]
-fn cartpole_equals_its_reference() {
-    compare("cartpole", "fixed_prismatic");
-}
-
-#[test]
-fn h1_equals_its_reference() {
-    compare("h1", "default");
-}
-
-#[test]
-fn planar_walker_torso_equals_its_reference() {
-    compare("planar_walker_torso", "rerooted");
-}
-
-#[test]
-fn rabbit_equals_its_reference() {
-    compare("rabbit", "default");
-}
-
-#[test]
-fn solo8_equals_its_reference() {
-    compare("solo8", "default");
-}
-
-#[test]
-fn upkie_equals_its_reference() {
-    compare("upkie", "default");
-}
-
-fn compare(name: &str, variant: &str) {
-    let robot = Robot::read(name, variant);
+fn robots_equal_their_references() {
     let mut differences = Differences::default();
-    compare_matrices(&robot, &mut differences);
-    compare_single_contacts(&robot, &mut differences);
+    for (name, variant) in [
+        ("a1", "default"),
+        ("acrobot", "fixed"),
+        ("cartpole", "fixed_prismatic"),
+        ("h1", "default"),
+        ("planar_walker_torso", "rerooted"),
+        ("rabbit", "default"),
+        ("solo8", "default"),
+        ("upkie", "default"),
+    ] {
+        let robot = Robot::read(name, variant);
+        compare_matrices(&robot, &mut differences);
+        compare_single_contacts(&robot, &mut differences);
+    }
     differences.finish();
 }
 
 fn compare_matrices(robot: &Robot, differences: &mut Differences) {
-    let variant = &robot.variant;
-    let states: Vec<Value> = variant
-        .configs
-        .iter()
-        .enumerate()
-        .map(|(index, config)| robot.state(&format!("configuration {index}"), config, &variant.contacts, 0.8))
-        .collect();
+    let Variant { configs, contacts, coordinates, .. } = &robot.variant;
+    let state = |(at, config): (usize, &Config)| robot.state(&format!("configuration {at}"), config, contacts, 0.8);
+    let states: Vec<Value> = configs.iter().enumerate().map(state).collect();
     let answers = answers(&["impact", &robot.urdf, "-", "--format", "json", "--matrices"], &states);
-    for ((config, state), answer) in variant.configs.iter().zip(&states).zip(answers) {
+    for ((config, state), answer) in configs.iter().zip(&states).zip(answers) {
         let place = state["id"].as_str().expect("a name");
-        let answer = match answer {
-            Ok(answer) => answer,
-            Err(refusal) => {
-                differences.note(place, refusal);
-                continue;
-            }
-        };
-        if answer.coordinates != variant.coordinates {
+        let Some(answer) = differences.accepted(place, answer) else { continue };
+        if answer.coordinates != *coordinates {
             differences.note(place, format!("coordinates {:?}", answer.coordinates));
         }
         differences.compare_matrix(&format!("{place}: M"), &answer.mass_matrix, &matrix(&config.M), TOLERANCE);
@@ -212,64 +174,42 @@ fn compare_matrices(robot: &Robot, differences: &mut Differences) {
 /// `stick` of the reference is the mode stick, valid or rejected; `normal_only` is a slide without friction: the
 /// contact point stays on the ground and L_t = 0.
 fn compare_single_contacts(robot: &Robot, differences: &mut Differences) {
-    let variant = &robot.variant;
     let (mut states, mut expected) = (Vec::new(), Vec::new());
-    for (index, config) in variant.configs.iter().enumerate() {
-        for (contact, impact) in variant.contacts.iter().zip(&config.impacts).enumerate().map(|(at, pair)| (at, pair.1))
-        {
-            let struck = [("stick", 0.8, &impact.stick), ("slide", 0.0, &impact.normal_only)];
-            for (mode, friction, should) in
-                struck.into_iter().filter_map(|(mode, friction, should)| Some((mode, friction, should.as_ref()?)))
-            {
-                let id = format!("configuration {index}, contact {contact} alone, {mode}");
-                let alone = std::slice::from_ref(&variant.contacts[contact]);
-                states.push(robot.state(&id, config, alone, friction));
-                expected.push((mode, &config.J[2 * contact..2 * contact + 2], config, should));
+    for (index, config) in robot.variant.configs.iter().enumerate() {
+        for (at, (contact, impact)) in robot.variant.contacts.iter().zip(&config.impacts).enumerate() {
+            for (mode, friction, should) in [("stick", 0.8, &impact.stick), ("slide", 0.0, &impact.normal_only)] {
+                let Some(should) = should else { continue };
+                let id = format!("configuration {index}, contact {at} alone, {mode}");
+                states.push(robot.state(&id, config, std::slice::from_ref(contact), friction));
+                expected.push((mode, &config.J[2 * at..2 * at + 2], config, should));
             }
         }
     }
     let answers = answers(&["impact", &robot.urdf, "-", "--format", "json", "--explain"], &states);
     for ((state, (mode, rows, config, should)), answer) in states.iter().zip(expected).zip(answers) {
         let place = state["id"].as_str().expect("a name");
-        match answer {
-            Err(refusal) => differences.note(place, refusal),
-            Ok(answer) => compare_struck(robot, place, &answer, mode, rows, config, should, differences),
+        let Some(answer) = differences.accepted(place, answer) else { continue };
+        let outcome = answer.outcomes.iter().find(|outcome| outcome.modes[0].starts_with(mode));
+        let rejected = answer.rejected.iter().filter(|rejected| rejected.modes[0].starts_with(mode));
+        let numbers = outcome.map(|outcome| (&outcome.impulse, &outcome.velocity_after)).into_iter();
+        let rejected = rejected.filter_map(|rejected| rejected.impulse.as_ref().zip(rejected.velocity_after.as_ref()));
+        let mut listed = false;
+        for (impulse, velocity) in numbers.chain(rejected) {
+            listed = true;
+            let within = TOLERANCE * largest(&should.impulse);
+            differences.compare(&format!("{place}: L"), &impulse.concat(), &should.impulse, within);
+            let before = contact_velocity(rows, &config.v);
+            let mut after = contact_velocity(rows, &should.v_plus);
+            let within = TOLERANCE * largest(&before).max(largest(&after));
+            // Zero by definition; the product above leaves rounding there.
+            after[1] = 0.0;
+            differences.compare(&format!("{place}: c after"), &velocity.concat(), &after, within);
         }
-    }
-}
-
-#[allow(clippy::too_many_arguments, reason = "one contact's reference has this many parts")]
-fn compare_struck(
-    robot: &Robot,
-    place: &str,
-    answer: &Answer,
-    mode: &str,
-    rows: &[Vec<f64>],
-    config: &Config,
-    should: &Struck,
-    differences: &mut Differences,
-) {
-    let outcome = answer.outcomes.iter().find(|outcome| outcome.modes[0].starts_with(mode));
-    let rejected = answer.rejected.iter().filter(|rejected| rejected.modes[0].starts_with(mode));
-    let numbers = outcome.map(|outcome| (&outcome.impulse, &outcome.velocity_after));
-    let numbers = numbers.into_iter().chain(rejected.filter_map(|r| r.impulse.as_ref().zip(r.velocity_after.as_ref())));
-    let mut listed = 0;
-    for (impulse, velocity) in numbers {
-        listed += 1;
-        let within = TOLERANCE * largest(&should.impulse);
-        differences.compare(&format!("{place}: L"), &impulse.concat(), &should.impulse, within);
-        let before = contact_velocity(rows, &config.v);
-        let mut after = contact_velocity(rows, &should.v_plus);
-        let within = TOLERANCE * largest(&before).max(largest(&after));
-        // Zero by definition; the product above leaves rounding there.
-        after[1] = 0.0;
-        differences.compare(&format!("{place}: c after"), &velocity.concat(), &after, within);
-    }
-    if listed == 0 {
-        differences.note(place, "neither among the outcomes nor among the rejected with its numbers");
-    }
-    // The whole robot's velocity and energy are listed for outcomes alone.
-    if let Some(outcome) = outcome {
+        if !listed {
+            differences.note(place, "neither among the outcomes nor among the rejected with its numbers");
+        }
+        // The whole robot's velocity and energy are listed only for outcomes.
+        let Some(outcome) = outcome else { continue };
         // A robot with as many coordinates as the contact has directions stops dead.
         let within = TOLERANCE * largest(&should.v_plus).max(largest(&config.v));
         differences.compare(&format!("{place}: v after"), &robot.velocity_after(outcome), &should.v_plus, within);

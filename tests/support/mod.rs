@@ -6,6 +6,7 @@ pub mod answers;
 pub mod command;
 pub mod impact;
 pub mod mechanism;
+pub mod paper;
 pub mod parallel;
 pub mod random;
 pub mod rational;

@@ -12,6 +12,11 @@ impl Differences {
         self.0.push(format!("{place}: {what}"));
     }
 
+    /// What was accepted; notes a refusal.
+    pub fn accepted<T>(&mut self, place: &str, result: Result<T, impl std::fmt::Display>) -> Option<T> {
+        result.map_err(|refusal| self.note(place, refusal)).ok()
+    }
+
     /// Compares number by number; `tolerance` is absolute: the factor times the size it refers to.
     pub fn compare(&mut self, place: &str, is: &[f64], should: &[f64], tolerance: f64) {
         if is.len() != should.len() {

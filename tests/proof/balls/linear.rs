@@ -28,9 +28,7 @@ impl Zero {
 /// A number that depends on what is free: constant + sum of factors * s.
 #[derive(Debug, Clone)]
 pub struct Affine<N> {
-    /// Its value where all that is free is zero.
     pub constant: N,
-    /// What one unit of each free number adds.
     pub factors: Vec<N>,
 }
 
@@ -40,13 +38,11 @@ impl<N: Number> Affine<N> {
         Self { constant, factors: vec![N::new(0.0, bits); free] }
     }
 
-    /// The sum.
     pub fn plus(&self, other: &Self) -> Self {
         let factors = self.factors.iter().zip(&other.factors).map(|(a, b)| a.plus(b)).collect();
         Self { constant: self.constant.plus(&other.constant), factors }
     }
 
-    /// The product with a number.
     pub fn times(&self, factor: &N) -> Self {
         let factors = self.factors.iter().map(|entry| entry.times(factor)).collect();
         Self { constant: self.constant.times(factor), factors }
@@ -65,11 +61,9 @@ pub struct Solution<N> {
 
 /// What becomes of a system of equations.
 pub enum Solved<N> {
-    /// Not told by this precision.
+    /// Not decided by this precision.
     Open,
-    /// It has no solution.
     Contradictory,
-    /// It has.
     Solution(Solution<N>),
 }
 
@@ -82,16 +76,11 @@ pub fn solve<N: Number>(mut rows: Vec<Vec<N>>, zero: Zero, scale: f64, scale_rig
     while rank < n {
         let k = rank;
         let places = (k..n).flat_map(|row| (k..n).map(move |column| (row, column)));
-        let told = |&(row, column): &(usize, usize)| {
-            matches!(rows[row][column].sign(), Some(Ordering::Less | Ordering::Greater))
-        };
-        let size = |(row, column): (usize, usize)| rows[row][column].size();
-        let Some((row, column)) = places.clone().filter(told).max_by(|&a, &b| size(a).total_cmp(&size(b))) else {
-            let vanishes = |(row, column): (usize, usize)| {
-                let row: &Vec<N> = &rows[row];
-                zero.sign(&row[column], scale) == Some(Ordering::Equal)
-            };
-            if !places.into_iter().all(vanishes) {
+        let at = |(row, column): (usize, usize)| -> &N { &rows[row][column] };
+        let signed = |&place: &(usize, usize)| at(place).sign().is_some_and(Ordering::is_ne);
+        let largest = places.clone().filter(signed).max_by(|&a, &b| at(a).size().total_cmp(&at(b).size()));
+        let Some((row, column)) = largest else {
+            if !places.into_iter().all(|place| zero.sign(at(place), scale) == Some(Ordering::Equal)) {
                 return Solved::Open;
             }
             break;
@@ -135,15 +124,8 @@ pub fn solve<N: Number>(mut rows: Vec<Vec<N>>, zero: Zero, scale: f64, scale_rig
 
     // Unknowns beyond the rank are free; the others follow from the last to the first.
     let free = n - rank;
-    let mut values: Vec<Affine<N>> = (0..n)
-        .map(|column| {
-            let mut value = Affine::constant(N::new(0.0, bits), free, bits);
-            if column >= rank {
-                value.factors[column - rank] = N::new(1.0, bits);
-            }
-            value
-        })
-        .collect();
+    let mut values = vec![Affine::constant(N::new(0.0, bits), free, bits); n];
+    (rank..n).for_each(|column| values[column].factors[column - rank] = N::new(1.0, bits));
     for k in (0..rank).rev() {
         let mut rest = Affine::constant(rows[k][n].clone(), free, bits);
         for column in k + 1..n {
@@ -160,11 +142,9 @@ pub fn solve<N: Number>(mut rows: Vec<Vec<N>>, zero: Zero, scale: f64, scale_rig
 /// The inequality `value >= 0`, or `> 0` where it is strict.
 #[derive(Debug, Clone)]
 pub struct Inequality<N> {
-    /// Its left side.
     pub value: Affine<N>,
     /// The size of its constant; its factors have that of `scale / unit`.
     pub scale: f64,
-    /// Whether zero violates it.
     pub strict: bool,
 }
 
@@ -201,16 +181,16 @@ pub fn feasible<N: Number>(mut list: Vec<Inequality<N>>, zero: Zero, unit: f64) 
         }
         list = rest;
     }
-    let mut told = true;
+    let mut decided = true;
     for Inequality { value, scale, strict } in &list {
         match zero.sign(&value.constant, *scale) {
-            None => told = false,
+            None => decided = false,
             Some(Ordering::Less) => return Some(false),
             Some(Ordering::Equal) if *strict => return Some(false),
             Some(_) => {}
         }
     }
-    told.then_some(true)
+    decided.then_some(true)
 }
 
 #[cfg(test)]

@@ -8,15 +8,10 @@ use std::cmp::Ordering;
 pub trait Number: Clone {
     /// Exactly `value`, to be calculated with in `bits` bits.
     fn new(value: f64, bits: usize) -> Self;
-    /// The sum.
     fn plus(&self, other: &Self) -> Self;
-    /// The difference.
-    fn minus(&self, other: &Self) -> Self;
-    /// The product.
     fn times(&self, other: &Self) -> Self;
     /// The quotient; `other` must have a sign.
     fn over(&self, other: &Self) -> Self;
-    /// The negative.
     fn negative(&self) -> Self;
     /// Cosine and sine of an angle \[rad\].
     fn cos_sin(&self) -> [Self; 2];
@@ -24,6 +19,10 @@ pub trait Number: Clone {
     fn sign(&self) -> Option<Ordering>;
     /// No less than its magnitude, and where it has a sign at most twice that.
     fn size(&self) -> f64;
+
+    fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negative())
+    }
 
     /// Whether it is zero for certain.
     fn is_zero(&self) -> bool {
@@ -39,10 +38,6 @@ impl Number for f64 {
 
     fn plus(&self, other: &Self) -> Self {
         self + other
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        self - other
     }
 
     fn times(&self, other: &Self) -> Self {
@@ -141,10 +136,6 @@ impl Number for Ball {
         }
         let mid = self.mid.add(&other.mid, self.bits, RoundingMode::ToEven);
         Self::rounded(mid, self.radius + other.radius, self.bits)
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        self.plus(&other.negative())
     }
 
     fn times(&self, other: &Self) -> Self {

@@ -16,19 +16,16 @@ use std::cmp::Ordering;
 /// The precisions that are tried, one after the other.
 const BITS: [usize; 2] = [256, 832];
 
-/// An outcome, as far as signs tell it.
+/// An outcome, as far as signs determine it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Outcome {
-    /// One mode per contact.
     pub modes: Vec<Mode>,
-    /// What becomes of its index.
     pub index: Index,
 }
 
 /// The sign of det A, where it has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Index {
-    /// It has.
     Sign(i8),
     /// An inequality is zero.
     Border,
@@ -41,7 +38,7 @@ pub enum Index {
 pub struct Answer {
     /// Every outcome, in the order of its modes.
     pub outcomes: Vec<Outcome>,
-    /// Lists of modes that no precision told: whole families of velocities, or many free impulses.
+    /// Lists of modes that no precision decided: whole families of velocities, or many free impulses.
     pub open: usize,
     /// Whether the equations of some list depend on each other: then no outcome need exist, nor their indices add up.
     pub dependent: bool,
@@ -95,13 +92,11 @@ fn lists(contacts: usize) -> Vec<Vec<Mode>> {
 
 /// What a list of modes comes to.
 enum Judgement {
-    /// An outcome.
     Outcome(Index),
-    /// No outcome.
     None,
     /// No outcome, of equations that depend on each other.
     Dependent,
-    /// Not told by this precision.
+    /// Not decided by this precision.
     Open,
 }
 
@@ -112,11 +107,6 @@ struct Unknown<N> {
 }
 
 impl<N: Number> Unknown<N> {
-    /// An entry of L alone.
-    fn single(row: usize) -> Self {
-        Self { row, slope: None }
-    }
-
     /// What one unit of it adds to a contact velocity.
     fn effect(&self, problem: &Problem<N>, row: usize) -> N {
         let entry = &problem.delassus[row][self.row];
@@ -127,32 +117,29 @@ impl<N: Number> Unknown<N> {
     }
 }
 
-/// What a mode asks of its contact; rows are those of L and c+.
-enum Demand {
-    /// factor * L_row >= 0.
-    Push { row: usize, factor: f64 },
-    /// mu L_n - side * L_t >= 0, L_n being that row.
-    Cone { row: usize, mu: f64, side: f64 },
-    /// factor * c_row > 0 (xi_n for a normal row).
-    Speed { row: usize, factor: f64 },
-    /// c_row = 0.
-    Rest { row: usize },
+/// How a value is compared with zero.
+#[derive(Clone, Copy, PartialEq)]
+enum Comparison {
+    Positive,
+    NotNegative,
+    Zero,
 }
 
 /// The unknowns and equations (rows of c+) of a list of modes, and the sign of what putting in the known impulses takes
 /// from det A.
 fn equations<N: Number>(problem: &Problem<N>, modes: &[Mode]) -> (Vec<Unknown<N>>, Vec<usize>, i8) {
     let (mut unknowns, mut equations, mut index) = (Vec::new(), Vec::new(), 1);
+    let single = |row| Unknown { row, slope: None };
     for (k, &mode) in modes.iter().enumerate() {
         let (t, n) = (2 * k, 2 * k + 1);
         match (mode, problem.friction[k]) {
             (Mode::Separate, _) => {}
             (Mode::Stick, Friction::Finite(0.0)) => {
-                unknowns.push(Unknown::single(n));
+                unknowns.push(single(n));
                 equations.push(n);
             }
             (Mode::Stick, _) => {
-                unknowns.extend([Unknown::single(t), Unknown::single(n)]);
+                unknowns.extend([single(t), single(n)]);
                 equations.extend([t, n]);
             }
             (_, Friction::Finite(mu)) => {
@@ -162,7 +149,7 @@ fn equations<N: Number>(problem: &Problem<N>, modes: &[Mode]) -> (Vec<Unknown<N>
             }
             (_, Friction::Infinite) => {
                 // The rows (0, +-1) and (G_nt, G_nn) have the determinant -+G_nt.
-                unknowns.push(Unknown::single(t));
+                unknowns.push(single(t));
                 equations.push(n);
                 if mode == Mode::SlidePlus {
                     index = -index;
@@ -171,33 +158,6 @@ fn equations<N: Number>(problem: &Problem<N>, modes: &[Mode]) -> (Vec<Unknown<N>
         }
     }
     (unknowns, equations, index)
-}
-
-/// The inequalities of the modes, impulses first: most lists fail by them, and velocities cost more.
-fn demands(modes: &[Mode], friction: &[Friction]) -> Vec<Demand> {
-    let mut demands = Vec::new();
-    for (k, (&mode, &friction)) in modes.iter().zip(friction).enumerate() {
-        let (t, n) = (2 * k, 2 * k + 1);
-        match (mode, friction) {
-            (Mode::Separate, _) => {}
-            (Mode::Stick, Friction::Finite(mu)) if mu != 0.0 => {
-                demands.push(Demand::Push { row: n, factor: 1.0 });
-                demands.extend([1.0, -1.0].map(|side| Demand::Cone { row: n, mu, side }));
-            }
-            (Mode::Stick, _) | (_, Friction::Finite(_)) => demands.push(Demand::Push { row: n, factor: 1.0 }),
-            (_, Friction::Infinite) => demands.push(Demand::Push { row: t, factor: -mode.direction() }),
-        }
-    }
-    for (k, (&mode, friction)) in modes.iter().zip(friction).enumerate() {
-        let (t, n) = (2 * k, 2 * k + 1);
-        match mode {
-            Mode::Separate => demands.push(Demand::Speed { row: n, factor: 1.0 }),
-            Mode::Stick if friction.is_zero() => demands.push(Demand::Rest { row: t }),
-            Mode::Stick => {}
-            Mode::SlidePlus | Mode::SlideMinus => demands.push(Demand::Speed { row: t, factor: mode.direction() }),
-        }
-    }
-    demands
 }
 
 /// c_t and xi_n of all contacts if the ground gives no impulse; `None` if the sign of an approach is undecided.
@@ -243,11 +203,8 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgeme
             Some(slope) if unknown.row == row + 1 => Some(value.times(slope)),
             _ => None,
         };
-        unknowns
-            .iter()
-            .zip(&solution.values)
-            .find_map(of)
-            .unwrap_or_else(|| Affine::constant(N::new(0.0, bits), free, bits))
+        let found = unknowns.iter().zip(&solution.values).find_map(of);
+        found.unwrap_or_else(|| Affine::constant(N::new(0.0, bits), free, bits))
     };
     let velocity = |row: usize| -> Affine<N> {
         let start = Affine::constant(resting[row].clone(), free, bits);
@@ -256,43 +213,44 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgeme
         };
         unknowns.iter().zip(&solution.values).fold(start, add)
     };
+    let number = |value: f64| N::new(value, bits);
+    let pushes = |(k, &mode): (usize, &Mode)| {
+        let (t, n) = (2 * k, 2 * k + 1);
+        match (mode, problem.friction[k]) {
+            (Mode::Separate, _) => vec![],
+            (Mode::Stick, Friction::Finite(mu)) if mu != 0.0 => {
+                let most = impulse(n).times(&number(mu));
+                let cone = |side: f64| most.plus(&impulse(t).times(&number(side)));
+                vec![impulse(n), cone(-1.0), cone(1.0)]
+            }
+            (Mode::Stick, _) | (_, Friction::Finite(_)) => vec![impulse(n)],
+            (_, Friction::Infinite) => vec![impulse(t).times(&number(-mode.direction()))],
+        }
+    };
+    let speeds = |(k, &mode): (usize, &Mode)| match mode {
+        Mode::Separate => Some((velocity(2 * k + 1), Comparison::Positive)),
+        Mode::Stick => problem.friction[k].is_zero().then(|| (velocity(2 * k), Comparison::Zero)),
+        _ => Some((velocity(2 * k).times(&number(mode.direction())), Comparison::Positive)),
+    };
+    // Impulses first: most lists fail by them, and velocities cost more.
+    let pushes = modes.iter().enumerate().flat_map(pushes).map(|value| (value, push, Comparison::NotNegative));
+    let speeds = modes.iter().enumerate().filter_map(speeds).map(|(value, comparison)| (value, speed, comparison));
     let (mut open, mut border) = (false, false);
     let mut inequalities = Vec::new();
-    for demand in demands(modes, &problem.friction) {
-        let number = |value: f64| N::new(value, bits);
-        let (value, scale, strict) = match demand {
-            Demand::Push { row, factor } => (impulse(row).times(&number(factor)), push, false),
-            Demand::Cone { row, mu, side } => {
-                let cone = impulse(row).times(&number(mu)).plus(&impulse(row - 1).times(&number(-side)));
-                (cone, push, false)
-            }
-            Demand::Speed { row, factor } => (velocity(row).times(&number(factor)), speed, true),
-            Demand::Rest { row } => {
-                let value = velocity(row);
-                if free == 0 {
-                    match zero.sign(&value.constant, speed) {
-                        None => open = true,
-                        Some(Ordering::Equal) => {}
-                        Some(_) => return Judgement::None,
-                    }
-                } else {
-                    let opposite = value.times(&number(-1.0));
-                    inequalities.push(Inequality { value: opposite, scale: speed, strict: false });
-                    inequalities.push(Inequality { value, scale: speed, strict: false });
-                }
-                continue;
-            }
-        };
+    for (value, scale, comparison) in pushes.chain(speeds) {
         if free > 0 {
-            inequalities.push(Inequality { value, scale, strict });
+            if comparison == Comparison::Zero {
+                inequalities.push(Inequality { value: value.times(&number(-1.0)), scale, strict: false });
+            }
+            inequalities.push(Inequality { value, scale, strict: comparison == Comparison::Positive });
             continue;
         }
-        match zero.sign(&value.constant, scale) {
-            None => open = true,
-            Some(Ordering::Less) => return Judgement::None,
-            Some(Ordering::Equal) if strict => return Judgement::None,
-            Some(Ordering::Equal) => border = true,
-            Some(Ordering::Greater) => {}
+        match (zero.sign(&value.constant, scale), comparison) {
+            (None, _) => open = true,
+            (Some(Ordering::Equal), Comparison::Zero) => {}
+            (Some(Ordering::Equal), Comparison::NotNegative) => border = true,
+            (Some(Ordering::Greater), Comparison::Positive | Comparison::NotNegative) => {}
+            _ => return Judgement::None,
         }
     }
     if free == 0 {

@@ -1,18 +1,17 @@
 //! Random states of several robots, seeded, and states a wanted distance from a border.
 
 use crate::balls::oracle;
+use crate::support::command::read;
 use crate::support::random::Random;
+use crate::support::urdf::{self, Axis};
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::planar::Vector;
 use heelstrike::robot::Robot;
-use heelstrike::state::State;
-use heelstrike::state::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene};
+use heelstrike::state::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene, State};
 
 /// A robot with the points that its states name as contacts.
 pub struct Model {
-    /// What the table calls it.
     pub name: &'static str,
-    /// The reduced robot.
     pub robot: Robot,
     feet: Vec<NamedContact>,
     /// How many of them touch in most states.
@@ -21,36 +20,21 @@ pub struct Model {
     most: usize,
 }
 
-/// A robot with sliding joints that lean, which none of the files has.
-const TELESCOPE: &str = r#"<robot name="telescope">
-  <link name="torso"><inertial><origin xyz="0.02 0 0.1"/><mass value="5"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="0.07" iyz="0" izz="1"/></inertial></link>
-  <link name="left_leg"><inertial><origin xyz="0 0 -0.2"/><mass value="0.7"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="0.004" iyz="0" izz="1"/></inertial></link>
-  <link name="left_foot"><inertial><origin xyz="0 0 -0.1"/><mass value="0.3"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="1"/></inertial></link>
-  <link name="right_foot"><inertial><origin xyz="0.01 0 -0.3"/><mass value="0.9"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="0.006" iyz="0" izz="1"/></inertial></link>
-  <joint name="left_hip" type="continuous"><parent link="torso"/><child link="left_leg"/>
-    <origin xyz="-0.1 0 -0.05"/><axis xyz="0 1 0"/></joint>
-  <joint name="left_slide" type="prismatic"><parent link="left_leg"/><child link="left_foot"/>
-    <origin xyz="0 0 -0.3"/><axis xyz="0.6 0 -0.8"/><limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
-  <joint name="right_slide" type="prismatic"><parent link="torso"/><child link="right_foot"/>
-    <origin xyz="0.1 0 -0.05"/><axis xyz="0 0 -1"/><limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
-</robot>"#;
-
-/// A body that stands on two corners, and has three ways to move for their four rows.
-const SLED: &str = r#"<robot name="sled">
-  <link name="sled"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
-    <inertia ixx="1" ixy="0" ixz="0" iyy="0.05" iyz="0" izz="1"/></inertial></link>
-</robot>"#;
+/// A robot with prismatic joints that lean, which none of the files has.
+fn telescope() -> String {
+    urdf::robot(&[
+        urdf::link("torso", 5.0, [0.02, 0.1], 0.07, ""),
+        urdf::link("left_leg", 0.7, [0.0, -0.2], 0.004, ""),
+        urdf::link("left_foot", 0.3, [0.0, -0.1], 0.001, ""),
+        urdf::link("right_foot", 0.9, [0.01, -0.3], 0.006, ""),
+        urdf::joint("left_hip", Axis::Revolute(1.0), ["torso", "left_leg"], [-0.1, -0.05], ""),
+        urdf::joint("left_slide", Axis::Prismatic([0.6, -0.8]), ["left_leg", "left_foot"], [0.0, -0.3], ""),
+        urdf::joint("right_slide", Axis::Prismatic([0.0, -1.0]), ["torso", "right_foot"], [0.1, -0.05], ""),
+    ])
+}
 
 /// The robots, each with up to four feet.
 pub fn models() -> Vec<Model> {
-    let read = |path: &str| {
-        let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
-        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
-    };
     let model = |name, urdf: &str, touching, feet: &[(&str, [f64; 3], f64)]| {
         let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
         let foot = |&(link, offset, radius): &(&str, [f64; 3], f64)| NamedContact {
@@ -112,10 +96,16 @@ pub fn models() -> Vec<Model> {
                 ("right_ankle_link", [-0.06, 0.0, -0.05], 0.0),
             ],
         ),
-        model("sled", SLED, 2, &[("sled", [0.4, 0.0, 0.0], 0.0), ("sled", [-0.3, 0.0, 0.0], 0.0)]),
+        // A body that stands on two corners, and has three ways to move for their four rows.
+        model(
+            "sled",
+            &urdf::robot(&[urdf::link("sled", 3.0, [0.1, 0.2], 0.05, "")]),
+            2,
+            &[("sled", [0.4, 0.0, 0.0], 0.0), ("sled", [-0.3, 0.0, 0.0], 0.0)],
+        ),
         model(
             "telescope",
-            TELESCOPE,
+            &telescope(),
             3,
             &[("left_foot", end(-0.2), 0.02), ("right_foot", end(-0.5), 0.0), ("torso", [0.2, 0.0, 0.3], 0.0)],
         ),
@@ -263,7 +253,7 @@ impl Parameter {
 
 /// States beside one border: both neighbouring f64 between which the outcomes change, and one further off on either
 /// side, 1e-15 to 1e-6 of the parameter away.
-pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
+pub fn beside_a_border(model: &Model, random: &mut Random) -> [State; 4] {
     loop {
         let state = model.random(random);
         let parameter = Parameter::random(&state, &model.robot, random);
@@ -274,9 +264,9 @@ pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
         };
         let guess = |value: f64| oracle::guess(&model.robot, &parameter.with(&state, value));
         let Some(guessed) = bisect(start, far, guess) else { continue };
-        let told = |value: f64| told(model, &parameter.with(&state, value));
-        let Some([a, b]) = widen(guessed, told).and_then(|[a, b]| bisect(a, b, told)) else { continue };
-        if told(a).is_none() || told(b).is_none() {
+        let modes = |value: f64| modes(model, &parameter.with(&state, value));
+        let Some([a, b]) = widen(guessed, modes).and_then(|[a, b]| bisect(a, b, modes)) else { continue };
+        if modes(a).is_none() || modes(b).is_none() {
             continue;
         }
         let mut off = |value: f64, away: f64| {
@@ -284,12 +274,12 @@ pub fn beside_a_border(model: &Model, random: &mut Random) -> Vec<State> {
             if away < value { value + step } else { value - step }
         };
         let values = [a, b, off(a, b), off(b, a)];
-        return values.map(|value| parameter.with(&state, value)).to_vec();
+        return values.map(|value| parameter.with(&state, value));
     }
 }
 
 /// The modes of all outcomes; `None` if they are undecided.
-fn told(model: &Model, state: &State) -> Option<Vec<Vec<Mode>>> {
+fn modes(model: &Model, state: &State) -> Option<Vec<Vec<Mode>>> {
     let answer = oracle::answer(&model.robot, state).filter(|answer| answer.open == 0)?;
     Some(answer.outcomes.into_iter().map(|outcome| outcome.modes).collect())
 }

@@ -4,26 +4,7 @@ use crate::support::rational::{Matrix, common_denominator, cramer, quotient, ran
 use dashu::base::Abs;
 use dashu::integer::{IBig, UBig};
 use dashu::rational::RBig;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Mode {
-    Separate,
-    Stick,
-    SlidePlus,
-    SlideMinus,
-}
-
-impl Mode {
-    /// The name in the tool's results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Mode::Separate => "separate",
-            Mode::Stick => "stick",
-            Mode::SlidePlus => "slide+",
-            Mode::SlideMinus => "slide-",
-        }
-    }
-}
+use heelstrike::impact::Mode;
 
 /// Coulomb's coefficient; none stands for infinite friction.
 pub type Friction = Option<RBig>;
@@ -47,29 +28,26 @@ pub struct Combination {
     pub index: i8,
     /// Smallest slack, as the design defines it.
     pub margin: f64,
-    /// L = numerators / determinant.
-    pub impulse: (Vec<IBig>, IBig),
-    /// c+ = numerators / denominator.
-    pub velocity_after: (Vec<IBig>, IBig),
+    pub impulse: Quotients,
+    pub velocity_after: Quotients,
 }
 
-impl Combination {
-    pub fn impulse_f64(&self) -> Vec<f64> {
-        self.impulse.0.iter().map(|numerator| quotient(numerator, &self.impulse.1)).collect()
+/// Rationals with one denominator.
+#[derive(Debug, Clone)]
+pub struct Quotients {
+    numerators: Vec<IBig>,
+    denominator: IBig,
+}
+
+impl Quotients {
+    /// The f64 nearest to each.
+    pub fn rounded(&self) -> Vec<f64> {
+        self.numerators.iter().map(|numerator| quotient(numerator, &self.denominator)).collect()
     }
 
-    pub fn velocity_f64(&self) -> Vec<f64> {
-        self.velocity_after.0.iter().map(|numerator| quotient(numerator, &self.velocity_after.1)).collect()
-    }
-
-    pub fn impulse_exact(&self) -> Vec<RBig> {
-        let (numerators, determinant) = &self.impulse;
-        numerators.iter().map(|n| RBig::from_parts_signed(n.clone(), determinant.clone())).collect()
-    }
-
-    pub fn velocity_exact(&self) -> Vec<RBig> {
-        let (numerators, denominator) = &self.velocity_after;
-        numerators.iter().map(|n| RBig::from_parts_signed(n.clone(), denominator.clone())).collect()
+    pub fn exact(&self) -> Vec<RBig> {
+        let exact = |numerator: &IBig| RBig::from_parts_signed(numerator.clone(), self.denominator.clone());
+        self.numerators.iter().map(exact).collect()
     }
 }
 
@@ -99,20 +77,13 @@ impl Enumeration {
     }
 }
 
-/// The mode of every contact in the `number`th of the 4^n lists.
-fn modes(number: usize, contacts: usize) -> Vec<Mode> {
-    (0..contacts)
-        .map(|k| [Mode::Separate, Mode::Stick, Mode::SlidePlus, Mode::SlideMinus][number >> (2 * k) & 3])
-        .collect()
-}
-
 /// Tries every list of modes. G must be regular.
 pub fn enumerate(problem: &Problem) -> Enumeration {
     let contacts = problem.friction.len();
     let scaled = Scaled::new(problem);
     let mut all = Enumeration { combinations: Vec::new(), contradictory: 0, dependent: 0 };
     for number in 0..1 << (2 * contacts) {
-        let modes = modes(number, contacts);
+        let modes: Vec<Mode> = (0..contacts).map(|k| Mode::ALL[number >> (2 * k) & 3]).collect();
         let system = scaled.system(&modes);
         match cramer(system.clone()) {
             Some(solution) => {
@@ -267,8 +238,8 @@ impl Scaled {
             valid,
             index,
             margin,
-            impulse: (impulse, determinant),
-            velocity_after: (after, denominator),
+            impulse: Quotients { numerators: impulse, denominator: determinant },
+            velocity_after: Quotients { numerators: after, denominator },
         }
     }
 }

@@ -1,12 +1,13 @@
 //! The oracle against what is known about it without the crate.
 
 use super::case::Case;
-use super::enumeration::{Mode, Problem, enumerate};
+use super::enumeration::{Problem, enumerate};
 use super::tree::{Body, Motion, Motions, Tree};
 use crate::support::random::Random;
 use crate::support::rational::{Matrix, cramer, delassus, dot, ratio, times, to_f64};
 use dashu::integer::IBig;
 use dashu::rational::RBig;
+use heelstrike::impact::Mode;
 
 fn matrix(rows: &[&[i64]]) -> Matrix {
     rows.iter().map(|row| row.iter().map(|&x| ratio(x, 1)).collect()).collect()
@@ -32,7 +33,8 @@ fn the_papers_block_has_three_outcomes_in_region_e() {
         restitution: vec![RBig::ZERO],
     };
     let all = enumerate(&problem);
-    let found: Vec<_> = all.outcomes().map(|o| (o.modes[0], o.index, o.impulse_exact(), o.velocity_exact())).collect();
+    let found: Vec<_> =
+        all.outcomes().map(|o| (o.modes[0], o.index, o.impulse.exact(), o.velocity_after.exact())).collect();
     let pair = |a: RBig, b: RBig| vec![a, b];
     let expected = [
         (Mode::Separate, 1, pair(RBig::ZERO, RBig::ZERO), pair(ratio(7, 4), ratio(1, 2))),
@@ -134,7 +136,7 @@ fn impulses_balance_momentum_and_energy_exactly() {
         let all = case.enumerate();
         // Rejected lists too: the balance holds for any impulse that solves the equations.
         for combination in all.combinations.iter().step_by(2) {
-            let (impulse, after) = (combination.impulse_exact(), combination.velocity_exact());
+            let (impulse, after) = (combination.impulse.exact(), combination.velocity_after.exact());
             assert_eq!(times(&case.jacobian, &case.velocity_after(&impulse)), after, "seed {seed}");
             assert_eq!(case.energy_loss(&impulse), case.work(&impulse, &after), "seed {seed}");
             checked += 1;
@@ -150,7 +152,7 @@ fn outcomes_keep_the_contact_law_as_it_is_read() {
         let tree = Tree::random(&mut Random::new(seed));
         let Some(case) = Case::random(&tree, seed) else { continue };
         for outcome in case.enumerate().outcomes() {
-            let (l, after) = (outcome.impulse_exact(), outcome.velocity_exact());
+            let (l, after) = (outcome.impulse.exact(), outcome.velocity_after.exact());
             let gained = times(&case.problem.delassus, &l);
             for (k, (mu, e)) in case.friction.iter().zip(&case.restitution).enumerate() {
                 let (t, n) = (2 * k, 2 * k + 1);
