@@ -72,7 +72,7 @@ fn size(robot: &Robot, feet: &[Foot]) -> f64 {
         }
     }
     let distance = |body: usize, point: Vector<f64>| (origins[body] + point).length();
-    let centres = robot.centres().into_iter().enumerate();
+    let centres = robot.centers().into_iter().enumerate();
     let centres = centres.filter_map(|(index, centre)| Some(distance(index, centre?)));
     let soles = feet.iter().map(|foot| {
         let corners = foot.outline.corners().iter();

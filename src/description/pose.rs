@@ -69,6 +69,10 @@ mod tests {
 
     const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
+    fn rotation(rpy: [f64; 3]) -> Matrix {
+        Pose { xyz: [0.0; 3], rpy }.rotation()
+    }
+
     fn assert_close(a: [f64; 3], b: [f64; 3]) {
         for (a, b) in a.into_iter().zip(b) {
             assert!((a - b).abs() < 4.0 * f64::EPSILON, "{a} is not {b}");
@@ -77,31 +81,20 @@ mod tests {
 
     #[test]
     fn no_turn_is_the_identity_bit_for_bit() {
-        let turn = Pose::default().rotation();
+        let turn = rotation([0.0; 3]);
         assert_eq!(turn.map(|row| row.map(f64::to_bits)), IDENTITY.map(|row| row.map(f64::to_bits)));
         let vector = [0.1, -1e-300, 0.073265];
         assert_eq!(apply(&turn, vector).map(f64::to_bits), vector.map(f64::to_bits));
-        let other = Pose { xyz: [0.0; 3], rpy: [0.3, -1.0, 2.0] }.rotation();
-        assert_eq!(product(&turn, &other), other);
-        assert_eq!(product(&other, &turn), other);
+        let other = rotation([0.3, -1.0, 2.0]);
+        assert_eq!([product(&turn, &other), product(&other, &turn)], [other; 2]);
     }
 
     #[test]
     fn each_angle_turns_about_its_own_axis_by_the_right_hand() {
-        let turn = |rpy| Pose { xyz: [0.0; 3], rpy }.rotation();
-        assert_close(apply(&turn([FRAC_PI_2, 0.0, 0.0]), [0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
-        assert_close(apply(&turn([0.0, FRAC_PI_2, 0.0]), [0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]);
-        assert_close(apply(&turn([0.0, 0.0, FRAC_PI_2]), [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
-    }
-
-    #[test]
-    fn a_turn_about_an_axis_of_the_frame_is_that_angle_of_the_pose() {
         for (k, axis) in IDENTITY.into_iter().enumerate() {
-            let mut rpy = [0.0; 3];
-            rpy[k] = 0.7;
-            for (row, expected) in turn(axis, 0.7).into_iter().zip(Pose { xyz: [0.0; 3], rpy }.rotation()) {
-                assert_close(row, expected);
-            }
+            let by = |angle| rotation([0, 1, 2].map(|at| if at == k { angle } else { 0.0 }));
+            assert_close(apply(&by(FRAC_PI_2), IDENTITY[(k + 1) % 3]), IDENTITY[(k + 2) % 3]);
+            turn(axis, 0.7).into_iter().zip(by(0.7)).for_each(|(row, expected)| assert_close(row, expected));
         }
         // A third of a whole turn about the diagonal takes x to y, y to z and z to x.
         let diagonal = unit([2.0, 2.0, 2.0]);
@@ -110,12 +103,8 @@ mod tests {
 
     #[test]
     fn roll_comes_first_and_yaw_last_about_fixed_axes() {
-        let [roll, pitch, yaw] = [0.4, -0.7, 1.9];
-        let single = |rpy| Pose { xyz: [0.0; 3], rpy }.rotation();
-        let by_parts =
-            product(&single([0.0, 0.0, yaw]), &product(&single([0.0, pitch, 0.0]), &single([roll, 0.0, 0.0])));
-        for (row, expected) in single([roll, pitch, yaw]).into_iter().zip(by_parts) {
-            assert_close(row, expected);
-        }
+        let [roll, pitch, yaw] = [[0.4, 0.0, 0.0], [0.0, -0.7, 0.0], [0.0, 0.0, 1.9]].map(rotation);
+        let by_parts = product(&yaw, &product(&pitch, &roll));
+        rotation([0.4, -0.7, 1.9]).into_iter().zip(by_parts).for_each(|(row, expected)| assert_close(row, expected));
     }
 }

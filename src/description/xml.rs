@@ -44,37 +44,27 @@ pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, Unparsed> {
 /// What roxmltree refused, in our words.
 fn refusal(text: &str, error: &roxmltree::Error) -> Error {
     use roxmltree::Error as Xml;
-    let at = |error: Error, place: Location| error.on(place.line, place.column);
+    let (place, message) = (error.pos(), error.to_string());
+    let refused = |reason: Reason| Error::new(reason).on(place.row as usize, place.col as usize);
+    // The message ends with the position, which is stored separately.
+    let message = message.rsplit_once(" at ").map_or(message.as_str(), |(message, _)| message);
+    let syntax = || refused(Reason::Syntax(format!("not well-formed XML: {message}")));
     match error {
         Xml::DtdDetected => {
-            let error = Error::new(Reason::Unsupported("a document type definition is not accepted".into()))
-                .hint("remove the <!DOCTYPE ...> declaration; URDF needs none");
-            at(error, Cursor::new(text).locate(text.find("<!DOCTYPE").unwrap_or(0)))
+            let place = Cursor::new(text).locate(text.find("<!DOCTYPE").unwrap_or(0));
+            let reason = Reason::Unsupported("a document type definition is not accepted".into());
+            let hint = "remove the <!DOCTYPE ...> declaration; URDF needs none";
+            Error::new(reason).on(place.line, place.column).hint(hint)
         }
         Xml::NodesLimitReached => Reason::TooMany { what: "XML nodes", limit: MOST_NODES as usize }.into(),
-        Xml::DuplicatedAttribute(name, place) => {
-            let reason = Reason::Duplicate { what: "attribute", name: name.clone() };
-            Error::new(reason).on(place.row as usize, place.col as usize)
-        }
         Xml::NoRootNode => Error::new(Reason::Syntax("the text holds no XML element".into())).hint(NO_URDF),
-        _ => {
-            // The message ends with the position, which is stored separately.
-            let message = error.to_string();
-            let message = message.rsplit_once(" at ").map_or(message.as_str(), |(message, _)| message);
-            let place = error.pos();
-            let refused = Error::new(Reason::Syntax(format!("not well-formed XML: {message}")))
-                .on(place.row as usize, place.col as usize);
-            match error {
-                Xml::UnknownNamespace(prefix, _) => {
-                    refused.hint(format!("declare the prefix: <robot xmlns:{prefix}=\"...\">"))
-                }
-                Xml::UnclosedRootNode | Xml::UnexpectedEndOfStream => {
-                    refused.hint("the text ends too early: is it whole?")
-                }
-                _ if !text.trim_start().starts_with('<') => refused.hint(NO_URDF),
-                _ => refused,
-            }
+        Xml::DuplicatedAttribute(name, _) => refused(Reason::Duplicate { what: "attribute", name: name.clone() }),
+        Xml::UnknownNamespace(prefix, _) => {
+            syntax().hint(format!("declare the prefix: <robot xmlns:{prefix}=\"...\">"))
         }
+        Xml::UnclosedRootNode | Xml::UnexpectedEndOfStream => syntax().hint("the text ends too early: is it whole?"),
+        _ if !text.trim_start().starts_with('<') => syntax().hint(NO_URDF),
+        _ => syntax(),
     }
 }
 

@@ -13,7 +13,6 @@ use super::plane::PARALLEL;
 use super::role::Role;
 use super::{Axis, Base, FreezeReason};
 use crate::description::Description;
-use crate::planar::Vector;
 
 /// The share of the robot's mass up to which a link looks as if it only had to be given one.
 const LIGHT: f64 = 1e-2;
@@ -52,9 +51,10 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
     if asked == Some(Base::Fixed) {
         return at_root(Base::Fixed, "as asked".into());
     }
+    let names = |chain: [usize; 3]| chain.map(|joint| format!("\"{}\"", description.joints[joint].name)).join(", ");
     let light = || welded.is_massless(root, 0.0).then(|| welded.chain(description, roles, LIGHT * welded.total))?;
     if let Some(chain) = welded.chain(description, roles, 0.0).or_else(light) {
-        let names = chain.map(|joint| format!("\"{}\"", description.joints[joint].name)).join(", ");
+        let names = names(chain);
         let because = format!("the file's own chain of joints {names} is the base itself");
         let root = description.joints[chain[2]].child;
         let lost: f64 = chain[1..].iter().map(|&joint| welded.mass(description.joints[joint].parent)).sum();
@@ -69,23 +69,24 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
     if asked == Some(Base::Floating) {
         return at_root(Base::Floating, "as asked".into());
     }
-    if welded.mass(root) == 0.0
-        && let Some(joint) = welded.single_exit(root)
-    {
-        let name = &description.joints[joint].name;
-        return at_root(Base::Fixed, format!("the root is massless and joint \"{name}\" alone carries the robot"));
-    }
-    if description.links[root].name == "world" {
-        return at_root(Base::Fixed, "the root is named world".into());
-    }
-    if welded.mass(root) == 0.0 {
-        return at_root(Base::Floating, "the root is massless, but several joints carry the robot".into());
+    match (welded.mass(root) == 0.0, welded.single_exit(root)) {
+        (true, Some(joint)) => {
+            let name = &description.joints[joint].name;
+            return at_root(Base::Fixed, format!("the root is massless and joint \"{name}\" alone carries the robot"));
+        }
+        _ if description.links[root].name == "world" => {
+            return at_root(Base::Fixed, "the root is named world".into());
+        }
+        (true, None) => {
+            return at_root(Base::Floating, "the root is massless, but several joints carry the robot".into());
+        }
+        (false, _) => {}
     }
     let caution = welded.chain(description, roles, LIGHT * welded.total).map(|chain| {
-        let names = chain.map(|joint| format!("\"{}\"", description.joints[joint].name)).join(", ");
         format!(
-            "the root floats because it has mass, over a chain of its own ({names}) whose links weigh next to nothing: set \
-             their mass to 0 to take the chain as the base, or give `base: fixed`"
+            "the root floats because it has mass, over a chain of its own ({}) whose links weigh next to nothing: set \
+             their mass to 0 to take the chain as the base, or give `base: fixed`",
+            names(chain)
         )
     });
     Judgement { caution, ..at_root(Base::Floating, "the root has mass".into()) }
@@ -155,27 +156,22 @@ impl Welded {
     fn chain(&self, description: &Description, roles: &[Role], light: f64) -> Option<[usize; 3]> {
         let mut link = description.root;
         let mut chain = [0; 3];
-        let (mut slides, mut turns) = (Vec::new(), 0);
+        let mut slides = Vec::new();
         for joint in &mut chain {
             *joint = self.single_exit(link).filter(|_| self.is_massless(link, light))?;
-            match &roles[*joint] {
-                Role::Moves { axis: Axis::Revolute { .. }, mimicked: None, .. } => turns += 1,
-                Role::Moves { axis: Axis::Prismatic { direction }, mimicked: None, .. } => slides.push(*direction),
-                _ => return None,
-            }
-            let follows =
+            let mimics =
                 |role: &Role| matches!(role, Role::Moves { mimicked: Some(mimicked), .. } if mimicked.joint == *joint);
-            if roles.iter().any(follows) {
-                return None;
+            match roles[*joint] {
+                Role::Moves { mimicked: None, .. } if roles.iter().any(mimics) => return None,
+                Role::Moves { axis: Axis::Revolute { .. }, mimicked: None, .. } => {}
+                Role::Moves { axis: Axis::Prismatic { direction }, mimicked: None, .. } => slides.push(direction),
+                _ => return None,
             }
             link = description.joints[*joint].child;
         }
+        // Two of three slide, so that one turns.
         match slides[..] {
-            [Vector { x: ax, z: az }, Vector { x: bx, z: bz }]
-                if turns == 1 && (ax * bz - az * bx).abs() > PARALLEL =>
-            {
-                Some(chain)
-            }
+            [a, b] if (a.x * b.z - a.z * b.x).abs() > PARALLEL => Some(chain),
             _ => None,
         }
     }

@@ -39,11 +39,9 @@ pub(super) fn is_physical(inertia: &Matrix) -> bool {
 /// The inertia that a link brings to its body, in the body's frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Part {
-    /// Mass \[kg\].
     mass: f64,
-    /// CoG \[m\].
     com: Vector<f64>,
-    /// Moment about the normal through the CoG \[kg m^2\].
+    /// About the normal through the CoG \[kg m^2\].
     moment: f64,
 }
 
@@ -108,10 +106,6 @@ mod tests {
     use super::*;
     use crate::description::Pose;
 
-    fn part(mass: f64, com: Vector<f64>, moment: f64) -> Part {
-        Part { mass, com, moment }
-    }
-
     fn projected(inertia: Matrix, rpy: [f64; 3]) -> Result<f64, Reason> {
         let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
         Part::projected(1.0, Vector::zero(), Some(&inertia), &rotation).map(|part| part.moment)
@@ -120,41 +114,29 @@ mod tests {
     const INERTIA: Matrix = [[0.3, 0.01, -0.02], [0.01, 0.1, 0.03], [-0.02, 0.03, 0.25]];
 
     #[test]
-    fn unturned_inertia_gives_its_middle_entry_bit_for_bit() {
-        assert_eq!(projected(INERTIA, [0.0; 3]), Ok(0.1));
-    }
-
-    #[test]
-    fn turned_inertia_gives_the_moment_about_the_normal() {
-        // Rolled by a: n in the link's axes is (0, cos a, -sin a).
+    fn an_inertia_gives_the_moment_about_the_normal() {
+        // Unturned and pitched, its middle entry bit for bit. Rolled by a: n in the link's axes is (0, cos a, -sin a).
+        // Yawed by a: n is (sin a, cos a, 0).
         let (sin, cos) = libm::sincos(0.4);
-        let expected = 0.1 * cos * cos - 2.0 * 0.03 * cos * sin + 0.25 * sin * sin;
-        assert!((projected(INERTIA, [0.4, 0.0, 0.0]).expect("positive") - expected).abs() < 1e-16);
-        // Yawed by a: n is (sin a, cos a, 0). Pitch does not move n.
-        let expected = 0.3 * sin * sin + 2.0 * 0.01 * sin * cos + 0.1 * cos * cos;
-        assert!((projected(INERTIA, [0.0, 0.0, 0.4]).expect("positive") - expected).abs() < 1e-16);
-        assert_eq!(projected(INERTIA, [0.0, 0.4, 0.0]), Ok(0.1));
+        for (rpy, expected, off) in [
+            ([0.0; 3], 0.1, 0.0),
+            ([0.0, 0.4, 0.0], 0.1, 0.0),
+            ([0.4, 0.0, 0.0], 0.1 * cos * cos - 2.0 * 0.03 * cos * sin + 0.25 * sin * sin, 1e-16),
+            ([0.0, 0.0, 0.4], 0.3 * sin * sin + 2.0 * 0.01 * sin * cos + 0.1 * cos * cos, 1e-16),
+        ] {
+            assert!((projected(INERTIA, rpy).expect("positive") - expected).abs() <= off, "{rpy:?}");
+        }
     }
 
     #[test]
-    fn negative_moment_about_the_normal_is_refused_but_not_one_beside_it() {
+    fn a_negative_moment_about_the_normal_is_refused() {
         let inertia = |ixx, iyy| [[ixx, 0.0, 0.0], [0.0, iyy, 0.0], [0.0, 0.0, 0.0]];
         assert_eq!(projected(inertia(-1.0, 0.5), [0.0; 3]), Ok(0.5));
-        let refused = projected(inertia(0.5, -1e-30), [0.0; 3]).expect_err("negative");
-        assert_eq!(
-            refused.to_string(),
-            "the moment of inertia about the plane's normal must be at least 0, not -1e-30"
-        );
-    }
-
-    #[test]
-    fn a_thin_rod_along_the_normal_has_no_moment_and_is_no_error() {
-        // (1, 1, 1) / sqrt(3) is this rod's direction; the turn takes it to the normal, and rounding may leave less
-        // than 0.
+        assert!(projected(inertia(0.5, -1e-30), [0.0; 3]).is_err());
+        // No error: a thin rod along (1, 1, 1) / sqrt(3), turned to the normal, of which rounding may leave less than 0.
         let third = 1.0 / 3.0;
         let rod = [[2.0 * third, -third, -third], [-third, 2.0 * third, -third], [-third, -third, 2.0 * third]];
-        let length = 3.0_f64.sqrt().recip();
-        let rotation = [[0.0; 3], [length; 3], [0.0; 3]];
+        let rotation = [[0.0; 3], [3.0_f64.sqrt().recip(); 3], [0.0; 3]];
         let part = Part::projected(1.0, Vector::zero(), Some(&rod), &rotation).expect("no error");
         assert!((0.0..1e-15).contains(&part.moment));
     }
@@ -172,27 +154,21 @@ mod tests {
         }
         // Its principal moments are 3, 1 and 1; at any size.
         for size in [1.0, 1e300, 1e-300] {
-            assert!(!is_physical(
-                &[[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]].map(|row| row.map(|entry| size * entry))
-            ));
-            assert!(is_physical(&INERTIA.map(|row| row.map(|entry| size * entry))));
+            let sized = |inertia: Matrix| inertia.map(|row| row.map(|entry| size * entry));
+            assert!(!is_physical(&sized([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]])));
+            assert!(is_physical(&sized(INERTIA)));
         }
     }
 
     #[test]
-    fn welded_masses_add_by_steiner() {
+    fn masses_add_by_steiner() {
+        let part = |mass, com: [f64; 2], moment| Part { mass, com: com.into(), moment };
         // 1 kg at x = 0 and 3 kg at x = 4: CoG at 3, distances 3 and 1.
-        let whole = composite(&[part(1.0, Vector::new(0.0, 2.0), 0.5), part(3.0, Vector::new(4.0, 2.0), 0.25)]);
+        let whole = composite(&[part(1.0, [0.0, 2.0], 0.5), part(3.0, [4.0, 2.0], 0.25)]);
         assert_eq!(whole, (4.0, Vector::new(3.0, 2.0), 0.5 + 9.0 + 0.25 + 3.0));
-    }
-
-    #[test]
-    fn a_single_massive_part_keeps_its_digits_beside_massless_ones() {
-        let whole = composite(&[
-            part(0.0, Vector::new(7.0, 7.0), 0.0),
-            part(0.7887, Vector::new(0.1, -0.019399), 0.00221),
-            part(0.0, Vector::new(1.0, 0.0), 0.5),
-        ]);
+        // A single one with mass keeps its digits.
+        let single = part(0.7887, [0.1, -0.019399], 0.00221);
+        let whole = composite(&[part(0.0, [7.0, 7.0], 0.0), single, part(0.0, [1.0, 0.0], 0.5)]);
         assert_eq!(whole, (0.7887, Vector::new(0.1, -0.019399), 0.00221 + 0.5));
         assert_eq!(composite(&[]), (0.0, Vector::zero(), 0.0));
     }

@@ -27,7 +27,6 @@ mod shape;
 mod outline;
 mod tree;
 mod reduce;
-mod weld;
 
 pub use plane::Plane;
 pub use reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
@@ -37,6 +36,7 @@ pub use shape::{FootShape, Rim};
 use crate::error::Reason;
 use crate::planar::Vector;
 use crate::scalar::Real;
+use composite::{Part, composite};
 
 /// How the root body is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,20 +99,14 @@ pub enum ParentJoint {
     Joint(usize),
     /// A mimic joint: an index into [`Robot::mimic_joints`].
     Mimic(usize),
-    /// A fixed joint: the body is rigid on its parent, and kept apart only on request
-    /// (see [`Reductions`](crate::reductions::Reductions)).
-    Fixed {
-        /// The body it is fixed to (an index into [`Robot::bodies`]).
-        parent: usize,
-        /// Its origin in that body's frame \[m\].
-        origin: Vector<f64>,
-    },
+    /// A fixed joint: the body is rigid on its parent (an index into [`Robot::bodies`]), with its origin there in the
+    /// parent's frame \[m\], and kept apart only on request (see [`Reductions`](crate::reductions::Reductions)).
+    Fixed { parent: usize, origin: Vector<f64> },
 }
 
 /// A joint that moves in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
-    /// Name in the file.
     pub name: String,
     /// The parent body (an index into [`Robot::bodies`]).
     pub parent: usize,
@@ -120,14 +114,12 @@ pub struct Joint {
     pub child: usize,
     /// Its origin in the parent body's frame, at coordinate zero \[m\].
     pub origin: Vector<f64>,
-    /// Its motion.
     pub axis: Axis,
 }
 
 /// A mimic joint: q = multiplier q_mimicked + offset (URDF's `<mimic>`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MimicJoint {
-    /// Name in the file.
     pub name: String,
     /// The joint that it mimics (an index into [`Robot::joints`]).
     pub mimicked: usize,
@@ -135,13 +127,10 @@ pub struct MimicJoint {
     pub multiplier: f64,
     /// Its coordinate where that of the mimicked joint is zero \[rad, m\].
     pub offset: f64,
-    /// The parent body (an index into [`Robot::bodies`]).
+    /// As those of a [`Joint`].
     pub parent: usize,
-    /// The body it moves.
     pub child: usize,
-    /// Its origin in the parent body's frame, at coordinate zero \[m\].
     pub origin: Vector<f64>,
-    /// Its motion.
     pub axis: Axis,
 }
 
@@ -150,21 +139,14 @@ pub struct MimicJoint {
 pub enum Axis {
     /// It rotates the child about the plane's normal; `sign` is +1 where the URDF's axis points along the normal, -1
     /// where against it.
-    Revolute {
-        /// +1 or -1.
-        sign: f64,
-    },
+    Revolute { sign: f64 },
     /// It moves the child along a unit vector of the parent body's frame.
-    Prismatic {
-        /// The direction, of length one.
-        direction: Vector<f64>,
-    },
+    Prismatic { direction: Vector<f64> },
 }
 
 /// A link of the file and its place in the reduced tree.
 #[derive(Debug, Clone)]
 pub struct Link {
-    /// Name in the file.
     pub name: String,
     /// The body it belongs to.
     pub body: usize,
@@ -177,12 +159,11 @@ pub struct Link {
     pub has_inertial: bool,
 }
 
-/// Something of the file that does not enter the analysis.
+/// Something of the file that does not enter the analysis, as in `joint "left_ankle"`, and why, as in `fixed: welded
+/// into left_shank`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOut {
-    /// What, as in `joint "left_ankle"`.
     pub what: String,
-    /// Why, as in `fixed: welded into left_shank`.
     pub why: String,
 }
 
@@ -217,7 +198,6 @@ impl Robot {
         }
     }
 
-    /// Number of coordinates.
     pub fn dofs(&self) -> usize {
         self.base_dofs() + self.joints.len()
     }
@@ -225,10 +205,8 @@ impl Robot {
     /// Names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the file's
     /// order.
     pub fn coordinates(&self) -> impl Iterator<Item = &str> {
-        ["x", "z", "pitch"]
-            .into_iter()
-            .take(self.base_dofs())
-            .chain(self.joints.iter().map(|joint| joint.name.as_str()))
+        let base = ["x", "z", "pitch"].into_iter().take(self.base_dofs());
+        base.chain(self.joints.iter().map(|joint| joint.name.as_str()))
     }
 
     /// The parent body of a joint, the joint's origin in that body's frame at coordinate zero \[m\], and its motion
@@ -252,7 +230,6 @@ impl Robot {
         (0..self.bodies.len()).filter(|&body| self.moves(body)).map(|body| self.bodies[body].mass).sum()
     }
 
-    /// The link of that name.
     pub fn link(&self, name: &str) -> Option<usize> {
         self.links.iter().position(|link| link.name == name)
     }
@@ -273,6 +250,33 @@ impl Robot {
     /// The joint of that name in the file that has no coordinate in the reduced robot: it is frozen, or part of the
     /// base.
     pub fn frozen(&self, name: &str) -> Option<&FrozenJoint> {
-        self.reading.frozen.iter().find(|held| held.name == name)
+        self.reading.frozen.iter().find(|frozen| frozen.name == name)
+    }
+
+    /// Whether a body can move: not the root of a bolted robot, nor what is fixed to it.
+    fn moves(&self, body: usize) -> bool {
+        let mut at = body;
+        while let (Base::Fixed, Some(ParentJoint::Fixed { parent, .. })) = (self.base, self.bodies[at].joint) {
+            at = parent;
+        }
+        self.base == Base::Floating || self.bodies[at].joint.is_some()
+    }
+
+    /// The CoG of each body together with all that is fixed to it, in its frame \[m\]; `None` for a body that is fixed
+    /// to another.
+    pub(crate) fn centers(&self) -> Vec<Option<Vector<f64>>> {
+        let mut parts: Vec<Vec<Part>> = vec![Vec::new(); self.bodies.len()];
+        // The body that each is rigid on in the end, and its own origin there.
+        let mut grounds: Vec<(usize, Vector<f64>)> = Vec::with_capacity(self.bodies.len());
+        for (index, body) in self.bodies.iter().enumerate() {
+            let (ground, place) = match body.joint {
+                Some(ParentJoint::Fixed { parent, origin }) => (grounds[parent].0, grounds[parent].1 + origin),
+                _ => (index, Vector::zero()),
+            };
+            grounds.push((ground, place));
+            parts[ground].push(Part::point(body.mass, place + body.com));
+        }
+        let center = |(index, parts): (usize, &Vec<Part>)| (grounds[index].0 == index).then(|| composite(parts).1);
+        parts.iter().enumerate().map(center).collect()
     }
 }

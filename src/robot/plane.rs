@@ -24,25 +24,16 @@ pub enum Plane {
 }
 
 impl Plane {
-    /// All planes.
     pub const ALL: [Self; 3] = [Self::XZ, Self::YZ, Self::XY];
 
     /// Its name, forward before up: `xz`, `yz` or `xy`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::XZ => "xz",
-            Self::YZ => "yz",
-            Self::XY => "xy",
-        }
+        ["xz", "yz", "xy"][self as usize]
     }
 
     /// Its normal among the root link's axes: `+y`, `-x` or `-z`.
     pub fn normal(self) -> &'static str {
-        match self {
-            Self::XZ => "+y",
-            Self::YZ => "-x",
-            Self::XY => "-z",
-        }
+        ["+y", "-x", "-z"][self as usize]
     }
 
     /// Forward, normal and up as rows: takes vectors of the root link into the plane's axes.
@@ -78,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_plane_is_right_handed_with_its_normal_from_up_to_forward() {
+    fn every_plane_is_right_handed() {
         for plane in Plane::ALL {
             let [[fx, fy, fz], normal, [ux, uy, uz]] = plane.axes();
             assert_eq!(normal, [uy * fz - uz * fy, uz * fx - ux * fz, ux * fy - uy * fx], "{plane:?}");
@@ -89,16 +80,5 @@ mod tests {
             assert_eq!(plane.name(), format!("{}{}", forward.0, up.0));
             assert_eq!(plane.normal(), format!("{}{}", if normal.1 < 0.0 { '-' } else { '+' }, normal.0));
         }
-    }
-
-    #[test]
-    fn a_common_direction_of_either_sign_gives_the_plane() {
-        let common = |axes: &[[f64; 3]]| Plane::normal_to(axes.iter().copied());
-        assert_eq!(common(&[]), None);
-        assert_eq!(common(&[[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]), Some(Plane::XZ));
-        assert_eq!(common(&[[-1.0, 0.0, 0.0], [1.0, 0.0, 9e-4]]), Some(Plane::YZ));
-        assert_eq!(common(&[[0.0, 0.0, 1.0]]), Some(Plane::XY));
-        assert_eq!(common(&[[0.0, 1.0, 0.0], [0.0, 1.0, 1.1e-3]]), None);
-        assert_eq!(common(&[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]), None);
     }
 }

@@ -9,10 +9,10 @@ use crate::error::{Reason, Result};
 
 /// Every joint's axis, and where held joints are.
 pub(super) struct Posture {
-    /// The value at which a joint is to be held \[rad or m\], by the joint's index; those that follow it are held too.
+    /// The value at which a joint is to be held \[rad or m\], by the joint's index; those that mimic it are held too.
     pub(super) held: Vec<Option<f64>>,
-    /// The joint that a joint follows in the end, by its index.
-    pub(super) leaders: Vec<Option<Mimic>>,
+    /// The joint that a joint mimics in the end, by its index.
+    pub(super) mimicked: Vec<Option<Mimic>>,
     /// Each joint's axis, of length one, in the root link's axes.
     pub(super) axes: Vec<[f64; 3]>,
     /// Each link's axes, as columns, in those of the root link.
@@ -38,9 +38,9 @@ impl Posture {
                 return Err(joint.refuse(Reason::NotFinite { what: "the value at which it is held".into(), value }));
             }
         }
-        let leaders = description.mimicked()?;
-        for (index, leader) in leaders.iter().enumerate() {
-            if let Some(&Mimic { joint, multiplier, offset }) = leader.as_ref() {
+        let mimicked = description.mimicked()?;
+        for (index, mimicked) in mimicked.iter().enumerate() {
+            if let Some(&Mimic { joint, multiplier, offset }) = mimicked.as_ref() {
                 held[index] = held[joint].map(|value| multiplier * value + offset);
             }
         }
@@ -52,7 +52,7 @@ impl Posture {
             axes[index] = unit(apply(&origin, unit(joint.axis)));
             rotations[joint.child] = held[index].map_or(origin, |value| product(&origin, &held_turn(joint, value)));
         }
-        Ok(Self { held, leaders, axes, rotations })
+        Ok(Self { held, mimicked, axes, rotations })
     }
 }
 
@@ -76,9 +76,9 @@ fn refuse_no_coordinate(joint: &Joint, joints: &[Joint]) -> Result<()> {
     let refuse = |reason: String| joint.refuse(Reason::Inconsistent(reason));
     match (joint.kind, &joint.mimic) {
         (_, Some(mimic)) => {
-            let leader = &joints[mimic.joint].name;
-            let reason = format!("it cannot be held by itself: it follows joint \"{leader}\"");
-            Err(refuse(reason).hint(format!("hold {leader}")))
+            let mimicked = &joints[mimic.joint].name;
+            let reason = format!("it cannot be held by itself: it follows joint \"{mimicked}\"");
+            Err(refuse(reason).hint(format!("hold {mimicked}")))
         }
         (JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic, None) => Ok(()),
         (kind, None) => {

@@ -7,9 +7,7 @@ use std::fmt;
 /// How a file was read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reading {
-    /// The plane.
     pub plane: Plane,
-    /// Why it was taken.
     pub plane_because: PlaneReason,
     /// The plane that would keep most joints and how many, where that is more than in this one.
     pub better_plane: Option<(Plane, usize)>,
@@ -38,9 +36,7 @@ pub enum PlaneReason {
 /// A joint of the file that has no coordinate in the reduced robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrozenJoint {
-    /// Its name.
     pub name: String,
-    /// Why it has none.
     pub reason: FreezeReason,
     /// The body that its child is welded into; for a joint of the base the robot's root link.
     pub body: String,
@@ -53,24 +49,13 @@ pub struct FrozenJoint {
 pub enum FreezeReason {
     /// It is fixed.
     Fixed,
-    /// The user froze it.
-    Asked {
-        /// At this value \[rad or m\].
-        value: f64,
-    },
-    /// It would lead out of the plane, and is frozen at zero.
-    OffPlane {
-        /// The angle from a revolute joint's axis to the plane's normal, or from a prismatic one's to the plane
-        /// \[rad\].
-        angle: f64,
-        /// True for a prismatic joint.
-        slides: bool,
-    },
+    /// The user froze it at this value \[rad or m\].
+    Asked { value: f64 },
+    /// It would lead out of the plane, and is frozen at zero: the angle from a revolute joint's axis to the plane's
+    /// normal, or from a prismatic one's (which `slides`) to the plane \[rad\].
+    OffPlane { angle: f64, slides: bool },
     /// It mimics a joint that is frozen.
-    Follows {
-        /// That joint.
-        mimicked: String,
-    },
+    Follows { mimicked: String },
     /// A joint of this kind is frozen at zero unless it is the base.
     Kind(JointKind),
     /// It is part of the floating base itself, whose coordinates are x, z and pitch.

@@ -8,20 +8,18 @@ use super::posture::Posture;
 use super::reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
 use super::role::{Role, roles};
 use super::tree::{Place, Tree};
-use super::{Base, LeftOut, Link, Robot, base, caution, left_out};
+use super::{Base, LeftOut, Link, ParentJoint, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, product};
 use crate::error::{Error, Reason, Result};
 use crate::reductions::Reductions;
 
-/// What a user may say about the reduction.
+/// What a user may say about the reduction; plane and base are found where they are not given.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reduction {
-    /// The plane; without one it is found.
     pub plane: Option<Plane>,
     /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this posture the
     /// axes are judged.
     pub hold: Vec<(usize, f64)>,
-    /// How the root is held; without it that is judged.
     pub base: Option<Base>,
     /// Which links are welded.
     pub reductions: Reductions,
@@ -52,10 +50,8 @@ impl Robot {
         let (plane, plane_because) = find_plane(description, &posture, reduction.plane);
         let mut roles = roles(description, &posture, plane);
         let found = base::judge(description, &mut roles, reduction.base);
-        let tree = {
-            let rotation = product(&plane.axes(), &posture.rotations[found.root]);
-            Tree::grow(description, (&posture, &roles), found.root, rotation, reduction.reductions)
-        };
+        let rotation = product(&plane.axes(), &posture.rotations[found.root]);
+        let tree = Tree::grow(description, (&posture, &roles), found.root, rotation, reduction.reductions);
 
         let held = held(description, &roles, &tree, &found);
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
@@ -88,7 +84,10 @@ impl Robot {
         for (link, place) in description.links.iter().zip(&tree.places) {
             let Some(place) = place else { continue };
             if let Some(inertial) = &link.inertial {
-                parts[place.body].push(reduce_inertial(link, inertial, place)?);
+                let Inertial { origin, mass, inertia } = inertial;
+                let frame = place.frame(origin);
+                let part = Part::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
+                parts[place.body].push(part.map_err(|reason| link.refuse(reason))?);
             }
             robot.left_out.extend(left_out::doubtful_inertia(link));
             let mut reduced = reduce_link(link, place, &mut robot.left_out);
@@ -141,14 +140,13 @@ fn better_plane(description: &Description, posture: &Posture, plane: Plane) -> O
 
 /// The joints without a coordinate, in the file's order.
 fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgement) -> Vec<FrozenJoint> {
-    let body = |link: usize| tree.places[link].as_ref().map(|place| tree.bodies[place.body].name.clone());
-    let welded = |link: usize| tree.places[link].as_ref().is_none_or(|place| !tree.is_apart(place.body));
     let joints = description.joints.iter().zip(roles).enumerate();
     let held = joints.filter_map(|(index, (joint, role))| {
         let name = joint.name.clone();
-        match (role, body(joint.child)) {
+        match (role, tree.places[joint.child].as_ref().map(|place| &tree.bodies[place.body])) {
             (Role::Frozen(reason), Some(body)) => {
-                Some(FrozenJoint { name, reason: reason.clone(), body, welded: welded(joint.child) })
+                let welded = !matches!(body.joint, Some(ParentJoint::Fixed { .. }));
+                Some(FrozenJoint { name, reason: reason.clone(), body: body.name.clone(), welded })
             }
             // A weld among links of the base says nothing about the robot.
             (role, outside) if found.chain.contains(&index) || outside.is_none() && matches!(role, Role::Frozen(_)) => {
@@ -179,13 +177,6 @@ fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, readi
     all
 }
 
-/// The inertia of `link` in its body's frame.
-fn reduce_inertial(link: &description::Link, inertial: &Inertial, place: &Place) -> Result<Part> {
-    let frame = place.frame(&inertial.origin);
-    let part = Part::projected(inertial.mass, frame.in_plane(), inertial.inertia.as_ref(), &frame.rotation);
-    part.map_err(|reason| link.refuse(reason))
-}
-
 /// `link` with its collision shapes, in its body's frame.
 fn reduce_link(link: &description::Link, place: &Place, left_out: &mut Vec<LeftOut>) -> Link {
     let pose = [0, 2].map(|row| {
@@ -213,11 +204,9 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
         let inertia = [body.mass, body.com.x, body.com.z, body.moment];
         refuse("the inertia of the welded body", &inertia, description::link_place(&body.name))?;
     }
-    for joint in &robot.joints {
-        refuse("the place at zero", &joint.origin.components(), description::joint_place(&joint.name))?;
-    }
-    for mimic in &robot.mimic_joints {
-        refuse("the place at zero", &mimic.origin.components(), description::joint_place(&mimic.name))?;
+    let joints = robot.joints.iter().map(|joint| (&joint.name, joint.origin));
+    for (name, origin) in joints.chain(robot.mimic_joints.iter().map(|mimic| (&mimic.name, mimic.origin))) {
+        refuse("the place at zero", &origin.components(), description::joint_place(name))?;
     }
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;

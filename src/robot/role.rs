@@ -35,7 +35,7 @@ pub(super) fn roles(description: &Description, posture: &Posture, plane: Plane) 
     let joints = &description.joints;
     let alone: Vec<Role> = (0..joints.len()).map(|index| role(joints[index].kind, index, posture, plane)).collect();
     let mut roles = alone.clone();
-    for (index, mimicked) in posture.leaders.iter().enumerate() {
+    for (index, mimicked) in posture.mimicked.iter().enumerate() {
         let Some(mimicked) = mimicked else { continue };
         let follows = || Role::Frozen(FreezeReason::Follows { mimicked: joints[mimicked.joint].name.clone() });
         match (&mut roles[index], &alone[mimicked.joint]) {
@@ -61,23 +61,19 @@ fn role(kind: JointKind, index: usize, posture: &Posture, plane: Plane) -> Role 
         JointKind::Fixed => Role::Frozen(FreezeReason::Fixed),
         JointKind::Spherical => Role::Frozen(FreezeReason::Kind(kind)),
         JointKind::Planar | JointKind::Floating => Role::Free,
-        JointKind::Revolute | JointKind::Continuous => {
-            let angle = plane.off_normal(axis);
-            let [_, along_normal, _] = apply(&plane.axes(), axis);
-            moves(angle, kind, || Axis::Revolute { sign: if along_normal < 0.0 { -1.0 } else { 1.0 } })
-        }
-        JointKind::Prismatic => moves(plane.off_plane(axis), kind, || {
-            let [x, _, z] = apply(&plane.axes(), axis);
+        JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => {
+            let slides = kind == JointKind::Prismatic;
+            let angle = if slides { plane.off_plane(axis) } else { plane.off_normal(axis) };
+            if angle > PARALLEL {
+                return Role::Frozen(FreezeReason::OffPlane { angle, slides });
+            }
+            let [x, along_normal, z] = apply(&plane.axes(), axis);
             let [x, _, z] = unit([x, 0.0, z]);
-            Axis::Prismatic { direction: Vector::new(x, z) }
-        }),
-    }
-}
-
-fn moves(angle: f64, kind: JointKind, axis: impl Fn() -> Axis) -> Role {
-    if angle <= PARALLEL {
-        Role::Moves { axis: axis(), mimicked: None, tilt: if angle > ROUNDING { angle } else { 0.0 } }
-    } else {
-        Role::Frozen(FreezeReason::OffPlane { angle, slides: kind == JointKind::Prismatic })
+            let axis = match slides {
+                true => Axis::Prismatic { direction: Vector::new(x, z) },
+                false => Axis::Revolute { sign: if along_normal < 0.0 { -1.0 } else { 1.0 } },
+            };
+            Role::Moves { axis, mimicked: None, tilt: if angle > ROUNDING { angle } else { 0.0 } }
+        }
     }
 }

@@ -29,20 +29,15 @@ pub struct FootShape {
 /// What stands about each corner of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rim {
-    /// A circle; of radius 0, the corner itself.
-    Circle {
-        /// Radius \[m\].
-        radius: f64,
-    },
-    /// The projection of a circle in space: `cos(s) a + sin(s) b` for all s.
-    Ellipse {
-        /// Two conjugate half diameters a, b in the body's frame \[m\].
-        half_diameters: [Vector<f64>; 2],
-    },
+    /// A circle of this radius \[m\]; of radius 0, the corner itself.
+    Circle { radius: f64 },
+    /// The projection of a circle in space: `cos(s) a + sin(s) b` for all s, with two conjugate half diameters a, b in
+    /// the body's frame \[m\].
+    Ellipse { half_diameters: [Vector<f64>; 2] },
 }
 
 impl Rim {
-    /// The rim's point that lies farthest along the unit vector `direction`, seen from its centre \[m\].
+    /// The rim's point that lies farthest along the unit vector `direction`, seen from its center \[m\].
     ///
     /// Of an ellipse: `(a (a.d) + b (b.d)) / |(a.d, b.d)|`, the gradient of its support function |(a.d, b.d)|.
     pub fn support(&self, direction: Vector<f64>) -> Vector<f64> {
@@ -64,19 +59,19 @@ impl Rim {
         }
     }
 
-    /// No point of it is farther from its centre \[m\].
+    /// No point of it is farther from its center \[m\].
     pub fn bound(&self) -> f64 {
         match *self {
             Self::Circle { radius } => radius,
-            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(libm::hypot(a.x, a.z), libm::hypot(b.x, b.z)),
+            Self::Ellipse { half_diameters: [a, b] } => libm::hypot(a.length(), b.length()),
         }
     }
 }
 
 impl FootShape {
-    /// A disc; of radius 0, a point. `centre` in the body's frame, both in metres.
-    pub fn disc(centre: Vector<f64>, radius: f64) -> Self {
-        Self { corners: vec![centre], rim: Rim::Circle { radius }, mesh: None, polygon: None }
+    /// A disc; of radius 0, a point. `center` in the body's frame, both in metres.
+    pub fn disc(center: Vector<f64>, radius: f64) -> Self {
+        Self { corners: vec![center], rim: Rim::Circle { radius }, mesh: None, polygon: None }
     }
 
     /// The polygon of `corners` \[m\] in the body's frame, convex and counter-clockwise seen with forward to the right
@@ -94,7 +89,7 @@ impl FootShape {
         Some(Self { corners, rim, mesh: None, polygon })
     }
 
-    /// The same shape, told to come from a mesh file of this name.
+    /// The same shape, marked as that of a mesh file of this name.
     pub(super) fn of_mesh(self, file: &str) -> Self {
         Self { mesh: Some(file.to_owned()), ..self }
     }
@@ -104,7 +99,6 @@ impl FootShape {
         &self.corners
     }
 
-    /// What stands about each corner.
     pub fn rim(&self) -> Rim {
         self.rim
     }
@@ -119,16 +113,14 @@ impl FootShape {
         self.polygon.as_ref()
     }
 
-    /// Centre and radius of a circle about the whole shape, in the body's frame \[m\].
+    /// Center and radius of a circle about the whole shape, in the body's frame \[m\].
     pub fn bounding_circle(&self) -> (Vector<f64>, f64) {
-        let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
-        let (low, high) = self
-            .corners
-            .iter()
-            .fold((infinite, -infinite), |(low, high), &corner| (low.least(corner), high.greatest(corner)));
-        let centre = low * 0.5 + high * 0.5;
-        let farthest = self.corners.iter().map(|&corner| (corner - centre).length());
-        (centre, farthest.fold(0.0, f64::max) + self.rim.bound())
+        let (low, high) = self.corners.iter().fold((self.corners[0], self.corners[0]), |(low, high), &corner| {
+            (low.least(corner), high.greatest(corner))
+        });
+        let center = low * 0.5 + high * 0.5;
+        let farthest = self.corners.iter().map(|&corner| (corner - center).length());
+        (center, farthest.fold(0.0, f64::max) + self.rim.bound())
     }
 
     /// The shape with all lengths times `factor`, which is positive.

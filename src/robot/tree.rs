@@ -66,23 +66,23 @@ impl Tree {
     ) -> Self {
         let links = &description.links;
         let outward = description.outward(root);
-        // What each joint of the file moves with: coordinates and followers are numbered in its order.
+        // What each joint of the file moves with: coordinates and mimic joints are numbered in its order.
         let mut movers = vec![None; roles.len()];
-        let (mut coordinates, mut followers) = (0, 0);
+        let (mut coordinates, mut mimics) = (0.., 0..);
         let mut in_the_tree = outward.clone();
         in_the_tree.sort_unstable();
         for index in in_the_tree {
-            match roles[index] {
-                Role::Moves { mimicked: None, .. } => movers[index] = Some(ParentJoint::Joint(next(&mut coordinates))),
-                Role::Moves { mimicked: Some(_), .. } => movers[index] = Some(ParentJoint::Mimic(next(&mut followers))),
-                Role::Frozen(_) | Role::Free => {}
+            movers[index] = match roles[index] {
+                Role::Moves { mimicked: None, .. } => coordinates.next().map(ParentJoint::Joint),
+                Role::Moves { mimicked: Some(_), .. } => mimics.next().map(ParentJoint::Mimic),
+                Role::Frozen(_) | Role::Free => None,
             }
         }
 
         let mut places = vec![None; links.len()];
         places[root] = Some(Place { body: 0, rotation, offset: [0.0; 3] });
         let mut bodies = vec![Body::of(&links[root].name, None)];
-        let (mut joints, mut following) = (Vec::with_capacity(coordinates), Vec::with_capacity(followers));
+        let (mut joints, mut mimic_joints) = (Vec::new(), Vec::new());
         for index in outward {
             let joint = &description.joints[index];
             // Outward: the parent's place is known.
@@ -92,11 +92,12 @@ impl Tree {
                 (&Role::Moves { axis, ref mimicked, .. }, Some(mover)) => {
                     let (name, parent, child, origin) = (joint.name.clone(), at.body, bodies.len(), at.in_plane());
                     bodies.push(Body::of(&links[joint.child].name, Some(mover)));
-                    let led = mimicked.as_ref().map(|mimicked| (movers[mimicked.joint], mimicked));
-                    if let Some((Some(ParentJoint::Joint(mimicked)), &Mimic { multiplier, offset, .. })) = led {
-                        following.push(MimicJoint { name, mimicked, multiplier, offset, parent, child, origin, axis });
+                    let mimic = mimicked.as_ref().map(|mimicked| (movers[mimicked.joint], mimicked));
+                    if let Some((Some(ParentJoint::Joint(mimicked)), &Mimic { multiplier, offset, .. })) = mimic {
+                        let mimic = MimicJoint { name, mimicked, multiplier, offset, parent, child, origin, axis };
+                        mimic_joints.push((index, mimic));
                     } else {
-                        joints.push(Joint { name, parent, child, origin, axis });
+                        joints.push((index, Joint { name, parent, child, origin, axis }));
                     }
                     Place { body: child, offset: [0.0; 3], ..at }
                 }
@@ -109,27 +110,26 @@ impl Tree {
                         None => at,
                     };
                     let child = &links[joint.child];
-                    let welds = if vanishes(child) { reductions.massless } else { reductions.weld };
-                    if welds {
+                    let welded = if vanishes(child) { reductions.massless } else { reductions.weld };
+                    if welded {
                         at
                     } else {
-                        let weld = ParentJoint::Fixed { parent: at.body, origin: at.in_plane() };
-                        bodies.push(Body::of(&child.name, Some(weld)));
+                        let fixed = ParentJoint::Fixed { parent: at.body, origin: at.in_plane() };
+                        bodies.push(Body::of(&child.name, Some(fixed)));
                         Place { body: bodies.len() - 1, offset: [0.0; 3], ..at }
                     }
                 }
             };
             places[joint.child] = Some(child);
         }
-        joints.sort_by_key(|joint| bodies[joint.child].joint.and_then(order));
-        following.sort_by_key(|mimic| bodies[mimic.child].joint.and_then(order));
-        Self { bodies, joints, mimic_joints: following, places }
+        Self { bodies, joints: in_order(joints), mimic_joints: in_order(mimic_joints), places }
     }
+}
 
-    /// Whether a body is rigid on another and kept apart all the same.
-    pub(super) fn is_apart(&self, body: usize) -> bool {
-        matches!(self.bodies[body].joint, Some(ParentJoint::Fixed { .. }))
-    }
+/// In the file's order.
+fn in_order<T>(mut joints: Vec<(usize, T)>) -> Vec<T> {
+    joints.sort_by_key(|(index, _)| *index);
+    joints.into_iter().map(|(_, joint)| joint).collect()
 }
 
 /// Whether nothing of a link is left once it is welded: it has neither inertia nor shapes.
@@ -137,20 +137,6 @@ fn vanishes(link: &description::Link) -> bool {
     let inertia = |inertia: &Matrix| inertia.iter().flatten().all(|&entry| entry == 0.0);
     let massless = |own: &Inertial| own.mass == 0.0 && own.inertia.as_ref().is_none_or(inertia);
     link.collisions.is_empty() && link.inertial.as_ref().is_none_or(massless)
-}
-
-/// Counts one on.
-fn next(count: &mut usize) -> usize {
-    *count += 1;
-    *count - 1
-}
-
-/// The place of a mover among those of its kind.
-fn order(mover: ParentJoint) -> Option<usize> {
-    match mover {
-        ParentJoint::Joint(index) | ParentJoint::Mimic(index) => Some(index),
-        ParentJoint::Fixed { .. } => None,
-    }
 }
 
 impl Body {

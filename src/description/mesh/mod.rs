@@ -22,40 +22,29 @@ const MOST_BYTES: usize = 256 << 20;
 /// The beginning of a Git LFS pointer.
 const LFS_POINTER: &[u8] = b"version https://git-lfs";
 
-/// The vertices of a mesh, or why there are none.
+/// The vertices of a mesh, or why there are none, as in `no such file`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mesh {
-    /// Not read: [`Description::read_meshes`] was not called.
+    /// [`Description::read_meshes`] was not called.
     Unread,
-    /// It could not be read.
     LeftOut {
-        /// Why, as in `no such file`.
         why: String,
     },
-    /// Its vertices in the mesh's own frame, before any factor of the URDF \[m\]; all are finite, there is at least
-    /// one.
+    /// In the mesh's own frame, before any factor of the URDF \[m\]; all are finite, there is at least one.
     Vertices(Arc<[[f64; 3]]>),
 }
 
-/// The file that a mesh name refers to.
+/// The bytes of the file that a mesh name refers to, or why there are none, as in `no such file`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fetched {
-    /// The file's bytes.
     Bytes(Vec<u8>),
-    /// Nothing that could be read.
-    Nothing {
-        /// Why, as in `no such file`.
-        why: String,
-    },
+    Nothing { why: String },
 }
 
 impl Description {
-    /// Reads the collision meshes from what `fetch` finds under their names: STL, OBJ and COLLADA (DAE), by the ending
-    /// of the name.
-    ///
-    /// Of COLLADA the visual scene counts, with the transformations of its nodes, the unit, and an up axis that is
-    /// stated. Vertices of STL are rounded to f32, as the format has them; the other two keep all digits. A mesh that
-    /// cannot be read is kept as [`Mesh::LeftOut`], and [`Robot::left_out`](crate::Robot::left_out) gives the reason.
+    /// Reads the collision meshes from what `fetch` finds under their names: STL (whose vertices are f32), OBJ and
+    /// COLLADA (DAE), by the ending of the name. A mesh that cannot be read is kept as [`Mesh::LeftOut`], and
+    /// [`Robot::left_out`](crate::Robot::left_out) gives the reason.
     ///
     /// # Errors
     /// Those of `fetch`, at the link that names the mesh.

@@ -18,7 +18,6 @@ use std::cmp::Ordering;
 /// What a chain may bulge and still be a straight side, as part of the hull's size: as much as the default contact
 /// tolerance is of the robot's size.
 const FLAT: f64 = 1e-6;
-
 /// Coordinates that differ by less than this part of the largest one are the same point.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
@@ -26,14 +25,14 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// points lie on a line, one if they coincide. Or why there are none.
 pub(super) fn corners(points: &[Vector<f64>]) -> Result<Vec<Vector<f64>>, String> {
     let Some(&first) = points.first() else { return Err("it has no vertices".into()) };
-    let coordinates = || points.iter().flat_map(|point| point.components());
-    let largest = coordinates().fold(0.0, |largest: f64, coordinate| largest.max(coordinate.abs()));
-    let size = points.iter().fold(0.0, |size: f64, &point| {
-        let Vector { x, z } = point - first;
-        size.max(x.abs()).max(z.abs())
-    });
+    let most = |from: Vector<f64>| {
+        let coordinates = points.iter().flat_map(|&point| (point - from).components());
+        coordinates.fold(0.0, |most: f64, coordinate| most.max(coordinate.abs()))
+    };
+    let (largest, size) = (most(Vector::zero()), most(first));
     // Not finite either where only the distance of two points leaves the range.
-    if coordinates().any(|coordinate| !coordinate.is_finite()) || !size.is_finite() {
+    if points.iter().flat_map(|point| point.components()).any(|coordinate| !coordinate.is_finite()) || !size.is_finite()
+    {
         return Err("its vertices leave the range of f64".into());
     }
     if size <= ROUNDING * largest {
@@ -100,22 +99,15 @@ mod tests {
         }
     }
 
-    /// The area to the left of a, b, c, twice.
-    fn turn(a: Vector<f64>, b: Vector<f64>, c: Vector<f64>) -> f64 {
-        let (side, arm) = (b - a, c - a);
-        side.x * arm.z - side.z * arm.x
-    }
-
     /// All points lie inside the corners, off by `beyond` at most; corners are points, and turn left.
     fn assert_hull(points: &[Vector<f64>], corners: &[Vector<f64>], beyond: f64) {
         assert!(corners.iter().all(|corner| points.contains(corner)));
         for (at, &a) in corners.iter().enumerate() {
             let (b, c) = (corners[(at + 1) % corners.len()], corners[(at + 2) % corners.len()]);
-            if corners.len() > 2 {
-                assert!(turn(a, b, c) > 0.0, "{a:?} {b:?} {c:?}");
-            }
-            let side = libm::hypot(b.x - a.x, b.z - a.z);
-            let outside = points.iter().map(|&point| -turn(a, b, point) / side).fold(0.0, f64::max);
+            let side = b - a;
+            let left = |point: Vector<f64>| side.x * (point - a).z - side.z * (point - a).x;
+            assert!(corners.len() <= 2 || left(c) > 0.0, "{a:?} {b:?} {c:?}");
+            let outside = points.iter().map(|&point| -left(point) / side.length()).fold(0.0, f64::max);
             assert!(outside <= beyond, "{outside} outside {a:?} {b:?}");
         }
     }
@@ -175,9 +167,7 @@ mod tests {
         let copies: Vec<Vector<f64>> = square.into_iter().cycle().take(40).collect();
         assert_eq!(corners(&copies).expect("a square").len(), 4);
         assert_eq!(corners(&[]), Err("it has no vertices".into()));
-        assert_eq!(
-            corners(&[Vector::zero(), Vector::new(f64::INFINITY, 0.0)]),
-            Err("its vertices leave the range of f64".into())
-        );
+        let endless = [Vector::zero(), Vector::new(f64::INFINITY, 0.0)];
+        assert_eq!(corners(&endless), Err("its vertices leave the range of f64".into()));
     }
 }

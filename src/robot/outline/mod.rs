@@ -1,10 +1,10 @@
 //! Collision shape -> its outline in the plane: corners and the rim about them (see [`super::shape`]).
 //!
 //! ```text
-//!     ball, capsule                     projected centre line + circle
-//!     cylinder along the normal         centre + circle
+//!     ball, capsule                     projected center line + circle
+//!     cylinder along the normal         center + circle
 //!     cylinder in the plane, box        zonogon of the projected half axes
-//!     cylinder oblique to the plane     projected centre line + ellipse, the projection of its rims
+//!     cylinder oblique to the plane     projected center line + ellipse, the projection of its rims
 //!     mesh                              convex hull of its projected vertices
 //! ```
 
@@ -15,12 +15,12 @@ use super::{FootShape, Rim};
 use crate::description::{Geometry, Matrix, Mesh, apply};
 use crate::planar::Vector;
 
-/// The outline of `geometry`, whose frame has its origin at `centre` and its axes in the columns of `rotation`, both in
+/// The outline of `geometry`, whose frame has its origin at `center` and its axes in the columns of `rotation`, both in
 /// the body's frame; `off_axis` is the greatest angle \[rad\] that still counts as parallel. Or why there is none.
 pub(super) fn outline(
     geometry: &Geometry,
     rotation: &Matrix,
-    centre: Vector<f64>,
+    center: Vector<f64>,
     off_axis: f64,
 ) -> Result<FootShape, String> {
     // The shape's axis `k` in the plane.
@@ -31,20 +31,20 @@ pub(super) fn outline(
     let lies_along_normal = libm::atan2(in_plane, along_normal) <= off_axis;
     let lies_in_plane = libm::atan2(along_normal, in_plane) <= off_axis;
     match geometry {
-        &Geometry::Sphere { radius } => Ok(FootShape::disc(centre, radius)),
+        &Geometry::Sphere { radius } => Ok(FootShape::disc(center, radius)),
         &Geometry::Capsule { radius, .. } | &Geometry::Cylinder { radius, .. } if lies_along_normal => {
-            Ok(FootShape::disc(centre, radius))
+            Ok(FootShape::disc(center, radius))
         }
-        &Geometry::Capsule { radius, length } => projected(centre, &[half(2, length)], Rim::Circle { radius }),
+        &Geometry::Capsule { radius, length } => projected(center, &[half(2, length)], Rim::Circle { radius }),
         &Geometry::Cylinder { radius, length } if lies_in_plane => {
-            projected(centre, &[half(2, length), Vector::new(z * radius, -x * radius)], POINT)
+            projected(center, &[half(2, length), Vector::new(z * radius, -x * radius)], POINT)
         }
         &Geometry::Cylinder { radius, length } => {
             // The rims are circles about the shape's own z axis; their half diameters along its x and y stay conjugate.
             let half_diameters = [half(0, 2.0 * radius), half(1, 2.0 * radius)];
-            projected(centre, &[half(2, length)], Rim::Ellipse { half_diameters })
+            projected(center, &[half(2, length)], Rim::Ellipse { half_diameters })
         }
-        &Geometry::Box { size } => projected(centre, &[0, 1, 2].map(|k| half(k, size[k])), POINT),
+        &Geometry::Box { size } => projected(center, &[0, 1, 2].map(|k| half(k, size[k])), POINT),
         Geometry::Mesh { file, scale, mesh } => {
             let vertices = match mesh {
                 Mesh::Vertices(vertices) => vertices,
@@ -53,7 +53,7 @@ pub(super) fn outline(
             };
             let project = |vertex: &[f64; 3]| {
                 let [x, _, z] = apply(rotation, [0, 1, 2].map(|k| scale[k] * vertex[k]));
-                centre + Vector::new(x, z)
+                center + Vector::new(x, z)
             };
             let corners = hull::corners(&vertices.iter().map(project).collect::<Vec<_>>())?;
             let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
@@ -66,9 +66,8 @@ pub(super) fn outline(
 /// A rim that is its corner.
 const POINT: Rim = Rim::Circle { radius: 0.0 };
 
-/// The zonogon of `half_sides` about `centre`, with `rim` about its corners.
-fn projected(centre: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Result<FootShape, String> {
-    swept(zonogon::corners(centre, half_sides), rim)
+fn projected(center: Vector<f64>, half_sides: &[Vector<f64>], rim: Rim) -> Result<FootShape, String> {
+    swept(zonogon::corners(center, half_sides), rim)
 }
 
 fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
@@ -79,156 +78,36 @@ fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Result<FootShape, String> {
 mod tests {
     use super::*;
     use crate::description::Pose;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, TAU};
 
-    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4};
+    const CENTER: Vector<f64> = Vector { x: 0.1, z: -0.3 };
+    const SOLE: Geometry = Geometry::Box { size: [0.2, 0.1, 0.04] };
+    const ROD: Geometry = Geometry::Cylinder { radius: 0.05, length: 0.4 };
+    const CAPSULE: Geometry = Geometry::Capsule { radius: 0.05, length: 0.4 };
 
-    fn outline_of(geometry: Geometry, rpy: [f64; 3]) -> Result<FootShape, String> {
-        outline(&geometry, &Pose { xyz: [0.0; 3], rpy }.rotation(), Vector::new(0.1, -0.3), 1e-3)
+    fn outline_of(geometry: &Geometry, rpy: [f64; 3]) -> FootShape {
+        outline(geometry, &Pose { xyz: [0.0; 3], rpy }.rotation(), CENTER, 1e-3).expect("an outline")
     }
 
-    fn polygon_of(geometry: Geometry, rpy: [f64; 3]) -> (Vec<Vector<f64>>, Rim) {
-        let shape = outline_of(geometry, rpy).expect("an outline");
+    /// The outline has these corners, in this order up to rounding by `off`, and a circle of this radius about each.
+    #[track_caller]
+    fn assert_outline(geometry: &Geometry, rpy: [f64; 3], off: f64, corners: &[Vector<f64>], radius: f64) {
+        let shape = outline_of(geometry, rpy);
+        let far = |(a, b): (&Vector<f64>, &Vector<f64>)| (a.x - b.x).abs().max((a.z - b.z).abs()) > off;
+        let differs = shape.corners().len() != corners.len() || shape.corners().iter().zip(corners).any(far);
+        assert!(!differs, "{geometry:?} {rpy:?}: {:?}", shape.corners());
+        assert_eq!(shape.rim(), Rim::Circle { radius });
         if let Some(polygon) = shape.polygon().and_then(|polygon| polygon.as_convex_polygon()) {
             assert_eq!(polygon.points().iter().map(|p| Vector::new(p.x, p.y)).collect::<Vec<_>>(), shape.corners());
         }
-        (shape.corners().to_vec(), shape.rim())
     }
 
-    fn corners_of(geometry: Geometry, rpy: [f64; 3]) -> Vec<Vector<f64>> {
-        let (corners, rim) = polygon_of(geometry, rpy);
-        assert_eq!(rim, POINT);
-        corners
+    /// The corners of a rectangle of these half sizes.
+    fn rectangle(x: f64, z: f64) -> [Vector<f64>; 4] {
+        [[0.1 - x, -0.3 - z], [0.1 + x, -0.3 - z], [0.1 + x, -0.3 + z], [0.1 - x, -0.3 + z]].map(Vector::from)
     }
 
-    fn disc_of(geometry: Geometry, rpy: [f64; 3]) -> (Vector<f64>, f64) {
-        match polygon_of(geometry, rpy) {
-            (corners, Rim::Circle { radius }) if corners.len() == 1 => (corners[0], radius),
-            other => panic!("{other:?} is no disc"),
-        }
-    }
-
-    fn assert_near(corners: &[Vector<f64>], expected: &[Vector<f64>]) {
-        assert_eq!(corners.len(), expected.len(), "{corners:?}");
-        for (corner, expected) in
-            corners.iter().flat_map(|at| at.components()).zip(expected.iter().flat_map(|at| at.components()))
-        {
-            assert!((corner - expected).abs() < 1e-15, "{corners:?}");
-        }
-    }
-
-    const SOLE: Geometry = Geometry::Box { size: [0.2, 0.1, 0.04] };
-    const ROD: Geometry = Geometry::Cylinder { radius: 0.05, length: 0.4 };
-
-    #[test]
-    fn a_box_has_four_exact_corners_counter_clockwise_from_the_lowest_rear_one() {
-        let expected =
-            [[0.1 - 0.1, -0.3 - 0.02], [0.1 + 0.1, -0.3 - 0.02], [0.1 + 0.1, -0.3 + 0.02], [0.1 - 0.1, -0.3 + 0.02]];
-        assert_eq!(corners_of(SOLE, [0.0; 3]), expected);
-    }
-
-    #[test]
-    fn a_quarter_turn_leaves_four_corners() {
-        // Roll: the y side stands upright. Pitch: x and z change places. Yaw: y lies forward.
-        let rectangle = |x: f64, z: f64| {
-            [[0.1 - x, -0.3 - z], [0.1 + x, -0.3 - z], [0.1 + x, -0.3 + z], [0.1 - x, -0.3 + z]].map(Vector::from)
-        };
-        assert_near(&corners_of(SOLE, [FRAC_PI_2, 0.0, 0.0]), &rectangle(0.1, 0.05));
-        assert_near(&corners_of(SOLE, [0.0, 0.0, FRAC_PI_2]), &rectangle(0.05, 0.02));
-        let mut corners = corners_of(SOLE, [0.0, FRAC_PI_2, 0.0]);
-        // Which of the two level corners comes first is a matter of rounding.
-        corners.sort_by(|a, b| (a.z + 0.01 * a.x).total_cmp(&(b.z + 0.01 * b.x)));
-        assert_near(
-            &corners,
-            &[Vector::new(0.08, -0.4), Vector::new(0.12, -0.4), Vector::new(0.08, -0.2), Vector::new(0.12, -0.2)],
-        );
-    }
-
-    #[test]
-    fn a_turned_box_is_the_hull_of_its_eight_projected_corners() {
-        let cube = Geometry::Box { size: [2.0; 3] };
-        let pose = Pose { xyz: [0.0; 3], rpy: [0.4, 0.3, 0.9] };
-        let corners = corners_of(cube, pose.rpy);
-        assert_eq!(corners.len(), 6);
-        let rotation = pose.rotation();
-        let all = (0..8).map(|bits| [0, 1, 2].map(|k| if bits >> k & 1 == 0 { -1.0 } else { 1.0 }));
-        let projected: Vec<_> = all
-            .map(|corner| crate::description::apply(&rotation, corner))
-            .map(|[x, _, z]| Vector::new(0.1 + x, -0.3 + z))
-            .collect();
-        for (index, &corner) in corners.iter().enumerate() {
-            assert!(projected.iter().any(|&other| libm::hypot(other.x - corner.x, other.z - corner.z) < 1e-15));
-            let side = corners[(index + 1) % 6] - corner;
-            let left_of = |Vector { x, z }: Vector<f64>| side.x * z - side.z * x;
-            assert!(projected.iter().all(|&other| left_of(other - corner) > -1e-14));
-        }
-    }
-
-    #[test]
-    fn a_cylinder_is_a_disc_along_the_normal_and_a_rectangle_in_the_plane() {
-        assert_eq!(disc_of(ROD, [FRAC_PI_2, 0.0, 0.0]), (Vector::new(0.1, -0.3), 0.05));
-        assert_eq!(disc_of(ROD, [-FRAC_PI_2, 0.0, 0.0]), (Vector::new(0.1, -0.3), 0.05));
-        let upright = corners_of(ROD, [0.0; 3]);
-        assert_eq!(
-            upright,
-            [[0.1 - 0.05, -0.5], [0.1 + 0.05, -0.5], [0.1 + 0.05, -0.3 + 0.2], [0.1 - 0.05, -0.3 + 0.2]]
-        );
-    }
-
-    #[test]
-    fn a_capsule_is_a_disc_along_the_normal_and_else_its_centre_line_with_its_radius() {
-        let capsule = Geometry::Capsule { radius: 0.05, length: 0.4 };
-        assert_eq!(disc_of(capsule.clone(), [FRAC_PI_2, 0.0, 0.0]), (Vector::new(0.1, -0.3), 0.05));
-        let round = Rim::Circle { radius: 0.05 };
-        assert_eq!(
-            polygon_of(capsule.clone(), [0.0; 3]),
-            (vec![Vector::new(0.1, -0.5), Vector::new(0.1, -0.3 + 0.2)], round)
-        );
-        // Rolled by 60 degrees the centre line is seen at half its length.
-        let (corners, rim) = polygon_of(capsule, [FRAC_PI_3, 0.0, 0.0]);
-        assert_near(&corners, &[Vector::new(0.1, -0.4), Vector::new(0.1, -0.2)]);
-        assert_eq!(rim, round);
-    }
-
-    /// How far the outline reaches from (0.1, -0.3) along `direction`, and its point there.
-    fn farthest(shape: &FootShape, direction: Vector<f64>) -> (f64, Vector<f64>) {
-        let along = |point: Vector<f64>| (point - Vector::new(0.1, -0.3)).dot(direction);
-        let tip = |&corner: &Vector<f64>| corner + shape.rim().support(direction);
-        let point = shape.corners().iter().map(tip).max_by(|&a, &b| along(a).total_cmp(&along(b))).expect("a corner");
-        (along(point), point)
-    }
-
-    #[test]
-    fn every_outline_reaches_as_far_as_the_points_of_its_surface_in_space() {
-        // Rims of a cylinder and circles of a ball by their angle: 1 - cos of half a step is what sampling misses.
-        const STEPS: u32 = 4000;
-        let turns = || (0..STEPS).map(|step| (f64::from(step) * std::f64::consts::TAU / f64::from(STEPS)).sin_cos());
-        let (radius, length) = (0.05, 0.4);
-        let rims = || [-0.5 * length, 0.5 * length].into_iter().flat_map(move |z| turns().map(move |(s, c)| (s, c, z)));
-        let cylinder: Vec<[f64; 3]> = rims().map(|(sin, cos, z)| [radius * cos, radius * sin, z]).collect();
-        let shapes = [
-            (Geometry::Cylinder { radius, length }, cylinder),
-            (Geometry::Box { size: [0.2, 0.4, 0.6] }, eight([0.1, 0.2, 0.3])),
-        ];
-        for rpy in [[0.7, 0.3, 0.2], [FRAC_PI_4, 0.0, 0.0], [1.5, 0.1, -2.0], [0.1, FRAC_PI_2, 0.4], [0.01, 0.0, 0.0]] {
-            let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
-            for (geometry, surface) in &shapes {
-                let shape = outline_of(geometry.clone(), rpy).expect("an outline");
-                let seen: Vec<Vector<f64>> =
-                    surface.iter().map(|&point| apply(&rotation, point)).map(|[x, _, z]| Vector::new(x, z)).collect();
-                for direction in (0..24).map(|step| (0.1 + f64::from(step)).sin_cos()).map(|(s, c)| Vector::new(c, s)) {
-                    let (reach, point) = farthest(&shape, direction);
-                    let sampled = seen.iter().map(|&at| at.dot(direction)).fold(f64::NEG_INFINITY, f64::max);
-                    assert!((reach - sampled).abs() < 1e-7, "{geometry:?} {rpy:?} {direction:?}: {reach}, {sampled}");
-                    // The point is one of the surface, not merely as high as one.
-                    let apart = |at: &Vector<f64>| point - Vector::new(0.1, -0.3) - *at;
-                    let nearest = seen.iter().map(|at| libm::hypot(apart(at).x, apart(at).z)).fold(f64::MAX, f64::min);
-                    assert!(nearest < 1e-4, "{geometry:?} {rpy:?} {direction:?}: {nearest}");
-                }
-            }
-        }
-    }
-
-    fn mesh(vertices: Vec<[f64; 3]>, scale: [f64; 3]) -> Geometry {
+    fn mesh(vertices: &[[f64; 3]], scale: [f64; 3]) -> Geometry {
         Geometry::Mesh { file: "package://p/sole.stl".into(), scale, mesh: Mesh::Vertices(vertices.into()) }
     }
 
@@ -237,41 +116,81 @@ mod tests {
         (0..8).map(|bits| [0, 1, 2].map(|k| if bits >> k & 1 == 0 { -half[k] } else { half[k] })).collect()
     }
 
-    fn sole() -> Vec<[f64; 3]> {
-        eight([0.1, 0.05, 0.02])
+    #[test]
+    fn outlines_have_the_corners_worked_by_hand() {
+        let (unturned, rolled) = ([0.0; 3], [FRAC_PI_2, 0.0, 0.0]);
+        let line = |a: [f64; 2], b: [f64; 2]| [a, b].map(Vector::from);
+        assert_outline(&SOLE, unturned, 0.0, &rectangle(0.1, 0.02), 0.0);
+        // Roll: the y side stands upright. Yaw: y lies forward.
+        assert_outline(&SOLE, rolled, 1e-15, &rectangle(0.1, 0.05), 0.0);
+        assert_outline(&SOLE, [0.0, 0.0, FRAC_PI_2], 1e-15, &rectangle(0.05, 0.02), 0.0);
+        assert_outline(&ROD, rolled, 0.0, &[CENTER], 0.05);
+        assert_outline(&ROD, [-FRAC_PI_2, 0.0, 0.0], 0.0, &[CENTER], 0.05);
+        assert_outline(&ROD, unturned, 0.0, &rectangle(0.05, 0.2), 0.0);
+        assert_outline(&CAPSULE, rolled, 0.0, &[CENTER], 0.05);
+        assert_outline(&CAPSULE, unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.05);
+        // Rolled by 60 degrees the center line is seen at half its length.
+        assert_outline(&CAPSULE, [FRAC_PI_3, 0.0, 0.0], 1e-15, &line([0.1, -0.4], [0.1, -0.2]), 0.05);
+        let flat = |x, z| Geometry::Box { size: [x, 0.1, z] };
+        assert_outline(&flat(0.2, 0.0), unturned, 0.0, &line([0.1 - 0.1, -0.3], [0.1 + 0.1, -0.3]), 0.0);
+        assert_outline(&flat(0.0, 0.4), unturned, 0.0, &line([0.1, -0.5], [0.1, -0.3 + 0.2]), 0.0);
+        assert_outline(&flat(0.0, 0.0), unturned, 0.0, &[CENTER], 0.0);
+        assert_outline(&Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0], 0.0, &[CENTER], 0.0);
+
+        // Pitch: x and z change places; which of the two level corners comes first is a matter of rounding.
+        let mut corners = outline_of(&SOLE, [0.0, FRAC_PI_2, 0.0]).corners().to_vec();
+        corners.sort_by(|a, b| (a.z + 0.01 * a.x).total_cmp(&(b.z + 0.01 * b.x)));
+        let expected = [[0.08, -0.4], [0.12, -0.4], [0.08, -0.2], [0.12, -0.2]].map(Vector::from);
+        assert!(corners.len() == 4 && corners.iter().zip(expected).all(|(&a, b)| (a - b).length() < 1e-15));
     }
 
     #[test]
-    fn a_mesh_of_a_box_is_that_box() {
-        let corners = corners_of(mesh(sole(), [1.0; 3]), [0.0; 3]);
-        assert_eq!(corners, corners_of(SOLE, [0.0; 3]));
-        let turned = [0.4, 0.3, 0.9];
-        let corners = corners_of(mesh(sole(), [1.0; 3]), turned);
-        assert_near(&corners, &corners_of(SOLE, turned));
-        assert_eq!(outline_of(mesh(sole(), [1.0; 3]), [0.0; 3]).expect("an outline").mesh(), Some("sole.stl"));
-    }
+    fn a_mesh_has_its_hull_scaled_along_its_own_axes() {
+        let sole = mesh(&eight([0.1, 0.05, 0.02]), [1.0; 3]);
+        assert_outline(&sole, [0.0; 3], 0.0, outline_of(&SOLE, [0.0; 3]).corners(), 0.0);
+        let turned = outline_of(&SOLE, [0.4, 0.3, 0.9]);
+        assert_eq!(turned.corners().len(), 6);
+        assert_outline(&sole, [0.4, 0.3, 0.9], 1e-15, turned.corners(), 0.0);
+        assert_eq!(outline_of(&sole, [0.0; 3]).mesh(), Some("sole.stl"));
 
-    #[test]
-    fn a_mesh_is_scaled_and_mirrored_along_its_own_axes() {
         // A wedge whose tip points forward and down, seen from the side; as seen after the factors.
-        let wedge = || vec![[0.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.5, 1.0]];
-        let corners = |scale| corners_of(mesh(wedge(), scale), [0.0; 3]);
-        assert_near(&corners([1.0; 3]), &[Vector::new(1.1, -1.3), Vector::new(0.1, 0.7), Vector::new(0.1, -0.3)]);
-        assert_near(
-            &corners([-0.5, 3.0, 0.25]),
-            &[Vector::new(-0.4, -0.55), Vector::new(0.1, -0.3), Vector::new(0.1, -0.05)],
-        );
-        assert_near(&corners([1.0, 1.0, 0.0]), &[Vector::new(0.1, -0.3), Vector::new(1.1, -0.3)]);
-        assert_eq!(disc_of(mesh(wedge(), [0.0; 3]), [0.0; 3]), (Vector::new(0.1, -0.3), 0.0));
+        let wedge = [[0.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.5, 1.0]];
+        let cases: [([f64; 3], &[[f64; 2]]); 4] = [
+            ([1.0; 3], &[[1.1, -1.3], [0.1, 0.7], [0.1, -0.3]]),
+            ([-0.5, 3.0, 0.25], &[[-0.4, -0.55], [0.1, -0.3], [0.1, -0.05]]),
+            ([1.0, 1.0, 0.0], &[[0.1, -0.3], [1.1, -0.3]]),
+            ([0.0; 3], &[[0.1, -0.3]]),
+        ];
+        for (scale, corners) in cases {
+            let corners: Vec<_> = corners.iter().copied().map(Vector::from).collect();
+            assert_outline(&mesh(&wedge, scale), [0.0; 3], 1e-15, &corners, 0.0);
+        }
     }
 
     #[test]
-    fn flat_shapes_are_lines_and_points() {
-        let plate = Geometry::Box { size: [0.2, 0.1, 0.0] };
-        assert_eq!(corners_of(plate, [0.0; 3]), [[0.1 - 0.1, -0.3], [0.1 + 0.1, -0.3]]);
-        let wall = Geometry::Box { size: [0.0, 0.1, 0.4] };
-        assert_eq!(corners_of(wall, [0.0; 3]), [[0.1, -0.5], [0.1, -0.3 + 0.2]]);
-        assert_eq!(disc_of(Geometry::Box { size: [0.0, 0.1, 0.0] }, [0.0; 3]), (Vector::new(0.1, -0.3), 0.0));
-        assert_eq!(disc_of(Geometry::Sphere { radius: 0.0 }, [1.0, 2.0, 3.0]), (Vector::new(0.1, -0.3), 0.0));
+    fn outlines_reach_as_far_as_the_surface_in_space() {
+        // The rims of a cylinder by their angle: 1 - cos of half a step is what sampling misses.
+        let turns = || (0..4000).map(|step| (f64::from(step) * TAU / 4000.0).sin_cos());
+        let rims = [-0.2, 0.2].into_iter().flat_map(|z| turns().map(move |(sin, cos)| [0.05 * cos, 0.05 * sin, z]));
+        let shapes =
+            [(ROD, rims.collect::<Vec<_>>()), (Geometry::Box { size: [0.2, 0.4, 0.6] }, eight([0.1, 0.2, 0.3]))];
+        for rpy in [[0.7, 0.3, 0.2], [FRAC_PI_4, 0.0, 0.0], [1.5, 0.1, -2.0], [0.1, FRAC_PI_2, 0.4], [0.01, 0.0, 0.0]] {
+            let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
+            for (geometry, surface) in &shapes {
+                let shape = outline_of(geometry, rpy);
+                let seen = surface.iter().map(|&point| apply(&rotation, point)).map(|[x, _, z]| Vector::new(x, z));
+                for direction in (0..24).map(|step| (0.1 + f64::from(step)).sin_cos()).map(|(s, c)| Vector::new(c, s)) {
+                    let tip = |&corner: &Vector<f64>| corner - CENTER + shape.rim().support(direction);
+                    let farther = |a: &Vector<f64>, b: &Vector<f64>| a.dot(direction).total_cmp(&b.dot(direction));
+                    let farthest = shape.corners().iter().map(tip).max_by(farther).expect("a corner");
+                    let sampled = seen.clone().max_by(farther).expect("a point");
+                    let off = (farthest - sampled).dot(direction).abs();
+                    assert!(off < 1e-7, "{geometry:?} {rpy:?} {direction:?}: {off}");
+                    // The point is one of the surface, not merely as high as one.
+                    let nearest = seen.clone().map(|at| (farthest - at).length()).fold(f64::MAX, f64::min);
+                    assert!(nearest < 1e-4, "{geometry:?} {rpy:?} {direction:?}: {nearest}");
+                }
+            }
+        }
     }
 }

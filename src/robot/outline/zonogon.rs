@@ -2,7 +2,7 @@
 //! parallel sides (a zonogon).
 //!
 //! Walking along the half sides in the order of their angles gives the corners, so those of a shape that is not turned
-//! come from its centre and half sizes by one sum each.
+//! come from its center and half sizes by one sum each.
 
 use crate::planar::Vector;
 
@@ -10,28 +10,27 @@ use crate::planar::Vector;
 /// is 6e-17 in f64, leaves them) and would tear one corner into two.
 const ROUNDING: f64 = 1e-12;
 
-/// The corners about `centre` with these half sides, counter-clockwise from the lowest: one if all vanish, two if all
+/// The corners about `center` with these half sides, counter-clockwise from the lowest: one if all vanish, two if all
 /// are parallel.
-pub(super) fn corners(centre: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
+pub(super) fn corners(center: Vector<f64>, half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let sides = distinct(half_sides);
     // From the lowest corner up along all sides, and back down along them.
     let count = sides.len();
     let corner = |step: usize| {
-        sides.iter().enumerate().fold(Vector::zero(), |corner: Vector<f64>, (index, &side)| {
-            let forward = index < step && step <= index + count;
-            if forward { corner + side } else { corner - side }
-        })
+        let forward = |index: usize| index < step && step <= index + count;
+        let signed = sides.iter().enumerate().map(|(index, &side)| if forward(index) { side } else { -side });
+        signed.fold(Vector::zero(), |corner, side| corner + side)
     };
-    (0..(2 * count).max(1)).map(|step| centre + corner(step)).collect()
+    (0..(2 * count).max(1)).map(|step| center + corner(step)).collect()
 }
 
 /// The half sides that remain when rounding is dropped and parallel ones are joined, all pointing up (or level and
 /// forward), by rising angle from level.
 fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
-    let longest = half_sides.iter().map(|&side| length(side)).fold(0.0, f64::max);
+    let longest = half_sides.iter().map(|side| side.length()).fold(0.0, f64::max);
     let mut sides: Vec<Vector<f64>> = Vec::with_capacity(half_sides.len());
     for &side in half_sides {
-        if length(side) <= ROUNDING * longest {
+        if side.length() <= ROUNDING * longest {
             continue;
         }
         let parallel = sides.iter_mut().find(|known| sine(**known, side).abs() <= ROUNDING);
@@ -50,13 +49,9 @@ fn distinct(half_sides: &[Vector<f64>]) -> Vec<Vector<f64>> {
     sides
 }
 
-fn length(Vector { x, z }: Vector<f64>) -> f64 {
-    libm::hypot(x, z)
-}
-
 /// Sine of the angle from `a` to `b`; positive where `b` points to the left of `a`, seen with forward to the right and
 /// up upward.
 fn sine(a: Vector<f64>, b: Vector<f64>) -> f64 {
-    let (la, lb) = (length(a), length(b));
+    let (la, lb) = (a.length(), b.length());
     (a.x / la) * (b.z / lb) - (a.z / la) * (b.x / lb)
 }
