@@ -84,11 +84,8 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
         body.com = body.com * length;
         body.moment *= mass * length * length;
     }
-    for joint in &mut robot.joints {
+    for joint in robot.joints.iter_mut().chain(robot.mimic_joints.iter_mut().map(|mimic| &mut mimic.joint)) {
         joint.origin = joint.origin * length;
-    }
-    for follower in &mut robot.mimic_joints {
-        follower.origin = follower.origin * length;
     }
     for link in &mut robot.links {
         for row in &mut link.pose {

@@ -56,11 +56,8 @@ impl Meshes {
             refuse_leaving(name)?;
         }
         let found = [&as_written, &decoded].into_iter().find_map(|name| self.find(name));
-        let Some(path) = found else { return Ok(Fetched::Nothing { why: self.missing(&decoded) }) };
-        Ok(match InputFile::read(&path, LARGEST) {
-            Ok(input) => Fetched::Bytes(input.bytes),
-            Err(error) => Fetched::Nothing { why: error.reason().to_string() },
-        })
+        let Some(path) = found else { return Ok(Err(self.missing(&decoded))) };
+        Ok(InputFile::read(&path, LARGEST).map(|input| input.bytes).map_err(|error| error.reason().to_string()))
     }
 
     fn find(&self, name: &str) -> Option<PathBuf> {

@@ -152,15 +152,7 @@ impl JointKind {
 
     /// Its name in URDF.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Revolute => "revolute",
-            Self::Continuous => "continuous",
-            Self::Prismatic => "prismatic",
-            Self::Planar => "planar",
-            Self::Floating => "floating",
-            Self::Spherical => "spherical",
-        }
+        ["fixed", "revolute", "continuous", "prismatic", "planar", "floating", "spherical"][self as usize]
     }
 }
 

@@ -75,21 +75,17 @@ impl<'a> Repaired<'a> {
 fn declarations(text: &str) -> Vec<std::ops::Range<usize>> {
     let (mut at, mut found) = (0, Vec::new());
     loop {
-        let rest = &text[at..];
-        let begin = at + (rest.len() - rest.trim_start().len());
-        let rest = &text[begin..];
-        let length = if rest.starts_with("<!--") {
-            rest.find("-->").map(|end| end + 3)
-        } else if rest.starts_with("<?") {
-            rest.find('>').map(|end| end + 1)
-        } else {
-            None
+        let rest = text[at..].trim_start();
+        let begin = text.len() - rest.len();
+        let Some((open, close)) = [("<!--", "-->"), ("<?", ">")].into_iter().find(|(open, _)| rest.starts_with(open))
+        else {
+            return found;
         };
-        let Some(length) = length else { return found };
-        if rest.starts_with("<?") {
-            found.push(begin..begin + length);
+        let Some(end) = rest.find(close) else { return found };
+        at = begin + end + close.len();
+        if open == "<?" {
+            found.push(begin..at);
         }
-        at = begin + length;
     }
 }
 

@@ -3,12 +3,8 @@
 use super::{Description, Joint, Link};
 use crate::error::{Reason, Result};
 
-/// Sets the joint of each link and returns the root.
-///
-/// Linear in links and joints.
-///
-/// # Errors
-/// A link with two parents, more than one root, or a cycle.
+/// Sets the joint of each link and returns the root, in time linear in links and joints. A link with two parents, more
+/// than one root, or a cycle are refused.
 pub(super) fn connect(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
     for (index, joint) in joints.iter().enumerate() {
         if let Some(first) = links[joint.child].joint {

@@ -24,10 +24,7 @@ pub(super) struct Unparsed {
     pub(super) refused: Error,
 }
 
-/// The XML tree of `text`.
-///
-/// # Errors
-/// Text that is no XML, a document type definition, too deep nesting, too many links, attributes or nodes.
+/// The XML tree of `text`. A document type definition is refused, and too many or too deeply nested elements.
 pub(super) fn parse(text: &str) -> std::result::Result<Document<'_>, Unparsed> {
     let refused = |refused| Unparsed { prefix: None, refused };
     refuse_many(text).map_err(refused)?;
@@ -137,10 +134,7 @@ pub(super) fn children<'a, 'input: 'a>(node: Node<'a, 'input>) -> impl Iterator<
     node.children().filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
 }
 
-/// The child element `tag`, if there is one.
-///
-/// # Errors
-/// A second one.
+/// The child element `tag`, if there is one; a second one is refused.
 pub(super) fn child<'a, 'input: 'a>(node: Node<'a, 'input>, tag: &str) -> Result<Option<Node<'a, 'input>>> {
     let mut found = children(node).filter(|child| child.tag_name().name() == tag);
     let first = found.next();
@@ -150,10 +144,7 @@ pub(super) fn child<'a, 'input: 'a>(node: Node<'a, 'input>, tag: &str) -> Result
     }
 }
 
-/// The child element `tag`.
-///
-/// # Errors
-/// None, or a second one.
+/// The one child element `tag`.
 pub(super) fn required_child<'a, 'input: 'a>(node: Node<'a, 'input>, tag: &str) -> Result<Node<'a, 'input>> {
     child(node, tag)?.ok_or_else(|| refuse(node, Reason::Missing(format!("<{tag}>"))))
 }

@@ -95,24 +95,15 @@ mod tests {
             };
             for ((place, joint, body), ratio) in parts {
                 let (parent, child) = (place.index(robot.bodies.len()), robot.bodies.len());
-                let Joint { name, origin, axis, .. } = joint;
+                let joint = Joint { parent, child, ..joint };
                 let joint = match ratio {
                     None => {
-                        robot.joints.push(Joint { name, parent, child, origin, axis });
+                        robot.joints.push(joint);
                         ParentJoint::Joint(robot.joints.len() - 1)
                     }
                     Some((other, multiplier, offset)) => {
                         let mimicked = other.index(moving);
-                        robot.mimic_joints.push(MimicJoint {
-                            name,
-                            mimicked,
-                            multiplier,
-                            offset,
-                            parent,
-                            child,
-                            origin,
-                            axis,
-                        });
+                        robot.mimic_joints.push(MimicJoint { joint, mimicked, multiplier, offset });
                         ParentJoint::Mimic(robot.mimic_joints.len() - 1)
                     }
                 };

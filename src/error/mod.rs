@@ -223,10 +223,7 @@ fn brief(value: f64) -> String {
     if plain.len() <= scientific.len().max(18) { plain } else { scientific }
 }
 
-/// `value`, unless it is NaN or infinite.
-///
-/// # Errors
-/// [`Reason::NotFinite`], naming `what`.
+/// `value`, unless it is NaN or infinite; `what` it is.
 pub(crate) fn finite(value: f64, what: impl FnOnce() -> String) -> Result<f64> {
     if value.is_finite() { Ok(value) } else { Err(Reason::NotFinite { what: what(), value }.into()) }
 }

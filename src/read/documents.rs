@@ -10,9 +10,8 @@ use serde::de::IgnoredAny;
 pub struct Document<'t> {
     /// Its text, even if it is malformed.
     pub text: &'t str,
-    /// The line on which it begins, from 1.
+    /// Where it begins, from 1.
     pub line: usize,
-    /// The column in which it begins, from 1.
     pub column: usize,
 }
 
@@ -27,9 +26,8 @@ impl Document<'_> {
     }
 }
 
-/// The objects of `text` in order: one, several with or without line breaks between them, or a list.
-///
-/// A malformed object extends to the next line that begins with `{`, where the next object is assumed to begin.
+/// The objects of `text` in order: one, several with or without line breaks between them, or a list. A malformed object
+/// extends to the next line that begins with `{`, where the next object is assumed to begin.
 pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
     let start = text.len() - text.trim_start().len();
     let within = if text[start..].starts_with('[') { Within::FreshList } else { Within::Stream };
@@ -37,10 +35,7 @@ pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
     Documents { text, at, within, counted: 0, line: 1, column: 1 }
 }
 
-/// The bytes as text, without a byte order mark.
-///
-/// # Errors
-/// [`Reason::Syntax`] with line and column of the first byte that is not UTF-8.
+/// The bytes as text, without a byte order mark; an error has the place of the first byte that is not UTF-8.
 pub fn utf8(bytes: &[u8]) -> Result<&str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),

@@ -121,7 +121,10 @@ impl Source for Problem {
 
 /// One value for all contacts, or a list with one for each.
 fn per_contact<T: Clone>(field: &Node, contacts: usize, read: impl Fn(Node) -> Result<T>) -> Result<Vec<T>> {
-    if field.is_list() { counted(field, contacts)?.map(read).collect() } else { Ok(vec![read(*field)?; contacts]) }
+    match field.entries() {
+        Ok(_) => counted(field, contacts)?.map(read).collect(),
+        Err(_) => Ok(vec![read(*field)?; contacts]),
+    }
 }
 
 /// Different names, one per contact.

@@ -17,9 +17,6 @@ const BASE: [&str; 3] = ["x", "z", "pitch"];
 const LOOP_LIMIT: usize = 256;
 
 /// Reads loops of `robot` from a JSON list, as a state's field `loops` has it.
-///
-/// # Errors
-/// Anything else than such a list; the error has place, line and column in `text`.
 pub fn loops_from_json(text: &str, robot: &Robot) -> Result<Vec<NamedLoop>> {
     let tree = Value::parse(text)?;
     loops(Node::root(&tree, text, None), robot)
@@ -214,7 +211,7 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
     let mut inertia = vec![0.0; robot.joints.len() + robot.mimic_joints.len()];
     for entry in field.fields("joint")? {
         let name = entry.key();
-        let place = match robot.mimic_joints.iter().position(|mimic| mimic.name == name) {
+        let place = match robot.mimic_joints.iter().position(|mimic| mimic.joint.name == name) {
             Some(mimic) => robot.joints.len() + mimic,
             None => joint(entry, name, robot)?,
         };
@@ -287,7 +284,7 @@ fn joint(node: Node, name: &str, robot: &Robot) -> Result<usize> {
         let no_coordinate = |why: String| {
             node.refuse_name(name, Reason::Inconsistent(format!("joint \"{name}\" has no coordinate: {why}")))
         };
-        if let Some(mimic) = robot.mimic_joints.iter().find(|mimic| mimic.name == name) {
+        if let Some(mimic) = robot.mimic_joints.iter().find(|mimic| mimic.joint.name == name) {
             let mimicked = &robot.joints[mimic.mimicked].name;
             return no_coordinate(format!("it follows joint \"{mimicked}\"")).hint(format!("name {mimicked} instead"));
         }

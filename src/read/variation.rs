@@ -7,9 +7,6 @@ use crate::{Error, Reason, Result};
 /// `description` with the numbers of `{"links": {name: {"mass", "com", "inertia", "radius"}}, "joints": {name:
 /// {"origin"}}}`: mass \[kg\], CoG in the link's frame \[m\], moment about the CoG and the plane's normal \[kg m^2\],
 /// taken for every axis, radius of the link's round collision shapes \[m\], joint's frame in its parent's \[m\].
-///
-/// # Errors
-/// Unknown links, joints and fields; negative masses, moments and radii; a radius for a link without round shapes.
 pub fn applied(field: Node, description: &Description) -> Result<Description> {
     let mut varied = description.clone();
     let [links, joints] = field.object("Variation", ["links", "joints"])?;

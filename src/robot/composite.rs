@@ -12,14 +12,11 @@ use crate::planar::Vector;
 
 /// Below this share of its terms a negative moment is rounding of a turned inertia.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
 /// Files give a few digits: a moment may be greater than the other two together by this share.
 const ROUNDED: f64 = 1e-3;
 
 /// Whether some body has this inertia about its CoG: no principal moment is greater than the other two together, so
-/// that none is negative (Featherstone 2008, section 2.13).
-///
-/// That is, `tr(I) / 2 - I` has no negative eigenvalue, and so no negative principal minor.
+/// that none is negative (Featherstone 2008, section 2.13). That is, no principal minor of `tr(I) / 2 - I` is negative.
 pub(super) fn is_physical(inertia: &Matrix) -> bool {
     let largest = inertia.as_flattened().iter().map(|entry| entry.abs()).fold(0.0, f64::max);
     if largest == 0.0 {
@@ -52,10 +49,7 @@ impl Part {
     }
 
     /// The part with the three-dimensional `inertia` about its CoG, whose axes are the columns of `rotation` in the
-    /// body's frame; a point mass without one.
-    ///
-    /// # Errors
-    /// A negative moment about the normal.
+    /// body's frame; a point mass without one. A negative moment about the normal is refused.
     pub(super) fn projected(
         mass: f64,
         com: Vector<f64>,

@@ -2,7 +2,7 @@
 
 use super::LeftOut;
 use super::reading::{FrozenJoint, Reading};
-use crate::description::{self, Collision, Description, Geometry, Ignored, joint_place, link_place};
+use crate::description::{self, Collision, Description, Geometry, Ignored, JointKind, joint_place, link_place};
 
 /// A joint without a coordinate.
 pub(super) fn held(joint: &FrozenJoint) -> LeftOut {
@@ -11,14 +11,9 @@ pub(super) fn held(joint: &FrozenJoint) -> LeftOut {
 
 /// A joint whose axis was `tilt` \[rad\] off and is taken as exactly in line.
 pub(super) fn tilted(joint: &description::Joint, tilt: f64) -> LeftOut {
-    let wanted = match joint.kind {
-        description::JointKind::Prismatic => "the plane",
-        _ => "the plane's normal",
-    };
-    LeftOut {
-        what: joint_place(&joint.name),
-        why: format!("its axis is {tilt:.1e} rad off {wanted}: taken as exactly on it"),
-    }
+    let wanted = if joint.kind == JointKind::Prismatic { "the plane" } else { "the plane's normal" };
+    let why = format!("its axis is {tilt:.1e} rad off {wanted}: taken as exactly on it");
+    LeftOut { what: joint_place(&joint.name), why }
 }
 
 /// Links that are part of the base.

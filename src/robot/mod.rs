@@ -120,18 +120,13 @@ pub struct Joint {
 /// A mimic joint: q = multiplier q_mimicked + offset (URDF's `<mimic>`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MimicJoint {
-    pub name: String,
+    pub joint: Joint,
     /// The joint that it mimics (an index into [`Robot::joints`]).
     pub mimicked: usize,
     /// How much it moves for a unit of the mimicked joint \[1, m/rad, rad/m\].
     pub multiplier: f64,
     /// Its coordinate where that of the mimicked joint is zero \[rad, m\].
     pub offset: f64,
-    /// As those of a [`Joint`].
-    pub parent: usize,
-    pub child: usize,
-    pub origin: Vector<f64>,
-    pub axis: Axis,
 }
 
 /// The motion of a joint for a coordinate that grows.
@@ -168,7 +163,7 @@ pub struct LeftOut {
 }
 
 impl Link {
-    /// A point of the link's own 3-D frame in its body's planar frame \[m\]; the component along the normal is dropped.
+    /// A point of the link's own 3-D frame in its body's planar frame \[m\].
     pub fn point<T: Real>(&self, offset: [f64; 3]) -> Vector<T> {
         let [x, y, z] = offset.map(T::from_f64);
         let [forward, up] = self.pose.map(|row| {
@@ -212,17 +207,12 @@ impl Robot {
     /// The parent body of a joint, the joint's origin in that body's frame at coordinate zero \[m\], and its motion
     /// (`None` for a fixed joint).
     pub fn hinge(&self, mover: ParentJoint) -> (usize, Vector<f64>, Option<Axis>) {
-        match mover {
-            ParentJoint::Joint(joint) => {
-                let Joint { parent, origin, axis, .. } = self.joints[joint];
-                (parent, origin, Some(axis))
-            }
-            ParentJoint::Mimic(mimic) => {
-                let MimicJoint { parent, origin, axis, .. } = self.mimic_joints[mimic];
-                (parent, origin, Some(axis))
-            }
-            ParentJoint::Fixed { parent, origin } => (parent, origin, None),
-        }
+        let joint = match mover {
+            ParentJoint::Joint(joint) => &self.joints[joint],
+            ParentJoint::Mimic(mimic) => &self.mimic_joints[mimic].joint,
+            ParentJoint::Fixed { parent, origin } => return (parent, origin, None),
+        };
+        (joint.parent, joint.origin, Some(joint.axis))
     }
 
     /// Mass of all that can move: of a bolted robot without the root body \[kg\].

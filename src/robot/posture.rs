@@ -20,11 +20,7 @@ pub(super) struct Posture {
 }
 
 impl Posture {
-    /// The posture with these joints held at these values.
-    ///
-    /// # Errors
-    /// [`Reason::Inconsistent`] for a joint without a coordinate of its own, [`Reason::Duplicate`] for one that is
-    /// named twice, [`Reason::NotFinite`].
+    /// The posture with these joints held at these values, no joint twice, and none without a coordinate of its own.
     pub(super) fn new(description: &Description, hold: &[(usize, f64)]) -> Result<Self> {
         let joints = &description.joints;
         let mut held = vec![None; joints.len()];

@@ -204,9 +204,8 @@ fn refuse_overflow(robot: &Robot) -> Result<()> {
         let inertia = [body.mass, body.com.x, body.com.z, body.moment];
         refuse("the inertia of the welded body", &inertia, description::link_place(&body.name))?;
     }
-    let joints = robot.joints.iter().map(|joint| (&joint.name, joint.origin));
-    for (name, origin) in joints.chain(robot.mimic_joints.iter().map(|mimic| (&mimic.name, mimic.origin))) {
-        refuse("the place at zero", &origin.components(), description::joint_place(name))?;
+    for joint in robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint)) {
+        refuse("the place at zero", &joint.origin.components(), description::joint_place(&joint.name))?;
     }
     for link in &robot.links {
         refuse("the place at zero", link.pose.as_flattened(), description::link_place(&link.name))?;

@@ -92,12 +92,12 @@ impl Tree {
                 (&Role::Moves { axis, ref mimicked, .. }, Some(mover)) => {
                     let (name, parent, child, origin) = (joint.name.clone(), at.body, bodies.len(), at.in_plane());
                     bodies.push(Body::of(&links[joint.child].name, Some(mover)));
+                    let joint = Joint { name, parent, child, origin, axis };
                     let mimic = mimicked.as_ref().map(|mimicked| (movers[mimicked.joint], mimicked));
                     if let Some((Some(ParentJoint::Joint(mimicked)), &Mimic { multiplier, offset, .. })) = mimic {
-                        let mimic = MimicJoint { name, mimicked, multiplier, offset, parent, child, origin, axis };
-                        mimic_joints.push((index, mimic));
+                        mimic_joints.push((index, MimicJoint { joint, mimicked, multiplier, offset }));
                     } else {
-                        joints.push((index, Joint { name, parent, child, origin, axis }));
+                        joints.push((index, joint));
                     }
                     Place { body: child, offset: [0.0; 3], ..at }
                 }

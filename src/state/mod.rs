@@ -55,10 +55,7 @@ impl State {
         set(&mut self.position, robot, name, value)
     }
 
-    /// Sets the rate of a coordinate by its name \[m/s, rad/s\].
-    ///
-    /// # Errors
-    /// As [`State::set_position`].
+    /// Sets the rate of a coordinate by its name \[m/s, rad/s\], as [`State::set_position`].
     pub fn set_velocity(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
         set(&mut self.velocity, robot, name, value)
     }

@@ -182,21 +182,17 @@ impl<'a> Inspection<'a> {
                 origin: weld.map(|(_, origin)| origin),
             }
         });
-        let joint = |name: &'a str, parent, child, origin, axis| {
+        let joint = |&robot::Joint { ref name, parent, child, origin, axis }: &'a robot::Joint| {
             let (kind, sign, direction) = match axis {
                 Axis::Revolute { sign } => ("turn", Some(sign), None),
                 Axis::Prismatic { direction } => ("slide", None, Some(direction)),
             };
             Joint { name, kind, parent: body_name(parent), child: body_name(child), origin, sign, direction }
         };
-        let joints = robot
-            .joints
-            .iter()
-            .map(|&robot::Joint { ref name, parent, child, origin, axis }| joint(name, parent, child, origin, axis));
-        let followers = robot.mimic_joints.iter().map(|follower| {
-            let &robot::MimicJoint { ref name, mimicked, multiplier, offset, parent, child, origin, axis } = follower;
-            let leader = &robot.joints[mimicked].name;
-            Follower { joint: joint(name, parent, child, origin, axis), leader, multiplier, offset }
+        let joints = robot.joints.iter().map(joint);
+        let followers = robot.mimic_joints.iter().map(|mimic| {
+            let leader = &robot.joints[mimic.mimicked].name;
+            Follower { joint: joint(&mimic.joint), leader, multiplier: mimic.multiplier, offset: mimic.offset }
         });
         let reading = &robot.reading;
         let held = reading.frozen.iter();

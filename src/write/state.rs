@@ -49,7 +49,7 @@ impl StateRecord<'_> {
 
     /// Values of all joints, and then of the mimic joints.
     fn by_joint(&self, values: &[f64]) -> Named {
-        let mimic = self.robot.mimic_joints.iter().map(|joint| &joint.name);
+        let mimic = self.robot.mimic_joints.iter().map(|mimic| &mimic.joint.name);
         let names = self.robot.joints.iter().map(|joint| &joint.name).chain(mimic);
         names.cloned().zip(values.iter().copied()).collect()
     }

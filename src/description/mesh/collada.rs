@@ -10,6 +10,7 @@
 //! so, although COLLADA's own default is y). Nothing recurses, and node instances are counted: a file of a few lines
 //! could ask for 2^100 of them.
 
+use super::super::pose::{Matrix, apply, product, turn, unit};
 use super::super::xml;
 use roxmltree::{Document, Node, NodeId};
 use std::collections::HashMap;
@@ -23,10 +24,11 @@ const LONGEST_NUMBER: usize = 400;
 /// The deepest nesting of nodes, instances followed.
 const DEEPEST: usize = 200;
 
-/// The upper three rows of a homogeneous transformation.
-type Transform = [[f64; 4]; 3];
+/// A linear map, and the translation behind it.
+type Transform = (Matrix, [f64; 3]);
 
-const IDENTITY: Transform = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const UNMOVED: Transform = (IDENTITY, [0.0; 3]);
 
 /// The positions of all geometries that the scene shows \[m\]. Or why there are none.
 pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
@@ -37,33 +39,31 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     if root.tag_name().name() != "COLLADA" {
         return Err(format!("the outermost element is <{}> and not <COLLADA>", root.tag_name().name()));
     }
-    Scene::new(&document).vertices(&axes(root)?)
+    Shown::new(&document).vertices((axes(root)?, [0.0; 3]))
 }
 
 /// The turn of the file's axes to z up and the scale of its unit to metres.
-fn axes(root: Node<'_, '_>) -> Result<Transform, String> {
-    let asset = child(root, "asset");
-    let unit = asset.and_then(|asset| child(asset, "unit")).and_then(|unit| unit.attribute("meter"));
-    let unit = unit.map_or(Ok(1.0), number)?;
-    let up = asset.and_then(|asset| child(asset, "up_axis")).and_then(|up| up.text()).map(str::trim);
-    let turn = match up {
-        Some("X_UP") => [[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
-        Some("Y_UP") => [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
+fn axes(root: Node<'_, '_>) -> Result<Matrix, String> {
+    let asset = |tag| child(child(root, "asset")?, tag);
+    let metres = asset("unit").and_then(|unit| unit.attribute("meter")).map_or(Ok(1.0), number)?;
+    let turn = match asset("up_axis").and_then(|up| up.text()).map(str::trim) {
+        Some("X_UP") => [[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]],
+        Some("Y_UP") => [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
         Some("Z_UP") | None => IDENTITY,
         Some(other) => return Err(format!("unknown <up_axis> \"{other}\"")),
     };
-    Ok(turn.map(|row| row.map(|entry| unit * entry)))
+    Ok(turn.map(|row| row.map(|entry| metres * entry)))
 }
 
-/// A document, its elements by id, and what was read of its geometries.
-struct Scene<'a, 'input> {
+/// A document, its elements by id, what was read of its geometries, and the vertices that its scene shows.
+struct Shown<'a, 'input> {
     document: &'a Document<'input>,
     by_id: HashMap<&'a str, Node<'a, 'input>>,
     positions: HashMap<NodeId, Vec<[f64; 3]>>,
     vertices: Vec<[f64; 3]>,
 }
 
-impl<'a, 'input: 'a> Scene<'a, 'input> {
+impl<'a, 'input: 'a> Shown<'a, 'input> {
     fn new(document: &'a Document<'input>) -> Self {
         let by_id = document.descendants().filter_map(|node| Some((node.attribute("id")?, node))).collect();
         Self { document, by_id, positions: HashMap::new(), vertices: Vec::new() }
@@ -80,21 +80,21 @@ impl<'a, 'input: 'a> Scene<'a, 'input> {
         found.copied().ok_or_else(|| format!("<{}> names \"{url}\", which is not there", node.tag_name().name()))
     }
 
-    fn vertices(mut self, axes: &Transform) -> Result<Vec<[f64; 3]>, String> {
+    fn vertices(mut self, axes: Transform) -> Result<Vec<[f64; 3]>, String> {
         let scene = match self.elements("instance_visual_scene").next() {
             Some(instance) => Some(self.target(instance, "url")?),
             None => self.elements("visual_scene").next(),
         };
         let Some(scene) = scene else {
             for geometry in self.elements("geometry").collect::<Vec<_>>() {
-                self.show(geometry, axes)?;
+                self.show(geometry, &axes)?;
             }
             return Ok(self.vertices);
         };
-        let mut waiting: Vec<(Node<'a, 'input>, Transform, usize)> = vec![(scene, *axes, 0)];
+        let mut waiting: Vec<(Node<'a, 'input>, Transform, usize)> = vec![(scene, axes, 0)];
         let mut instances = 0;
         while let Some((parent, outer, depth)) = waiting.pop() {
-            let placed = product(&outer, &transformation(parent)?);
+            let placed = within(&outer, &transformation(parent)?);
             for node in parent.children() {
                 instances += 1;
                 if instances > MOST_INSTANCES || depth > DEEPEST {
@@ -107,8 +107,8 @@ impl<'a, 'input: 'a> Scene<'a, 'input> {
                     "instance_controller" => {
                         let controller = self.target(node, "url")?;
                         let skin = child(controller, "skin").ok_or("only skins are read of its controllers")?;
-                        let shape = child(skin, "bind_shape_matrix").map_or(Ok(IDENTITY), matrix)?;
-                        self.show(self.target(skin, "source")?, &product(&placed, &shape))?;
+                        let shape = child(skin, "bind_shape_matrix").map_or(Ok(UNMOVED), matrix)?;
+                        self.show(self.target(skin, "source")?, &within(&placed, &shape))?;
                     }
                     _ => {}
                 }
@@ -127,7 +127,7 @@ impl<'a, 'input: 'a> Scene<'a, 'input> {
         if self.vertices.len() + positions.len() > MOST_VERTICES {
             return Err(format!("more than {MOST_VERTICES} vertices"));
         }
-        self.vertices.extend(positions.iter().map(|&point| apply(placed, point)));
+        self.vertices.extend(positions.iter().map(|&point| moved(placed, point)));
         Ok(())
     }
 
@@ -158,58 +158,42 @@ impl<'a, 'input: 'a> Scene<'a, 'input> {
 
 /// The product of the transformations that stand in `node`, in their order.
 fn transformation(node: Node<'_, '_>) -> Result<Transform, String> {
-    let mut placed = IDENTITY;
+    let mut placed = UNMOVED;
     for element in node.children() {
         let step = match element.tag_name().name() {
             "matrix" => matrix(element)?,
-            "translate" => {
-                let [x, y, z] = numbers(element)?;
-                [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]]
-            }
+            "translate" => (IDENTITY, numbers(element)?),
             "scale" => {
                 let [x, y, z] = numbers(element)?;
-                [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]]
+                ([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]], [0.0; 3])
             }
-            "rotate" => rotation(numbers(element)?),
+            "rotate" => {
+                let [x, y, z, degrees] = numbers(element)?;
+                let linear = if [x, y, z] == [0.0; 3] { IDENTITY } else { turn(unit([x, y, z]), degrees.to_radians()) };
+                (linear, [0.0; 3])
+            }
             tag @ ("lookat" | "skew") => return Err(format!("<{tag}> is not read")),
             _ => continue,
         };
-        placed = product(&placed, &step);
+        placed = within(&placed, &step);
     }
     Ok(placed)
 }
 
-/// The turn about an axis \[x, y, z\] by an angle \[degrees\] (Rodrigues).
-fn rotation([x, y, z, degrees]: [f64; 4]) -> Transform {
-    let length = libm::hypot(libm::hypot(x, y), z);
-    if length == 0.0 {
-        return IDENTITY;
-    }
-    let (sin, cos) = libm::sincos(degrees.to_radians());
-    let [x, y, z] = [x / length, y / length, z / length];
-    let (a, b, c) = (x * (1.0 - cos), y * (1.0 - cos), z * (1.0 - cos));
-    [
-        [cos + a * x, a * y - sin * z, a * z + sin * y, 0.0],
-        [b * x + sin * z, cos + b * y, b * z - sin * x, 0.0],
-        [c * x - sin * y, c * y + sin * x, cos + c * z, 0.0],
-    ]
-}
-
 /// The sixteen numbers of an element, row by row.
 fn matrix(element: Node<'_, '_>) -> Result<Transform, String> {
-    let [a, b, c, d, e, f, g, h, i, j, k, l, ..] = numbers::<16>(element)?;
-    Ok([[a, b, c, d], [e, f, g, h], [i, j, k, l]])
+    let [a, b, c, x, d, e, f, y, g, h, i, z, ..] = numbers::<16>(element)?;
+    Ok(([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]))
 }
 
-fn product(a: &Transform, b: &Transform) -> Transform {
-    a.map(|row| {
-        let entry = |k: usize| row[0] * b[0][k] + row[1] * b[1][k] + row[2] * b[2][k];
-        [entry(0), entry(1), entry(2), entry(3) + row[3]]
-    })
+/// `inner` and then `outer`.
+fn within(outer: &Transform, inner: &Transform) -> Transform {
+    (product(&outer.0, &inner.0), moved(outer, inner.1))
 }
 
-fn apply(placed: &Transform, [x, y, z]: [f64; 3]) -> [f64; 3] {
-    placed.map(|row| row[0] * x + row[1] * y + row[2] * z + row[3])
+fn moved((linear, offset): &Transform, point: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = apply(linear, point);
+    [x + offset[0], y + offset[1], z + offset[2]]
 }
 
 fn numbers<const N: usize>(element: Node<'_, '_>) -> Result<[f64; N], String> {

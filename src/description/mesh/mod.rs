@@ -35,11 +35,7 @@ pub enum Mesh {
 }
 
 /// The bytes of the file that a mesh name refers to, or why there are none, as in `no such file`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Fetched {
-    Bytes(Vec<u8>),
-    Nothing { why: String },
-}
+pub type Fetched = std::result::Result<Vec<u8>, String>;
 
 impl Description {
     /// Reads the collision meshes from what `fetch` finds under their names: STL (whose vertices are f32), OBJ and
@@ -61,7 +57,8 @@ impl Description {
                 }
                 let fetched = fetch(file)
                     .map_err(|error| error.at(super::link_place(name)).on(location.line, location.column))?;
-                *mesh = read(file, &fetched, &mut bytes).unwrap_or_else(|why| Mesh::LeftOut { why });
+                let vertices = fetched.and_then(|fetched| read(file, &fetched, &mut bytes));
+                *mesh = vertices.map_or_else(|why| Mesh::LeftOut { why }, |vertices| Mesh::Vertices(vertices.into()));
                 known.insert(file.clone(), mesh.clone());
             }
         }
@@ -69,12 +66,8 @@ impl Description {
     }
 }
 
-/// The mesh of what was fetched, whose bytes are added to the sum of `all`. Or why it cannot be read.
-fn read(file: &str, fetched: &Fetched, all: &mut usize) -> std::result::Result<Mesh, String> {
-    let bytes = match fetched {
-        Fetched::Bytes(bytes) => bytes,
-        Fetched::Nothing { why } => return Err(why.clone()),
-    };
+/// The vertices in the bytes of a file, which are added to the sum of `all`. Or why it cannot be read.
+fn read(file: &str, bytes: &[u8], all: &mut usize) -> std::result::Result<Vec<[f64; 3]>, String> {
     *all = all.saturating_add(bytes.len());
     if *all > MOST_BYTES {
         return Err(format!("the meshes together have more than {} MiB", MOST_BYTES >> 20));
@@ -93,7 +86,7 @@ fn read(file: &str, fetched: &Fetched, all: &mut usize) -> std::result::Result<M
     match vertices.iter().flatten().find(|coordinate| !coordinate.is_finite()) {
         Some(coordinate) => Err(format!("one of its vertices has the coordinate {coordinate}")),
         None if vertices.is_empty() => Err("it has no vertices".into()),
-        None => Ok(Mesh::Vertices(vertices.into())),
+        None => Ok(vertices),
     }
 }
 

@@ -13,10 +13,8 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     Ok(scene.meshes.iter().flat_map(|mesh| &mesh.vertices).map(|vertex| vertex.map(f64::from)).collect())
 }
 
-/// ASCII in small letters, as some programs write it in capitals; binary without what follows its last triangle.
-///
-/// # Errors
-/// A binary file that is cut short: mesh-loader would read what is there.
+/// ASCII in small letters, as some programs write it in capitals; binary without what follows its last triangle. A
+/// binary file that is cut short is refused: mesh-loader would read what is there.
 fn tidied(bytes: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     let begin = bytes.trim_ascii_start();
     let is_text =

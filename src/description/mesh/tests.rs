@@ -63,17 +63,14 @@ fn scene(nodes: &str) -> String {
 
 const SHOWN: &str = r##"<instance_geometry url="#foot"/>"##;
 
-fn mesh(file: &str, bytes: impl Into<Vec<u8>>) -> std::result::Result<Mesh, String> {
-    read(file, &Fetched::Bytes(bytes.into()), &mut 0)
+fn mesh(file: &str, bytes: impl Into<Vec<u8>>) -> std::result::Result<Vec<[f64; 3]>, String> {
+    read(file, &bytes.into(), &mut 0)
 }
 
 /// The vertices in order, each once.
 #[track_caller]
 fn vertices(file: &str, bytes: impl Into<Vec<u8>>) -> Vec<[f64; 3]> {
-    match mesh(file, bytes).unwrap_or_else(|why| panic!("{file}: {why}")) {
-        Mesh::Vertices(vertices) => sorted(&vertices),
-        other => panic!("{other:?}"),
-    }
+    sorted(&mesh(file, bytes).unwrap_or_else(|why| panic!("{file}: {why}")))
 }
 
 fn sorted(vertices: &[[f64; 3]]) -> Vec<[f64; 3]> {
@@ -221,7 +218,7 @@ fn each_file_is_asked_for_once_and_refusals_name_the_link() {
     let mut asked = Vec::new();
     let fetch = |file: &str| {
         asked.push(file.to_owned());
-        Ok(if file == "x.obj" { Fetched::Bytes(obj().into()) } else { Fetched::Nothing { why: "gone".into() } })
+        Ok(if file == "x.obj" { Ok(obj().into()) } else { Err("gone".into()) })
     };
     description.read_meshes(fetch).expect("read");
     assert_eq!(asked, ["x.obj", "y.obj"]);

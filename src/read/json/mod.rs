@@ -51,10 +51,7 @@ impl<'n> Node<'n> {
         }
     }
 
-    /// The fields of an object in their order; `what` names what its keys stand for.
-    ///
-    /// # Errors
-    /// [`Reason::WrongKind`] if it is none, [`Reason::Duplicate`] if a key stands twice.
+    /// The fields of an object in their order, no key twice; `what` names what the keys stand for.
     pub(crate) fn fields(&'n self, what: &'static str) -> Result<impl Iterator<Item = Node<'n>> + Clone> {
         let Value::Object(fields) = self.value else {
             return Err(self.expected("an object"));
@@ -193,10 +190,6 @@ impl<'n> Node<'n> {
 
     pub(crate) fn is_object(&self) -> bool {
         matches!(self.value, Value::Object(_))
-    }
-
-    pub(crate) fn is_list(&self) -> bool {
-        matches!(self.value, Value::List(_))
     }
 
     /// An `id`: a string or a number.

@@ -21,10 +21,7 @@ pub(crate) enum Value<'t> {
 }
 
 impl<'t> Value<'t> {
-    /// Reads the one value of `text`.
-    ///
-    /// # Errors
-    /// [`Reason::Syntax`] with place, line and column, also for numbers beyond f64's range such as 1e999.
+    /// Reads the one value of `text`; numbers beyond f64's range such as 1e999 are refused, too.
     pub(crate) fn parse(text: &'t str) -> crate::Result<Self> {
         serde_json::from_str(text).map_err(|error| refusal(text, &error))
     }

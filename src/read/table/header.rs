@@ -279,7 +279,7 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
             return Err(Error::new(reason).hint(hint));
         }
         Some(_) => return Ok(Column::Ignored),
-        None if robot.mimic_joints.iter().any(|mimic| mimic.name == name) => return Ok(Column::Ignored),
+        None if robot.mimic_joints.iter().any(|mimic| mimic.joint.name == name) => return Ok(Column::Ignored),
         None => {}
     }
     let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();

@@ -9,14 +9,8 @@
 //! `friction` (a number or `infinite`), `restitution`, `stance` (a link) and `time`; a joint without a column is 0. All
 //! others, and `time`, are copied to the results. An empty cell is refused where a number belongs, because some
 //! programs write NaN so. It means "not given" in `id`, `friction`, `restitution` and `stance`. In a row with a stance
-//! the cells of `q_base_x`, `q_base_z`, `v_base_x` and `v_base_z` must be empty. Blank lines are skipped. An `id` is
-//! text.
-//!
-//! A base in three dimensions has the columns `q_base_x`, `q_base_y`, `q_base_z` and the quaternion `q_base_qw`,
-//! `q_base_qx`, `q_base_qy`, `q_base_qz` instead of a pitch ([`crate::gait::spatial`]); its velocities come from the
-//! time alone. Columns of joints without a coordinate are neither read nor copied ([`Header::ignored`]).
-//!
-//! Nothing here opens a file or starts a thread.
+//! the cells of `q_base_x`, `q_base_z`, `v_base_x` and `v_base_z` must be empty. A base in three dimensions has also
+//! `q_base_y`, and a quaternion instead of the pitch ([`crate::gait::spatial`]); its velocities come from the time alone.
 
 mod records;
 mod header;

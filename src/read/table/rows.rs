@@ -52,7 +52,6 @@ pub struct Row<'r> {
 pub struct Carried(ByteRecord);
 
 impl Carried {
-    /// These fields.
     pub fn new(fields: impl Iterator<Item = String>) -> Self {
         Self(fields.collect::<Vec<_>>().into())
     }
@@ -76,10 +75,8 @@ impl Header {
 }
 
 impl<'h> Rows<'h> {
-    /// The row in `record`, which begins on `line` of the table and may end with a line break; `None` if it is blank.
-    ///
-    /// # Errors
-    /// [`Reason::Syntax`] for a quote that is not closed and for a line break outside of quotes.
+    /// The row in `record`, which begins on `line` of the table and may end with a line break; `None` if it is blank. A
+    /// quote that is not closed is refused, and a line break outside of quotes.
     pub fn row<'r>(&'r mut self, record: &'r [u8], line: usize) -> Result<Option<Row<'r>>> {
         let raw = record.strip_suffix(b"\n").unwrap_or(record);
         let raw = raw.strip_suffix(b"\r").unwrap_or(raw);
@@ -131,9 +128,6 @@ impl Row<'_> {
     }
 
     /// The time \[s\].
-    ///
-    /// # Errors
-    /// A table without it, and what is not a finite number.
     pub fn time(&self) -> Result<f64> {
         let missing = || Error::new(Reason::Missing("a column \"time\"".into())).on(1, 1);
         self.number(self.header.time.ok_or_else(missing)?)
@@ -184,9 +178,6 @@ impl Row<'_> {
     }
 
     /// The part of a base in three dimensions that is not in the plane.
-    ///
-    /// # Errors
-    /// Those of [`Row::state`] about it.
     pub fn spatial(&self) -> Result<Option<Spatial>> {
         Ok(self.projected()?.map(|(_, spatial)| spatial))
     }

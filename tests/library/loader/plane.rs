@@ -234,7 +234,7 @@ fn a_follower_is_tied_to_the_last_of_its_leaders() {
     let followers: Vec<_> = robot
         .mimic_joints
         .iter()
-        .map(|follower| (follower.name.as_str(), follower.mimicked, follower.multiplier, follower.offset))
+        .map(|follower| (follower.joint.name.as_str(), follower.mimicked, follower.multiplier, follower.offset))
         .collect();
     assert_eq!(followers, [("j", 1, -6.0, 0.5), ("k", 1, -3.0, 0.0)]);
     let movers: Vec<_> = robot.bodies.iter().map(|body| body.joint).collect();
