@@ -53,9 +53,6 @@ impl<R: Read> Chunks<R> {
     }
 
     /// Refuses an input whose first bytes show that it is compressed, a spreadsheet or the like.
-    ///
-    /// # Errors
-    /// Also those of reading.
     pub fn check_format(&mut self) -> Result<()> {
         let beginning = self.fill()?;
         let Some((_, what, remedy)) = FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic)) else {
@@ -82,9 +79,6 @@ impl<R: Read> Chunks<R> {
     }
 
     /// The next record alone; `None` at the end of the input.
-    ///
-    /// # Errors
-    /// Those of reading.
     pub fn record(&mut self) -> Result<Option<Chunk>> {
         self.records(1)
     }

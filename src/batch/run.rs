@@ -24,10 +24,7 @@ pub trait Source: Send {
     /// Some records.
     type Task: Send;
 
-    /// The next records; `None` at the end. After an error this is not called again.
-    ///
-    /// # Errors
-    /// Those of reading.
+    /// The next records; `None` at the end. After an error of reading this is not called again.
     fn next(&mut self) -> Result<Option<Self::Task>>;
 
     /// Whether the next records may take long to arrive.

@@ -32,16 +32,24 @@ pub struct Summary {
     pub other_modes: u64,
 }
 
-/// How many states have which verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[allow(missing_docs, reason = "documented at their definition")]
-pub struct Verdicts {
-    pub unique: u64,
-    pub ambiguous: u64,
-    pub none: u64,
-    pub undecided: u64,
-    pub no_impact: u64,
-    pub no_contact: u64,
+/// The verdicts in their order, in the words of the text.
+const VERDICTS: [(Verdict, &str); 6] = [
+    (Verdict::Unique, "unique"),
+    (Verdict::Ambiguous, "ambiguous"),
+    (Verdict::None, "without outcome"),
+    (Verdict::Undecided, "undecided"),
+    (Verdict::NoImpact, "without impact"),
+    (Verdict::NoContact, "without contact"),
+];
+
+/// How many states have which of [`VERDICTS`]; written as an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Verdicts([u64; 6]);
+
+impl Serialize for Verdicts {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(VERDICTS.iter().zip(self.0).map(|((verdict, _), count)| (verdict, count)))
+    }
 }
 
 /// A state of the batch, and its smallest margin.
@@ -110,11 +118,12 @@ impl Summary {
         friction_needed: Option<f64>,
     ) {
         self.states += 1;
-        *self.verdicts.of(analysis.verdict) += 1;
+        for ((verdict, _), count) in VERDICTS.iter().zip(&mut self.verdicts.0) {
+            *count += u64::from(*verdict == analysis.verdict);
+        }
         self.near(&state, &analysis.outcomes);
         if let Some(friction) = friction_needed {
-            self.more_friction.states += 1;
-            self.more_friction.take(|| Needed { state: state(), friction }, friction);
+            self.more_friction.add(MoreFriction { states: 1, greatest: Some(Needed { state: state(), friction }) });
         }
         for outcome in &analysis.outcomes {
             let names = impact.contacts.iter().map(|contact| contact.name.as_str());
@@ -142,15 +151,11 @@ impl Summary {
     pub fn merge(&mut self, following: Self) {
         self.states += following.states;
         self.refused += following.refused;
-        self.verdicts.add(following.verdicts);
+        self.verdicts.0.iter_mut().zip(following.verdicts.0).for_each(|(count, more)| *count += more);
         for near in following.smallest_margins {
             self.insert(near);
         }
-        self.more_friction.states += following.more_friction.states;
-        if let Some(needed) = following.more_friction.greatest {
-            let friction = needed.friction;
-            self.more_friction.take(|| needed, friction);
-        }
+        self.more_friction.add(following.more_friction);
         for list in following.modes {
             let known = |known: &&mut ModeCount| known.modes == list.modes && known.contacts == list.contacts;
             // The limit holds only here: applied to parts, the result would depend on them.
@@ -186,33 +191,13 @@ impl Summary {
     }
 }
 
-impl Verdicts {
-    fn of(&mut self, verdict: Verdict) -> &mut u64 {
-        match verdict {
-            Verdict::Unique => &mut self.unique,
-            Verdict::Ambiguous => &mut self.ambiguous,
-            Verdict::None => &mut self.none,
-            Verdict::Undecided => &mut self.undecided,
-            Verdict::NoImpact => &mut self.no_impact,
-            Verdict::NoContact => &mut self.no_contact,
-        }
-    }
-
-    fn add(&mut self, more: Self) {
-        let Self { unique, ambiguous, none, undecided, no_impact, no_contact } = more;
-        self.unique += unique;
-        self.ambiguous += ambiguous;
-        self.none += none;
-        self.undecided += undecided;
-        self.no_impact += no_impact;
-        self.no_contact += no_contact;
-    }
-}
-
 impl MoreFriction {
-    fn take(&mut self, needed: impl FnOnce() -> Needed, friction: f64) {
-        if self.greatest.as_ref().is_none_or(|greatest| friction > greatest.friction) {
-            self.greatest = Some(needed());
+    fn add(&mut self, following: Self) {
+        self.states += following.states;
+        if let Some(needed) = following.greatest
+            && self.greatest.as_ref().is_none_or(|greatest| needed.friction > greatest.friction)
+        {
+            self.greatest = Some(needed);
         }
     }
 }
@@ -224,21 +209,18 @@ fn coefficient<S: Serializer>(friction: &f64, serializer: S) -> Result<S::Ok, S:
 impl fmt::Display for StateRef {
     /// `k17 (line 17)`, or `line 17`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let line = self.line;
         match &self.id {
-            Some(Value::String(id)) => write!(f, "{id} (line {})", self.line),
-            Some(id) => write!(f, "{id} (line {})", self.line),
-            None => write!(f, "line {}", self.line),
+            Some(Value::String(id)) => write!(f, "{id} (line {line})"),
+            Some(id) => write!(f, "{id} (line {line})"),
+            None => write!(f, "line {line}"),
         }
     }
 }
 
 /// A margin with two digits.
-struct TwoDigits(f64);
-
-impl fmt::Display for TwoDigits {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if (0.01..10.0).contains(&self.0.abs()) { write!(f, "{:.2}", self.0) } else { write!(f, "{:.1e}", self.0) }
-    }
+fn two_digits(margin: f64) -> String {
+    if (0.01..10.0).contains(&margin.abs()) { format!("{margin:.2}") } else { format!("{margin:.1e}") }
 }
 
 /// How many of each kind the text shows.
@@ -247,22 +229,14 @@ const SHOWN: usize = 5;
 impl fmt::Display for Summary {
     /// A few lines for people.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Verdicts { unique, ambiguous, none, undecided, no_impact, no_contact } = self.verdicts;
-        let counts = [
-            (unique, "unique"),
-            (ambiguous, "ambiguous"),
-            (none, "without outcome"),
-            (undecided, "undecided"),
-            (no_impact, "without impact"),
-            (no_contact, "without contact"),
-            (self.refused, "refused"),
-        ];
-        let counts = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+        let verdicts = VERDICTS.iter().zip(self.verdicts.0).map(|((_, words), count)| (count, *words));
+        let counts = verdicts.chain([(self.refused, "refused")]).filter(|(count, _)| *count > 0);
+        let counts = counts.map(|(count, what)| format!("{count} {what}"));
         let plural = if self.states == 1 { "" } else { "s" };
         writeln!(f, "{} state{plural}: {}", self.states, counts.collect::<Vec<_>>().join(", "))?;
         if !self.smallest_margins.is_empty() {
             let near = self.smallest_margins.iter().take(SHOWN);
-            let near = near.map(|Nearest { state, margin }| format!("{} {state}", TwoDigits(*margin)));
+            let near = near.map(|Nearest { state, margin }| format!("{} {state}", two_digits(*margin)));
             writeln!(f, "smallest margins: {}", near.collect::<Vec<_>>().join(", "))?;
         }
         if let Some(Needed { state, friction }) = &self.more_friction.greatest {

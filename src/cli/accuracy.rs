@@ -60,7 +60,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let written = args.output.write(&accuracy, |palette| accuracy.text(palette))?;
     // The suite contains refused cases on purpose; a user's own state does not.
     match accuracy.studies.as_slice() {
-        [CaseStudy { refused: Some(error), .. }] if args.robot.is_some() => Err(Failure::Refused(error.clone())),
+        [CaseStudy { refused: Some(error), .. }] if args.robot.is_some() => Err(error.clone().into()),
         _ => Ok(written),
     }
 }

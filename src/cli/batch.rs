@@ -283,7 +283,7 @@ impl Args {
             let place = error.location().unwrap_or(Location { line: 1, column: 1 });
             let place = Location { line: line + place.line - 1, ..place };
             let excerpt = Excerpt::around(&record, line, place);
-            Failure::RefusedAt(error.on(place.line, place.column).in_file(&name), excerpt)
+            Failure::Refused(error.on(place.line, place.column).in_file(&name), excerpt)
         })?;
         if in_order && !header.has_time() {
             let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(line, 1);

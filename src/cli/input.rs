@@ -20,10 +20,7 @@ pub(super) struct InputFile {
 }
 
 impl InputFile {
-    /// Reads `path`, of at most `limit` bytes.
-    ///
-    /// # Errors
-    /// [`Reason::Io`], naming the file; [`Reason::Unsupported`] for a larger one, as an endless one is.
+    /// Reads `path`, of at most `limit` bytes: an endless file is refused.
     pub fn read(path: &Path, limit: u64) -> Result<Self> {
         let name = name(path);
         let mut bytes = Vec::new();
@@ -36,9 +33,6 @@ impl InputFile {
     }
 
     /// The contents as text; an error does not name the file yet.
-    ///
-    /// # Errors
-    /// Those of [`utf8`].
     pub fn text(&self) -> Result<&str> {
         utf8(&self.bytes)
     }
@@ -46,7 +40,7 @@ impl InputFile {
     /// `error` in this file, with the line in question.
     pub fn refuse(&self, error: Error) -> Failure {
         let excerpt = error.location().and_then(|place| Excerpt::around(&self.bytes, 1, place));
-        Failure::RefusedAt(error.in_file(&self.name), excerpt)
+        Failure::Refused(error.in_file(&self.name), excerpt)
     }
 }
 
@@ -56,9 +50,6 @@ pub(super) fn name(path: &Path) -> String {
 }
 
 /// Opens a file, or standard input for `-`.
-///
-/// # Errors
-/// [`Reason::Io`], naming the file.
 pub(super) fn stream(path: &Path) -> Result<Box<dyn Read + Send>> {
     if is_standard_input(path) {
         return Ok(Box::new(io::stdin()));

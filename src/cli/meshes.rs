@@ -45,10 +45,7 @@ impl Meshes {
         Self { folder, roots }
     }
 
-    /// The file that a URDF calls `name`.
-    ///
-    /// # Errors
-    /// [`Reason::Unsupported`] for a path that leaves its package.
+    /// The file that a URDF calls `name`. A path that leaves its package is refused.
     pub fn fetch(&self, name: &str) -> Result<Fetched> {
         let as_written = name.replace('\\', "/");
         let decoded = percent_decode_str(&as_written).decode_utf8_lossy().into_owned();

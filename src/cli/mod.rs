@@ -56,10 +56,8 @@ enum Command {
 
 /// Why a command ended early.
 enum Failure {
-    /// An input that the command cannot do without was refused, such as the robot's file.
-    Refused(heelstrike::Error),
-    /// The same, with the line in question.
-    RefusedAt(heelstrike::Error, Option<Excerpt>),
+    /// An input that the command cannot do without was refused, such as the robot's file; with the line in question.
+    Refused(heelstrike::Error, Option<Excerpt>),
     /// An option's value is wrong or does not fit the robot.
     Usage(heelstrike::Error),
     /// The output could not be written.
@@ -68,7 +66,7 @@ enum Failure {
 
 impl From<heelstrike::Error> for Failure {
     fn from(error: heelstrike::Error) -> Self {
-        Self::Refused(error)
+        Self::Refused(error, None)
     }
 }
 
@@ -125,8 +123,7 @@ fn status(failure: Failure) -> u8 {
         Failure::Output(error) => {
             report(&heelstrike::Reason::Io(format!("the output cannot be written: {error}")).into());
         }
-        Failure::Refused(error) => report(&error),
-        Failure::RefusedAt(error, excerpt) => report_with(&error, excerpt.as_ref()),
+        Failure::Refused(error, excerpt) => report_with(&error, excerpt.as_ref()),
         Failure::Usage(error) => {
             report(&error);
             return 2;

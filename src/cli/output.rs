@@ -47,9 +47,6 @@ impl OutputOptions {
     }
 
     /// Writes the one result of a command, as text unless JSON is chosen.
-    ///
-    /// # Errors
-    /// [`Failure::Output`].
     pub fn write(&self, result: &impl Serialize, text: impl FnOnce(&Palette) -> String) -> Completion {
         let output = Output::open(self.path())?;
         let mut bytes = Vec::new();
@@ -63,9 +60,6 @@ impl OutputOptions {
 
 /// Refuses an `output` that is one of the `inputs`, even under another name; `-` and `None` are standard input and
 /// output.
-///
-/// # Errors
-/// [`Reason::Io`], naming the file.
 pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> heelstrike::Result<()> {
     let output = output.unwrap_or(Path::new("-"));
     let Some(written) = file_of(output, io::stdout()) else { return Ok(()) };
@@ -78,9 +72,6 @@ pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> heels
 }
 
 /// Refuses two outputs that are one file, even under different names; `option` names the second, which may be absent.
-///
-/// # Errors
-/// [`Failure::Usage`], naming the option.
 pub(super) fn apart(
     [(what, one), (other_what, other)]: [(&str, Option<&Path>); 2],
     option: &'static str,
@@ -96,9 +87,6 @@ pub(super) fn apart(
 }
 
 /// Checks before the work that a file can be written, and leaves it unchanged; pipes and devices are not tried.
-///
-/// # Errors
-/// Whatever keeps it from being written.
 pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
     let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
     let known = std::fs::metadata(path).ok();
@@ -107,10 +95,7 @@ pub(super) fn writable(path: Option<&Path>) -> io::Result<()> {
         return Ok(());
     }
     OpenOptions::new().append(true).create(true).open(path).map_err(|error| named(path, error))?;
-    match known {
-        Some(_) => Ok(()),
-        None => std::fs::remove_file(path).map_err(|error| named(path, error)),
-    }
+    known.map_or_else(|| std::fs::remove_file(path).map_err(|error| named(path, error)), |_| Ok(()))
 }
 
 /// Device and inode of the file, of `standard` for `-`; `None` for devices and pipes, which are never replaced.
@@ -131,9 +116,6 @@ fn file_of<S>(path: &Path, _standard: S) -> Option<PathBuf> {
 }
 
 /// Creates the file of that path; `None` for standard output.
-///
-/// # Errors
-/// Whatever keeps the file from being created.
 pub(super) fn create(path: Option<&Path>) -> io::Result<Option<File>> {
     let path = path.filter(|path| *path != Path::new("-"));
     path.map(|path| File::create(path).map_err(|error| named(path, error))).transpose()
@@ -148,9 +130,6 @@ pub(super) struct Output {
 
 impl Output {
     /// Opens `path`, or standard output.
-    ///
-    /// # Errors
-    /// Whatever keeps the file from being created.
     pub fn open(path: Option<&Path>) -> io::Result<Self> {
         let (writer, palette): (Box<dyn Write>, _) = match (create(path)?, AutoStream::choice(&io::stdout())) {
             (Some(file), _) => (Box::new(file), Palette::default()),
@@ -161,9 +140,6 @@ impl Output {
     }
 
     /// Writes `bytes` and closes the output.
-    ///
-    /// # Errors
-    /// [`Failure::Output`].
     pub fn finish(mut self, bytes: &[u8]) -> Completion {
         self.writer.write_all(bytes)?;
         self.writer.flush()?;

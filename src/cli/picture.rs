@@ -24,9 +24,6 @@ pub(super) struct PlotOptions<const PAGES: bool> {
 impl<const PAGES: bool> PlotOptions<PAGES> {
     /// Refuses, before any work is done, to write the `results` or the picture over a file that is read, the picture to
     /// a file of an unknown ending, to that of the results, or to one that cannot be written.
-    ///
-    /// # Errors
-    /// [`Failure::Refused`], [`Failure::Usage`] and [`Failure::Output`].
     pub fn claim(&self, inputs: &[Option<&PathBuf>], results: Option<&Path>) -> Result<(), Failure> {
         spare(results, inputs)?;
         let picture = "a picture is written as .svg or .png";
@@ -66,10 +63,7 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         self.ending().as_deref() == Some("html")
     }
 
-    /// Draws the picture, if one is asked for.
-    ///
-    /// # Errors
-    /// An error of the file system, and a picture without anything to draw, for the reason `why_empty`.
+    /// Draws the picture, if one is asked for; one without anything to draw is refused, for the reason `why_empty`.
     pub fn draw(&self, picture: &Picture, why_empty: &'static str) -> Result<(), Failure> {
         let bytes = match self.ending().as_deref() {
             None => return Ok(()),
@@ -80,9 +74,6 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
     }
 
     /// Draws the picture, or writes the page that `page` makes around it, if one of both is asked for.
-    ///
-    /// # Errors
-    /// As [`PlotOptions::draw`].
     pub fn draw_or_page(
         &self,
         picture: &Picture,

@@ -31,10 +31,7 @@ impl<'a, W: Write> OutputSink<'a, W> {
         Self { output, input, progress, summary: Summary::default(), gait: Gait::default(), refused: 0, lines: 0 }
     }
 
-    /// Writes all bytes.
-    ///
-    /// # Errors
-    /// Those of the output, with the number of lines that were written.
+    /// Writes all bytes; an error says how many lines were written.
     pub fn write(&mut self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
             match self.output.write(bytes) {

@@ -68,10 +68,7 @@ enum SweepFormat {
 }
 
 impl SweepFormat {
-    /// The form chosen by option or by the output's ending.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`] for an ending that means something else.
+    /// The form chosen by option or by the output's ending; refuses an ending that means something else.
     fn of(args: &Args) -> Result<Self, Failure> {
         let ending = args.output.as_deref().and_then(Path::extension).and_then(|ending| ending.to_str());
         let by_ending = match ending.map(str::to_ascii_lowercase).as_deref() {

@@ -49,12 +49,12 @@ struct BorderEntry {
 
 impl BorderEntry {
     fn new(line: GridLine, Crossing { at, below, above, transition }: &Crossing, direction: Direction) -> Self {
-        let point = line.point(*at);
         let (before, after, transition) = match direction {
             Direction::Forward => (below, above, Arc::clone(transition)),
             Direction::Backward => (above, below, Arc::new(transition.reversed())),
         };
-        Self { point, before: Arc::clone(before), after: Arc::clone(after), transition: Some(transition) }
+        let (before, after, transition) = (Arc::clone(before), Arc::clone(after), Some(transition));
+        Self { point: line.point(*at), before, after, transition }
     }
 
     /// The piece of the border from here to `to`.
@@ -67,30 +67,27 @@ impl BorderEntry {
 impl GridCell {
     /// All borders that enter, counter-clockwise from the least corner.
     fn entries(&self) -> Vec<BorderEntry> {
-        let walk = [Direction::Forward, Direction::Forward, Direction::Backward, Direction::Backward];
-        let mut entries: Vec<BorderEntry> = Vec::new();
-        let mut ends = Vec::new();
-        for (edge, direction) in self.edges.iter().zip(walk) {
-            let mut own: Vec<_> =
-                edge.crossings.iter().map(|crossing| BorderEntry::new(edge.line, crossing, direction)).collect();
-            let (mut first, mut last) = (&edge.first, edge.last());
-            if direction == Direction::Backward {
-                own.reverse();
-                (first, last) = (last, first);
-            }
-            ends.push((entries.len(), first, last));
-            entries.extend(own);
-        }
-        // A border may pass through a corner itself: then two edges do not agree about it.
+        use Direction::{Backward, Forward};
         let [[x0, y0], [x1, y1]] = self.corners;
         let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-        for k in (0..4).rev() {
-            let (at, after, _) = ends[k];
-            let (_, _, before) = ends[(k + 3) % 4];
-            if before != after {
-                let (before, after) = (Arc::clone(before), Arc::clone(after));
-                entries.insert(at, BorderEntry { point: corners[k], before, after, transition: None });
+        let mut entries: Vec<BorderEntry> = Vec::new();
+        let mut before = &self.edges[3].first;
+        for ((edge, direction), point) in self.edges.iter().zip([Forward, Forward, Backward, Backward]).zip(corners) {
+            let entry = |crossing| BorderEntry::new(edge.line, crossing, direction);
+            let (first, last) = match direction {
+                Forward => (&edge.first, edge.last()),
+                Backward => (edge.last(), &edge.first),
+            };
+            // A border may pass through a corner itself: then two edges do not agree about it.
+            if before != first {
+                let (before, after) = (Arc::clone(before), Arc::clone(first));
+                entries.push(BorderEntry { point, before, after, transition: None });
             }
+            match direction {
+                Forward => entries.extend(edge.crossings.iter().map(entry)),
+                Backward => entries.extend(edge.crossings.iter().rev().map(entry)),
+            }
+            before = last;
         }
         entries
     }

@@ -14,9 +14,8 @@ use crate::law::Mode;
 use std::f64::consts::PI;
 
 /// The outcomes of one region, at ascending values of the parameter.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct RegionCurves {
-    /// The points at which the region's outcomes were found.
     pub places: Vec<CurvePoint>,
 }
 
@@ -41,8 +40,8 @@ const STRAIGHT: f64 = 5e-4;
 /// How often an interval is halved at most.
 const HALVINGS: usize = 7;
 
-/// The largest contact velocity after and impulse of each contact in all places, by which deviations are measured.
-type Scales = Vec<[f64; 2]>;
+/// The largest velocity after and impulse of each contact in turn, in all places, by which deviations are measured.
+type Scales = Vec<f64>;
 
 impl RegionCurves {
     /// The curves of all regions that were found in `model`; reports [`RegionCurves::work`] pieces of work to
@@ -50,18 +49,16 @@ impl RegionCurves {
     pub fn of(model: &RobotStudy, survey: &Survey, workers: Workers) -> Vec<Self> {
         let Some(parameter) = model.study.parameters().first() else { return Vec::new() };
         let range = parameter.range();
-        let all: Vec<(usize, f64)> = survey
-            .regions
-            .iter()
-            .enumerate()
-            .flat_map(|(index, region)| even(region, range).into_iter().map(move |at| (index, at)))
-            .collect();
+        let regions = survey.regions.iter().enumerate();
+        let places = regions.map(|(index, region)| even(region, range).into_iter().map(move |at| (index, at)));
+        let all: Vec<(usize, f64)> = places.flatten().collect();
         let begin = || Solver::new(model);
         let places = workers.map(all.len(), begin, |solver, k| {
             let (region, at) = all[k];
             CurvePoint::of(solver, at, &survey.regions[region].regime)
         });
-        let mut scales: Vec<Scales> = survey.regions.iter().map(|region| nothing(&region.regime)).collect();
+        let scales = |region: &Region| vec![0.0; 2 * region.regime.contacts().len()];
+        let mut scales: Vec<Scales> = survey.regions.iter().map(scales).collect();
         for ((region, _), place) in all.iter().zip(&places) {
             place.iter().for_each(|place| place.widen(&mut scales[*region]));
         }
@@ -75,7 +72,7 @@ impl RegionCurves {
             }
             found
         });
-        let mut courses = vec![Self { places: Vec::new() }; survey.regions.len()];
+        let mut courses = vec![Self::default(); survey.regions.len()];
         for (((region, _), place), more) in all.iter().zip(places).zip(more) {
             courses[*region].places.extend(place.into_iter().chain(more));
         }
@@ -96,10 +93,6 @@ fn even(region: &Region, range: f64) -> Vec<f64> {
     let (from, to) = (region.from + inside, region.to - inside);
     let count = (EVEN * width / range).ceil().max(LEAST);
     (0..=count as usize).map(|k| from + (to - from) * (k as f64 / count)).collect()
-}
-
-fn nothing(regime: &Regime) -> Scales {
-    vec![[0.0; 2]; regime.contacts().len()]
 }
 
 /// Adds the points that straight lines between two neighbors need in between.
@@ -136,32 +129,24 @@ impl CurvePoint {
         Some(Self { at, outcomes, explanation: analysis.explanation })
     }
 
-    /// Velocities and impulses: \[outcome\]\[contact\]\[velocity or impulse\]\[component\].
-    fn numbers(&self) -> impl Iterator<Item = impl Iterator<Item = [[f64; 2]; 2]>> {
-        let pair = |motion: &Motion, contact: usize| [motion.velocity_after[contact], motion.impulse[contact]];
-        self.outcomes.iter().map(move |(_, motion)| (0..motion.impulse.len()).map(move |contact| pair(motion, contact)))
+    /// The velocity after and the impulse of each contact in turn, outcome by outcome.
+    fn numbers(&self) -> impl Iterator<Item = [f64; 2]> {
+        let motions = self.outcomes.iter().map(|(_, motion)| motion.velocity_after.iter().zip(&motion.impulse));
+        motions.flatten().flat_map(|(velocity, impulse)| [*velocity, *impulse])
     }
 
     fn widen(&self, scales: &mut Scales) {
-        for outcome in self.numbers() {
-            for (scale, pair) in scales.iter_mut().zip(outcome) {
-                for (scale, numbers) in scale.iter_mut().zip(pair) {
-                    *scale = numbers.iter().fold(*scale, |most, number| most.max(number.abs()));
-                }
-            }
+        let count = scales.len();
+        for (k, number) in self.numbers().enumerate() {
+            scales[k % count] = number.iter().fold(scales[k % count], |most, entry| most.max(entry.abs()));
         }
     }
 
     /// Whether it lies on the straight line between its neighbors, as far as is visible.
     fn is_on_line(&self, a: &Self, b: &Self, scales: &Scales) -> bool {
         let ends = a.numbers().zip(b.numbers());
-        let straight = self.numbers().zip(ends).all(|(own, (a, b))| {
-            own.zip(a.zip(b)).zip(scales).all(|((own, (a, b)), scale)| {
-                (0..2).all(|kind| {
-                    let off = |axis: usize| own[kind][axis] - 0.5 * (a[kind][axis] + b[kind][axis]);
-                    (0..2).all(|axis| off(axis).abs() <= STRAIGHT * scale[kind])
-                })
-            })
+        let straight = self.numbers().zip(ends).zip(scales.iter().cycle()).all(|((own, (a, b)), scale)| {
+            (0..2).all(|axis| (own[axis] - 0.5 * (a[axis] + b[axis])).abs() <= STRAIGHT * scale)
         });
         let angles = |place: &Self| -> Vec<f64> {
             place.explanation.iter().flat_map(|angles| angles.beta.iter().chain(&angles.gamma).copied()).collect()

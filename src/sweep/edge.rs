@@ -112,13 +112,8 @@ impl Edge {
         for (to, next) in ends {
             let [a, b] = [from, to].map(|at| self.line.point(at));
             let (a, b) = if direction == Direction::Forward { (a, b) } else { (b, a) };
-            pieces.push(Segment {
-                from: a,
-                to: b,
-                left: Arc::clone(regime),
-                right: Arc::clone(regime),
-                transition: None,
-            });
+            let (left, right) = (Arc::clone(regime), Arc::clone(regime));
+            pieces.push(Segment { from: a, to: b, left, right, transition: None });
             (from, regime) = (to, next);
         }
         pieces

@@ -108,17 +108,11 @@ impl<'a> Solver<'a> {
     }
 
     /// The impact at a point, without regard to the state's uncertainty.
-    ///
-    /// # Errors
-    /// Refusals of the point.
     pub fn impact(&mut self, point: &[f64]) -> Result<Impact> {
         self.at(point, |_, state, pipeline| pipeline.impact(&State { uncertainty: None, ..state }))
     }
 
     /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
-    ///
-    /// # Errors
-    /// Refusals of the point.
     pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
         let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))?;
         let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
