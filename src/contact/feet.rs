@@ -76,7 +76,7 @@ fn size(robot: &Robot, feet: &[Foot]) -> f64 {
     let centres = centres.filter_map(|(index, centre)| Some(distance(index, centre?)));
     let soles = feet.iter().map(|foot| {
         let corners = foot.outline.corners().iter();
-        corners.map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max) + foot.outline.rim().bound()
+        corners.map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max) + foot.outline.rim.bound()
     });
     centres.chain(soles).fold(0.0, f64::max)
 }

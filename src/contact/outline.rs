@@ -37,7 +37,7 @@ impl<'p> Outline<'p> {
             [_] => Vec::new(),
             _ => (0..corners.len()).map(|at| Face::of_foot(corners[at], corners[(at + 1) % corners.len()])).collect(),
         };
-        let rim = foot.outline.rim();
+        let rim = foot.outline.rim;
         let mut outline = Self { placement, body: foot.body, rim, points, corners, bones, sides: Vec::new() };
         let moved = |bone: &Face| {
             let out = outline.support(bone.normal);

@@ -97,7 +97,7 @@ impl Plane {
         let ground = HalfSpace::new(ParryVector::new(x, z));
         let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
         let down = placement.turned_back(foot.body, Vector::new(-x, -z));
-        let prediction = tolerance + foot.outline.rim().reach(down);
+        let prediction = tolerance + foot.outline.rim.reach(down);
         let pose = placement.pose(foot.body);
         DefaultQueryDispatcher
             .contact_manifolds(&pose, &ground, &*polygon.0, prediction, &mut manifolds, &mut None)

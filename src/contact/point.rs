@@ -49,7 +49,7 @@ impl Point {
 /// The points of a foot that can touch.
 pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
     let corners = foot.outline.corners().iter();
-    corners.map(|&centre| Point { body: foot.body, centre, offset: foot.offset, rim: foot.outline.rim() })
+    corners.map(|&centre| Point { body: foot.body, centre, offset: foot.offset, rim: foot.outline.rim })
 }
 
 impl Contact {

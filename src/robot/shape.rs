@@ -21,8 +21,10 @@ use parry2d::shape::SharedShape;
 #[derive(Debug, Clone)]
 pub struct FootShape {
     corners: Vec<Vector<f64>>,
-    rim: Rim,
-    mesh: Option<String>,
+    /// What stands about each corner.
+    pub rim: Rim,
+    /// The file of the mesh whose hull it is.
+    pub mesh: Option<String>,
     polygon: Option<SharedShape>,
 }
 
@@ -89,23 +91,9 @@ impl FootShape {
         Some(Self { corners, rim, mesh: None, polygon })
     }
 
-    /// The same shape, marked as that of a mesh file of this name.
-    pub(super) fn of_mesh(self, file: &str) -> Self {
-        Self { mesh: Some(file.to_owned()), ..self }
-    }
-
     /// The polygon's corners in the body's frame \[m\]; at least one.
     pub fn corners(&self) -> &[Vector<f64>] {
         &self.corners
-    }
-
-    pub fn rim(&self) -> Rim {
-        self.rim
-    }
-
-    /// The file of the mesh whose hull it is.
-    pub fn mesh(&self) -> Option<&str> {
-        self.mesh.as_deref()
     }
 
     /// The polygon without its rim, for parry: a convex polygon, or a segment; `None` for one corner.

@@ -255,13 +255,13 @@ impl<'a> Foot<'a> {
     }
 
     fn new(robot: &'a Robot, link: &'a robot::Link, shape: &'a FootShape) -> Self {
-        let (radius, half_diameters) = match shape.rim() {
+        let (radius, half_diameters) = match shape.rim {
             Rim::Circle { radius } => (radius, None),
             Rim::Ellipse { half_diameters } => (0.0, Some(half_diameters)),
         };
         match shape.corners() {
             &[centre] if half_diameters.is_none() => {
-                Self { mesh: shape.mesh(), ..Self::disc(robot, link, centre, radius) }
+                Self { mesh: shape.mesh.as_deref(), ..Self::disc(robot, link, centre, radius) }
             }
             corners => Self {
                 link: &link.name,
@@ -271,7 +271,7 @@ impl<'a> Foot<'a> {
                 radius: (radius > 0.0).then_some(radius),
                 corners: Some(corners),
                 half_diameters,
-                mesh: shape.mesh(),
+                mesh: shape.mesh.as_deref(),
             },
         }
     }

@@ -19,7 +19,7 @@ const DIRECTIONS: u32 = 48;
 
 impl DrawnShape {
     pub(super) fn new(shape: &FootShape) -> Self {
-        match (shape.corners(), shape.rim()) {
+        match (shape.corners(), shape.rim) {
             (&[center], Rim::Circle { radius }) => Self::Disc { center, radius },
             (corners, rim) if rim.bound() == 0.0 => Self::Polygon(corners.to_vec()),
             (corners, rim) => Self::Polygon(swept(corners, rim)),

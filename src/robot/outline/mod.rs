@@ -56,8 +56,9 @@ pub(super) fn outline(
                 center + Vector::new(x, z)
             };
             let corners = hull::corners(&vertices.iter().map(project).collect::<Vec<_>>())?;
-            let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
-            Ok(swept(corners, POINT)?.of_mesh(name))
+            let mut shape = swept(corners, POINT)?;
+            shape.mesh = file.rsplit(['/', '\\']).next().map(str::to_owned);
+            Ok(shape)
         }
         Geometry::Unknown { .. } => Err("no shape of URDF".into()),
     }
@@ -96,7 +97,7 @@ mod tests {
         let far = |(a, b): (&Vector<f64>, &Vector<f64>)| (a.x - b.x).abs().max((a.z - b.z).abs()) > off;
         let differs = shape.corners().len() != corners.len() || shape.corners().iter().zip(corners).any(far);
         assert!(!differs, "{geometry:?} {rpy:?}: {:?}", shape.corners());
-        assert_eq!(shape.rim(), Rim::Circle { radius });
+        assert_eq!(shape.rim, Rim::Circle { radius });
         if let Some(polygon) = shape.polygon().and_then(|polygon| polygon.as_convex_polygon()) {
             assert_eq!(polygon.points().iter().map(|p| Vector::new(p.x, p.y)).collect::<Vec<_>>(), shape.corners());
         }
@@ -151,7 +152,7 @@ mod tests {
         let turned = outline_of(&SOLE, [0.4, 0.3, 0.9]);
         assert_eq!(turned.corners().len(), 6);
         assert_outline(&sole, [0.4, 0.3, 0.9], 1e-15, turned.corners(), 0.0);
-        assert_eq!(outline_of(&sole, [0.0; 3]).mesh(), Some("sole.stl"));
+        assert_eq!(outline_of(&sole, [0.0; 3]).mesh.as_deref(), Some("sole.stl"));
 
         // A wedge whose tip points forward and down, seen from the side; as seen after the factors.
         let wedge = [[0.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.5, 1.0]];
@@ -180,7 +181,7 @@ mod tests {
                 let shape = outline_of(geometry, rpy);
                 let seen = surface.iter().map(|&point| apply(&rotation, point)).map(|[x, _, z]| Vector::new(x, z));
                 for direction in (0..24).map(|step| (0.1 + f64::from(step)).sin_cos()).map(|(s, c)| Vector::new(c, s)) {
-                    let tip = |&corner: &Vector<f64>| corner - CENTER + shape.rim().support(direction);
+                    let tip = |&corner: &Vector<f64>| corner - CENTER + shape.rim.support(direction);
                     let farther = |a: &Vector<f64>, b: &Vector<f64>| a.dot(direction).total_cmp(&b.dot(direction));
                     let farthest = shape.corners().iter().map(tip).max_by(farther).expect("a corner");
                     let sampled = seen.clone().max_by(farther).expect("a point");

@@ -24,7 +24,7 @@ fn load(text: &str) -> Robot {
 /// Centre and radius of the disc that is a link's only shape.
 fn disc(link: &Link) -> ([f64; 2], f64) {
     let [shape] = &link.shapes[..] else { panic!("one shape") };
-    match (shape.corners(), shape.rim()) {
+    match (shape.corners(), shape.rim) {
         (&[centre], Rim::Circle { radius }) => (centre.components(), radius),
         other => panic!("{other:?} is no disc"),
     }
