@@ -194,30 +194,23 @@ mod tests {
         }
     }
 
-    fn records(mut chunks: Chunks<impl Read>) -> Vec<Vec<(usize, String)>> {
+    /// The records of each chunk with their lines.
+    fn chunks(mut chunks: Chunks<impl Read>) -> Vec<String> {
         let chunks = std::iter::from_fn(|| chunks.records(RECORDS).unwrap());
-        let text = |(line, record): (usize, &[u8])| (line, String::from_utf8_lossy(record).into_owned());
-        chunks.map(|chunk| chunk.records().map(text).collect()).collect()
-    }
-
-    fn numbered(records: &[(usize, &str)]) -> Vec<(usize, String)> {
-        records.iter().map(|&(line, record)| (line, record.to_owned())).collect()
+        let shown = |(line, record): (usize, &[u8])| format!("{line}:{}", record.escape_ascii());
+        chunks.map(|chunk| chunk.records().map(shown).collect::<Vec<_>>().join(" ")).collect()
     }
 
     #[test]
     fn lines_keep_their_numbers_however_the_input_comes() {
-        let lines = |parts: &[&'static [u8]]| records(Chunks::of_lines(Parts(parts.to_vec())));
-        assert_eq!(lines(&[b"a\n\nb"]), [numbered(&[(1, "a\n"), (2, "\n")]), numbered(&[(3, "b")])]);
-        assert_eq!(lines(&[b"a", b"\n\n", b"b\n"]), [numbered(&[(1, "a\n"), (2, "\n")]), numbered(&[(3, "b\n")])]);
-        assert_eq!(lines(&[b"a\nb", b"c\nd\n"]), [numbered(&[(1, "a\n")]), numbered(&[(2, "bc\n"), (3, "d\n")])]);
+        let lines = |parts: &[&'static [u8]]| chunks(Chunks::of_lines(Parts(parts.to_vec())));
+        assert_eq!(lines(&[b"a\n\nb"]), [r"1:a\n 2:\n", "3:b"]);
+        assert_eq!(lines(&[b"a", b"\n\n", b"b\n"]), [r"1:a\n 2:\n", r"3:b\n"]);
+        assert_eq!(lines(&[b"a\nb", b"c\nd\n"]), [r"1:a\n", r"2:bc\n 3:d\n"]);
         assert!(lines(&[]).is_empty());
-    }
-
-    #[test]
-    fn chunks_are_short() {
-        let lines: String = (0..40).map(|number| format!("{number}\n")).collect();
-        let chunks = records(Chunks::of_lines(lines.as_bytes()));
-        assert_eq!(chunks.iter().map(|chunk| chunk[0].0).collect::<Vec<_>>(), [1, 17, 33]);
+        let many: String = (0..40).map(|number| format!("{number}\n")).collect();
+        let many = chunks(Chunks::of_lines(many.as_bytes()));
+        assert_eq!(many.iter().map(|chunk| &chunk[..3]).collect::<Vec<_>>(), ["1:0", "17:", "33:"], "chunks are short");
     }
 
     #[test]
@@ -231,24 +224,21 @@ mod tests {
 
     #[test]
     fn a_record_of_a_table_may_have_line_breaks() {
-        let chunks = records(Chunks::of_table(Parts(vec![b"a\n\"b", b"\nc\"\n", b"d\n\"e\n"])));
-        let expected = [numbered(&[(1, "a\n")]), numbered(&[(2, "\"b\nc\"\n")]), numbered(&[(4, "d\n"), (5, "\"e\n")])];
-        assert_eq!(chunks, expected);
+        let table = chunks(Chunks::of_table(Parts(vec![b"a\n\"b", b"\nc\"\n", b"d\n\"e\n"])));
+        assert_eq!(table, [r"1:a\n", r#"2:\"b\nc\"\n"#, r#"4:d\n 5:\"e\n"#]);
     }
 
     #[test]
     fn an_endless_record_does_not_fill_the_memory() {
-        let parts = |first: &'static [u8], part: &'static [u8]| {
+        let parts = |first: &'static [u8]| {
+            let part: &[u8] = &[b'x'; 1 << 12];
             let long = std::iter::repeat_n(part, RECORD_LIMIT / part.len() + 1);
             Parts(std::iter::once(first).chain(long).chain([&b"\nend"[..]]).collect())
         };
-        let chunks_of = |mut chunks: Chunks<Parts>| {
+        for mut chunks in [Chunks::of_lines(parts(b"a\n")), Chunks::of_table(parts(b"a\n\""))] {
             let chunks = std::iter::from_fn(move || chunks.records(RECORDS).unwrap());
-            chunks.map(|chunk| (chunk.bytes.len(), chunk.too_long)).collect::<Vec<_>>()
-        };
-        let line = chunks_of(Chunks::of_lines(parts(b"a\n", &[b'x'; 1 << 12])));
-        assert_eq!(line, [(2, None), (0, Some(2)), (3, None)]);
-        let line = chunks_of(Chunks::of_table(parts(b"a\n\"", &[b'x'; 1 << 12])));
-        assert_eq!(line, [(2, None), (0, Some(2)), (3, None)]);
+            let found: Vec<_> = chunks.map(|chunk| (chunk.bytes.len(), chunk.too_long)).collect();
+            assert_eq!(found, [(2, None), (0, Some(2)), (3, None)]);
+        }
     }
 }

@@ -35,13 +35,10 @@ use serde_json::Value;
 /// What is computed for every state of a batch, and in which form it is written.
 #[derive(Debug, Clone)]
 pub struct Question<'r> {
-    /// The robot.
     pub robot: &'r Robot,
     /// How contacts are found and what is computed.
     pub options: Options,
-    /// Values for what a state omits.
     pub defaults: Defaults,
-    /// How much of a result is written.
     pub detail: Detail,
     /// The columns of the input table; `None` for lines of JSON.
     pub header: Option<&'r Header>,
@@ -83,7 +80,6 @@ impl Around<'_> {
 }
 
 impl<'q> Batch<'q> {
-    /// A batch that answers `question`.
     pub fn new(question: &'q Question<'q>) -> Self {
         let pipeline = Pipeline::new(question.robot, question.options.clone());
         Self { question, pipeline, rows: question.header.map(Header::rows) }

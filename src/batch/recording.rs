@@ -19,7 +19,6 @@ const STATES: usize = 16;
 pub struct RowOrigin {
     /// Its line, from 1.
     pub line: usize,
-    /// Its id.
     pub id: Option<Value>,
     /// The fields to copy to the result.
     pub carried: Carried,
@@ -73,7 +72,6 @@ pub struct Recording<I> {
 }
 
 impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<I> {
-    /// The tasks of `samples`, which come from [`samples`].
     pub fn new(samples: I) -> Self {
         Self { samples, broken: None }
     }

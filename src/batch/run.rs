@@ -21,7 +21,6 @@ const AHEAD: usize = 4;
 
 /// Gives tasks, one after the other.
 pub trait Source: Send {
-    /// Some records.
     type Task: Send;
 
     /// The next records; `None` at the end. After an error of reading this is not called again.
@@ -36,9 +35,7 @@ pub trait Source: Send {
 /// The answers to a task.
 #[derive(Debug, Default)]
 pub struct Block {
-    /// The bytes to write.
     pub out: Vec<u8>,
-    /// Why records were refused.
     pub refused: Vec<RefusedRecord>,
     /// The summary of these records; see [`Summary::merge`].
     pub summary: Summary,

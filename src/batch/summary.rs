@@ -55,7 +55,6 @@ impl Serialize for Verdicts {
 /// A state of the batch, and its smallest margin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Nearest {
-    /// Which state.
     #[serde(flatten)]
     pub state: StateRef,
     /// The margin of its outcomes that is nearest to zero, free of units.
@@ -79,7 +78,6 @@ pub struct StateRef {
 /// such outcomes, the one that needs least.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MoreFriction {
-    /// How many.
     pub states: u64,
     /// The one that needs most; of equal ones the first.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -89,7 +87,6 @@ pub struct MoreFriction {
 /// A state of the batch, and the friction that it needs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Needed {
-    /// Which state.
     #[serde(flatten)]
     pub state: StateRef,
     /// The coefficient, or "infinite" if a contact sticks without a normal impulse.
@@ -100,11 +97,8 @@ pub struct Needed {
 /// How often a list of modes occurs among the outcomes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ModeCount {
-    /// The closed contacts.
     pub contacts: Vec<String>,
-    /// One mode per contact.
     pub modes: Vec<Mode>,
-    /// How many outcomes.
     pub outcomes: u64,
 }
 
@@ -141,7 +135,6 @@ impl Summary {
         }
     }
 
-    /// Counts a refused state.
     pub fn refuse(&mut self) {
         self.states += 1;
         self.refused += 1;

@@ -68,17 +68,10 @@ mod tests {
     #[test]
     fn two_rows_carry_on_a_line_and_one_or_a_long_way_nothing() {
         let onward = Onward::from(&[1.0, 0.5], 1.0).unwrap();
-        assert_eq!(
-            (onward.value(|row| [2.0, 3.0][row], 0.5), onward.down_to(0.0, |row| [2.0, 3.0][row])),
-            (1.0, Some(1.0))
-        );
+        let falling = |row: usize| [2.0, 3.0][row];
+        assert_eq!((onward.value(falling, 0.5), onward.down_to(0.0, falling)), (1.0, Some(1.0)));
         assert_eq!(onward.down_to(0.0, |_| 1.0), None, "it does not fall");
-        assert!(Onward::from(&[1.0], 0.1).is_none());
-        assert!(Onward::from(&[1.0, 0.5], 1.5).is_none());
-    }
-
-    #[test]
-    fn a_line_goes_no_further_than_its_rows_bear() {
+        assert!(Onward::from(&[1.0], 0.1).is_none() && Onward::from(&[1.0, 0.5], 1.5).is_none());
         let line = [(1.0, 3.0), (2.0, 5.0)];
         assert_eq!([1.5, 2.5, 9.0].map(|time| on_line(line, time)), [4.0, 6.0, 5.0]);
         assert_eq!(on_line([(1.0, 3.0), (1.0, 5.0)], 1.5), 5.0);

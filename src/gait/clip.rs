@@ -13,7 +13,6 @@ pub(super) struct Clock {
 /// From one sample to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Step {
-    /// A clip begins.
     NewClip,
     /// The time stands still: an impact lies between.
     Impact,
@@ -22,7 +21,6 @@ pub(super) enum Step {
 }
 
 impl Clock {
-    /// Goes on to the sample at `time`.
     pub fn step(&mut self, time: f64) -> Step {
         let passed = self.last.map(|last| time - last);
         self.last = Some(time);
@@ -46,20 +44,11 @@ mod tests {
 
     #[test]
     fn a_jump_back_and_a_long_pause_begin_a_clip() {
+        use Step::{Impact, Later, NewClip};
         let mut clock = Clock::default();
-        let steps: Vec<Step> = [0.0, 0.5, 0.5, 1.0, 0.0, 0.25, 0.5, 9.0, 10.0].map(|time| clock.step(time)).into();
-        let later = Step::Later;
-        let expected = [
-            Step::NewClip,
-            later(0.5),
-            Step::Impact,
-            later(0.5),
-            Step::NewClip,
-            later(0.25),
-            later(0.25),
-            Step::NewClip,
-            later(1.0),
-        ];
+        let steps = [0.0, 0.5, 0.5, 1.0, 0.0, 0.25, 0.5, 9.0, 10.0].map(|time| clock.step(time));
+        let expected =
+            [NewClip, Later(0.5), Impact, Later(0.5), NewClip, Later(0.25), Later(0.25), NewClip, Later(1.0)];
         assert_eq!(steps, expected);
     }
 }

@@ -156,18 +156,10 @@ pub enum Touching {
     Strike,
     /// Of every other body the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the
     /// striking point's by no more than `height` \[m\].
-    Slow {
-        /// Metres per second.
-        speed: f64,
-        /// Metres.
-        height: f64,
-    },
+    Slow { speed: f64, height: f64 },
     /// Every point free toward the ground whose height differs from the striking point's by no more than this \[m\],
     /// however it moves.
-    Near {
-        /// Metres.
-        height: f64,
-    },
+    Near { height: f64 },
 }
 
 impl Default for Touching {

@@ -48,7 +48,6 @@ impl Tracked {
         }
     }
 
-    /// Whether it is zero up to rounding.
     fn is_negligible(self, watched: &Watched) -> bool {
         matches!(self, Self::Numerator(at) if watched.inequalities.negligible.get(at).is_some_and(|&negligible| negligible))
     }

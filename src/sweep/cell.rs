@@ -33,7 +33,6 @@ pub struct Trace<'s, 'm> {
     solver: &'s mut Solver<'m>,
     resolution: [f64; 2],
     cells: usize,
-    /// What was found.
     pub segments: Vec<Segment>,
 }
 

@@ -22,7 +22,6 @@ pub struct RegionCurves {
 /// The outcomes at one value of the parameter.
 #[derive(Debug, Clone)]
 pub struct CurvePoint {
-    /// The parameter.
     pub at: f64,
     /// Every outcome's modes and motion, in the order of modes, which all points of a region share.
     pub outcomes: Vec<(Vec<Mode>, Motion)>,

@@ -81,12 +81,10 @@ impl Edge {
         Self { line, from, to, first, crossings }
     }
 
-    /// The regime at `to`.
     pub fn last(&self) -> &Arc<Regime> {
         self.crossings.last().map_or(&self.first, |crossing| &crossing.above)
     }
 
-    /// Its part between two places.
     pub fn part(&self, from: f64, to: f64) -> Self {
         let before = self.crossings.iter().rfind(|crossing| crossing.at <= from);
         let inside = |crossing: &&Crossing| from < crossing.at && crossing.at <= to;
@@ -99,7 +97,6 @@ impl Edge {
         }
     }
 
-    /// The regime at a place.
     pub fn at(&self, at: f64) -> Arc<Regime> {
         self.part(at, self.to).first
     }

@@ -50,7 +50,6 @@ pub struct Map {
 /// Where one regime holds.
 #[derive(Debug, Clone)]
 pub struct Area {
-    /// What happens there.
     pub regime: Arc<Regime>,
     /// Closed loops of points (first parameter, second parameter) with the area on their left; the first point is not
     /// repeated.

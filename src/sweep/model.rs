@@ -15,17 +15,12 @@ use std::sync::Arc;
 /// A study of one robot.
 #[derive(Debug, Clone)]
 pub struct RobotStudy<'a> {
-    /// What is varied.
     pub study: &'a Study<'a>,
-    /// The robot's file.
     pub description: &'a Description,
-    /// How it is reduced to its plane.
     pub reduction: &'a Reduction,
     /// The robot as the file has it.
     pub robot: &'a Robot,
-    /// How contacts are found, and what is computed.
     pub options: Options,
-    /// Defaults of the states.
     pub defaults: Defaults,
 }
 
@@ -53,11 +48,8 @@ pub struct Watched {
 /// Properties of a region, found at a point in it.
 #[derive(Debug, Clone)]
 pub(super) struct Inner {
-    /// Whether its contacts depend on each other.
     pub dependent: bool,
-    /// The answer in one word; `None` if it is refused.
     pub verdict: Option<Verdict>,
-    /// Why it is refused, if it is.
     pub refused: Option<Error>,
 }
 
@@ -65,9 +57,6 @@ pub(super) struct Inner {
 pub const WATCHED_CONTACTS: usize = 4;
 
 impl RobotStudy<'_> {
-    /// Checks that states can be read somewhere in the ranges.
-    ///
-    /// # Errors
     /// The first sample's refusal, if robot or state cannot be read there, nor in the middle, nor at the last one.
     pub fn readable(&self) -> Result<()> {
         let parameters = self.study.parameters();
@@ -81,16 +70,12 @@ impl RobotStudy<'_> {
 }
 
 impl<'a> Solver<'a> {
-    /// A solver for `model`.
     pub fn new(model: &'a RobotStudy<'a>) -> Self {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.options.clone()));
         Self { model, pipeline, known: Vec::new() }
     }
 
-    /// Asks about the state at a point.
-    ///
-    /// # Errors
-    /// Refusals of the robot or the state of that point, and those of `ask`.
+    /// Asks about the state at a point; robot or state may be refused there.
     pub fn at<T>(
         &mut self,
         point: &[f64],

@@ -8,7 +8,6 @@ use std::mem::{Discriminant, discriminant};
 /// What happens at a point; all points of a region have the same.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Regime {
-    /// The state is answered.
     Answered {
         /// Names of the closed contacts.
         contacts: Vec<String>,
@@ -17,9 +16,7 @@ pub enum Regime {
         /// Combinations that no precision shows or excludes.
         undecided: Vec<Vec<Mode>>,
     },
-    /// The state is refused.
     Refused {
-        /// The kind of reason.
         reason: Discriminant<Reason>,
         /// The place inside the state.
         place: Option<String>,

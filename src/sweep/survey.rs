@@ -24,11 +24,8 @@ pub struct Survey {
 /// A stretch of the parameter with one set of outcomes.
 #[derive(Debug, Clone)]
 pub struct Region {
-    /// Where it begins.
     pub from: f64,
-    /// Where it ends.
     pub to: f64,
-    /// What happens in it.
     pub regime: Arc<Regime>,
     /// The number of its regime, from 0 in the order of first regions.
     pub kind: usize,
