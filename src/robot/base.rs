@@ -12,7 +12,7 @@
 use super::plane::PARALLEL;
 use super::role::Role;
 use super::{Axis, Base, FreezeReason};
-use crate::description::Description;
+use crate::description::{Description, Joint};
 
 /// The share of the robot's mass up to which a link looks as if it only had to be given one.
 const LIGHT: f64 = 1e-2;
@@ -34,17 +34,18 @@ pub(super) struct Judgement {
 pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option<Base>) -> Judgement {
     let root = description.root;
     let welded = Welded::new(description, roles);
-    let free = welded
-        .single_exit(root)
-        .filter(|&joint| asked != Some(Base::Fixed) && roles[joint] == Role::Free && welded.is_massless(root, 0.0));
-    if let Some(joint) = free {
-        let joints = &description.joints;
-        hold_free(description, roles, Some(joint));
-        let because = format!("{} joint \"{}\" is the base itself", joints[joint].kind.name(), joints[joint].name);
-        let root = joints[joint].child;
-        return Judgement { base: Base::Floating, root, because, chain: vec![joint], caution: None };
+    let exit = welded.single_exit(root).filter(|&joint| roles[joint] == Role::Free && welded.is_massless(root, 0.0));
+    let free = exit.filter(|_| asked != Some(Base::Fixed));
+    for (index, role) in roles.iter_mut().enumerate() {
+        if *role == Role::Free && Some(index) != free {
+            *role = Role::Frozen(FreezeReason::Kind(description.joints[index].kind));
+        }
     }
-    hold_free(description, roles, None);
+    if let Some(joint) = free {
+        let Joint { kind, name, child, .. } = &description.joints[joint];
+        let because = format!("{} joint \"{name}\" is the base itself", kind.name());
+        return Judgement { base: Base::Floating, root: *child, because, chain: vec![joint], caution: None };
+    }
 
     let welded = Welded::new(description, roles);
     let at_root = |base, because: String| Judgement { base, root, because, chain: Vec::new(), caution: None };
@@ -66,37 +67,24 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
         });
         return Judgement { base: Base::Floating, root, because, chain: chain.into(), caution };
     }
-    if asked == Some(Base::Floating) {
-        return at_root(Base::Floating, "as asked".into());
-    }
-    match (welded.mass(root) == 0.0, welded.single_exit(root)) {
-        (true, Some(joint)) => {
+    let massless = welded.mass(root) == 0.0;
+    match welded.single_exit(root) {
+        _ if asked == Some(Base::Floating) => at_root(Base::Floating, "as asked".into()),
+        Some(joint) if massless => {
             let name = &description.joints[joint].name;
-            return at_root(Base::Fixed, format!("the root is massless and joint \"{name}\" alone carries the robot"));
+            at_root(Base::Fixed, format!("the root is massless and joint \"{name}\" alone carries the robot"))
         }
-        _ if description.links[root].name == "world" => {
-            return at_root(Base::Fixed, "the root is named world".into());
-        }
-        (true, None) => {
-            return at_root(Base::Floating, "the root is massless, but several joints carry the robot".into());
-        }
-        (false, _) => {}
-    }
-    let caution = welded.chain(description, roles, LIGHT * welded.total).map(|chain| {
-        format!(
-            "the root floats because it has mass, over a chain of its own ({}) whose links weigh next to nothing: set \
-             their mass to 0 to take the chain as the base, or give `base: fixed`",
-            names(chain)
-        )
-    });
-    Judgement { caution, ..at_root(Base::Floating, "the root has mass".into()) }
-}
-
-/// Holds the planar and floating joints but `base`.
-fn hold_free(description: &Description, roles: &mut [Role], base: Option<usize>) {
-    for (index, role) in roles.iter_mut().enumerate() {
-        if *role == Role::Free && Some(index) != base {
-            *role = Role::Frozen(FreezeReason::Kind(description.joints[index].kind));
+        _ if description.links[root].name == "world" => at_root(Base::Fixed, "the root is named world".into()),
+        None if massless => at_root(Base::Floating, "the root is massless, but several joints carry the robot".into()),
+        _ => {
+            let caution = welded.chain(description, roles, LIGHT * welded.total).map(|chain| {
+                format!(
+                    "the root floats because it has mass, over a chain of its own ({}) whose links weigh next to nothing: \
+                     set their mass to 0 to take the chain as the base, or give `base: fixed`",
+                    names(chain)
+                )
+            });
+            Judgement { caution, ..at_root(Base::Floating, "the root has mass".into()) }
         }
     }
 }

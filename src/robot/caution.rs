@@ -19,18 +19,12 @@ pub(super) struct Seen<'a> {
 
 /// The cautions about joints that are held, of which `kept` others stay.
 pub(super) fn about_held(seen: &Seen, held: &[FrozenJoint], kept: usize) -> Vec<String> {
-    let movable = held
-        .iter()
-        .filter(|joint| !matches!(joint.reason, FreezeReason::Fixed | FreezeReason::Asked { .. } | FreezeReason::Base));
-    let movable: Vec<&FrozenJoint> = movable.collect();
-    let nearly = movable.iter().filter_map(|joint| match joint.reason {
-        FreezeReason::OffPlane { angle, .. } if angle <= NEARLY => Some((joint.name.as_str(), angle)),
-        _ => None,
-    });
-    let nearly: Vec<(&str, f64)> = nearly.collect();
-    let hidden =
-        movable.iter().filter(|joint| matches!(joint.reason, FreezeReason::Kind(_))).map(|joint| joint.name.as_str());
-    let hidden: Vec<&str> = hidden.collect();
+    use FreezeReason::{Asked, Base, Fixed, Kind, OffPlane};
+    let with = |wanted: fn(&FreezeReason) -> bool| held.iter().filter(move |joint| wanted(&joint.reason));
+    let movable: Vec<_> = with(|reason| !matches!(reason, Fixed | Asked { .. } | Base)).collect();
+    let nearly: Vec<_> = with(|reason| matches!(reason, OffPlane { angle, .. } if *angle <= NEARLY)).collect();
+    let hidden: Vec<_> = with(|reason| matches!(reason, Kind(_))).collect();
+    let names = |joints: &[&FrozenJoint]| names(joints.iter().map(|joint| joint.name.as_str()));
     let mut cautions = Vec::new();
     if !nearly.is_empty() && nearly.len() >= kept {
         cautions.push(about_tilted(seen, &nearly, movable.len() + kept));
@@ -38,7 +32,7 @@ pub(super) fn about_held(seen: &Seen, held: &[FrozenJoint], kept: usize) -> Vec<
         cautions.push(format!(
             "no joint moves in this plane, so the robot is one rigid body ({} held): choose another plane (`plane`), or hold \
              joints where the axes of others are in line (`hold: NAME=VALUE`)",
-            names(&movable.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>())
+            names(&movable)
         ));
     }
     if !hidden.is_empty() {
@@ -54,38 +48,39 @@ pub(super) fn about_held(seen: &Seen, held: &[FrozenJoint], kept: usize) -> Vec<
 /// The caution about links of the base that could touch the ground; the root's shapes are the ground's or the rail's.
 pub(super) fn about_outside(description: &Description, outside: &[String]) -> Option<String> {
     let root = &description.links[description.root].name;
-    let touching = |name: &&String| {
-        let link = description.links.iter().find(|link| link.name == **name);
-        *name != root && link.is_some_and(|link| !link.collisions.is_empty())
+    let touching = |name: &String| {
+        let link = description.links.iter().find(|link| link.name == *name);
+        name != root && link.is_some_and(|link| !link.collisions.is_empty())
     };
-    let touching: Vec<&str> = outside.iter().filter(touching).map(String::as_str).collect();
+    let touching = names(outside.iter().filter(|name| touching(name)).map(String::as_str));
     (!touching.is_empty()).then(|| {
         format!(
-            "{} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on another link \
-             (`feet: LINK:X,Y,Z`)",
-            names(&touching)
+            "{touching} has collision shapes but belongs to the base, so they are left out: if it is a foot, name one on \
+             another link (`feet: LINK:X,Y,Z`)"
         )
     })
 }
 
 /// The caution about joints whose axes are nearly parallel to the normal, out of `all` that could move.
-fn about_tilted(seen: &Seen, nearly: &[(&str, f64)], all: usize) -> String {
+fn about_tilted(seen: &Seen, nearly: &[&FrozenJoint], all: usize) -> String {
+    let angles = nearly.iter().filter_map(|joint| match joint.reason {
+        FreezeReason::OffPlane { angle, .. } => Some(angle),
+        _ => None,
+    });
     let degrees = |angle: f64| format!("{:.1}", angle.to_degrees());
-    let least = degrees(nearly.iter().map(|(_, angle)| *angle).fold(f64::INFINITY, f64::min));
-    let most = degrees(nearly.iter().map(|(_, angle)| *angle).fold(0.0, f64::max));
+    let (least, most) = (degrees(angles.clone().fold(f64::INFINITY, f64::min)), degrees(angles.fold(0.0, f64::max)));
     let range = if least == most { most } else { format!("{least} to {most}") };
     let mut remedies: Vec<String> = Vec::new();
-    for remedy in nearly.iter().filter_map(|(name, _)| remedy(seen, seen.description.joint(name)?)) {
+    for remedy in nearly.iter().filter_map(|joint| remedy(seen, seen.description.joint(&joint.name)?)) {
         if !remedies.contains(&remedy) {
             remedies.push(remedy);
         }
     }
-    let joints: Vec<&str> = nearly.iter().map(|(name, _)| *name).collect();
     format!(
         "{} of {all} joints that could move are held only because their axes are {range} degrees off the plane ({}); to keep \
          them: {}",
         nearly.len(),
-        names(&joints),
+        names(nearly.iter().map(|joint| joint.name.as_str())),
         remedies.join(", "),
     )
 }
@@ -140,7 +135,8 @@ fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane) -> Option<f64>
 }
 
 /// The first names.
-fn names(names: &[&str]) -> String {
+fn names<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
     match names.len().checked_sub(NAMED) {
         Some(more) if more > 0 => format!("{}, {more} more", names[..NAMED].join(", ")),
         _ => names.join(", "),
