@@ -15,7 +15,6 @@ const FLAT: f64 = 0.1;
 /// Normals whose angle has a smaller sine are the same: they come from sums of positions, and a foot's turn.
 pub(super) const PARALLEL: f64 = 1e-9;
 
-/// A side of a solid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Face {
     pub from: Vector<f64>,
@@ -84,7 +83,6 @@ pub(super) fn upright(Vector { x, z }: Vector<f64>) -> Rotation<f64> {
     Rotation { cos: z, sin: x }
 }
 
-/// Distance of two points \[m\].
 pub(super) fn distance(a: Vector<f64>, b: Vector<f64>) -> f64 {
     let Vector { x, z } = a - b;
     libm::hypot(x, z)

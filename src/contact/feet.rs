@@ -53,7 +53,6 @@ impl Feet {
         self
     }
 
-    /// The shapes.
     pub fn iter(&self) -> impl Iterator<Item = &Foot> {
         self.feet.iter()
     }

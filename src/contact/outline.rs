@@ -12,12 +12,10 @@ use super::point::{Circle, Point, points};
 use crate::planar::Vector;
 use crate::robot::Rim;
 
-/// The outline of a foot where it is.
 #[derive(Debug, Clone)]
 pub(super) struct Outline<'p> {
     placement: &'p Placement,
     body: usize,
-    /// About each corner.
     rim: Rim,
     /// The corners with their rims, in their body's frame.
     points: Vec<Point>,
@@ -82,7 +80,6 @@ impl<'p> Outline<'p> {
         self.placement.circle(self.points[corner], normal)
     }
 
-    /// The polygon's sides without their rim.
     pub fn bones(&self) -> &[Face] {
         &self.bones
     }
@@ -97,13 +94,11 @@ impl<'p> Outline<'p> {
         (count > 0).then(|| [&self.sides[(corner + count - 1) % count], &self.sides[corner]])
     }
 
-    /// The corners next to a corner.
     pub fn beside_corner(&self, corner: usize) -> Option<[Vector<f64>; 2]> {
         let count = self.bones.len();
         (count > 0).then(|| [self.bones[(corner + count - 1) % count].from, self.bones[corner].to])
     }
 
-    /// The sides next to a side.
     pub fn beside(&self, side: usize) -> [&Face; 2] {
         let count = self.sides.len();
         [&self.sides[(side + count - 1) % count], &self.sides[(side + 1) % count]]

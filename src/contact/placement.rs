@@ -7,7 +7,6 @@ use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Rim, Robot};
 use parry2d::math::{Pose, Vector as ParryVector};
 
-/// Poses of all bodies.
 #[derive(Debug, Clone)]
 pub struct Placement {
     /// Origin of each body in the world \[m\].

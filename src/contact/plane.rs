@@ -25,7 +25,6 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// The ground at z = 0.
     pub const LEVEL: Self = Self { ground: Rotation { cos: 1.0, sin: 0.0 } };
 
     /// The ground of this slope \[rad\], uphill toward +x, which is a turn against the pitch.
@@ -33,7 +32,6 @@ impl Plane {
         Self { ground: Rotation::by(-slope) }
     }
 
-    /// The ground with these axes.
     pub(super) fn turned(ground: Rotation<f64>) -> Self {
         Self { ground }
     }
@@ -42,7 +40,6 @@ impl Plane {
         self.ground.apply(Vector::new(0.0, 1.0))
     }
 
-    /// The circle with which a point of a foot touches.
     pub fn circle(&self, placement: &Placement, point: Point) -> Circle {
         placement.circle(point, self.normal())
     }
@@ -81,10 +78,7 @@ impl Plane {
     }
 
     /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that
-    /// faces it.
-    ///
-    /// # Errors
-    /// [`Reason::Unsupported`] for a pair of shapes that parry does not serve; none of ours is.
+    /// faces it. An error is for a pair of shapes that parry does not serve; none of ours is.
     pub(super) fn touching(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Touch>> {
         let touch = |point: Point| self.touch(placement, point);
         if self.is_out_of_reach(foot, placement, tolerance) {

@@ -46,7 +46,6 @@ impl Point {
     }
 }
 
-/// The points of a foot that can touch.
 pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
     let corners = foot.outline.corners().iter();
     corners.map(|&centre| Point { body: foot.body, centre, offset: foot.offset, rim: foot.outline.rim })
@@ -58,7 +57,6 @@ impl Contact {
         self.ground.apply(Vector::new(0.0, 1.0))
     }
 
-    /// The contact for the dynamics.
     pub fn point_of(&self) -> ContactPoint {
         ContactPoint { body: self.body, centre: self.centre, radius: self.radius, ground: self.ground }
     }

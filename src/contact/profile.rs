@@ -29,10 +29,8 @@ struct Closeness {
     rounding: f64,
 }
 
-/// The contacts of a foot within `tolerance` of the ground, ascending in x; positions are known up to `rounding` \[m\].
-///
-/// # Errors
-/// The depth of a foot that is deeper than the tolerance.
+/// The contacts of a foot within `tolerance` of the ground, ascending in x, or the depth of a foot that is deeper;
+/// positions are known up to `rounding` \[m\].
 pub(super) fn touching(
     terrain: &Terrain,
     foot: &Foot,
@@ -130,7 +128,6 @@ fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usi
     above.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// How far a foot is from the ground \[m\].
 pub(super) fn clearance(terrain: &Terrain, outline: &Outline) -> f64 {
     -depth(terrain, outline, &all(terrain))
 }

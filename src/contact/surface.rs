@@ -26,7 +26,6 @@ pub(super) struct Sunk {
 }
 
 impl Surface {
-    /// The ground of a scene.
     pub fn new(ground: &Ground) -> Self {
         match ground {
             Ground::Slope(slope) => Self::Plane(Plane::sloped(*slope)),
@@ -35,9 +34,6 @@ impl Surface {
     }
 
     /// The plane on which the foot of a stance is placed, and the point of the ground that it is placed at \[m\].
-    ///
-    /// # Errors
-    /// [`Reason::Inconsistent`] where a profile does not reach to x = 0.
     pub(super) fn stance(&self) -> Result<(Plane, Vector<f64>)> {
         match self {
             Self::Plane(plane) => Ok((*plane, Vector::zero())),
@@ -75,10 +71,8 @@ impl Surface {
         }
     }
 
-    /// Where a foot is within `tolerance` of the ground, given `rounding`; all in metres.
-    ///
-    /// # Errors
-    /// The outer one for shapes that parry does not serve, the inner one for a foot deeper than the tolerance.
+    /// Where a foot is within `tolerance` of the ground, given `rounding` \[m\]. The outer error is for shapes that parry
+    /// does not serve, the inner one for a foot deeper than the tolerance.
     pub(super) fn touching(
         &self,
         foot: &Foot,

@@ -18,7 +18,6 @@ use parry2d::math::Vector as ParryVector;
 use parry2d::query::PointQueryWithLocation;
 use parry2d::shape::{Polyline, SegmentPointLocation};
 
-/// A profile, ready for feet.
 #[derive(Debug, Clone)]
 pub(crate) struct Terrain {
     /// The segments between two walls.
@@ -52,7 +51,6 @@ impl Terrain {
         Self { faces, polyline: Polyline::new(vertices, None) }
     }
 
-    /// The segments with an index between those of the walls.
     pub(super) fn segments(&self) -> &[Face] {
         &self.faces[1..self.faces.len() - 1]
     }
@@ -73,7 +71,6 @@ impl Terrain {
         before.tangent.x * after.tangent.z < before.tangent.z * after.tangent.x
     }
 
-    /// Whether a face is one of the two walls.
     pub(super) fn is_wall(&self, index: usize) -> bool {
         index == 0 || index + 1 == self.faces.len()
     }
@@ -122,7 +119,6 @@ impl Terrain {
         self.segment_at(point.x).is_some_and(|face| face.height(point) < 0.0)
     }
 
-    /// The ends, rear and front.
     pub(super) fn ends(&self) -> [Vector<f64>; 2] {
         let segments = self.segments();
         [segments[0].from, segments[segments.len() - 1].to]
@@ -147,7 +143,6 @@ impl Terrain {
         Touch { circle, ground, gap: height - circle.radius }
     }
 
-    /// The middle of the normals that a corner's faces have.
     fn middle_normal(&self, corner: usize) -> Vector<f64> {
         let [before, after] = self.at_corner(corner);
         unit(before.normal + after.normal)

@@ -26,7 +26,6 @@ use super::workspace::Workspace;
 use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::planar::{Pair, Vector};
 
-/// Half the distance from 1 to the next f64.
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// Roundings in an entry of M or J, per level and body: twice those of step 2.
 const ENTRY: f64 = 96.0;
@@ -38,7 +37,6 @@ const SMALL: f64 = 0.1;
 /// A contact with its arm stretched.
 #[derive(Debug, Clone, Copy)]
 pub struct Arm {
-    /// The body that carries it.
     pub body: usize,
     /// At least its distance from the body's origin, and the sum of all terms that it was added up from \[m\].
     pub length: f64,

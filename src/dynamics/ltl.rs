@@ -38,7 +38,6 @@ impl<T: Real> LtlFactor<T> {
         self.entries[row * self.columns + column]
     }
 
-    /// The entry of D.
     pub fn pivot(&self, column: usize) -> T {
         self.entries[column * self.columns + column]
     }

@@ -29,7 +29,6 @@ pub struct Plan<T = f64> {
     pub(crate) bodies: Vec<PlanBody<T>>,
     /// Parent of each column in the elimination tree of M; without followers the nearest moving joint below it.
     pub(crate) parents: Vec<Option<usize>>,
-    /// Coordinate (index into q) of each column.
     pub(crate) coordinates: Vec<usize>,
     /// Entries of a [`Configuration`]: coordinates and followers.
     pub(crate) places: usize,
@@ -86,11 +85,8 @@ pub(crate) struct MimicRatio {
 /// robot: of pitch and turning joints cosine and sine, of x, z and sliding joints the displacement \[m\].
 #[derive(Debug, Clone, Default)]
 pub struct Configuration<T = f64> {
-    /// Cosine of each angle.
     pub cos: Vec<T>,
-    /// Sine of each angle.
     pub sin: Vec<T>,
-    /// Each displacement \[m\].
     pub displacement: Vec<T>,
 }
 

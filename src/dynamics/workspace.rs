@@ -38,7 +38,6 @@ pub struct Workspace<T = f64> {
     pub contact_velocity: Vec<Pair<T>>,
 
     // Computed by `orthogonalize`.
-    /// Constraints of the loops.
     pub loops: LoopRows<T>,
 
     // Computed by `delassus` or `articulated_delassus`.

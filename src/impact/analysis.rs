@@ -23,7 +23,6 @@ use crate::law::{Impulse, Mode};
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
 
-/// The refusal of more contacts than are enumerated.
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
         .hint("name the contacts that matter by hand, or lower the contact tolerance")
@@ -50,9 +49,6 @@ pub fn analyse(problem: &ContactProblem, explain: bool) -> Result<Analysis> {
 
 impl Scratch {
     /// As [`analyse`], with memory that is kept, of a `problem` that was rounded from a `source`.
-    ///
-    /// # Errors
-    /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
     pub fn analyse<S: Source>(
         &mut self,
         problem: &ContactProblem,

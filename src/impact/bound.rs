@@ -18,7 +18,6 @@ use super::slack::Scale;
 use crate::law::Impulse;
 use crate::planar::Pair;
 
-/// Half the distance from 1 to the next f64.
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// Covers the roundings of the bounds themselves, a few dozen operations per contact.
 const SLACK: f64 = 1.0 + 1e-6;
@@ -26,9 +25,7 @@ const SLACK: f64 = 1.0 + 1e-6;
 /// Entries of one kind: none is larger than `size` in f64, none farther than `error` from the truth.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Class {
-    /// Largest magnitude.
     pub size: f64,
-    /// Largest error.
     pub error: f64,
 }
 
@@ -149,7 +146,6 @@ pub struct Bounds {
     depths: Vec<Bound>,
     /// 1 / sqrt(G_ii) of every row.
     inverse: Vec<f64>,
-    /// S.
     speed: f64,
 }
 
@@ -173,7 +169,6 @@ impl Bounds {
         self.depths[0] = start.measured(self.sizes(tableau, 0));
     }
 
-    /// The bound of the tableau of this depth.
     pub fn at(&self, depth: usize) -> &Bound {
         &self.depths[depth]
     }

@@ -14,16 +14,13 @@ use crate::scalar::Sign;
 /// Which rejected combinations an analysis lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListedRejections<'a> {
-    /// None.
     Nothing,
     /// All, and the paper's section 4 for each contact.
     Everything,
-    /// Those with these modes.
     Only(&'a [Vec<Mode>]),
 }
 
 impl ListedRejections<'_> {
-    /// Whether a combination is listed if it is rejected.
     pub fn contain(self, modes: &[Mode]) -> bool {
         match self {
             Self::Nothing => false,
@@ -39,10 +36,8 @@ impl From<bool> for ListedRejections<'_> {
     }
 }
 
-/// Options of an analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnalysisOptions<'a> {
-    /// Which rejected combinations are listed.
     pub rejections: ListedRejections<'a>,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
@@ -76,9 +71,7 @@ pub struct Collected<'a> {
     pub problem: &'a ContactProblem,
     pub scale: &'a Scale,
     pub options: AnalysisOptions<'a>,
-    /// Each contact's name.
     name: &'a dyn Fn(usize) -> String,
-    /// Combinations in all.
     pub total: usize,
     pub effort: Effort,
     outcomes: Vec<Numbered>,
@@ -86,7 +79,6 @@ pub struct Collected<'a> {
 }
 
 impl<'a> Collected<'a> {
-    /// Nothing yet.
     pub fn new(
         problem: &'a ContactProblem,
         scale: &'a Scale,
@@ -165,7 +157,6 @@ impl<'a> Collected<'a> {
         }
     }
 
-    /// Takes the outcomes of a combination out again.
     pub fn remove(&mut self, number: usize) {
         self.outcomes.retain(|own| own.number != number);
     }

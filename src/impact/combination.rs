@@ -15,16 +15,13 @@ use crate::scalar::{Ordered, Sign};
 pub enum Solved {
     /// Its equations have one solution.
     Regular {
-        /// Its signs.
         reading: Reading,
         /// Sign of det A.
         index: i8,
-        /// The solution.
         motion: Motion,
         /// How far it may be off, in the scale of margins.
         error: f64,
     },
-    /// Its equations are singular.
     Singular(SingularCase),
 }
 
@@ -64,9 +61,6 @@ impl<'e, T: Ordered> Solver<'e, T> {
     }
 
     /// Solves a combination; `problem` is the same in f64.
-    ///
-    /// # Errors
-    /// [`Unsettled`] if a sign needs more digits.
     pub fn solve(&mut self, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Result<Solved, Unsettled> {
         T::freeing(|| {
             let leaf = self.tableau.leaf(modes);

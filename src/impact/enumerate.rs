@@ -46,7 +46,6 @@ pub struct Leaf<'a, T> {
 
 /// A visitor of all combinations.
 pub trait Visitor<T> {
-    /// A combination is complete.
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
 
     /// The impulses of `contact` were eliminated from the tableau of depth `source`; that of depth `contact` + 1 is
@@ -61,7 +60,6 @@ impl<T, F: FnMut(&Leaf<'_, T>)> Visitor<T> for F {
 }
 
 impl<T: Real> Tableau<T> {
-    /// Takes over a problem.
     pub fn load(&mut self, problem: &ContactProblem<T>) {
         let n = problem.contacts();
         let width = 2 * n + 1;
@@ -100,7 +98,6 @@ impl<T: Real> Tableau<T> {
         }
     }
 
-    /// The numbers of a single combination.
     pub fn leaf(&mut self, modes: &[Mode]) -> Leaf<'_, T> {
         let mut source = 0;
         for (contact, &mode) in modes.iter().enumerate() {

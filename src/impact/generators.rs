@@ -17,7 +17,6 @@ pub struct Generators {
 }
 
 impl Generators {
-    /// Of a combination of modes.
     pub fn of(modes: &[Mode], laws: &[Law]) -> Self {
         let mut rays = Vec::new();
         for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
@@ -30,7 +29,6 @@ impl Generators {
         Self { rows: 2 * modes.len(), rays }
     }
 
-    /// How many.
     pub fn count(&self) -> usize {
         self.rays.len()
     }

@@ -52,7 +52,6 @@ impl Inequalities {
         all
     }
 
-    /// The numerators of a combination.
     pub fn of_combination(&self, combination: usize) -> std::ops::Range<usize> {
         combination.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[combination]
     }

@@ -29,7 +29,6 @@ struct Relation {
 }
 
 impl Kernel {
-    /// Of a problem.
     pub fn of<T: Ordered>(problem: &ContactProblem<T>) -> Result<Self, Unsettled> {
         let count = 2 * problem.contacts();
         let rows =

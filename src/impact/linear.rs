@@ -24,14 +24,11 @@ pub fn settled<T: Ordered>(number: T) -> Result<Ordering, Unsettled> {
 /// An affine function of y: `constant + coefficients . y`.
 #[derive(Debug, Clone)]
 pub struct Affine<T> {
-    /// Its value at y = 0.
     pub constant: T,
-    /// One coefficient per entry of y.
     pub coefficients: Vec<T>,
 }
 
 impl<T: Real> Affine<T> {
-    /// Its value at `y`.
     pub fn at(&self, y: &[T]) -> T {
         self.from(self.constant, y)
     }
@@ -57,7 +54,6 @@ pub fn extended<T: Real>(list: &[T], last: T) -> Vec<T> {
 }
 
 impl<T: Ordered> Affine<T> {
-    /// Whether every coefficient is zero.
     pub fn is_constant(&self) -> Result<bool, Unsettled> {
         for &coefficient in &self.coefficients {
             if settled(coefficient)?.is_ne() {
@@ -71,9 +67,7 @@ impl<T: Ordered> Affine<T> {
 /// All solutions of linear equations: origin + sum of y_j times direction j, the directions independent.
 #[derive(Debug, Clone)]
 pub struct Solutions<T> {
-    /// One solution.
     pub origin: Vec<T>,
-    /// What may be added to it.
     pub directions: Vec<Vec<T>>,
 }
 
@@ -84,7 +78,6 @@ impl<T: Real> Solutions<T> {
         Affine { constant: constant + along(&self.origin), coefficients: self.directions.iter().map(along).collect() }
     }
 
-    /// The solution at `y`.
     pub fn at(&self, y: &[T]) -> Vec<T> {
         self.moved(self.origin.clone(), y)
     }

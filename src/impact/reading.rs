@@ -13,7 +13,6 @@ use crate::scalar::{Ordered, Real, Sign};
 pub struct Reading {
     /// Valid, rejected or undecided; never zero.
     pub sign: Sign,
-    /// Why not, if rejected.
     pub because: RejectionReason,
     /// The smallest slack, free of units.
     pub margin: Option<f64>,

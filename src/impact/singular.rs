@@ -28,7 +28,6 @@ const UNBOUNDED: f64 = 1e3;
 /// The solutions of a combination whose equations are singular.
 #[derive(Debug, Clone)]
 pub enum SingularCase {
-    /// It is no outcome.
     Rejected(Rejection),
     /// Its velocity is the only one of these modes.
     Valid(SingularOutcome),
@@ -84,7 +83,6 @@ fn zero_rows(modes: &[Mode]) -> impl Iterator<Item = usize> {
     rows.filter_map(|(row, sign)| (sign == Some(Ordering::Equal)).then_some(row))
 }
 
-/// The equations of a combination.
 struct Equations<'a, T> {
     problem: &'a ContactProblem<T>,
     rounded: &'a ContactProblem,
@@ -133,7 +131,6 @@ impl<T: Ordered> Equations<'_, T> {
         solutions.affine(self.problem.free_row(row), &self.generators.velocity_row(self.problem, row))
     }
 
-    /// Every inequality of the modes.
     fn inequalities(&self, solutions: &Solutions<T>) -> Vec<Constraint<T>> {
         let problem = self.problem;
         let by_speed = T::one() / T::from_f64(self.scale.speed);

@@ -9,9 +9,7 @@ use crate::scalar::{Ordered, Real};
 /// One inequality of a combination and its value.
 #[derive(Debug, Clone, Copy)]
 pub struct Slack<T> {
-    /// The contact, from 0.
     pub contact: usize,
-    /// The inequality.
     pub condition: Condition,
     /// Its value, with its unit.
     pub number: T,

@@ -10,24 +10,17 @@ use crate::scalar::Real;
 /// A linear function of a contact's two numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Function<T = f64> {
-    /// The first.
     First,
-    /// Minus the first.
     MinusFirst,
-    /// The second.
     Second,
-    /// mu times the second minus the first.
     ConeMinus(T),
-    /// mu times the second plus the first.
     ConePlus(T),
 }
 
 /// An inequality of a mode: `function >= 0`, or `> 0` if it is strict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Condition<T = f64> {
-    /// Which it is.
     pub inequality: Inequality,
-    /// The function.
     pub function: Function<T>,
 }
 

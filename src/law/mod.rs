@@ -68,7 +68,6 @@ impl<T: Real> Law<T> {
         self.modes().iter().find(|group| group.contains(&mode)).map_or(mode, |group| group[0])
     }
 
-    /// The impulses of a mode.
     #[inline]
     pub fn impulse(&self, mode: Mode) -> Impulse<T> {
         match (*self, mode) {

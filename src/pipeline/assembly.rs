@@ -37,7 +37,6 @@ pub struct Assembly<T = f64> {
     pub configuration: Configuration<T>,
     pub elimination: Elimination,
     pub workspace: Workspace<T>,
-    /// The closed contacts.
     pub points: Vec<ContactPoint<T>>,
     /// Coordinates of held joints that have a column all the same.
     pub kept: Vec<usize>,
@@ -49,7 +48,6 @@ pub struct Assembly<T = f64> {
 }
 
 impl<T: Real> Assembly<T> {
-    /// Of a robot without contacts, loops and kept joints.
     pub fn new(plan: Plan<T>) -> Self {
         Self {
             plan,
@@ -65,7 +63,6 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Where the bodies are.
     pub fn place(&mut self) {
         kinematics(&self.plan, &self.configuration, &mut self.workspace);
     }
@@ -81,7 +78,6 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Velocity of a contact point, in the world's axes.
     fn velocity_of(&self, point: &ContactPoint<T>, velocity: &[T]) -> Vector<T> {
         point_velocity(&self.plan, point.body, point.arm(&self.workspace), velocity, &self.workspace)
     }

@@ -35,7 +35,6 @@ pub struct ExactState<'a> {
 
 /// What of a state is a number that may be known inexactly.
 pub struct Inputs<T> {
-    /// Of q.
     pub configuration: Configuration<T>,
     /// dq/dt; with a foot x and z are not read.
     pub velocity: Vec<T>,
@@ -51,7 +50,6 @@ pub struct Contacts<T> {
 }
 
 impl ExactState<'_> {
-    /// The robot in numbers of any kind.
     pub fn plan<T: Real>(&self) -> Plan<T> {
         let held = if self.constraints.kept.is_empty() { &self.scene.held[..] } else { &[] };
         Plan::new(self.robot, held, &self.scene.rotor_inertia)

@@ -27,8 +27,7 @@ use crate::law::{Friction, Mode};
 use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
-use crate::state::State;
-use crate::state::{Named, NamedContact, Scene};
+use crate::state::{Named, NamedContact, Scene, State};
 use std::sync::Arc;
 
 /// What the pipeline is asked for in addition to the outcomes; [`Pipeline`] has an example.
@@ -222,33 +221,22 @@ impl<'r> Pipeline<'r> {
         for outcome in outcomes {
             self.set_velocity(outcome, velocity, applied, &free);
         }
-        let Prepared {
-            placement,
-            foot,
-            contacts,
-            out_of_reach,
-            stance,
-            resting,
-            kinetic_energy,
-            problem,
-            mut notes,
-            ..
-        } = prepared;
+        let mut notes = prepared.notes;
         notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
         let impact = Impact {
-            velocity_before: problem.velocity_before().to_vec(),
-            kinetic_energy,
+            velocity_before: prepared.problem.velocity_before().to_vec(),
+            left_out: self.left_out(scene, &prepared.contacts, prepared.problem.laws(), prepared.out_of_reach),
             matrices: self.options.matrices.then(|| self.matrices()),
-            holds: None,
-            left_out: self.left_out(scene, &contacts, problem.laws(), out_of_reach),
-            problem,
-            stance,
+            placement: prepared.placement,
+            contacts: prepared.contacts,
+            kinetic_energy: prepared.kinetic_energy,
+            problem: prepared.problem,
+            stance: prepared.stance,
             analysis,
-            placement,
-            contacts,
+            holds: None,
             notes,
         };
-        Ok(Answer { impact, foot, resting, rows: self.assembly.rows.clone() })
+        Ok(Answer { impact, foot: prepared.foot, resting: prepared.resting, rows: self.assembly.rows.clone() })
     }
 
     /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows
@@ -293,16 +281,12 @@ impl<'r> Pipeline<'r> {
     /// applied impulses change in the `velocity` before by themselves, `free` the velocity after them without contact
     /// impulses.
     fn set_velocity(&mut self, outcome: &mut Outcome, velocity: &[f64], applied: &[f64], free: &[f64]) {
-        let mut after;
-        if self.assembly.is_constrained() {
-            after = self.struck(applied, &outcome.impulse);
+        let constrained = self.assembly.is_constrained();
+        let mut after = self.struck(if constrained { applied } else { free }, &outcome.impulse);
+        if constrained {
             let impulse = self.assembly.answer(&mut after);
             outcome.loop_impulse = (!impulse.is_empty()).then_some(impulse);
-            for (after, before) in after.iter_mut().zip(velocity) {
-                *after += before;
-            }
-        } else {
-            after = self.struck(free, &outcome.impulse);
+            after.iter_mut().zip(velocity).for_each(|(after, before)| *after += before);
         }
         let [base, joints] = &self.names;
         let rates = after.split_off(base.len());
@@ -326,28 +310,19 @@ impl<'r> Pipeline<'r> {
     }
 
     fn matrices(&self) -> Matrices {
-        let nv = self.assembly.plan.columns();
+        let Assembly { plan, workspace, .. } = &self.assembly;
+        let (nv, rows) = (plan.columns(), 2 * workspace.contact_velocity.len());
         // Columns of the plan run outward from the root, the user's coordinates in the file's order.
         let mut order: Vec<usize> = (0..nv).collect();
-        order.sort_by_key(|&column| self.assembly.plan.coordinates()[column]);
+        order.sort_by_key(|&column| plan.coordinates()[column]);
         let names: Vec<&str> = self.robot.coordinates().collect();
-        let mass = &self.assembly.workspace.mass_matrix;
-        let entry = |i: usize, j: usize| mass[i.max(j) * nv + i.min(j)];
-        let rows = self.assembly.workspace.contact_velocity.len() * 2;
+        let mass = |i: usize, j: usize| workspace.mass_matrix[i.max(j) * nv + i.min(j)];
+        let jacobian = |row: usize| order.iter().map(|&column| workspace.contact_jacobian[row * nv + column]).collect();
         Matrices {
-            coordinates: order
-                .iter()
-                .map(|&column| names[self.assembly.plan.coordinates()[column]].to_owned())
-                .collect(),
-            mass_matrix: order.iter().map(|&i| order.iter().map(|&j| entry(i, j)).collect()).collect(),
-            contact_jacobian: (0..rows)
-                .map(|row| {
-                    order.iter().map(|&column| self.assembly.workspace.contact_jacobian[row * nv + column]).collect()
-                })
-                .collect(),
-            delassus: (0..rows)
-                .map(|row| self.assembly.workspace.delassus[row * rows..(row + 1) * rows].to_vec())
-                .collect(),
+            coordinates: order.iter().map(|&column| names[plan.coordinates()[column]].to_owned()).collect(),
+            mass_matrix: order.iter().map(|&i| order.iter().map(|&j| mass(i, j)).collect()).collect(),
+            contact_jacobian: (0..rows).map(jacobian).collect(),
+            delassus: (0..rows).map(|row| workspace.delassus[row * rows..(row + 1) * rows].to_vec()).collect(),
         }
     }
 }

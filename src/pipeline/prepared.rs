@@ -11,21 +11,18 @@ use super::exact::ExactState;
 use super::{CONTACT_TOLERANCE, Pipeline};
 use crate::contact::{Contact, Footing, Placement, Surface};
 use crate::dynamics::plan::Plan;
-use crate::dynamics::{Arm, Constraints, kinetic_energy};
+use crate::dynamics::{Arm, Constraints, Workspace, kinetic_energy};
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
 use crate::planar::Vector;
 use crate::robot::Robot;
-use crate::state::State;
-use crate::state::{Ground, Scene};
+use crate::state::{Ground, Scene, State};
 
 /// A state's contact problem, not yet analysed.
 #[derive(Debug, Clone)]
 pub struct Unsolved {
-    /// The closed contacts.
     pub contacts: Vec<Contact>,
-    /// Their problem, in f64.
     pub problem: ContactProblem,
     /// How far each foot is from the ground \[m\]; empty if the state names its contacts.
     pub clearance: Vec<f64>,
@@ -33,7 +30,6 @@ pub struct Unsolved {
 
 /// A state that is ready to be analysed.
 pub struct Prepared {
-    /// Where the bodies are.
     pub placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
     pub velocity: Vec<f64>,
@@ -182,30 +178,26 @@ impl Pipeline<'_> {
     pub(super) fn check_inertia(&self, has_loops: bool) -> Result<()> {
         let nv = self.assembly.plan.columns();
         for column in (0..nv).rev() {
-            let (whole, rest) = (
-                self.assembly.workspace.mass_matrix[column * nv + column],
-                self.assembly.workspace.factor.pivot(column),
-            );
+            let Workspace { mass_matrix, factor, .. } = &self.assembly.workspace;
+            let (whole, rest) = (mass_matrix[column * nv + column], factor.pivot(column));
             // Each of up to nv eliminations loses at most a few units in the last place of the whole.
             finite(whole, || "the mass matrix".into())?;
             if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {
                 let coordinate = self.assembly.plan.coordinates()[column];
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
-                let joint = coordinate >= self.robot.base_dofs();
-                let (what, remedy) = if joint {
-                    let remedy = if has_loops {
+                let is_joint = coordinate >= self.robot.base_dofs();
+                let what = if is_joint { format!("joint \"{name}\"") } else { format!("the base along {name}") };
+                return Err(Error::new(Reason::Singular(what)).hint(match (is_joint, has_loops) {
+                    (true, false) => "name the joint in `held`, or give it a `rotor_inertia`",
+                    (true, true) => {
                         "it needs inertia of its own, whatever the loops hold: give its links a mass or it a `rotor_inertia`, \
                          however small, or name it in `held`"
-                    } else {
-                        "name the joint in `held`, or give it a `rotor_inertia`"
-                    };
-                    (format!("joint \"{name}\""), remedy)
-                } else {
-                    let remedy = "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of \
-                                  them, or give it a `rotor_inertia`";
-                    (format!("the base along {name}"), remedy)
-                };
-                return Err(Error::new(Reason::Singular(what)).hint(remedy));
+                    }
+                    (false, _) => {
+                        "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of them, or \
+                         give it a `rotor_inertia`"
+                    }
+                }));
             }
         }
         Ok(())
@@ -220,17 +212,12 @@ impl Pipeline<'_> {
             finite(entry, || "an entry of the Delassus matrix".into()).map_err(too_large)?;
         }
         let energy = kinetic_energy(&self.assembly.plan, velocity, &self.assembly.workspace);
-        let greatest = || {
+        finite(energy, || "the kinetic energy".into()).map_err(|error| {
             let named = self.robot.coordinates().zip(given).enumerate();
             let greatest = named.max_by(|(_, (_, a)), (_, (_, b))| a.abs().total_cmp(&b.abs()));
-            greatest.map(|(at, (name, _))| {
-                let part = if at < self.robot.base_dofs() { "base" } else { "joints" };
-                format!("velocity.{part}.{name}")
-            })
-        };
-        finite(energy, || "the kinetic energy".into()).map_err(|error| match greatest() {
-            Some(place) => too_large(error).at(place),
-            None => too_large(error),
+            let part = |at| if at < self.robot.base_dofs() { "base" } else { "joints" };
+            let place = greatest.map(|(at, (name, _))| format!("velocity.{}.{name}", part(at)));
+            place.into_iter().fold(too_large(error), Error::at)
         })
     }
 

@@ -11,8 +11,6 @@ use super::{Ordered, Real, Sign, Trigonometry};
 /// Numerical Algorithms 2004). Every operation encloses its exact result; all that is not linear, and all rounding,
 /// goes into `error`. As with the ball, exact zeros stay exact, and after a division by what may be zero nothing is
 /// known.
-///
-/// Cost: O(N) per operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine<const N: usize> {
     centre: f64,
@@ -21,7 +19,6 @@ pub struct Affine<const N: usize> {
     error: f64,
 }
 
-/// Half the distance from 1 to the next f64.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 impl<const N: usize> Affine<N> {
@@ -76,7 +73,6 @@ impl<const N: usize> Affine<N> {
         if self.error.is_finite() { self.centre } else { f64::NAN }
     }
 
-    /// The greatest distance from its centre.
     pub fn radius(&self) -> f64 {
         (self.reach() + self.error) * Self::BLOW_UP
     }
@@ -86,7 +82,6 @@ impl<const N: usize> Affine<N> {
         self.error
     }
 
-    /// The lesser of the number and zero.
     pub fn min_zero(self) -> Self {
         match self.sign() {
             Sign::Negative => self,

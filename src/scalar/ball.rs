@@ -9,18 +9,14 @@ use super::{Enclosure, Midpoint, Ordered, Real, Sign, Trigonometry, series};
 /// Radii are rounded to nearest and then enlarged by a relative 2^-50, which covers the few roundings of each formula
 /// (Rump, Acta Numerica 2010, section 9); an operation that is exact because an operand is an exact zero adds nothing,
 /// so that structural zeros stay zeros. A quotient by a ball that contains zero has an infinite radius.
-///
-/// Cost: about 5 operations of the midpoint.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Ball<M = f64> {
-    /// The center.
     pub mid: M,
     /// The greatest distance of the number from the center; never negative, infinite if nothing is known.
     pub radius: f64,
 }
 
 impl Midpoint for f64 {
-    /// Half the distance from 1 to the next f64.
     const ROUNDING: f64 = f64::EPSILON / 2.0;
 
     #[inline]
@@ -61,7 +57,6 @@ pub(super) const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
 const DOUBLE_DOUBLE_BITS: u32 = 106;
 
 impl<M: Midpoint> Ball<M> {
-    /// The number of which nothing is known.
     #[inline]
     fn unknown() -> Self {
         Self { mid: M::zero(), radius: f64::INFINITY }

@@ -7,8 +7,6 @@ use super::{Ordered, Real, Residue, Sign, Trigonometry};
 /// The enclosure proves the signs except zero. The residue proves that a number is not zero, and finds that it is (how
 /// surely is said there). If the residue finds a number zero, the enclosure becomes exactly zero as well. So more
 /// digits decide every sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds.
-///
-/// Cost: that of both numbers.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Certified<B> {
     enclosure: B,
@@ -16,12 +14,10 @@ pub struct Certified<B> {
 }
 
 impl<B: Ordered> Certified<B> {
-    /// The enclosure.
     pub fn enclosure(self) -> B {
         self.enclosure
     }
 
-    /// The residue.
     pub fn residue(self) -> Residue {
         self.residue
     }

@@ -166,7 +166,6 @@ mod tests {
         magnitude(rational(value) - truth) <= magnitude(truth.clone()) * RBig::from(units) * unit
     }
 
-    /// Checks a sum that gives its error.
     fn check_sum(a: DoubleDouble, b: DoubleDouble) -> Result<(), TestCaseError> {
         let (sum, error) = a.sum(b);
         prop_assert_eq!(sum, a + b);

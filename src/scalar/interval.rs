@@ -5,7 +5,6 @@ use dashu_float::round::mode::HalfEven;
 use dashu_float::{Context, FBig, FpError, Repr, Word};
 use std::cell::RefCell;
 
-/// Bits outside of every scope.
 const DEFAULT_BITS: usize = 256;
 /// Bits beyond those that the doublings of an angle lose.
 const GUARD_BITS: u32 = 16;
@@ -32,8 +31,6 @@ struct Enclosed {
 ///
 /// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; a handle must not leave its
 /// scope. So it is a [`Real`] like the others, and the hot path over `f64` passes values, not references.
-///
-/// Cost: an operation of `dashu-float` and a new entry of the storage, some 100 f64 operations at 256 bits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Interval(Option<usize>);
 
@@ -125,7 +122,6 @@ fn top(number: &Repr<2>) -> Option<i64> {
 }
 
 impl Enclosed {
-    /// Whether its exponents are sensible.
     fn is_sensible(&self) -> bool {
         top(&self.mid).is_none_or(|top| top.abs() <= EXPONENT_LIMIT) && self.radius.exponent <= EXPONENT_LIMIT
     }

@@ -67,12 +67,10 @@ pub trait Real:
     /// The number that is exactly `value`.
     fn from_f64(value: f64) -> Self;
 
-    /// Zero.
     fn zero() -> Self {
         Self::from_f64(0.0)
     }
 
-    /// One.
     fn one() -> Self {
         Self::from_f64(1.0)
     }
@@ -84,7 +82,6 @@ impl Real for f64 {
     }
 }
 
-/// The inner product of two lists.
 pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
 }
@@ -92,11 +89,8 @@ pub fn dot<T: Real>(a: &[T], b: &[T]) -> T {
 /// The sign of a number that may be known inexactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sign {
-    /// Less than zero.
     Negative,
-    /// Exactly zero.
     Zero,
-    /// Greater than zero.
     Positive,
     /// The error does not exclude zero.
     Undecided,
@@ -194,7 +188,6 @@ mod tests {
     use dashu::rational::RBig;
     use proptest::prelude::*;
 
-    /// The rational that a finite f64 is.
     pub fn exact(value: f64) -> RBig {
         RBig::try_from(value).expect("finite")
     }

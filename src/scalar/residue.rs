@@ -14,8 +14,6 @@ use super::{Real, Trigonometry};
 /// would have to be divisible by both primes, as likely.)
 ///
 /// After a division by a residue of zero nothing is known modulo that prime.
-///
-/// Cost: about 20 integer operations; a quotient some 500.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Residue([u64; 2]);
 

@@ -8,9 +8,6 @@ use crate::law::Friction;
 pub const MATRIX_LIMIT: usize = 500;
 
 /// Refuses more contacts than [`MATRIX_LIMIT`].
-///
-/// # Errors
-/// [`Reason::MatricesTooLarge`].
 pub(crate) fn check_matrix_size(contacts: usize) -> Result<()> {
     if contacts <= MATRIX_LIMIT {
         return Ok(());

@@ -46,7 +46,6 @@ pub struct ContactProblem<T = f64> {
 /// What the numbers of a problem that is its own source come from.
 #[derive(Debug, Clone)]
 enum Origin {
-    /// They were given.
     Given,
     /// G and c- were computed from M, J and v.
     Dynamics(Box<Dynamics>),
@@ -184,9 +183,6 @@ impl ContactProblem {
     }
 
     /// A problem from parts that the dynamics computed: G, c-, and c- with the change by applied impulses.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`], of numbers that overflowed or lie outside the range.
     pub(crate) fn checked(
         delassus: Vec<f64>,
         (velocity_before, velocity_free): (Vec<Pair<f64>>, Vec<Pair<f64>>),

@@ -27,11 +27,8 @@ pub trait PrecisionTask {
 /// A kind of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Precision {
-    /// Balls around f64.
     Ball,
-    /// Balls around pairs of f64.
     DoubleDouble,
-    /// Intervals of many digits.
     Interval,
 }
 
@@ -44,7 +41,6 @@ impl Precision {
         }
     }
 
-    /// Counts the combinations that it decided.
     pub fn count(self, effort: &mut Effort, combinations: usize) {
         match self {
             Self::Ball => effort.ball += combinations,

@@ -41,7 +41,6 @@ impl Rows {
         Self(rows)
     }
 
-    /// G by rows.
     pub fn delassus<T: Real>(&self) -> Vec<T> {
         let rows: Vec<Vec<T>> =
             self.0.iter().map(|row| row.iter().map(|&entry| T::from_f64(entry)).collect()).collect();
@@ -60,7 +59,6 @@ pub(super) fn is_semidefinite(problem: &ContactProblem) -> bool {
     definiteness.0
 }
 
-/// Whether it was shown.
 struct Definiteness(bool);
 
 impl PrecisionTask for Definiteness {

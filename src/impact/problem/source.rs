@@ -35,9 +35,7 @@ pub struct Errors<'a> {
 }
 
 impl Errors<'_> {
-    /// Those of numbers that are exact.
     pub const NONE: Self = Self { delassus: 0.0, velocity: None };
-    /// Those of numbers of which no bound is known.
     pub const UNKNOWN: Self = Self { delassus: f64::INFINITY, velocity: None };
 }
 
