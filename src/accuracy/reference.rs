@@ -71,7 +71,7 @@ impl<'a> Reference<'a> {
 
     /// How well G itself is known.
     pub fn own_error(&self) -> f64 {
-        self.worst_of_delassus(|_, exact| exact.radius())
+        self.worst_of_delassus(|_, exact| exact.error())
     }
 
     /// The largest error of a G; NaN where it holds no number.
@@ -186,7 +186,7 @@ fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion>> {
 pub fn distance<T: Number>(found: T, exact: Interval) -> f64 {
     let [head, tail] = found.parts().map(Interval::from_f64);
     let difference = head + tail - exact;
-    difference.to_f64().abs() + difference.radius()
+    difference.to_f64().abs() + difference.error()
 }
 
 /// `error` in parts of `size`; zero if there is no error.

@@ -383,7 +383,7 @@ fn outcome_error<T: Number>(
     let mut errors = Vec::new();
     for outcome in analysis.outcomes.iter().filter(|outcome| outcome.decided && outcome.impulse_unique) {
         let (found, truth) = (tableau.leaf(&outcome.modes), reference.leaf(&outcome.modes));
-        let known = |vector: Pair<Interval>| vector.iter().all(|entry| entry.radius().is_finite());
+        let known = |vector: Pair<Interval>| vector.iter().all(|entry| entry.error().is_finite());
         if !(0..contacts).all(|contact| known(truth.impulse(contact)) && known(truth.velocity(contact))) {
             continue;
         }

@@ -4,7 +4,7 @@ use super::ball::LIBM_ERROR;
 use super::double::two_sum;
 use super::{Ordered, Real, Sign, Trigonometry};
 
-/// A number as `centre + sum_i slopes[i] e_i +- error`, where each e_i is somewhere in -1..1.
+/// A number as `center + sum_i slopes[i] e_i +- error`, where each e_i is somewhere in -1..1.
 ///
 /// Numbers share their e_i, so that effects of a common cause cancel, which they do not between [`Ball`](super::Ball)s:
 /// an enclosure over intervals of half-width r is too wide by O(r^2) only (affine arithmetic: de Figueiredo and Stolfi,
@@ -13,7 +13,7 @@ use super::{Ordered, Real, Sign, Trigonometry};
 /// known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine<const N: usize> {
-    centre: f64,
+    center: f64,
     slopes: [f64; N],
     /// Never negative; infinite if nothing is known.
     error: f64,
@@ -28,18 +28,17 @@ impl<const N: usize> Affine<N> {
     const TINY: f64 = (N + 4) as f64 * f64::MIN_POSITIVE;
 
     fn unknown() -> Self {
-        Self { centre: 0.0, slopes: [0.0; N], error: f64::INFINITY }
+        Self { center: 0.0, slopes: [0.0; N], error: f64::INFINITY }
     }
 
-    #[inline]
-    fn around(centre: f64, slopes: [f64; N], error: f64) -> Self {
+    fn around(center: f64, slopes: [f64; N], error: f64) -> Self {
         let error = error * Self::BLOW_UP;
-        if centre.is_finite() && error.is_finite() { Self { centre, slopes, error } } else { Self::unknown() }
+        if center.is_finite() && error.is_finite() { Self { center, slopes, error } } else { Self::unknown() }
     }
 
-    /// Any number at most `radius` from `centre`. Its place there is the cause number `symbol`; from number N on a
+    /// Any number at most `radius` from `center`. Its place there is the cause number `symbol`; from number N on a
     /// cause is not followed, and its effects do not cancel.
-    pub fn varying(centre: f64, radius: f64, symbol: usize) -> Self {
+    pub fn varying(center: f64, radius: f64, symbol: usize) -> Self {
         let mut slopes = [0.0; N];
         let own = match slopes.get_mut(symbol) {
             Some(slope) => {
@@ -48,13 +47,13 @@ impl<const N: usize> Affine<N> {
             }
             None => radius,
         };
-        if centre.is_finite() && radius.is_finite() { Self { centre, slopes, error: own } } else { Self::unknown() }
+        if center.is_finite() && radius.is_finite() { Self { center, slopes, error: own } } else { Self::unknown() }
     }
 
     /// Cosine and sine of this angle \[rad\], narrow for angles near zero.
     pub fn cos_sin_near_zero(self) -> [Self; 2] {
         // cos d is within r^2 / 4 of 1 - r^2 / 4, sin d within r^3 / 6 of d, for every |d| <= r.
-        let radius = self.centre.abs() + self.radius();
+        let radius = self.center.abs() + self.error();
         let square = radius * radius;
         let mut cos = Self::from_f64(1.0 - square / 4.0);
         cos.error = (square / 4.0 + f64::EPSILON) * Self::BLOW_UP;
@@ -68,15 +67,6 @@ impl<const N: usize> Affine<N> {
         &self.slopes
     }
 
-    /// The middle of where it may be; NaN if nothing is known.
-    pub fn centre(&self) -> f64 {
-        if self.error.is_finite() { self.centre } else { f64::NAN }
-    }
-
-    pub fn radius(&self) -> f64 {
-        (self.reach() + self.error) * Self::BLOW_UP
-    }
-
     /// The part of its radius that belongs to no cause.
     pub fn rest(&self) -> f64 {
         self.error
@@ -87,20 +77,18 @@ impl<const N: usize> Affine<N> {
             Sign::Negative => self,
             Sign::Zero | Sign::Positive => Self::zero(),
             Sign::Undecided => {
-                let half = (self.centre - self.radius()) / 2.0;
+                let half = (self.center - self.error()) / 2.0;
                 Self::around(half, [0.0; N], -half)
             }
         }
     }
 
-    #[inline]
     fn reach(&self) -> f64 {
         self.slopes.iter().map(|slope| slope.abs()).sum()
     }
 
-    #[inline]
     fn is_exact_zero(&self) -> bool {
-        self.centre == 0.0 && self.error == 0.0 && self.slopes.iter().all(|&slope| slope == 0.0)
+        self.center == 0.0 && self.error == 0.0 && self.slopes.iter().all(|&slope| slope == 0.0)
     }
 }
 
@@ -112,21 +100,21 @@ impl<const N: usize> Default for Affine<N> {
 
 impl<const N: usize> Real for Affine<N> {
     fn from_f64(value: f64) -> Self {
-        if value.is_finite() { Self { centre: value, slopes: [0.0; N], error: 0.0 } } else { Self::unknown() }
+        if value.is_finite() { Self { center: value, slopes: [0.0; N], error: 0.0 } } else { Self::unknown() }
     }
 }
 
 impl<const N: usize> Ordered for Affine<N> {
     fn sign(self) -> Sign {
-        Sign::within(self.centre, self.radius())
+        Sign::within(self.center, self.error())
     }
 
     fn to_f64(self) -> f64 {
-        self.centre()
+        if self.error.is_finite() { self.center } else { f64::NAN }
     }
 
     fn error(self) -> f64 {
-        self.radius()
+        (self.reach() + self.error) * Self::BLOW_UP
     }
 }
 
@@ -149,13 +137,12 @@ impl<const N: usize> Affine<N> {
         if other.is_exact_zero() {
             return self;
         }
-        let (centre, lost) = two_sum(self.centre, other.centre);
+        let (center, lost) = two_sum(self.center, other.center);
         let slopes: [f64; N] = std::array::from_fn(|i| self.slopes[i] + other.slopes[i]);
         let rounding = ROUNDING * slopes.iter().map(|slope| slope.abs()).sum::<f64>();
-        Self::around(centre, slopes, self.error + other.error + lost.abs() + rounding)
+        Self::around(center, slopes, self.error + other.error + lost.abs() + rounding)
     }
 
-    #[inline]
     fn minus(self, other: Self) -> Self {
         self + -other
     }
@@ -165,7 +152,7 @@ impl<const N: usize> Affine<N> {
         if self.is_exact_zero() || other.is_exact_zero() {
             return Self::zero();
         }
-        let (a, b) = (self.centre, other.centre);
+        let (a, b) = (self.center, other.center);
         let slopes = std::array::from_fn(|i| a * other.slopes[i] + b * self.slopes[i]);
         let (reach, other_reach) = (self.reach(), other.reach());
         // Squares of causes are 1/2 +- 1/2; all other products of two are +- 1.
@@ -175,17 +162,17 @@ impl<const N: usize> Affine<N> {
             shift += square;
             squares += square.abs();
         }
-        let (product, centre) = (a * b, a * b + shift);
+        let (product, center) = (a * b, a * b + shift);
         // Two products and their sum are rounded in each slope.
-        let rounding = ROUNDING * (product.abs() + centre.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach))
+        let rounding = ROUNDING * (product.abs() + center.abs() + 2.0 * (a.abs() * other_reach + b.abs() * reach))
             + 4.0 * Self::TINY;
         let spread = (a.abs() + reach + self.error) * other.error + (b.abs() + other_reach) * self.error;
-        Self::around(centre, slopes, (reach * other_reach - squares) + spread + rounding)
+        Self::around(center, slopes, (reach * other_reach - squares) + spread + rounding)
     }
 
     #[inline]
     fn over(self, other: Self) -> Self {
-        let divisor = other.centre;
+        let divisor = other.center;
         let spread = (other.reach() + other.error) * Self::BLOW_UP;
         // The least magnitude in the divisor.
         let least = (divisor.abs() - spread) * (1.0 - 2.0 * f64::EPSILON);
@@ -195,23 +182,22 @@ impl<const N: usize> Affine<N> {
         if self.is_exact_zero() {
             return self;
         }
-        // x / y = q + w / y with w = x - q y, of which little is left at the centre; w / y = w / c - (w / c) (y - c) /
+        // x / y = q + w / y with w = x - q y, of which little is left at the center; w / y = w / c - (w / c) (y - c) /
         // y.
-        let quotient = self.centre / divisor;
+        let quotient = self.center / divisor;
         let rest: [f64; N] = std::array::from_fn(|i| self.slopes[i] - quotient * other.slopes[i]);
         let reach: f64 = rest.iter().map(|slope| slope.abs()).sum();
-        let of_centre = ROUNDING * (quotient * divisor).abs() + Self::TINY * (1.0 + divisor.abs());
+        let of_center = ROUNDING * (quotient * divisor).abs() + Self::TINY * (1.0 + divisor.abs());
         let of_rest = ROUNDING * (quotient.abs() * other.reach() + reach) + Self::TINY;
-        let error = (self.error + quotient.abs() * other.error + of_rest + of_centre) / divisor.abs();
+        let error = (self.error + quotient.abs() * other.error + of_rest + of_center) / divisor.abs();
         let whole = reach / divisor.abs() + error;
         let slopes = rest.map(|slope| slope / divisor);
         let rounding = ROUNDING * (reach / divisor.abs()) + Self::TINY;
         Self::around(quotient, slopes, error + whole * (spread / least) + rounding)
     }
 
-    #[inline]
     fn negated(self) -> Self {
-        Self { centre: -self.centre, slopes: self.slopes.map(|slope| -slope), error: self.error }
+        Self { center: -self.center, slopes: self.slopes.map(|slope| -slope), error: self.error }
     }
 }
 
@@ -232,7 +218,7 @@ mod tests {
             return true;
         }
         let linear =
-            at.iter().zip(number.slopes).fold(exact(number.centre), |sum, (&e, slope)| sum + exact(e) * exact(slope));
+            at.iter().zip(number.slopes).fold(exact(number.center), |sum, (&e, slope)| sum + exact(e) * exact(slope));
         magnitude(linear - value) <= exact(number.error)
     }
 
@@ -243,17 +229,17 @@ mod tests {
     proptest! {
         #[test]
         fn operations_enclose_results_of_all_causes(
-            centres in prop::array::uniform3(-10.0..10.0f64),
+            centers in prop::array::uniform3(-10.0..10.0f64),
             radii in prop::array::uniform3(prop_oneof![Just(0.0), 1e-6..1e-2f64, 0.1..3.0f64]),
             at in prop::array::uniform3(cause()),
             k in -40..40i32,
         ) {
             let scale = f64::from(k).exp2();
-            let centres = [centres[0], centres[1] * scale, centres[2]];
+            let centers = [centers[0], centers[1] * scale, centers[2]];
             let radii = [radii[0], radii[1] * scale, radii[2]];
-            let numbers: [Number; 3] = std::array::from_fn(|i| Affine::varying(centres[i], radii[i], i));
+            let numbers: [Number; 3] = std::array::from_fn(|i| Affine::varying(centers[i], radii[i], i));
             let [x, y, z] = numbers;
-            let [p, q, r]: [RBig; 3] = std::array::from_fn(|i| exact(centres[i]) + exact(radii[i]) * exact(at[i]));
+            let [p, q, r]: [RBig; 3] = std::array::from_fn(|i| exact(centers[i]) + exact(radii[i]) * exact(at[i]));
             prop_assert!(encloses(x + y * z, at, &(&p + &q * &r)));
             prop_assert!(encloses((x - y) * (x + y) * z, at, &((&p - &q) * (&p + &q) * &r)));
             prop_assert!(encloses(x * y - y * x, at, &RBig::ZERO));
@@ -272,7 +258,7 @@ mod tests {
             let [cos, sin] = [cos * cos_d - sin * sin_d, sin * cos_d + cos * sin_d];
             let turned = angle + radius * at;
             for (number, value) in [(cos, turned.cos()), (sin, turned.sin())] {
-                let distance = (number.centre + number.slopes[0] * at - value).abs();
+                let distance = (number.center + number.slopes[0] * at - value).abs();
                 // The comparison itself rounds the angle.
                 prop_assert!(distance <= number.error + 4.0 * f64::EPSILON * (1.0 + angle.abs()));
             }
@@ -282,8 +268,8 @@ mod tests {
     #[test]
     fn common_causes_cancel() {
         let x = Number::varying(1.0, 1e-3, 0);
-        assert_eq!((x - x).radius(), 0.0);
-        assert!((x / x - Number::one()).radius() < 1e-14);
+        assert_eq!((x - x).error(), 0.0);
+        assert!((x / x - Number::one()).error() < 1e-14);
         // x^2 - 1 moves by 2e-3 and bends by 1e-6.
         let bent = x * x - Number::one();
         assert_eq!((bent.slopes[0], bent.sign()), (2e-3, Sign::Undecided));

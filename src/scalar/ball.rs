@@ -19,17 +19,14 @@ pub struct Ball<M = f64> {
 impl Midpoint for f64 {
     const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-    #[inline]
     fn parts(self) -> [f64; 2] {
         [self, 0.0]
     }
 
-    #[inline]
     fn magnitude(self) -> f64 {
         self.abs()
     }
 
-    #[inline]
     fn least_magnitude(self) -> f64 {
         self.abs()
     }
@@ -40,7 +37,6 @@ impl Midpoint for f64 {
         (sum, error.abs())
     }
 
-    #[inline]
     fn sign_within(self, radius: f64) -> Sign {
         Sign::within(self, radius)
     }
@@ -57,38 +53,32 @@ pub(super) const LIBM_ERROR: f64 = 2.0 * f64::EPSILON;
 const DOUBLE_DOUBLE_BITS: u32 = 106;
 
 impl<M: Midpoint> Ball<M> {
-    #[inline]
     fn unknown() -> Self {
         Self { mid: M::zero(), radius: f64::INFINITY }
     }
 
     /// A ball around `mid`; with a center or a radius that is not finite nothing is known.
-    #[inline]
     fn around(mid: M, radius: f64) -> Self {
         let known = mid.parts().iter().all(|part| part.is_finite()) && radius.is_finite();
         if known { Self { mid, radius: radius * BLOW_UP } } else { Self::unknown() }
     }
 
-    #[inline]
     fn is_exact_zero(self) -> bool {
         self.mid.parts() == [0.0; 2] && self.radius == 0.0
     }
 }
 
 impl<M: Midpoint> Real for Ball<M> {
-    #[inline]
     fn from_f64(value: f64) -> Self {
         if value.is_finite() { Self { mid: M::from_f64(value), radius: 0.0 } } else { Self::unknown() }
     }
 }
 
 impl<M: Midpoint> Ordered for Ball<M> {
-    #[inline]
     fn sign(self) -> Sign {
         self.mid.sign_within(self.radius)
     }
 
-    #[inline]
     fn to_f64(self) -> f64 {
         if self.radius.is_finite() { self.mid.parts()[0] } else { f64::NAN }
     }
@@ -99,7 +89,6 @@ impl<M: Midpoint> Ordered for Ball<M> {
 }
 
 impl<M: Midpoint> Enclosure for Ball<M> {
-    #[inline]
     fn widened(self, by: Self) -> Self {
         Self::around(self.mid, self.radius + (by.mid.magnitude() + by.radius))
     }
@@ -138,7 +127,6 @@ impl<M: Midpoint> Ball<M> {
         Self::around(mid, self.radius + other.radius + error)
     }
 
-    #[inline]
     fn minus(self, other: Self) -> Self {
         self + -other
     }
@@ -172,7 +160,6 @@ impl<M: Midpoint> Ball<M> {
         Self::around(mid, spread + rounding)
     }
 
-    #[inline]
     fn negated(self) -> Self {
         Self { mid: -self.mid, radius: self.radius }
     }

@@ -28,7 +28,6 @@ impl<B: Ordered> Certified<B> {
     }
 
     /// The number of a residue: zero, unknown (after a division by zero), or in the enclosure.
-    #[inline]
     fn paired(residue: Residue, enclosure: impl FnOnce() -> B) -> Self {
         let enclosure = match residue.is_zero() {
             Some(false) => enclosure(),

@@ -49,7 +49,6 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
 }
 
 impl Real for DoubleDouble {
-    #[inline]
     fn from_f64(value: f64) -> Self {
         Self { hi: value, lo: 0.0 }
     }
@@ -59,17 +58,14 @@ impl Midpoint for DoubleDouble {
     /// 16 u^2, which covers the quotient and all else.
     const ROUNDING: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 
-    #[inline]
     fn parts(self) -> [f64; 2] {
         [self.hi, self.lo]
     }
 
-    #[inline]
     fn magnitude(self) -> f64 {
         self.hi.abs() * (1.0 + 2.0 * f64::EPSILON)
     }
 
-    #[inline]
     fn least_magnitude(self) -> f64 {
         self.hi.abs() * (1.0 - 2.0 * f64::EPSILON)
     }
@@ -86,19 +82,16 @@ impl Midpoint for DoubleDouble {
     }
 
     /// The product that corrects a quotient may underflow; that loss is divided by the divisor.
-    #[inline]
     fn quotient_rounding(self, divisor: f64) -> f64 {
         self.rounding() + f64::MIN_POSITIVE / divisor
     }
 
-    #[inline]
     fn sign_within(self, radius: f64) -> Sign {
         Sign::within(self.hi, (radius + self.lo.abs()) * (1.0 + f64::EPSILON))
     }
 }
 
 impl DoubleDouble {
-    #[inline]
     fn renormalized(a: f64, b: f64) -> Self {
         let (hi, lo) = fast_two_sum(a, b);
         Self { hi, lo }
@@ -112,7 +105,6 @@ impl DoubleDouble {
         Self::renormalized(high, low_error + rest)
     }
 
-    #[inline]
     fn minus(self, other: Self) -> Self {
         self + -other
     }
@@ -133,7 +125,6 @@ impl DoubleDouble {
         Self::renormalized(high, rest / other.hi)
     }
 
-    #[inline]
     fn negated(self) -> Self {
         Self { hi: -self.hi, lo: -self.lo }
     }

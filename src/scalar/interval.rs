@@ -65,11 +65,6 @@ impl Interval {
         work()
     }
 
-    /// At least the greatest distance of the number from its centre; infinite if nothing is known.
-    pub fn radius(self) -> f64 {
-        self.value().map_or(f64::INFINITY, |value| value.radius.to_f64())
-    }
-
     fn value(self) -> Option<Enclosed> {
         STORE.with_borrow(|store| store.values.get(self.0?).cloned())
     }
@@ -217,7 +212,7 @@ impl Ordered for Interval {
     }
 
     fn error(self) -> f64 {
-        self.radius()
+        self.value().map_or(f64::INFINITY, |value| value.radius.to_f64())
     }
 }
 
@@ -309,7 +304,6 @@ impl Magnitude {
     }
 
     /// 2^-shift of 0 to 63.
-    #[inline]
     fn down(shift: i64) -> f64 {
         f64::from_bits(((BIAS - shift) as u64) << (DIGITS - 1))
     }
@@ -429,7 +423,7 @@ mod tests {
                 let number = Interval::from_f64;
                 let tiny = (0..bits / 10).fold(number(1.0), |product, _| product * number(1.0 / 1024.0));
                 let off = number(1.0) / number(3.0) * (number(1.0) + tiny * number(1e6)) * number(3.0) - number(1.0);
-                (off.sign(), (number(1.0) / number(3.0)).radius())
+                (off.sign(), (number(1.0) / number(3.0)).error())
             });
             assert_eq!(off, Sign::Positive);
             assert!(wide <= 0.5f64.powi(bits.min(1022) as i32));

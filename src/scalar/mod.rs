@@ -168,13 +168,11 @@ pub trait Midpoint: Real {
     fn sign_within(self, radius: f64) -> Sign;
 
     /// The greatest error of a product that was rounded to this number; its last part covers underflow.
-    #[inline]
     fn rounding(self) -> f64 {
         self.magnitude() * Self::ROUNDING + f64::MIN_POSITIVE
     }
 
     /// The greatest error of a quotient that was rounded to this number, by a divisor no smaller than `divisor`.
-    #[inline]
     fn quotient_rounding(self, _divisor: f64) -> f64 {
         self.rounding()
     }

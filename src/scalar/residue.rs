@@ -79,7 +79,6 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
         if sum >= Self::PRIME { sum - Self::PRIME } else { sum }
     }
 
-    #[inline]
     const fn minus(a: u64, b: u64) -> u64 {
         if a >= b { a - b } else { a + Self::PRIME - b }
     }
@@ -176,7 +175,6 @@ impl<const BITS: u32, const C: u64> Modulus<BITS, C> {
 }
 
 /// The integer and the exponent of a finite f64's magnitude.
-#[inline]
 fn decomposed(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let (fraction, exponent) = (bits & ((1 << 52) - 1), ((bits >> 52) & 0x7FF) as i32);
@@ -188,7 +186,6 @@ impl Residue {
     pub const UNDEFINED: Self = Self([NONE; 2]);
 
     /// Whether the number is zero: proved if it is not, and nearly so if it is; `None` after a division by zero.
-    #[inline]
     pub fn is_zero(self) -> Option<bool> {
         let [first, second] = self.0;
         if first == 0 && second == 0 {
@@ -240,7 +237,6 @@ impl Residue {
         self.by_prime(other, FirstField::plus, SecondField::plus)
     }
 
-    #[inline]
     fn minus(self, other: Self) -> Self {
         self.by_prime(other, FirstField::minus, SecondField::minus)
     }
@@ -254,7 +250,6 @@ impl Residue {
         self.by_prime(other, FirstField::over, SecondField::over)
     }
 
-    #[inline]
     fn negated(self) -> Self {
         Self([0; 2]) - self
     }

@@ -71,8 +71,8 @@ mod tests {
             let balls = Ball::<f64>::cos_sin(angle);
             let wide = Ball::<DoubleDouble>::cos_sin(angle);
             for ((truth, ball), wide) in truth.into_iter().zip(balls).zip(wide) {
-                if angle.is_normal() && truth.radius() > 1e-100 {
-                    return Err(format!("the truth at {angle:e} is known to {:e}", truth.radius()));
+                if angle.is_normal() && truth.error() > 1e-100 {
+                    return Err(format!("the truth at {angle:e} is known to {:e}", truth.error()));
                 }
                 if !near(truth, &[ball.mid], ball.radius) || !near(truth, &wide.mid.parts(), wide.radius) {
                     return Err(format!("{angle:e}: {ball:?}, {wide:?}"));
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn series_gives_the_bits_asked_for() {
         for (bits, angle) in [(64, 1.0), (256, 1e6), (4096, -3.7), (300, 1e300), (300, 1e-300)] {
-            let radii = Interval::scope(bits, || Interval::cos_sin(angle).map(Interval::radius));
+            let radii = Interval::scope(bits, || Interval::cos_sin(angle).map(Ordered::error));
             assert!(radii.into_iter().all(|radius| radius <= 2.0 * 0.5f64.powi(bits.min(1000) as i32)), "{radii:?}");
         }
         let digits = Interval::scope(128, || {

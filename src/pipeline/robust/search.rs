@@ -155,15 +155,15 @@ fn weigh_open<const N: usize>(
     ways: &mut Vec<Vec<f64>>,
 ) {
     let Some(determinant) = combination.determinant else { return };
-    let sign = if determinant.centre() < 0.0 { -1.0 } else { 1.0 };
+    let sign = if determinant.to_f64() < 0.0 { -1.0 } else { 1.0 };
     // How far each inequality is from being decided: 1 on its border, 0 in its middle.
     let slacks = combination.numerators.iter().filter(|(inequality, _)| inequality.is_some());
-    let slacks = slacks.map(|(_, number)| (number, sign * number.centre() / number.radius()));
+    let slacks = slacks.map(|(_, number)| (number, sign * number.to_f64() / number.error()));
     let undecided = |number: &Affine<N>| number.sign() == Sign::Undecided;
     // Nonlinear parts depend above all on what moves det A.
     let moved = determinant.slopes().iter().map(|slope| slope.abs()).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut weigh = |number: &Affine<N>| {
-        let radius = number.radius();
+        let radius = number.error();
         for ((own, slope), bent) in influence.iter_mut().zip(number.slopes()).zip(determinant.slopes()) {
             *own += (slope.abs() + number.rest() * (bent.abs() / moved)) / radius;
         }
@@ -186,7 +186,7 @@ fn weigh_open<const N: usize>(
     let mut worst: Option<(&Affine<N>, f64)> = None;
     for (number, place) in slacks {
         if place < 0.0 {
-            let radius = number.radius();
+            let radius = number.error();
             all.iter_mut().zip(number.slopes()).for_each(|(sum, slope)| *sum += sign * slope / radius);
         }
         if undecided(number) && worst.is_none_or(|(_, least)| place < least) {

@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn a_number_covers_its_interval() {
         let number: Affine<2> = example().number(Quantity::Friction(0), 9.0);
-        assert_eq!((number.centre(), number.slopes()[1] >= 0.25), (0.25, true));
+        assert_eq!((crate::scalar::Ordered::to_f64(number), number.slopes()[1] >= 0.25), (0.25, true));
         let certain: Affine<2> = example().number(Quantity::Velocity(0), 9.0);
         assert_eq!(certain, Affine::from_f64(9.0));
     }
