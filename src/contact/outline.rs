@@ -20,11 +20,11 @@ pub(super) struct Outline<'p> {
     /// The corners with their rims, in their body's frame.
     points: Vec<Point>,
     /// The same corners in the world, counter-clockwise seen with forward to the right and up upward \[m\].
-    corners: Vec<Vector<f64>>,
+    pub corners: Vec<Vector<f64>>,
     /// The polygon's side from each corner to the next; none of a single corner, two of a line.
-    bones: Vec<Face>,
+    pub bones: Vec<Face>,
     /// The same sides, moved out by the rim.
-    sides: Vec<Face>,
+    pub sides: Vec<Face>,
 }
 
 impl<'p> Outline<'p> {
@@ -66,10 +66,6 @@ impl<'p> Outline<'p> {
         self.rim == Rim::Circle { radius: 0.0 }
     }
 
-    pub fn corners(&self) -> &[Vector<f64>] {
-        &self.corners
-    }
-
     /// The lowest point of a corner's rim, seen along a unit normal of the ground \[m\].
     pub fn lowest(&self, corner: usize, normal: Vector<f64>) -> Vector<f64> {
         self.corners[corner] + self.support(-normal)
@@ -78,14 +74,6 @@ impl<'p> Outline<'p> {
     /// What of a corner touches ground with this normal.
     pub fn circle(&self, corner: usize, normal: Vector<f64>) -> Circle {
         self.placement.circle(self.points[corner], normal)
-    }
-
-    pub fn bones(&self) -> &[Face] {
-        &self.bones
-    }
-
-    pub fn sides(&self) -> &[Face] {
-        &self.sides
     }
 
     /// The sides that end and begin at a corner; none of a single corner.

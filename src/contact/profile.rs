@@ -46,7 +46,7 @@ pub(super) fn touching(
     let close = Closeness { tolerance, rounding };
     let mut touches: Vec<Touch> = Vec::new();
     for &segment in &near {
-        for corner in 0..outline.corners().len() {
+        for corner in 0..outline.corners.len() {
             touches.extend(on_segment(terrain, segment, &outline, corner, close));
         }
     }
@@ -104,19 +104,19 @@ fn corners_of(segments: &[usize]) -> impl Iterator<Item = usize> + '_ {
 /// How deep a foot is in the ground \[m\], negative above it: the deepest of its corners' rims, of the ground's corners
 /// in the foot, and of sides that cross.
 fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
-    let corners = (0..outline.corners().len()).map(|corner| depth_of_rim(terrain, outline, corner, near));
+    let corners = (0..outline.corners.len()).map(|corner| depth_of_rim(terrain, outline, corner, near));
     let ground = corners_of(near).map(|corner| outline.depth_of(terrain.at_corner(corner)[0].to));
     let across = near.iter().flat_map(|&segment| {
         let face = terrain.face(segment);
         let reach = outline.reach(-face.normal);
-        outline.bones().iter().filter_map(move |bone| crossing(face, bone)).map(move |depth| reach + depth)
+        outline.bones.iter().filter_map(move |bone| crossing(face, bone)).map(move |depth| reach + depth)
     });
     corners.chain(ground).chain(across).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// How deep a corner's rim is behind the segments that it is above \[m\], or as a whole below the profile.
 fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> f64 {
-    let centre = outline.corners()[corner];
+    let centre = outline.corners[corner];
     if let Some((depth, normal)) = terrain.depth_of(centre) {
         return depth + outline.reach(-normal);
     }
@@ -137,7 +137,7 @@ pub(super) fn left_behind(terrain: &Terrain, outline: &Outline, tolerance: f64) 
     let [rear, front] = terrain.ends();
     let hangs = |Vector { x, z }: Vector<f64>, way: f64| {
         let reach = |corner: usize, normal| outline.lowest(corner, normal);
-        (0..outline.corners().len()).any(|corner| {
+        (0..outline.corners.len()).any(|corner| {
             way * (reach(corner, Vector::new(-way, 0.0)).x - x) > tolerance
                 && reach(corner, Vector::new(0.0, 1.0)).z <= z + tolerance
         })
@@ -157,7 +157,7 @@ fn crossing(a: &Face, b: &Face) -> Option<f64> {
 /// A corner's rim at a segment.
 fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usize, close: Closeness) -> Option<Touch> {
     let face = terrain.face(segment);
-    let centre = outline.corners()[corner];
+    let centre = outline.corners[corner];
     let lowest = outline.lowest(corner, face.normal);
     let gap = face.height(lowest);
     if gap.abs() > close.tolerance {
@@ -214,12 +214,12 @@ fn corner_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: 
             Some((out, far)) if !outline.is_sharp() => (-out, far),
             _ => {
                 let normal = common_normal([before, after], outline.at_corner(foot));
-                (normal, normal.dot(outline.corners()[foot] - at))
+                (normal, normal.dot(outline.corners[foot] - at))
             }
         };
         Some(Touch { circle: outline.circle(foot, normal), ground: upright(normal), gap })
     };
-    (0..outline.corners().len()).find_map(on)
+    (0..outline.corners.len()).find_map(on)
 }
 
 /// The middle of the normals that a convex corner of the ground and a corner of the foot both allow; where the foot
@@ -249,11 +249,11 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
     let [before, after] = terrain.at_corner(corner);
     let at = before.to;
     let across = |side: usize| {
-        let face = &outline.sides()[side];
+        let face = &outline.sides[side];
         let (gap, slack) = (face.height(at), 2.0 * close.tolerance);
         let beneath = face.past_begin(at) >= -close.rounding && face.past_end(at) <= close.rounding;
         // A line is all surface; the way along the ground decides its side.
-        let solid = outline.sides().len() > 2;
+        let solid = outline.sides.len() > 2;
         let clear = |side: &Face| side.clears(at, before.from, slack) && side.clears(at, after.to, slack);
         let nearer = |other: &Face| solid && gap < 0.0 && other.faces(at) && other.height(at) > gap && clear(other);
         if gap.abs() > close.tolerance || !beneath || !clear(face) || outline.beside(side).into_iter().any(nearer) {
@@ -262,5 +262,5 @@ fn side_on_corner(terrain: &Terrain, corner: usize, outline: &Outline, close: Cl
         let ground = upright(-face.normal);
         Some(Touch { circle: outline.on_side(side, at), ground, gap })
     };
-    (0..outline.sides().len()).find_map(across)
+    (0..outline.sides.len()).find_map(across)
 }

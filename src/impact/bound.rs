@@ -239,7 +239,7 @@ mod tests {
         }
 
         fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
-            let bound = self.bounds.at(leaf.depth());
+            let bound = self.bounds.at(leaf.depth);
             let mobility = &self.scale.mobility;
             Interval::scope(512, || {
                 let mut tableau = Tableau::<Interval>::default();

@@ -41,7 +41,8 @@ pub struct Leaf<'a, T> {
     pub pivots: &'a [T],
     tableau: &'a [T],
     laws: &'a [Law],
-    depth: usize,
+    /// The depth of the tableau that the leaf is read from: the last closed contact's number, from 1.
+    pub depth: usize,
 }
 
 /// A visitor of all combinations.
@@ -196,11 +197,6 @@ impl<T: Copy> Tableau<T> {
 }
 
 impl<T: Real> Leaf<'_, T> {
-    /// The depth of the tableau that the leaf is read from: the last closed contact's number, from 1.
-    pub fn depth(&self) -> usize {
-        self.depth
-    }
-
     fn constant(&self, row: usize) -> T {
         let columns = 2 * self.modes.len();
         self.tableau[row * (columns + 1) + columns]

@@ -40,7 +40,7 @@ impl Visitor<f64> for F64Pass<'_, '_> {
     fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
         let Self { bounds, labels, shares, regular, undecided, coarse, collected } = self;
         let Collected { problem, scale, options, .. } = *collected;
-        let bound = bounds.at(leaf.depth());
+        let bound = bounds.at(leaf.depth);
         // If every impulse is free, the pivots are those of the whole matrix.
         *regular |= bound.impulse_error().is_finite()
             && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);

@@ -9,19 +9,11 @@ use super::{Ordered, Real, Residue, Sign, Trigonometry};
 /// digits decide every sign that is [`Sign::Undecided`] although [`Certified::is_nonzero`] holds.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Certified<B> {
-    enclosure: B,
-    residue: Residue,
+    pub enclosure: B,
+    pub residue: Residue,
 }
 
 impl<B: Ordered> Certified<B> {
-    pub fn enclosure(self) -> B {
-        self.enclosure
-    }
-
-    pub fn residue(self) -> Residue {
-        self.residue
-    }
-
     /// Whether the number is proved to differ from zero.
     pub fn is_nonzero(self) -> bool {
         self.residue.is_zero() == Some(false) || matches!(self.enclosure.sign(), Sign::Negative | Sign::Positive)
@@ -106,6 +98,6 @@ mod tests {
         assert_eq!((hidden.sign(), hidden.is_nonzero()), (Sign::Undecided, true));
         let zero = tiny * number(3.0) - number(1.0);
         assert_eq!((zero / hidden).sign(), Sign::Zero);
-        assert_eq!((zero * hidden).enclosure(), Ball::zero());
+        assert_eq!((zero * hidden).enclosure, Ball::zero());
     }
 }
