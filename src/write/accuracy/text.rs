@@ -28,7 +28,7 @@ impl Accuracy {
 /// One case: a line for each method.
 fn one(out: &mut String, study: &CaseStudy, Palette { strong, plain, .. }: &Palette) {
     let _ = writeln!(out, "{strong}{}{plain}: {}", study.name, ending(study));
-    let _ = writeln!(out, "ConditionNumbers: {}.\n", conditions(study));
+    let _ = writeln!(out, "Condition: {}.\n", conditions(study));
     let methods = &study.methods;
     let error = |pick: fn(&MethodErrors) -> Option<f64>| {
         methods.iter().map(move |method| method.error.as_ref().and_then(pick).map_or("-".into(), digits))
