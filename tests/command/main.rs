@@ -229,16 +229,6 @@ fn a_batch_answers_in_order_and_a_broken_line_in_its_place() {
 }
 
 #[test]
-fn file_and_standard_input_give_the_same_bytes() {
-    let from_file = heelstrike(&["batch", WALKER, "examples/keyframes.ndjson"]);
-    let from_stdin = heelstrike_reads(&["batch", WALKER, "-"], read("examples/keyframes.ndjson"));
-    // Without friction every line is refused, by the same bytes.
-    assert_eq!((from_file.status, from_stdin.status), (1, 1));
-    assert_eq!(from_file.stdout, from_stdin.stdout);
-    assert!(from_file.stdout.contains("friction"));
-}
-
-#[test]
 fn bytes_that_are_no_text_are_refused_in_their_place() {
     let run = heelstrike_reads(&["batch", BLOCK, "-"], b"{\"id\": \"\xff\"}\n{\"friction\": 1}\n");
     assert_eq!(run.status, 1);

@@ -4,6 +4,8 @@
 //!     page + listener + script --> file --chromium --dump-dom--> DOM --> what the script gave to found(), as JSON
 //! ```
 
+use crate::parsed;
+use percent_encoding::percent_decode_str;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -35,7 +37,8 @@ pub fn found(page: &Path, window: (u32, u32), script: &str) -> Option<Value> {
     let dom = dumped(&browser, &driven, &profile, window);
     let (_, rest) = dom.split_once(r#"<pre id="found">"#).unwrap_or_else(|| panic!("the script failed:\n{dom}"));
     let (found, _) = rest.split_once("</pre>").expect("its end");
-    let found: Value = serde_json::from_str(&decoded(found)).expect("JSON");
+    // As `encodeURIComponent` writes it.
+    let found = parsed(&percent_decode_str(found).decode_utf8().expect("UTF-8"));
     assert_eq!(found["wrong"], serde_json::json!([]));
     assert_eq!(found["loaded"], 0);
     Some(found)
@@ -83,15 +86,4 @@ fn dumped(browser: &str, page: &Path, profile: &Path, (width, height): (u32, u32
         std::thread::sleep(Duration::from_millis(20));
     }
     std::fs::read_to_string(page.with_extension("dom")).expect("UTF-8")
-}
-
-/// What `encodeURIComponent` was given.
-fn decoded(text: &str) -> String {
-    let mut bytes = Vec::new();
-    let mut rest = text.bytes();
-    while let Some(byte) = rest.next() {
-        let digit = |byte: Option<u8>| byte.and_then(|byte| char::from(byte).to_digit(16)).expect("a digit") as u8;
-        bytes.push(if byte == b'%' { digit(rest.next()) << 4 | digit(rest.next()) } else { byte });
-    }
-    String::from_utf8(bytes).expect("UTF-8")
 }

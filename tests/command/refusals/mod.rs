@@ -38,9 +38,9 @@ fn assert_refuses(case: &str, arguments: &[&str], input: &str) {
     assert!(stderr.starts_with("error: ") && stderr.len() < 2000, "{case}: {} bytes: {start}", stderr.len());
 }
 
-/// The cases of a table: a line each, in which `\n` is a line break.
-fn lines(table: &'static str, case: impl Fn(&str) -> String) -> impl Iterator<Item = String> {
-    table.trim().lines().map(move |line| case(&line.replace("\\n", "\n")))
+/// The cases of a table: a line each, in which `\n` is a line break, in place of the template's `@`.
+fn lines(table: &'static str, template: &'static str) -> impl Iterator<Item = String> {
+    table.trim().lines().map(|line| template.replace('@', &line.replace("\\n", "\n")))
 }
 
 /// Compares what `read` says of each case with the snapshot of that name, and checks that the command with the

@@ -91,7 +91,7 @@ friction: 1
 fn states_are_refused_word_for_word() {
     let robot = &ROBOT.1;
     let feet = |count| vec![r#"{"link": "left_foot"}"#; count].join(", ");
-    let cases = lines(STATES, str::to_owned).chain([
+    let cases = lines(STATES, "@").chain([
         String::new(),
         "{\"id\": 1,\n \"id\": 2}".into(),
         "[".repeat(200_000),
@@ -146,7 +146,7 @@ const PROBLEMS: &str = r#"
 fn problems_are_refused_word_for_word() {
     let many = vec!["[1]"; 1_000_000].join(",");
     let many = format!(r#"{{"mass_matrix": [[1]], "velocity": [1], "friction": 1, "contact_jacobian": [{many}]}}"#);
-    assert_refused("problems", lines(PROBLEMS, str::to_owned).chain([many]), &["solve", "-"], |text| {
+    assert_refused("problems", lines(PROBLEMS, "@").chain([many]), &["solve", "-"], |text| {
         let problem = Problem::from_json(text, &Defaults::default())?;
         heelstrike::impact::analyse(&problem.contact, false).map(drop)
     });

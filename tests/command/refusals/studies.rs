@@ -3,33 +3,6 @@
 use super::{assert_refused, lines};
 use crate::schema::studies::read;
 
-/// A study of the parameter a from 0 to 1 with these other fields.
-fn study(rest: &str) -> String {
-    format!(r#"{{"parameters": {{"a": {{"from": 0, "to": 1, "steps": 5}}}}, {rest}}}"#)
-}
-
-/// A study with these parameters.
-fn parameters(fields: &str) -> String {
-    format!(r#"{{"parameters": {{{fields}}}, "state": {{"friction": 1}}}}"#)
-}
-
-/// A study whose friction is this JSON.
-fn friction(value: &str) -> String {
-    study(&format!("\"state\": {{\"friction\": {value}}}"))
-}
-
-/// A study of this robot.
-fn robot(fields: &str) -> String {
-    study(&format!("\"state\": {{\"friction\": 1}}, \"robot\": {fields}"))
-}
-
-/// A line each.
-const STUDIES: &str = r#"
-[]
-{}
-{"parameters": {"a": {"from": 0, "to": 1, "steps": 5}}}
-"#;
-
 /// Parameters, a line each.
 const PARAMETERS: &str = r#"
 "a": {"from": 0, "to": 1, "steps": 5}, "b": {"from": 0, "to": 1, "steps": 5}, "c": {"from": 0, "to": 1, "steps": 5}
@@ -85,7 +58,7 @@ const ROBOT: &str = r#"
 "#;
 
 /// All but the parameter, a line each.
-const STUDY: &str = r#"
+const FIELDS: &str = r#"
 "state": [], "constants": {}
 "state": {}, "constant": {}
 "constants": {"a": 1}, "state": {}
@@ -103,21 +76,29 @@ const STUDY: &str = r#"
 
 #[test]
 fn studies_are_refused_word_for_word() {
-    let quoted = |text: &str, count: usize| friction(&format!("\"{}\"", text.repeat(count)));
+    // Studies of the parameter a from 0 to 1, and some with other parameters.
+    const STUDY: &str = r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 5}}, @}"#;
+    const FRICTION_OF: &str = r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 5}}, "state": {"friction": @}}"#;
+    const ROBOT_OF: &str =
+        r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 5}}, "state": {"friction": 1}, "robot": @}"#;
+    const PARAMETERS_OF: &str = r#"{"parameters": {@}, "state": {"friction": 1}}"#;
+    let quoted = |text: &str, count: usize| FRICTION_OF.replace('@', &format!("\"{}\"", text.repeat(count)));
     let constants: Vec<String> = (0..100_000).map(|k| format!("\"c{k}\": {k}")).collect();
-    let cases = lines(STUDIES, str::to_owned)
-        .chain(lines(PARAMETERS, parameters))
-        .chain(lines(FRICTION, friction))
-        .chain(lines(ROBOT, robot))
-        .chain(lines(STUDY, study))
+    let cases = ["[]", "{}", r#"{"parameters": {"a": {"from": 0, "to": 1, "steps": 5}}}"#].map(str::to_owned);
+    let cases = cases
+        .into_iter()
+        .chain(lines(PARAMETERS, PARAMETERS_OF))
+        .chain(lines(FRICTION, FRICTION_OF))
+        .chain(lines(ROBOT, ROBOT_OF))
+        .chain(lines(FIELDS, STUDY))
         .chain([
-            parameters(""),
-            study(&format!("\"constants\": {{{}}}, \"state\": {{}}", constants.join(", "))),
+            PARAMETERS_OF.replace('@', ""),
+            STUDY.replace('@', &format!("\"constants\": {{{}}}, \"state\": {{}}", constants.join(", "))),
             quoted("(", 1_000_000),
             quoted("-", 1_000_000),
             quoted("1+", 500_000),
             quoted("x", 1_000_000),
-            study(&format!("\"state\": {}", "[".repeat(100_000))),
+            STUDY.replace('@', &format!("\"state\": {}", "[".repeat(100_000))),
         ]);
     assert_refused("studies", cases, &["sweep", "urdf/ramone.urdf", "-"], read);
 }

@@ -11,8 +11,7 @@ use crate::balls::number::Number;
 use heelstrike::impact::Friction;
 use heelstrike::planar::Vector;
 use heelstrike::robot::{Axis, ParentJoint, Robot};
-use heelstrike::state::Ground;
-use heelstrike::state::State;
+use heelstrike::state::{Ground, State};
 use std::cmp::Ordering;
 
 /// What the contacts need to know; rows 2k (tangential) and 2k + 1 (normal) belong to contact k.
@@ -23,9 +22,7 @@ pub struct Problem<N> {
     pub free: Vec<N>,
     /// c_n- of each contact, before any applied impulse \[m/s\].
     pub approach: Vec<N>,
-    /// Friction of each contact.
     pub friction: Vec<Friction>,
-    /// Restitution of each contact.
     pub restitution: Vec<f64>,
     /// The precision of all numbers.
     pub bits: usize,
@@ -34,23 +31,14 @@ pub struct Problem<N> {
 /// A pair in the plane, [forward, up].
 type Pair<N> = [N; 2];
 
-/// How a coordinate moves its descendants.
-#[derive(Clone)]
-enum Motion<N> {
-    /// All points alike, along a vector of the world.
-    Slide(Pair<N>),
-    /// About a point of the world, with a sign.
-    Turn(Pair<N>, f64),
-}
-
-/// A body's place in the world.
+/// A body's place in the world; velocities of its origin and rates of its angle are by coordinate, which moves at one.
 #[derive(Clone)]
 struct Pose<N> {
     angle: N,
     turn: Pair<N>,
     origin: Pair<N>,
-    /// What moves it, by coordinate.
-    motions: Vec<Option<Motion<N>>>,
+    velocities: Vec<Pair<N>>,
+    rates: Vec<f64>,
 }
 
 impl<N: Number> Pose<N> {
@@ -64,27 +52,14 @@ impl<N: Number> Pose<N> {
         add(&self.origin, &self.axes(local))
     }
 
-    /// Velocity of a point of the body for each coordinate that moves at rate one.
+    /// Velocities of a point of the body.
     fn velocities(&self, point: &Pair<N>, bits: usize) -> Vec<Pair<N>> {
-        let zero = || N::new(0.0, bits);
-        let motion = |motion: &Option<Motion<N>>| match motion {
-            None => [zero(), zero()],
-            Some(Motion::Slide(direction)) => direction.clone(),
-            Some(Motion::Turn(about, sign)) => {
-                let sign = N::new(*sign, bits);
-                let [x, z] = [0, 1].map(|k| point[k].minus(&about[k]).times(&sign));
-                [z, x.negative()]
-            }
+        let [x, z] = [0, 1].map(|k| point[k].minus(&self.origin[k]));
+        let velocity = |(origin, &rate): (&Pair<N>, &f64)| {
+            let rate = N::new(rate, bits);
+            [origin[0].plus(&z.times(&rate)), origin[1].minus(&x.times(&rate))]
         };
-        self.motions.iter().map(motion).collect()
-    }
-
-    /// Rate of the body's angle for each coordinate that moves at rate one.
-    fn spin(&self, coordinate: usize) -> f64 {
-        match self.motions[coordinate] {
-            Some(Motion::Turn(_, sign)) => sign,
-            _ => 0.0,
-        }
+        self.velocities.iter().zip(&self.rates).map(velocity).collect()
     }
 }
 
@@ -113,13 +88,13 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
             None => {
                 let angle = number(if base == 3 { position[2] } else { 0.0 });
                 let origin = [number(0.0), number(0.0)];
-                let mut motions = vec![None; robot.dofs()];
+                let (mut velocities, mut rates) = (vec![origin.clone(); robot.dofs()], vec![0.0; robot.dofs()]);
                 if base == 3 {
-                    motions[0] = Some(Motion::Slide([number(1.0), number(0.0)]));
-                    motions[1] = Some(Motion::Slide([number(0.0), number(1.0)]));
-                    motions[2] = Some(Motion::Turn(origin.clone(), 1.0));
+                    velocities[0] = [number(1.0), number(0.0)];
+                    velocities[1] = [number(0.0), number(1.0)];
+                    rates[2] = 1.0;
                 }
-                Pose { turn: angle.cos_sin(), angle, origin, motions }
+                Pose { turn: angle.cos_sin(), angle, origin, velocities, rates }
             }
             Some(ParentJoint::Mimic(_) | ParentJoint::Fixed { .. }) => unreachable!("no robot here has them"),
             Some(ParentJoint::Joint(index)) => {
@@ -128,18 +103,21 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                 let coordinate = base + index;
                 let mut pose = Pose { origin: parent.point(&joint.origin.map(number).into()), ..parent.clone() };
                 let displacement = number(position[coordinate]);
-                pose.motions[coordinate] = Some(match joint.axis {
+                let own = match joint.axis {
                     Axis::Revolute { sign } => {
                         pose.angle = parent.angle.plus(&displacement.times(&number(sign)));
                         pose.turn = pose.angle.cos_sin();
-                        Motion::Turn(pose.origin.clone(), sign)
+                        pose.rates[coordinate] = sign;
+                        [number(0.0), number(0.0)]
                     }
                     Axis::Prismatic { direction } => {
                         let direction = parent.axes(&direction.map(number).into());
                         pose.origin = add(&pose.origin, &direction.clone().map(|entry| entry.times(&displacement)));
-                        Motion::Slide(direction)
+                        direction
                     }
-                });
+                };
+                pose.velocities = parent.velocities(&pose.origin, bits);
+                pose.velocities[coordinate] = own;
                 pose
             }
         };
@@ -219,11 +197,11 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
         let [mass, moment] = [body.mass, body.moment].map(number);
         for (i, row) in mass_matrix.iter_mut().enumerate() {
             let pushed = velocities[free[i]].clone().map(|entry| entry.times(&mass));
-            let spun = number(pose.spin(free[i])).times(&moment);
+            let spun = number(pose.rates[free[i]]).times(&moment);
             for (j, entry) in row[..=i].iter_mut().enumerate() {
                 let other = &velocities[free[j]];
                 *entry = entry.plus(&dot(pushed.iter().zip(other), bits));
-                *entry = entry.plus(&spun.times(&number(pose.spin(free[j]))));
+                *entry = entry.plus(&spun.times(&number(pose.rates[free[j]])));
             }
         }
     }
@@ -276,15 +254,10 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
             velocity[k] = axes[0][k].times(&t).plus(&axes[1][k].times(&n));
         }
     }
-    let before = |(contact, row): (usize, &Vec<N>)| {
-        if stance == Some(contact) { number(0.0) } else { dot(row.iter().zip(&velocity), bits) }
+    let before = |(at, row): (usize, &Vec<N>)| {
+        if stance == Some(at / 2) { number(0.0) } else { dot(row.iter().zip(&velocity), bits) }
     };
-    let before: Vec<N> = rows
-        .iter()
-        .enumerate()
-        .flat_map(|(contact, pair)| pair.iter().map(move |row| (contact, row)))
-        .map(before)
-        .collect();
+    let before: Vec<N> = rows.iter().flatten().enumerate().map(before).collect();
 
     let mut applied = vec![number(0.0); free.len()];
     for impulse in &scene.impulses {

@@ -77,24 +77,14 @@ pub struct Ball {
 const INFLATION: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 impl Ball {
-    /// `mid` known to `radius` and its own rounding.
+    /// `mid` known to `radius`, which was added up in f64, and its own rounding.
     fn rounded(mid: BigFloat, radius: f64, bits: usize) -> Self {
         // One unit in the last place, twice what rounding to nearest may do, is magnitude * 2^(1 - bits); once more
         // twice that costs two bits of hundreds, and need not rely on how well the crate rounds.
-        let rounding = magnitude(&mid) * power_of_two(2 - bits as i32);
-        Self::with_radius(mid, radius + rounding, bits)
-    }
-
-    /// `mid` known to `radius`, which was added up in f64.
-    fn with_radius(mid: BigFloat, radius: f64, bits: usize) -> Self {
+        let radius = radius + magnitude(&mid) * power_of_two(2 - bits as i32);
         // The least normal number covers what underflow took away.
         let radius = if radius == 0.0 && mid.is_zero() { 0.0 } else { radius * INFLATION + f64::MIN_POSITIVE };
         Self { mid, radius, bits }
-    }
-
-    /// Exactly zero.
-    fn zero(bits: usize) -> Self {
-        Self { mid: BigFloat::new(bits), radius: 0.0, bits }
     }
 
     fn is_exact_zero(&self) -> bool {
@@ -140,19 +130,11 @@ impl Number for Ball {
 
     fn times(&self, other: &Self) -> Self {
         if self.is_exact_zero() || other.is_exact_zero() {
-            return Self::zero(self.bits);
+            return Self::new(0.0, self.bits);
         }
         let mid = self.mid.mul(&other.mid, self.bits, RoundingMode::ToEven);
-        let radius = if self.radius == 0.0 && other.radius == 0.0 {
-            0.0
-        } else {
-            let smallest = f64::MIN_POSITIVE;
-            magnitude(&self.mid) * other.radius
-                + magnitude(&other.mid) * self.radius
-                + self.radius * other.radius
-                + smallest
-        };
-        Self::rounded(mid, radius, self.bits)
+        let radius = magnitude(&self.mid) * other.radius + (magnitude(&other.mid) + other.radius) * self.radius;
+        Self::rounded(mid, radius + f64::MIN_POSITIVE, self.bits)
     }
 
     fn over(&self, other: &Self) -> Self {
