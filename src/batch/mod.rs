@@ -269,7 +269,8 @@ fn with_remedy(error: Error, record: &[u8]) -> Error {
 impl Block {
     /// Counts and keeps a refusal.
     fn refuse(&mut self, error: Error, around: Around<'_>) {
-        self.summary.refuse();
+        self.summary.states += 1;
+        self.summary.refused += 1;
         let place = error.location();
         let kept = |place| around.excerpt.cloned().or_else(|| Excerpt::around(around.record, around.line, place));
         let excerpt = place.and_then(kept);

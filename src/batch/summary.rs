@@ -135,11 +135,6 @@ impl Summary {
         }
     }
 
-    pub fn refuse(&mut self) {
-        self.states += 1;
-        self.refused += 1;
-    }
-
     /// Adds the summary of the states that follow.
     pub fn merge(&mut self, following: Self) {
         self.states += following.states;

@@ -26,7 +26,7 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Completion {
     args.plot.claim(&[Some(&args.robot.robot)], args.output.path())?;
     // Its cautions are part of the output.
-    let mut robot = args.robot.read()?;
+    let (_, _, mut robot) = args.robot.described()?;
     robot.reading.cautions.iter_mut().for_each(|caution| *caution = with_flags(caution));
     let feet = args.robot.feet(&robot)?;
     let inspection = Inspection::new(&robot, &feet);

@@ -58,13 +58,10 @@ impl Meshes {
     }
 
     fn find(&self, name: &str) -> Option<PathBuf> {
-        let path = match package_and_path(name) {
-            Some((package, path)) => {
-                return self.packages(package).map(|folder| folder.join(path)).find(|path| path.is_file());
-            }
-            None => self.folder.join(name.strip_prefix("file://").unwrap_or(name)),
+        let Some((package, path)) = package_and_path(name) else {
+            return Some(self.folder.join(name.strip_prefix("file://").unwrap_or(name))).filter(|path| path.is_file());
         };
-        path.is_file().then_some(path)
+        self.packages(package).map(|folder| folder.join(path)).find(|path| path.is_file())
     }
 
     /// The folders of a package.
@@ -104,15 +101,12 @@ fn package_and_path(name: &str) -> Option<(&str, &str)> {
 /// Refuses a path that leads out of its package on the way.
 fn refuse_leaving(name: &str) -> Result<()> {
     let Some((package, path)) = package_and_path(name) else { return Ok(()) };
-    let mut depth = Some(0_usize);
-    for component in Path::new(path).components() {
-        depth = match component {
-            Component::Normal(_) => depth.map(|depth| depth + 1),
-            Component::CurDir => depth,
-            Component::ParentDir => depth.and_then(|depth| depth.checked_sub(1)),
-            Component::RootDir | Component::Prefix(_) => None,
-        };
-    }
+    let depth = Path::new(path).components().try_fold(0_usize, |depth, component| match component {
+        Component::Normal(_) => Some(depth + 1),
+        Component::CurDir => Some(depth),
+        Component::ParentDir => depth.checked_sub(1),
+        Component::RootDir | Component::Prefix(_) => None,
+    });
     if depth.is_some() && !matches!(package, "" | "." | "..") {
         return Ok(());
     }

@@ -100,14 +100,9 @@ fn finite(text: &str) -> Result<f64, String> {
 impl RobotOptions {
     /// Reads the robot and notes its cautions.
     pub fn load(&self) -> Result<Robot, Failure> {
-        let robot = self.read()?;
+        let (_, _, robot) = self.described()?;
         caution(&robot);
         Ok(robot)
-    }
-
-    /// Reads the robot.
-    pub fn read(&self) -> Result<Robot, Failure> {
-        self.described().map(|(_, _, robot)| robot)
     }
 
     /// Reads the robot, with the description that it was reduced from.

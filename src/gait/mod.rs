@@ -6,11 +6,11 @@
 //! ```
 //!
 //! Recorded feet do not reach z = 0: they float or sink by centimetres, sink slowly while they stand, and may be
-//! scuffed over the ground. So a touchdown is recognized by the foot's motion. Of every point that can touch (a
-//! circle's lowest, a polygon's corners) the height is followed: a *descent* is a run of rows in which it falls faster
-//! than [`Thresholds::slow`]; it is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was
-//! last not falling, ends no higher than [`Thresholds::ground`] above z = 0, and the point is free toward the ground:
-//! the lowest of its body over a ground of some slope m near to level.
+//! scuffed over the ground. So a touchdown is recognized by motion: the height of every point that can touch (a
+//! circle's lowest, a polygon's corners) is followed. A *descent* is a run of rows in which it falls faster than
+//! [`Thresholds::slow`]. It is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last
+//! not falling, ends no higher than [`Thresholds::ground`] above z = 0, and is free toward the ground: the lowest of its
+//! body over a ground of some slope m near to level.
 //!
 //! ```text
 //!     z_i - m x_i <= z_j - m x_j  for all points j of the body of i,        with one |m| <= 0.15
@@ -18,37 +18,32 @@
 //!
 //! So the toe of a flat foot comes down though the heel is recorded a little lower, and the upper side of a sole or
 //! what is inside a round foot does not. The moment of contact is the one at which the point is [`Thresholds::above`]
-//! over the level on which its descent ends; before it the foot still has the velocity with which it strikes.
+//! over the level on which its descent ends; before it the foot still has the velocity with which it strikes. The
+//! thresholds are lengths, because how far feet float is a matter of recording and not of the robot; they can be set
+//! ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its feet less, and has them in proportion.
 //!
-//! How far feet float, and how well a height is known, is a matter of recording and not of the robot, so the thresholds
-//! are lengths; they can be set ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its feet less, and has
-//! them in proportion.
+//! With [`At::Row`] the state is the last row before that moment. With [`At::Crossing`] it is the state at the moment:
 //!
-//! With [`At::Row`] the state is the last row before that moment as it is. With [`At::Crossing`] it is the state at the
-//! moment:
-//!
-//! * Where the next row is before the impact too (the point goes on falling after it), positions lie on the line
-//!   between the two rows.
-//! * Else the next row may be after the impact. Time and positions then go on from the last three rows before it by the
-//!   parabola through them (a line, where there are two), until the point is where it touches; where it would not get
-//!   there before the next row, or the next row is far, they lie on the line between the two rows after all.
-//! * Velocities go through those of rows before the impact alone: on the line between the two rows around the moment,
-//!   else on the line through the last two, carried on. A velocity taken from differences belongs to the middle of the
-//!   rows that it comes from, and one that comes from a row after the impact does not count.
+//! * If the next row is before the impact too (the point goes on falling after it), positions lie on the line between
+//!   the two rows.
+//! * Else time and positions go on from the last three rows before it by the parabola through them (a line through
+//!   two), until the point is where it touches. If it does not get there before the next row, or the next row is far,
+//!   they lie on the line between the two rows after all.
+//! * Velocities are on the line through those of the two rows around the moment if both are before the impact, else of
+//!   the last two, carried on. A velocity from differences belongs to the middle of its rows, and does not count if
+//!   one of them is after the impact.
 //! * Neither goes back over two rows of one time: between them another foot may have struck.
-//! * Where the descent ends above that height, the row at which it ends is taken as it is.
+//! * If the descent ends above that height, the row at which it ends is taken as it is.
 //!
-//! Where a row within that distance is followed by one of the same time, it is the state just before the impact and is
-//! taken as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
+//! A row within that distance that is followed by one of the same time is the state just before the impact, and is taken
+//! as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
 //! [`Thresholds::above`] of z = 0; if it is below, the moment is the one at which it crosses z = 0. In every case the
-//! base is then shifted along z so that the striking point is at z = 0 (a robot that is bolted to the world is not).
+//! base is then shifted along z so that the striking point is at z = 0 (a base that is fixed to the world is not).
 //!
-//! A jump back in time starts a new clip, and so does a step that is more than ten times the longest of the clip so
-//! far. A refused sample is passed on in its place and left out of the motion. Touchdowns come in the order in which
-//! they are known, which is the order of the ends of the descents and, of one time, the order of the links.
-//!
-//! The contacts are named and closed: the striking one, those that strike together with it (both ends of a foot that
-//! comes down flat, both feet of a hop), and those that [`Touching`] adds.
+//! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
+//! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order of the ends of
+//! their descents and, of one time, of the links. Their contacts are named and closed: the striking one, those that
+//! strike with it (both ends of a flat foot, both feet of a hop), and those that [`Touching`] adds.
 
 mod carry;
 mod clip;
@@ -157,7 +152,7 @@ pub enum Touching {
     /// Of every other body the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the
     /// striking point's by no more than `height` \[m\].
     Slow { speed: f64, height: f64 },
-    /// Every point free toward the ground whose height differs from the striking point's by no more than this \[m\],
+    /// Every point free toward the ground whose height differs from the striking point's by no more than `height` \[m\],
     /// however it moves.
     Near { height: f64 },
 }

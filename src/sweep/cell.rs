@@ -30,9 +30,11 @@ pub struct GridCell {
 
 /// Traces borders through cells.
 pub struct Trace<'s, 'm> {
-    solver: &'s mut Solver<'m>,
-    resolution: [f64; 2],
-    cells: usize,
+    pub solver: &'s mut Solver<'m>,
+    /// To which borders are bisected along each parameter.
+    pub resolution: [f64; 2],
+    /// So far.
+    pub cells: usize,
     pub segments: Vec<Segment>,
 }
 
@@ -98,11 +100,6 @@ impl GridCell {
 }
 
 impl<'s, 'm> Trace<'s, 'm> {
-    /// A trace that bisects borders to `resolution` along each parameter.
-    pub fn new(solver: &'s mut Solver<'m>, resolution: [f64; 2]) -> Self {
-        Self { solver, resolution, cells: 0, segments: Vec::new() }
-    }
-
     /// Finds the segments of a cell that was quartered so often.
     pub fn cell(&mut self, cell: GridCell, quarterings: usize) {
         self.cells += 1;

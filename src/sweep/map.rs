@@ -188,15 +188,12 @@ impl Map {
         };
         let grid = Grid::new(model, [first, second], workers);
         let cells = (grid.xs.len() - 1) * (grid.ys.len() - 1);
-        let segments = workers.map(
-            cells,
-            || Solver::new(model),
-            |solver, k| {
-                let mut trace = Trace::new(solver, grid.resolution);
-                trace.cell(grid.cell(k), 0);
-                trace.segments
-            },
-        );
+        let trace = |solver: &mut Solver, k: usize| {
+            let mut trace = Trace { solver, resolution: grid.resolution, cells: 0, segments: Vec::new() };
+            trace.cell(grid.cell(k), 0);
+            trace.segments
+        };
+        let segments = workers.map(cells, || Solver::new(model), trace);
         let segments: Vec<Segment> = segments.into_iter().flatten().collect();
         let frame = grid.frame();
         let mut regimes: Vec<Arc<Regime>> = Vec::new();

@@ -7,9 +7,9 @@
 use super::line::Bracket;
 use super::model::Solver;
 use super::regime::Regime;
+use crate::Error;
 use crate::impact::{Analysis, Outcome, RejectionReason};
 use crate::law::{Inequality, Mode};
-use crate::{Error, Result};
 use serde::Serialize;
 
 /// An inequality that is zero on a border.
@@ -36,16 +36,6 @@ pub enum Side {
     Below,
     /// At greater parameters.
     Above,
-}
-
-impl Side {
-    /// The other one.
-    pub fn other(self) -> Self {
-        match self {
-            Self::Below => Self::Above,
-            Self::Above => Self::Below,
-        }
-    }
 }
 
 /// What changes at a border.
@@ -75,12 +65,30 @@ impl Transition {
         let outcomes = |regime: &Regime| regime.outcomes().unwrap_or_default().to_vec();
         let below = solver.explained(&place(bracket.below.at), &outcomes(&bracket.above.regime));
         let above = solver.explained(&place(bracket.above.at), &outcomes(&bracket.below.regime));
-        Self::between(below, above)
+        let (below, above) = match (below, above) {
+            (Ok(below), Ok(above)) => (below, above),
+            (below, above) => {
+                return Self { refused_below: below.err(), refused_above: above.err(), ..Self::default() };
+            }
+        };
+        if below.0 != above.0 {
+            let missing = |from: &[String], other: &[String]| -> Vec<String> {
+                from.iter().filter(|name| !other.contains(name)).cloned().collect()
+            };
+            let (opening, closing) = (missing(&below.0, &above.0), missing(&above.0, &below.0));
+            return Self { opening, closing, ..Self::default() };
+        }
+        let mut ended = ending(&below, &above.1, Side::Below);
+        ended.extend(ending(&above, &below.1, Side::Above));
+        Self { ended, ..Self::default() }
     }
 
     /// The same, seen from the other side.
     pub fn reversed(&self) -> Self {
-        let reversed = |cause: &EndedOutcome| EndedOutcome { side: cause.side.other(), ..cause.clone() };
+        let reversed = |cause: &EndedOutcome| {
+            let side = if cause.side == Side::Below { Side::Above } else { Side::Below };
+            EndedOutcome { side, ..cause.clone() }
+        };
         Self {
             ended: self.ended.iter().map(reversed).collect(),
             opening: self.closing.clone(),
@@ -98,25 +106,6 @@ impl Transition {
             && (&self.opening, &self.closing) == (&other.opening, &other.closing)
             && (self.refused_below.is_some(), self.refused_above.is_some())
                 == (other.refused_below.is_some(), other.refused_above.is_some())
-    }
-
-    fn between(below: Result<(Vec<String>, Analysis)>, above: Result<(Vec<String>, Analysis)>) -> Self {
-        let (below, above) = match (below, above) {
-            (Ok(below), Ok(above)) => (below, above),
-            (below, above) => {
-                return Self { refused_below: below.err(), refused_above: above.err(), ..Self::default() };
-            }
-        };
-        let missing = |from: &[String], other: &[String]| -> Vec<String> {
-            from.iter().filter(|name| !other.contains(name)).cloned().collect()
-        };
-        if below.0 != above.0 {
-            let (opening, closing) = (missing(&below.0, &above.0), missing(&above.0, &below.0));
-            return Self { opening, closing, ..Self::default() };
-        }
-        let mut ended = ending(&below, &above.1, Side::Below);
-        ended.extend(ending(&above, &below.1, Side::Above));
-        Self { ended, ..Self::default() }
     }
 }
 
