@@ -5,7 +5,7 @@
 //! robot dips. A rotation is the pair (cos, sin) of such an angle; nothing here computes a cosine, so any [`Real`]
 //! works.
 
-use crate::scalar::Real;
+use crate::scalar::{Real, Trigonometry};
 use serde::{Deserialize, Serialize, Serializer};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
@@ -118,12 +118,6 @@ impl<T> From<[T; 2]> for Vector<T> {
     }
 }
 
-impl<T> From<Vector<T>> for [T; 2] {
-    fn from(vector: Vector<T>) -> Self {
-        [vector.x, vector.z]
-    }
-}
-
 impl<T: PartialEq> PartialEq<[T; 2]> for Vector<T> {
     fn eq(&self, [x, z]: &[T; 2]) -> bool {
         self.x == *x && self.z == *z
@@ -174,10 +168,10 @@ impl<T: Real> Rotation<T> {
     }
 }
 
-impl Rotation<f64> {
-    /// The rotation by `angle` \[rad\], the same bits on every platform.
+impl<T: Trigonometry> Rotation<T> {
+    /// The rotation by `angle` \[rad\], in f64 the same bits on every platform.
     pub fn by(angle: f64) -> Self {
-        let (sin, cos) = libm::sincos(angle);
+        let [cos, sin] = T::cos_sin(angle);
         Self { cos, sin }
     }
 }

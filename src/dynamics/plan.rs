@@ -23,7 +23,7 @@ use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
 use crate::scalar::{Real, Trigonometry};
 
 /// A robot compiled in numbers of kind `T`.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Plan<T = f64> {
     /// Bodies from the root outward.
     pub(crate) bodies: Vec<PlanBody<T>>,
@@ -58,19 +58,13 @@ pub(crate) struct PlanBody<T> {
     pub rotor: T,
 }
 
-/// The joint's motion in numbers of the plan; `rate` is its motion for a unit rate of its coordinate.
+/// The joint's motion in numbers of the plan; `rate` is its motion for a unit rate of its coordinate. A body on a fixed
+/// joint is rigid on its parent.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Motion<T> {
     Root,
-    Revolute {
-        sign: T,
-        rate: T,
-    },
-    Prismatic {
-        direction: Vector<T>,
-        rate: Vector<T>,
-    },
-    /// No motion: the body is rigid on its parent.
+    Revolute { sign: T, rate: T },
+    Prismatic { direction: Vector<T>, rate: Vector<T> },
     Fixed,
 }
 
@@ -105,10 +99,7 @@ impl<T: Trigonometry> Configuration<T> {
             let turn = match (body.motion, body.mimic) {
                 (Motion::Root, _) if !plan.floating => continue,
                 (Motion::Fixed, _) => continue,
-                (Motion::Root | Motion::Revolute { .. }, None) => {
-                    let [cos, sin] = T::cos_sin(value);
-                    Rotation { cos, sin }
-                }
+                (Motion::Root | Motion::Revolute { .. }, None) => Rotation::by(value),
                 (Motion::Root | Motion::Revolute { .. }, Some(mimic)) => mimic.turn(value),
                 (Motion::Prismatic { .. }, None) => continue,
                 (Motion::Prismatic { .. }, Some(mimic)) => {
@@ -143,11 +134,7 @@ impl MimicRatio {
         let error = libm::fma(self.multiplier, angle, -product);
         // A part that is zero turns nothing, in any number.
         let parts = [error, self.offset].into_iter().filter(|&part| part != 0.0);
-        let by = |angle: f64| {
-            let [cos, sin] = T::cos_sin(angle);
-            Rotation { cos, sin }
-        };
-        parts.fold(by(product), |turn, part| turn.then(by(part)))
+        parts.fold(Rotation::by(product), |turn, part| turn.then(Rotation::by(part)))
     }
 }
 
@@ -171,8 +158,8 @@ impl<T: Real> Plan<T> {
         // The column of each joint that has one, and of each body the greatest one on its way to the root.
         let mut columns = vec![None; robot.joints.len()];
         let mut greatest: Vec<Option<usize>> = Vec::with_capacity(robot.bodies.len());
+        let number = |entry: f64| T::from_f64(entry);
         for body in &robot.bodies {
-            let number = |entry: f64| T::from_f64(entry);
             let com = body.com.map(number);
             let mass = number(body.mass);
             let inertia = Inertia { mass, first: com * mass, second: number(body.moment) + mass * com.dot(com) };

@@ -21,9 +21,10 @@ use crate::scalar::Real;
 use crate::state::Scene;
 
 /// How M^-1 is applied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Elimination {
     /// M = L^T D L along the tree's branches.
+    #[default]
     Ltl,
     /// Articulated bodies, without M: quicker for long chains and with narrower enclosures. They know neither mimic
     /// joints nor constraints.
@@ -31,7 +32,7 @@ pub enum Elimination {
 }
 
 /// The dynamics of one state, and the memory that it needs.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Assembly<T = f64> {
     pub plan: Plan<T>,
     pub configuration: Configuration<T>,
@@ -49,18 +50,7 @@ pub struct Assembly<T = f64> {
 
 impl<T: Real> Assembly<T> {
     pub fn new(plan: Plan<T>) -> Self {
-        Self {
-            plan,
-            configuration: Configuration::default(),
-            elimination: Elimination::Ltl,
-            workspace: Workspace::default(),
-            points: Vec::new(),
-            kept: Vec::new(),
-            loops: Vec::new(),
-            rows: Vec::new(),
-            column: Vec::new(),
-            motions: Vec::new(),
-        }
+        Self { plan, ..Self::default() }
     }
 
     pub fn place(&mut self) {

@@ -101,7 +101,7 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                 let joint = &robot.joints[index];
                 let parent = &poses[joint.parent];
                 let coordinate = base + index;
-                let mut pose = Pose { origin: parent.point(&joint.origin.map(number).into()), ..parent.clone() };
+                let mut pose = Pose { origin: parent.point(&joint.origin.map(number).components()), ..parent.clone() };
                 let displacement = number(position[coordinate]);
                 let own = match joint.axis {
                     Axis::Revolute { sign } => {
@@ -111,7 +111,7 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                         [number(0.0), number(0.0)]
                     }
                     Axis::Prismatic { direction } => {
-                        let direction = parent.axes(&direction.map(number).into());
+                        let direction = parent.axes(&direction.map(number).components());
                         pose.origin = add(&pose.origin, &direction.clone().map(|entry| entry.times(&displacement)));
                         direction
                     }
@@ -193,7 +193,7 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
 
     let mut mass_matrix = vec![vec![number(0.0); free.len()]; free.len()];
     for (body, pose) in robot.bodies.iter().zip(&poses) {
-        let velocities = pose.velocities(&pose.point(&body.com.map(number).into()), bits);
+        let velocities = pose.velocities(&pose.point(&body.com.map(number).components()), bits);
         let [mass, moment] = [body.mass, body.moment].map(number);
         for (i, row) in mass_matrix.iter_mut().enumerate() {
             let pushed = velocities[free[i]].clone().map(|entry| entry.times(&mass));
