@@ -104,15 +104,13 @@ fn refuse_many_joints(joints: &ByName) -> Result<()> {
 
 fn require_urdf(root: Node<'_, '_>) -> Result<()> {
     let tag = root.tag_name().name();
-    if tag == "robot" {
-        return Ok(());
-    }
-    let error = xml::refuse(root, Reason::Missing("<robot>".into())).at(format!("<{tag}>"));
-    Err(match tag {
-        "sdf" => error.hint("this is an SDF file; convert it to URDF"),
-        "mujoco" => error.hint("this is a MuJoCo model; convert it to URDF"),
-        _ => error.hint("the outermost element of a URDF file is <robot>"),
-    })
+    let hint = match tag {
+        "robot" => return Ok(()),
+        "sdf" => "this is an SDF file; convert it to URDF",
+        "mujoco" => "this is a MuJoCo model; convert it to URDF",
+        _ => "the outermost element of a URDF file is <robot>",
+    };
+    Err(xml::refuse(root, Reason::Missing("<robot>".into())).at(format!("<{tag}>")).hint(hint))
 }
 
 /// Refuses macros that are still to be expanded, by their namespace or as they were written before there was one; a

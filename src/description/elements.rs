@@ -46,10 +46,8 @@ pub(super) fn undefined_world(links: &ByName, joints: &ByName) -> Option<Locatio
     if links.by_name.contains_key(WORLD) {
         return None;
     }
-    let is_its_child = |element: Node| {
-        let mut parents = xml::children(element).filter(|child| child.tag_name().name() == "parent");
-        parents.any(|parent| parent.attribute("link") == Some(WORLD))
-    };
+    let is_world = |child: Node| child.tag_name().name() == "parent" && child.attribute("link") == Some(WORLD);
+    let is_its_child = |element: Node| xml::children(element).any(is_world);
     joints.elements.iter().find(|(_, element, _)| is_its_child(*element)).map(|&(_, _, location)| location)
 }
 

@@ -65,7 +65,7 @@ pub struct Link {
 }
 
 /// Mass, CoG and inertia of a link.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Inertial {
     /// The CoG and the axes of the inertia, in the link's frame.
     pub origin: Pose,
@@ -231,22 +231,9 @@ impl Joint {
 mod tests {
     use super::*;
 
-    fn read(body: &str) -> Description {
-        Description::from_urdf(&format!("<robot name=\"r\">{body}</robot>")).expect("a description")
-    }
-
-    #[test]
-    fn missing_inertial_is_not_zero_mass() {
-        let zero = "<inertial><mass value=\"0\"/><inertia ixx=\"0\" iyy=\"0\" izz=\"0\"/></inertial>";
-        assert_eq!(read("<link name=\"a\"/>").links[0].inertial, None);
-        let stated = read(&format!("<link name=\"a\">{zero}</link>"));
-        let inertial = stated.links[0].inertial.as_ref().expect("stated");
-        assert_eq!((inertial.mass, inertial.inertia), (0.0, Some([[0.0; 3]; 3])));
-    }
-
     #[test]
     fn all_values_arrive_in_their_places() {
-        let text = r#"
+        let text = r#"<robot name="r">
             <link name="a">
               <inertial>
                 <inertia ixx="1" ixy="2" ixz="3" iyy="4" iyz="5" izz="6"/>
@@ -264,22 +251,26 @@ mod tests {
             </link>
             <joint name="j" type="prismatic"><child link="b"/><parent link="a"/><axis xyz="0 0 -3"/></joint>
             <joint name="k" type="revolute"><parent link="b"/><child link="c"/><mimic joint="j" multiplier="-2"/></joint>
-            <link name="b"/><link name="c"/>"#;
-        let robot = read(text);
+            <link name="b"><inertial><mass value="0"/><inertia ixx="0" iyy="0" izz="0"/></inertial></link>
+            <link name="c"/></robot>"#;
+        let robot = Description::from_urdf(text).expect("a description");
         let link = &robot.links[0];
         let origin = Pose { xyz: [1e-3, 0.5, -2.0], rpy: [0.1, 0.2, 0.3] };
         let inertia = Some([[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]]);
         assert_eq!(link.inertial, Some(Inertial { origin, mass: 7.25, inertia }));
+        // A missing inertial is no mass of zero.
+        let zero = Inertial { origin: Pose::default(), mass: 0.0, inertia: Some([[0.0; 3]; 3]) };
+        assert_eq!((&robot.links[1].inertial, &robot.links[2].inertial), (&Some(zero), &None));
         let shapes: Vec<&Geometry> = link.collisions.iter().map(|collision| &collision.geometry).collect();
         let expected = [
-            &Geometry::Box { size: [1.0, 2.0, 3.0] },
-            &Geometry::Cylinder { radius: 0.5, length: 2.0 },
-            &Geometry::Capsule { radius: 0.5, length: 2.0 },
-            &Geometry::Sphere { radius: 0.0 },
-            &Geometry::Mesh { file: "a & b.stl".into(), scale: [1.0, -1.0, 1.0], mesh: Mesh::Unread },
-            &Geometry::Unknown { tag: "plane".into() },
+            Geometry::Box { size: [1.0, 2.0, 3.0] },
+            Geometry::Cylinder { radius: 0.5, length: 2.0 },
+            Geometry::Capsule { radius: 0.5, length: 2.0 },
+            Geometry::Sphere { radius: 0.0 },
+            Geometry::Mesh { file: "a & b.stl".into(), scale: [1.0, -1.0, 1.0], mesh: Mesh::Unread },
+            Geometry::Unknown { tag: "plane".into() },
         ];
-        assert_eq!(shapes, expected);
+        assert_eq!(shapes, expected.each_ref());
         assert_eq!(link.collisions[1].origin, Pose { xyz: [4.0, 5.0, 6.0], rpy: [0.0; 3] });
 
         let [j, k] = robot.joints.as_slice() else { panic!("two joints") };

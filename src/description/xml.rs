@@ -82,20 +82,18 @@ fn refuse_many(text: &str) -> Result<()> {
     for part in text.split('<') {
         let commented = in_comment || part.starts_with("!--");
         in_comment = commented && !part.contains("-->");
-        if !commented && is_link(part) {
-            links += 1;
-            if links > MOST_LINKS {
-                return refused("links", MOST_LINKS, offset);
-            }
-        }
+        links += usize::from(!commented && is_link(part));
         let attributes = part.split('=').skip(1).filter(|value| value.trim_start().starts_with(['"', '\'']));
         let attributes = attributes.count();
-        if attributes > MOST_ATTRIBUTES {
-            return refused("attributes of one element", MOST_ATTRIBUTES, offset);
-        }
         all_attributes += attributes;
-        if all_attributes > MOST_NODES as usize {
-            return refused("attributes", MOST_NODES as usize, offset);
+        for (what, count, limit) in [
+            ("links", links, MOST_LINKS),
+            ("attributes of one element", attributes, MOST_ATTRIBUTES),
+            ("attributes", all_attributes, MOST_NODES as usize),
+        ] {
+            if count > limit {
+                return refused(what, limit, offset);
+            }
         }
         offset += part.len() + 1;
     }

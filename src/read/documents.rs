@@ -127,33 +127,25 @@ impl<'t> Documents<'t> {
 mod tests {
     use super::*;
 
-    fn parts(text: &str) -> Vec<(&str, usize, usize)> {
-        documents(text).map(|part| (part.text, part.line, part.column)).collect()
-    }
-
     #[test]
-    fn objects_follow_each_other_with_or_without_line_breaks() {
-        assert_eq!(parts(" {} {\n}\n\n{}\n"), [("{}", 1, 2), ("{\n}", 1, 5), ("{}", 4, 1)]);
-        assert_eq!(parts("  \n"), []);
-    }
-
-    #[test]
-    fn a_list_gives_its_entries() {
-        assert_eq!(parts("[\n{\"a\": 1},\n {}]\n"), [("{\"a\": 1}", 2, 1), ("{}", 3, 2)]);
-        assert_eq!(parts("[]"), []);
-    }
-
-    #[test]
-    fn a_broken_list_ends_with_a_broken_entry() {
-        assert_eq!(parts("[{} {}]"), [("{}", 1, 2), ("{}]", 1, 5)]);
-        assert_eq!(parts("[{},"), [("{}", 1, 2), ("", 1, 5)]);
-        assert_eq!(parts("[{}"), [("{}", 1, 2), ("", 1, 4)]);
-        assert_eq!(parts("["), [("", 1, 2)]);
-    }
-
-    #[test]
-    fn after_a_broken_object_the_next_line_is_tried() {
-        assert_eq!(parts("{\"a\":\n{\"b\": 1}\n"), [("{\"a\":\n", 1, 1), ("{\"b\": 1}", 2, 1)]);
-        assert_eq!(parts("{\"a\" 1}\n{}\n"), [("{\"a\" 1}\n", 1, 1), ("{}", 2, 1)]);
+    fn a_text_is_split_into_its_objects() {
+        let cases: [(&str, &[(&str, usize, usize)]); 10] = [
+            (" {} {\n}\n\n{}\n", &[("{}", 1, 2), ("{\n}", 1, 5), ("{}", 4, 1)]),
+            ("  \n", &[]),
+            ("[\n{\"a\": 1},\n {}]\n", &[("{\"a\": 1}", 2, 1), ("{}", 3, 2)]),
+            ("[]", &[]),
+            // A broken list ends with a broken entry.
+            ("[{} {}]", &[("{}", 1, 2), ("{}]", 1, 5)]),
+            ("[{},", &[("{}", 1, 2), ("", 1, 5)]),
+            ("[{}", &[("{}", 1, 2), ("", 1, 4)]),
+            ("[", &[("", 1, 2)]),
+            // After a broken object the next line is tried.
+            ("{\"a\":\n{\"b\": 1}\n", &[("{\"a\":\n", 1, 1), ("{\"b\": 1}", 2, 1)]),
+            ("{\"a\" 1}\n{}\n", &[("{\"a\" 1}\n", 1, 1), ("{}", 2, 1)]),
+        ];
+        for (text, expected) in cases {
+            let parts: Vec<_> = documents(text).map(|part| (part.text, part.line, part.column)).collect();
+            assert_eq!(parts, expected, "{text}");
+        }
     }
 }

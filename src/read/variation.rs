@@ -1,6 +1,6 @@
 //! Reads the numbers of a robot that a study varies.
 
-use crate::description::{Collision, Description, Geometry, Inertial, Pose};
+use crate::description::{Collision, Description, Geometry};
 use crate::read::json::Node;
 use crate::{Error, Reason, Result};
 
@@ -24,15 +24,14 @@ fn link(entry: Node, varied: &mut Description) -> Result<()> {
         return Err(unknown(entry, "link", varied.links.iter().map(|link| link.name.as_str())));
     };
     let link = &mut varied.links[at];
-    let massless = || Inertial { origin: Pose { xyz: [0.0; 3], rpy: [0.0; 3] }, mass: 0.0, inertia: None };
     for part in entry.fields("field")? {
         match part.key() {
-            "mass" => link.inertial.get_or_insert_with(massless).mass = part.number_from_zero("mass")?,
-            "com" => link.inertial.get_or_insert_with(massless).origin.xyz = part.numbers("a list of 3 numbers")?,
+            "mass" => link.inertial.get_or_insert_default().mass = part.number_from_zero("mass")?,
+            "com" => link.inertial.get_or_insert_default().origin.xyz = part.numbers("a list of 3 numbers")?,
             "inertia" => {
                 let moment = part.number_from_zero("the moment of inertia")?;
                 let inertia = [[moment, 0.0, 0.0], [0.0, moment, 0.0], [0.0, 0.0, moment]];
-                link.inertial.get_or_insert_with(massless).inertia = Some(inertia);
+                link.inertial.get_or_insert_default().inertia = Some(inertia);
             }
             "radius" => radius(part, &mut link.collisions)?,
             _ => return Err(part.unknown_field("LinkVariation")),

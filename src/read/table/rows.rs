@@ -1,7 +1,7 @@
 //! Reads the rows of a table as states.
 
 use super::header::{Column, Header, SpatialColumns, short};
-use super::records::place_of;
+use super::records::{Quotes, place_of};
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
 use crate::robot::Base;
@@ -10,32 +10,15 @@ use crate::{Error, Reason, Result, Robot};
 use csv::ByteRecord;
 use serde_json::Value;
 use std::borrow::Cow;
-use std::io::{self, Read};
+use std::io::Cursor;
 
 /// Reads the rows of a table one record at a time, in memory that is reused.
 #[derive(Debug)]
 pub struct Rows<'h> {
     header: &'h Header,
-    reader: csv::Reader<Feed>,
+    /// Of the bytes of one record after the other, so that one reader with its tables serves them all.
+    reader: csv::Reader<Cursor<Vec<u8>>>,
     record: ByteRecord,
-}
-
-/// The bytes of one record after the other, so that one reader with its tables serves them all.
-#[derive(Debug, Default)]
-struct Feed {
-    bytes: Vec<u8>,
-    at: usize,
-    /// The reader asked for more than one record, which it takes for the end of the file.
-    ended: bool,
-}
-
-impl Read for Feed {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let read = (&self.bytes[self.at..]).read(into)?;
-        self.at += read;
-        self.ended |= read == 0;
-        Ok(read)
-    }
 }
 
 /// One record and its header.
@@ -83,28 +66,29 @@ impl<'h> Rows<'h> {
         if raw.trim_ascii().is_empty() {
             return Ok(None);
         }
-        let feed = self.reader.get_mut();
-        feed.bytes.clear();
-        feed.bytes.extend_from_slice(raw);
-        feed.bytes.push(b'\n');
-        feed.at = 0;
+        let syntax = |reason: String| Error::new(Reason::Syntax(reason)).on(line, 1);
+        // The reader would ask for more, and take what is missing for the end of the file.
+        if !Quotes::default().closed_after(record) {
+            return Err(syntax("a quote is not closed".into()));
+        }
+        let bytes = self.reader.get_mut();
+        bytes.set_position(0);
+        bytes.get_mut().clear();
+        bytes.get_mut().extend_from_slice(raw);
+        bytes.get_mut().push(b'\n');
         let start = self.reader.position().byte();
         let read = self.reader.read_byte_record(&mut self.record);
-        let whole = self.reader.position().byte() - start > raw.len() as u64;
-        let unclosed = self.reader.get_ref().ended;
-        let syntax = |reason: String| Error::new(Reason::Syntax(reason)).on(line, 1);
-        if unclosed || !whole {
+        if self.reader.position().byte() - start <= raw.len() as u64 {
             self.reader = reader();
-            let row = if unclosed { "a quote is not closed" } else { "a line break of another kind stands in the row" };
-            return Err(syntax(row.into()));
+            return Err(syntax("a line break of another kind stands in the row".into()));
         }
         read.map_err(|error| syntax(error.to_string()))?;
         Ok(Some(Row { header: self.header, record: &self.record, raw, line }))
     }
 }
 
-fn reader() -> csv::Reader<Feed> {
-    csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(Feed::default())
+fn reader() -> csv::Reader<Cursor<Vec<u8>>> {
+    csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(Cursor::default())
 }
 
 impl Row<'_> {
