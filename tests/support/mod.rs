@@ -9,6 +9,7 @@ pub mod mechanism;
 pub mod paper;
 pub mod parallel;
 pub mod random;
+pub mod robots;
 pub mod rational;
 pub mod scaled;
 pub mod urdf;

@@ -1,37 +1,18 @@
 //! What the root is, and where the robot begins.
 
 use super::*;
+use crate::support::impact::try_impact;
+use heelstrike::pipeline::Options;
 use heelstrike::robot::{FreezeReason, FrozenJoint};
-
-/// A robot whose links `a`, `b`, ... of these masses form a chain with joints j, k, ... of these types and axes.
-fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
-    let name = |first: char, k: usize| (first..='z').nth(k).expect("few");
-    let link = |(k, &mass): (usize, &f64)| {
-        let inertial = if mass == 0.0 { String::new() } else { inertial(mass, "0 0 0", 1.0) };
-        format!("<link name=\"{}\">{inertial}</link>", name('a', k))
-    };
-    let joint = |(k, (kind, axis)): (usize, &(&str, &str))| {
-        format!(
-            "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/><axis xyz=\"{axis}\"/></joint>",
-            name('j', k),
-            name('a', k),
-            name('a', k + 1)
-        )
-    };
-    let links: String = masses.iter().enumerate().map(link).collect();
-    robot(&(links + &joints.iter().enumerate().map(joint).collect::<String>()))
-}
 
 const X: (&str, &str) = ("prismatic", "1 0 0");
 const Y: (&str, &str) = ("prismatic", "0 1 0");
 const Z: (&str, &str) = ("prismatic", "0 0 1");
-const PITCH: (&str, &str) = ("continuous", "0 1 0");
-const ROLL: (&str, &str) = ("continuous", "1 0 0");
 const FIXED: (&str, &str) = ("fixed", "1 0 0");
 
 /// How the root is held, the body that the robot begins with, and its joints.
 fn found(robot: &Robot) -> (Base, &str, Vec<&str>) {
-    (robot.base, &robot.bodies[0].name, robot.joints.iter().map(|joint| joint.name.as_str()).collect())
+    (robot.base, &robot.bodies[0].name, names(robot))
 }
 
 #[test]
@@ -65,7 +46,7 @@ fn a_whole_chain_under_a_massless_root_is_the_base_itself() {
 
 #[test]
 fn a_three_dimensional_chain_is_the_base_itself_too() {
-    let joints = [X, Y, Z, ROLL, PITCH, ("revolute", "0 0 1"), PITCH];
+    let joints = [X, Y, Z, ROLL, PITCH, YAW, PITCH];
     let robot = load(&chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0], &joints));
     // The yaw behind the pitch is held, so that the robot's root is the link between them.
     assert_eq!(found(&robot), (Base::Floating, "f", vec!["p"]));
@@ -76,8 +57,11 @@ fn a_three_dimensional_chain_is_the_base_itself_too() {
 fn the_robot_keeps_the_axes_of_the_files_root_behind_a_turned_chain() {
     // The last joint's frame is turned by a quarter about z, so that its own x axis is the root's y; the torso's CoG,
     // at (0, -0.3, 0.2) there, lies at x = 0.3.
-    let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, ("continuous", "1 0 0")])
-        .replace("<child link=\"d\"/>", &format!("<child link=\"d\"/><origin xyz=\"5 6 7\" rpy=\"0 0 {FRAC_PI_2}\"/>"))
+    let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, ROLL])
+        .replace(
+            "<child link=\"d\"/><origin xyz=\"0 0 -1\"/>",
+            &format!("<child link=\"d\"/><origin xyz=\"5 6 7\" rpy=\"0 0 {FRAC_PI_2}\"/>"),
+        )
         .replace("<origin xyz=\"0 0 0\"/><mass value=\"2\"/>", "<origin xyz=\"0 -0.3 0.2\"/><mass value=\"2\"/>");
     let robot = load(&text);
     assert_eq!(found(&robot), (Base::Floating, "d", vec![]));
@@ -151,13 +135,10 @@ fn the_world_needs_no_definition() {
 
 #[test]
 fn a_massless_root_between_several_joints_floats() {
-    let text = robot(&format!(
-        "<link name=\"hip\"/><link name=\"l\">{0}</link><link name=\"r\">{0}</link>\
-         <joint name=\"i\" type=\"continuous\"><parent link=\"hip\"/><child link=\"l\"/><axis xyz=\"0 1 0\"/></joint>\
-         <joint name=\"j\" type=\"continuous\"><parent link=\"hip\"/><child link=\"r\"/><axis xyz=\"0 1 0\"/></joint>",
-        inertial(1.0, "0 0 -0.5", 0.1)
-    ));
-    let robot = load(&text);
+    let leg = |name: &str| link(name, 1.0, [0.0, -0.5], 0.1, "");
+    let hinge = |name: &str, leg: &str| joint(name, HINGE, ["hip", leg], [0.0; 2], "");
+    let elements = ["<link name=\"hip\"/>".to_owned(), leg("l"), leg("r"), hinge("i", "l"), hinge("j", "r")];
+    let robot = load(&urdf::robot(&elements));
     assert_eq!(found(&robot), (Base::Floating, "hip", vec!["i", "j"]));
     assert_eq!(robot.reading.base_because, "the root is massless, but several joints carry the robot");
 }
@@ -180,7 +161,7 @@ fn the_base_can_be_asked_for() {
 fn a_chain_whose_links_were_only_given_a_mass_gets_a_word() {
     let robot = load(&chain(&[1e-3, 1e-3, 1e-3, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["j", "k", "l", "m"]));
-    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    let caution = only_caution(&robot);
     assert!(caution.contains("\"j\", \"k\", \"l\"") && caution.contains("`base: fixed`"), "{caution}");
 }
 
@@ -188,7 +169,7 @@ fn a_chain_whose_links_were_only_given_a_mass_gets_a_word() {
 fn a_chain_of_next_to_nothing_under_a_massless_root_is_the_base_all_the_same() {
     let robot = load(&chain(&[0.0, 1e-6, 1e-6, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "d", vec!["m"]));
-    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    let caution = only_caution(&robot);
     assert!(caution.contains("weigh 0.000002 kg, which is left out"), "{caution}");
     // A carriage of 1 kg is none.
     let robot = load(&chain(&[0.0, 1.0, 0.0, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
@@ -199,13 +180,12 @@ fn a_chain_of_next_to_nothing_under_a_massless_root_is_the_base_all_the_same() {
 fn a_link_of_the_base_is_no_place_for_a_contact() {
     let robot = load(&chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]));
     let state = r#"{"friction": 1, "contacts": [{"link": "b"}]}"#;
-    let defaults = heelstrike::state::Defaults::default();
-    let refused = heelstrike::state::State::from_json(state, &robot, &defaults).expect_err("a link of the base");
+    let refused = try_impact(&robot, Options::default(), state).expect_err("a link of the base");
     assert!(refused.to_string().ends_with("link \"b\" is part of the base, not of the robot"), "{refused}");
 }
 
 #[test]
-fn a_joint_that_is_welded_to_the_base_belongs_to_it() {
+fn a_joint_that_is_fixed_to_the_base_belongs_to_it() {
     let robot = load(&chain(&[0.0, 0.0, 0.0, 0.0, 2.0], &[FIXED, X, Z, PITCH]));
     assert_eq!(robot.reading.outside, ["a", "b", "c", "d"]);
     assert!(robot.reading.frozen.iter().all(|joint| joint.reason == FreezeReason::Base), "{:?}", robot.reading.frozen);
@@ -217,7 +197,8 @@ fn a_foot_on_a_link_of_the_base_gets_a_word() {
         "<link name=\"c\">",
         "<link name=\"c\"><collision><geometry><sphere radius=\"0\"/></geometry></collision>",
     );
-    let [caution] = &load(&text).reading.cautions[..] else { panic!("one caution") };
+    let robot = load(&text);
+    let caution = only_caution(&robot);
     assert!(caution.starts_with("c has collision shapes but belongs to the base"), "{caution}");
 }
 

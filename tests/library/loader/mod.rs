@@ -2,9 +2,13 @@
 //!
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
+use crate::support::command::read;
+use crate::support::impact::robot as load;
+use crate::support::robots::{ROBOTS, robot_and_reference};
+use crate::support::urdf::{self, HINGE, joint, link};
 use heelstrike::description::Description;
 use heelstrike::planar::Vector;
-use heelstrike::robot::{Axis, Base, LeftOut, Link, ParentJoint, Reduction, Rim, Robot};
+use heelstrike::robot::{Axis, Base, Body, LeftOut, Link, ParentJoint, Reduction, Rim, Robot};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,19 +17,14 @@ mod plane;
 mod untidy;
 
 fn model(name: &str) -> Robot {
-    let path = format!("{}/urdf/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
-    load(&std::fs::read_to_string(path).expect("a file"))
+    load(&read(&format!("urdf/{name}.urdf")))
 }
 
-fn load(text: &str) -> Robot {
-    Robot::from_urdf(text).expect("a robot")
-}
-
-/// Centre and radius of the disc that is a link's only shape.
+/// Center and radius of the disc that is a link's only shape.
 fn disc(link: &Link) -> ([f64; 2], f64) {
     let [shape] = &link.shapes[..] else { panic!("one shape") };
     match (shape.corners(), shape.rim) {
-        (&[centre], Rim::Circle { radius }) => (centre.components(), radius),
+        (&[center], Rim::Circle { radius }) => (center.components(), radius),
         other => panic!("{other:?} is no disc"),
     }
 }
@@ -45,13 +44,47 @@ fn inertial(mass: f64, com: &str, iyy: f64) -> String {
     )
 }
 
-/// A massive link `a`, this joint element's inside, and a massive link `b`.
-fn two_links(kind: &str, joint: &str) -> String {
-    let inertial = inertial(1.0, "0 0 0", 1.0);
-    robot(&format!(
-        "<link name=\"a\">{inertial}</link>\n<link name=\"b\">{inertial}</link>\n\
-         <joint name=\"j\" type=\"{kind}\"><parent link=\"a\"/><child link=\"b\"/>{joint}</joint>"
-    ))
+/// Revolute joints by their axes.
+const ROLL: (&str, &str) = ("revolute", "1 0 0");
+const PITCH: (&str, &str) = ("revolute", "0 1 0");
+const YAW: (&str, &str) = ("revolute", "0 0 1");
+
+/// Links a, b, c ... of these masses in a chain, each 1 m below the one before, with joints j, k, l ... of these types
+/// and axes; an element on each line.
+fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
+    let letter = |first: char, k: usize| (first..='z').nth(k).expect("few");
+    let link = |(k, &mass): (usize, &f64)| {
+        let inertial = if mass == 0.0 { String::new() } else { inertial(mass, "0 0 0", 1.0) };
+        format!("<link name=\"{}\">{inertial}</link>\n", letter('a', k))
+    };
+    let joint = |(k, (kind, axis)): (usize, &(&str, &str))| {
+        let [name, parent, child] = [letter('j', k), letter('a', k), letter('a', k + 1)];
+        format!(
+            "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+             <origin xyz=\"0 0 -1\"/><axis xyz=\"{axis}\"/></joint>\n"
+        )
+    };
+    robot(&masses.iter().enumerate().map(link).chain(joints.iter().enumerate().map(joint)).collect::<String>())
+}
+
+/// Such a chain of massive links.
+fn massive(joints: &[(&str, &str)]) -> String {
+    chain(&vec![1.0; joints.len() + 1], joints)
+}
+
+fn names(robot: &Robot) -> Vec<&str> {
+    robot.joints.iter().map(|joint| joint.name.as_str()).collect()
+}
+
+#[track_caller]
+fn only_caution(robot: &Robot) -> &str {
+    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    caution
+}
+
+/// Massive links `a` and `b`, and a joint of this type and with these elements.
+fn two_links(kind: &str, elements: &str) -> String {
+    massive(&[(kind, "")]).replace("<origin xyz=\"0 0 -1\"/><axis xyz=\"\"/>", elements)
 }
 
 fn left_out(what: &str, why: &str) -> LeftOut {
@@ -69,11 +102,8 @@ fn ramone_keeps_the_digits_of_table_1() {
         let coordinates: Vec<&str> = ramone.coordinates().collect();
         assert_eq!(coordinates, ["x", "z", "pitch", "left_hip", "left_knee", "right_hip", "right_knee"]);
 
-        let bodies: Vec<_> = ramone
-            .bodies
-            .iter()
-            .map(|body| (body.name.as_str(), body.mass, body.com.components(), body.moment))
-            .collect();
+        let body = |body: &Body| (body.name.clone(), body.mass, body.com.components(), body.moment);
+        let bodies: Vec<_> = ramone.bodies.iter().map(body).collect();
         let thigh = (0.7887, [0.0, -0.019399], 0.00221);
         let expected = [
             ("torso", 7.9026, [0.0, 0.0], 0.0800),
@@ -82,7 +112,7 @@ fn ramone_keeps_the_digits_of_table_1() {
             ("right_thigh", thigh.0, thigh.1, thigh.2),
             ("right_shank", 0.510, [0.0, shank], 0.00652),
         ];
-        assert_eq!(bodies, expected);
+        assert_eq!(bodies, expected.map(|(name, mass, com, moment)| (name.to_owned(), mass, com, moment)));
 
         let joints: Vec<_> =
             ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin.components())).collect();
@@ -93,8 +123,7 @@ fn ramone_keeps_the_digits_of_table_1() {
         for foot in ["left_foot", "right_foot"] {
             let foot = &ramone.links[ramone.link(foot).expect("a foot")];
             assert!(!foot.has_inertial);
-            let (centre, radius) = disc(foot);
-            assert_eq!((centre, radius), ([0.0, -0.2385], 0.02815));
+            assert_eq!(disc(foot), ([0.0, -0.2385], 0.02815));
             assert_eq!(foot.point::<f64>([0.001, 0.5, 0.0]), [0.001, -0.2385]);
         }
         assert_eq!(ramone.links.iter().filter(|link| !link.shapes.is_empty()).count(), 2);
@@ -116,10 +145,7 @@ fn walkers_hang_from_the_hip_with_point_feet() {
             assert_eq!((body.mass, body.com, body.moment), (1.0, Vector::new(0.0, -along), moment));
         }
         assert_eq!((walker.joints[0].origin, walker.joints[0].axis), (Vector::zero(), Axis::Revolute { sign: -1.0 }));
-        for link in &walker.links {
-            let (centre, radius) = disc(link);
-            assert_eq!((centre, radius), ([0.0, -1.0], 0.0));
-        }
+        assert!(walker.links.iter().all(|link| disc(link) == ([0.0, -1.0], 0.0)));
         assert_eq!(walker.left_out, []);
     }
 }
@@ -129,17 +155,10 @@ fn block_is_one_body_on_one_point() {
     let block = model("block");
     assert_eq!((block.bodies.len(), block.dofs()), (1, 3));
     assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, Vector::new(-1.0, 1.0), 1.0));
-    let (centre, radius) = disc(&block.links[0]);
-    assert_eq!((centre, radius), ([0.0, 0.0], 0.0));
+    assert_eq!(disc(&block.links[0]), ([0.0, 0.0], 0.0));
 }
 
 // Robots of others.
-
-#[derive(Deserialize)]
-struct Reference {
-    /// Some variants lack what is read here, so each is read when it is wanted.
-    variants: std::collections::BTreeMap<String, serde_json::Value>,
-}
 
 #[derive(Deserialize)]
 struct Model {
@@ -173,23 +192,9 @@ struct ReferenceBody {
 
 #[test]
 fn robots_of_others_equal_the_values_of_pinocchio() {
-    for (folder, file, variant) in [
-        ("a1", "a1", "default"),
-        ("acrobot", "Acrobot", "fixed"),
-        ("cartpole", "cartpole", "fixed_prismatic"),
-        ("h1", "h1", "default"),
-        ("planar_walker_torso", "PlanarWalkerWithTorso", "rerooted"),
-        ("rabbit", "five_link_walker", "default"),
-        ("solo8", "solo", "default"),
-        ("upkie", "upkie", "default"),
-    ] {
-        let read = |name: String| {
-            let path = format!("{}/tests/data/robots/{folder}/{name}", env!("CARGO_MANIFEST_DIR"));
-            std::fs::read_to_string(path).expect("a file")
-        };
-        let robot = load(&read(format!("{file}.urdf")));
-        let reference: Reference = serde_json::from_str(&read("reference.json".into())).expect("a reference");
-        let expected: Model = serde_json::from_value(reference.variants[variant].clone()).expect("the variant");
+    for named in ROBOTS {
+        let (urdf, expected) = robot_and_reference::<Model>(named);
+        let (robot, folder) = (load(&urdf), named.0);
         assert_eq!(robot.coordinates().collect::<Vec<_>>(), expected.coordinates, "{folder}");
         assert_eq!(robot.bodies.len(), expected.bodies.len(), "{folder}");
         close(robot.mass(), expected.total_mass);
@@ -207,9 +212,8 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
             let reduced = &robot.bodies[index];
             close(reduced.mass, expected.mass);
             close(reduced.moment, expected.moment);
-            let com = origins[index] + reduced.com;
-            close(com.x, expected.com_zero[0]);
-            close(com.z, expected.com_zero[1]);
+            let com = (origins[index] + reduced.com).components();
+            com.into_iter().zip(expected.com_zero).for_each(|(com, expected)| close(com, expected));
             for link in &expected.merged_links {
                 assert_eq!(robot.links[robot.link(link).expect("the link")].body, index, "{link}");
             }
@@ -223,9 +227,8 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
                 (Axis::Prismatic { direction }, _, Some(expected)) => assert_eq!(direction, expected, "{}", joint.name),
                 (axis, ..) => panic!("{}: {axis:?}", joint.name),
             }
-            for k in [0, 1] {
-                close(origins[joint.child].components()[k], reference.origin_zero[k]);
-            }
+            let origin = origins[joint.child].components();
+            origin.into_iter().zip(reference.origin_zero).for_each(|(origin, expected)| close(origin, expected));
         }
     }
 }
@@ -236,7 +239,7 @@ fn close(value: f64, reference: f64) {
 }
 
 #[test]
-fn wheels_of_upkie_are_discs_and_meshes_of_solo_are_told() {
+fn wheels_of_upkie_are_discs_and_meshes_of_solo_left_out() {
     let upkie = load(include_str!("../../data/robots/upkie/upkie.urdf"));
     let tire = &upkie.links[upkie.link("left_wheel_tire").expect("a tire")];
     assert_eq!(disc(tire).1, 0.05);
@@ -272,7 +275,7 @@ fn an_axis_is_turned_by_all_origins_before_it() {
 }
 
 #[test]
-fn an_axis_slightly_off_is_brought_into_line_and_told() {
+fn an_axis_slightly_off_is_brought_into_line() {
     let robot = load(&two_links("revolute", "<axis xyz=\"0 1 5e-4\"/>"));
     let why = "its axis is 5.0e-4 rad off the plane's normal: taken as exactly on it";
     assert_eq!(robot.left_out, [left_out("joint \"j\"", why)]);
@@ -294,35 +297,24 @@ fn a_slide_has_its_direction_in_the_roots_axes_at_length_one() {
 
 #[test]
 fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
-    let inertial = inertial(1.0, "0 0 0", 1.0);
-    let link = |name: &str| format!("<link name=\"{name}\">{inertial}</link>");
-    let joint = |name: &str, parent: &str, child: &str| {
-        format!(
-            "<joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
-             <axis xyz=\"0 1 0\"/></joint>"
-        )
-    };
-    let text = robot(
-        &[
-            joint("ankle", "shank", "foot"),
-            link("foot"),
-            joint("knee", "thigh", "shank"),
-            link("shank"),
-            link("thigh"),
-            link("root"),
-            joint("hip", "root", "thigh"),
-            joint("tail", "root", "tip"),
-            link("tip"),
-        ]
-        .concat(),
-    );
+    let link = |name: &str| link(name, 1.0, [0.0; 2], 1.0, "");
+    let hinge = |name: &str, parent: &str, child: &str| joint(name, HINGE, [parent, child], [0.0; 2], "");
+    let text = urdf::robot(&[
+        hinge("ankle", "shin", "foot"),
+        link("foot"),
+        hinge("knee", "thigh", "shin"),
+        ["shin", "thigh", "root"].map(link).concat(),
+        hinge("hip", "root", "thigh"),
+        hinge("tail", "root", "tip"),
+        link("tip"),
+    ]);
     let robot = load(&text);
     assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
     let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
     let joint = |joint| Some(ParentJoint::Joint(joint));
     assert_eq!(
         bodies,
-        [("root", None), ("thigh", joint(2)), ("shank", joint(1)), ("foot", joint(0)), ("tip", joint(3))]
+        [("root", None), ("thigh", joint(2)), ("shin", joint(1)), ("foot", joint(0)), ("tip", joint(3))]
     );
     assert_eq!(robot.links.iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
 }
@@ -330,7 +322,7 @@ fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
 // Welding.
 
 #[test]
-fn fixed_links_are_welded_with_their_turned_inertia() {
+fn fixed_links_are_merged_with_their_turned_inertia() {
     let text = robot(&format!(
         "<link name=\"a\">{}</link>\n\
          <link name=\"b\"><inertial><origin xyz=\"0 7 1\"/><mass value=\"3\"/>\
@@ -355,8 +347,7 @@ fn fixed_links_are_welded_with_their_turned_inertia() {
     // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
     let Vector { x, z } = robot.links[1].point::<f64>([1.0, 2.0, 3.0]);
     assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15);
-    let (centre, radius) = disc(&robot.links[1]);
-    assert_eq!((centre, radius, robot.links[1].body), ([2.0, 0.0], 0.1, 0));
+    assert_eq!((disc(&robot.links[1]), robot.links[1].body), (([2.0, 0.0], 0.1), 0));
     // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
     let Vector { x, z } = robot.joints[0].origin;
     assert!((x - 2.0).abs() < 1e-15 && z.abs() < 1e-15);
@@ -378,7 +369,7 @@ fn a_box_foot_keeps_its_exact_corners_through_a_weld() {
 }
 
 #[test]
-fn a_link_without_inertial_weighs_nothing_and_a_missing_inertia_is_told() {
+fn links_without_inertial_or_inertia_are_read() {
     let text = robot(
         "<link name=\"a\"><inertial><origin xyz=\"0.1 0 0\"/><mass value=\"2\"/></inertial></link><link name=\"b\"/>\
          <joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>",
@@ -394,7 +385,7 @@ fn a_link_without_inertial_weighs_nothing_and_a_missing_inertia_is_told() {
 }
 
 #[test]
-fn skipped_shapes_are_told_one_by_one() {
+fn skipped_shapes_are_listed_one_by_one() {
     let shape = |geometry: &str| format!("<collision><geometry>{geometry}</geometry></collision>");
     let text = robot(&format!(
         "<link name=\"a\">{}{}{}{}</link>",
@@ -416,17 +407,12 @@ fn skipped_shapes_are_told_one_by_one() {
 fn a_long_chain_is_reduced_without_recursion() {
     // As many joints as may move, every second one; 2,000 x 2 + 1 links.
     let count = 4_001;
-    let inertial = inertial(1.0, "0 0 -0.5", 0.1);
-    let mut body = format!("<link name=\"l0\">{inertial}</link>");
-    for k in 1..count {
-        let parent = k - 1;
-        let kind = if k % 2 == 0 { "fixed" } else { "continuous" };
-        body += &format!(
-            "<link name=\"l{k}\">{inertial}</link><joint name=\"j{k}\" type=\"{kind}\"><parent link=\"l{parent}\"/>\
-             <child link=\"l{k}\"/><origin xyz=\"0 0 -1\"/><axis xyz=\"0 1 0\"/></joint>"
-        );
-    }
-    let robot = load(&robot(&body));
+    let links = (0..count).map(|k| link(format!("l{k}"), 1.0, [0.0, -0.5], 0.1, ""));
+    let joints = (1..count).map(|k| {
+        let [parent, child] = [k - 1, k].map(|k| format!("l{k}"));
+        joint(format!("j{k}"), if k % 2 == 0 { urdf::Axis::Fixed } else { HINGE }, [&parent, &child], [0.0, -1.0], "")
+    });
+    let robot = load(&urdf::robot(&links.chain(joints).collect::<Vec<_>>()));
     assert_eq!((robot.bodies.len(), robot.joints.len()), (count / 2 + 1, count / 2));
     assert_eq!(robot.bodies[1].com, [0.0, -1.0]);
 }

@@ -7,31 +7,6 @@ fn in_plane(plane: Plane) -> Reduction {
     Reduction { plane: Some(plane), ..Reduction::default() }
 }
 
-/// Massive links a, b, c ... in a chain, each 1 m below the one before, with joints j, k, l ... of these types and
-/// axes.
-fn chain(joints: &[(&str, &str)]) -> String {
-    let inertial = inertial(1.0, "0 0 0", 1.0);
-    let link = |k: usize| format!("<link name=\"{}\">{inertial}</link>\n", letter('a', k));
-    let joint = |(k, (kind, axis)): (usize, &(&str, &str))| {
-        format!(
-            "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/><origin xyz=\"0 0 -1\"/>\
-             <axis xyz=\"{axis}\"/></joint>\n",
-            letter('j', k),
-            letter('a', k),
-            letter('a', k + 1)
-        )
-    };
-    robot(&(0..=joints.len()).map(link).chain(joints.iter().enumerate().map(joint)).collect::<String>())
-}
-
-fn letter(first: char, k: usize) -> char {
-    (first..='z').nth(k).expect("few")
-}
-
-fn kept(robot: &Robot) -> Vec<&str> {
-    robot.joints.iter().map(|joint| joint.name.as_str()).collect()
-}
-
 fn still<'a>(robot: &'a Robot, joint: &str) -> &'a FreezeReason {
     &robot.frozen(joint).expect("a frozen joint").reason
 }
@@ -45,7 +20,7 @@ fn the_common_direction_of_all_hinges_gives_the_plane() {
         ("-2 0 0", Plane::YZ, 1.0),
         ("0 0 1", Plane::XY, -1.0),
     ] {
-        let robot = load(&chain(&[("continuous", axis), ("revolute", axis)]));
+        let robot = load(&massive(&[("continuous", axis), ("revolute", axis)]));
         assert_eq!((robot.reading.plane, robot.reading.plane_because), (plane, PlaneReason::CommonAxis), "{axis}");
         // The normal of y-z is -x and that of x-y is -z.
         assert!(robot.joints.iter().all(|joint| joint.axis == Axis::Revolute { sign }), "{axis}");
@@ -55,16 +30,16 @@ fn the_common_direction_of_all_hinges_gives_the_plane() {
 
 #[test]
 fn without_a_common_direction_the_plane_is_x_z_and_a_better_one_is_named() {
-    let robot = load(&chain(&[("continuous", "1 0 0"), ("revolute", "1 0 0"), ("revolute", "0 1 0")]));
+    let robot = load(&massive(&[("continuous", "1 0 0"), ROLL, PITCH]));
     assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::XZ, PlaneReason::Usual));
-    assert_eq!((robot.reading.better_plane, kept(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
+    assert_eq!((robot.reading.better_plane, names(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
     assert!(robot.reading.plane_in_words().ends_with("plane yz would keep 2 joints"));
 
-    let given = reduce(&chain(&[("continuous", "1 0 0"), ("revolute", "0 1 0")]), &in_plane(Plane::YZ));
-    assert_eq!((given.reading.plane_because, kept(&given)), (PlaneReason::Asked, vec!["j"]));
+    let given = reduce(&massive(&[("continuous", "1 0 0"), PITCH]), &in_plane(Plane::YZ));
+    assert_eq!((given.reading.plane_because, names(&given)), (PlaneReason::Asked, vec!["j"]));
     // No hinge has a direction.
-    let slide = load(&chain(&[("prismatic", "0 1 0"), ("prismatic", "0 0 1")]));
-    assert_eq!((slide.reading.plane_because, kept(&slide)), (PlaneReason::Usual, vec!["k"]));
+    let slide = load(&massive(&[("prismatic", "0 1 0"), ("prismatic", "0 0 1")]));
+    assert_eq!((slide.reading.plane_because, names(&slide)), (PlaneReason::Usual, vec!["k"]));
 }
 
 #[test]
@@ -92,11 +67,10 @@ fn each_plane_takes_its_own_components_bit_for_bit() {
 }
 
 #[test]
-fn joints_that_leave_the_plane_are_welded_at_zero_and_their_angle_told() {
-    let text =
-        chain(&[("revolute", "1 0 0"), ("revolute", "0 1 0"), ("continuous", "0 -1 0.0787"), ("revolute", "0 1 0")]);
+fn joints_that_leave_the_plane_are_frozen_at_zero() {
+    let text = massive(&[ROLL, PITCH, ("continuous", "0 -1 0.0787"), PITCH]);
     let robot = load(&text);
-    assert_eq!(kept(&robot), ["k", "m"]);
+    assert_eq!(names(&robot), ["k", "m"]);
     let bodies: Vec<_> =
         robot.bodies.iter().map(|body| (body.name.as_str(), body.mass, body.com.components())).collect();
     // a and b are one body with its CoG half way; so are c and d, behind k.
@@ -108,20 +82,20 @@ fn joints_that_leave_the_plane_are_welded_at_zero_and_their_angle_told() {
     ];
     assert_eq!(robot.left_out, expected);
 
-    let slides = reduce(&chain(&[("prismatic", "0 1 0"), ("prismatic", "1 0 1")]), &Reduction::default());
+    let slides = reduce(&massive(&[("prismatic", "0 1 0"), ("prismatic", "1 0 1")]), &Reduction::default());
     let why = "held at zero, its axis being 90.00 degrees off the plane: welded into a";
     assert_eq!(slides.left_out, [left_out("joint \"j\"", why)]);
-    assert_eq!(kept(&slides), ["k"]);
+    assert_eq!(names(&slides), ["k"]);
 }
 
 #[test]
-fn held_joints_are_welded_at_their_values_and_axes_judged_there() {
+fn frozen_joints_stay_at_their_values_and_axes_are_judged_there() {
     // j turns about x by a quarter, so that the z axis of k points to -y: k stays.
-    let text = chain(&[("revolute", "2 0 0"), ("revolute", "0 0 1"), ("prismatic", "0 0 1")]);
+    let text = massive(&[("revolute", "2 0 0"), YAW, ("prismatic", "0 0 1")]);
     let hold =
         |hold: &[(usize, f64)]| Reduction { plane: Some(Plane::XZ), hold: hold.to_vec(), ..Reduction::default() };
     let robot = reduce(&text, &hold(&[(0, FRAC_PI_2)]));
-    assert_eq!((kept(&robot), robot.joints[0].axis), (vec!["k"], Axis::Revolute { sign: -1.0 }));
+    assert_eq!((names(&robot), robot.joints[0].axis), (vec!["k"], Axis::Revolute { sign: -1.0 }));
     assert_eq!(still(&robot, "j"), &FreezeReason::Asked { value: FRAC_PI_2 });
     // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
     let Vector { x, z } = robot.joints[0].origin;
@@ -129,23 +103,20 @@ fn held_joints_are_welded_at_their_values_and_axes_judged_there() {
 
     // A slide that is held carries its child along: 1 m down and 0.25 m up.
     let robot = reduce(&text, &hold(&[(2, 0.25)]));
-    assert_eq!(kept(&robot), [""; 0]);
+    assert_eq!(names(&robot), [""; 0]);
     assert_eq!(robot.links[3].point::<f64>([0.0; 3]), [0.0, -2.75]);
     let why = "held at 0.25 as asked: welded into a";
     assert!(robot.left_out.contains(&left_out("joint \"l\"", why)), "{:?}", robot.left_out);
 
     // A joint of the plane can be held as well, and then gives no plane.
-    let robot = reduce(
-        &chain(&[("revolute", "1 0 0"), ("revolute", "0 0 1")]),
-        &Reduction { hold: vec![(0, 0.0)], ..Reduction::default() },
-    );
-    assert_eq!((robot.reading.plane, kept(&robot)), (Plane::XY, vec!["k"]));
+    let robot = reduce(&massive(&[ROLL, YAW]), &Reduction { hold: vec![(0, 0.0)], ..Reduction::default() });
+    assert_eq!((robot.reading.plane, names(&robot)), (Plane::XY, vec!["k"]));
 }
 
 #[test]
-fn a_held_pitch_turns_all_that_hangs_on_it() {
+fn a_frozen_pitch_turns_all_that_depends_on_it() {
     // j dips the nose by a: what hung down points backward by sin a.
-    let text = chain(&[("revolute", "0 1 0"), ("revolute", "0 1 0")]);
+    let text = massive(&[PITCH, PITCH]);
     let robot = reduce(&text, &Reduction { hold: vec![(0, 0.3)], ..Reduction::default() });
     let Vector { x, z } = robot.joints[0].origin;
     assert!((x + 0.3_f64.sin()).abs() < 1e-15 && (z + 1.0 + 0.3_f64.cos()).abs() < 1e-15);
@@ -158,7 +129,7 @@ fn what_cannot_be_held_is_refused() {
         let reduction = Reduction { hold: hold.to_vec(), ..Reduction::default() };
         Robot::reduce(&description, &reduction).expect_err("a refusal").to_string()
     };
-    let text = chain(&[("fixed", "0 1 0"), ("revolute", "0 1 0"), ("floating", "0 1 0")]);
+    let text = massive(&[("fixed", "0 1 0"), PITCH, ("floating", "0 1 0")]);
     assert_eq!(refused(&text, &[(0, 0.0)]), "6:1: joint \"j\": it cannot be held at a value: it is fixed");
     assert_eq!(refused(&text, &[(2, 0.0)]), "8:1: joint \"l\": it cannot be held at a value: it is floating");
     assert_eq!(refused(&text, &[(1, 0.0), (1, 1.0)]), "7:1: joint \"k\": held joint \"k\" is given twice");
@@ -170,12 +141,12 @@ fn what_cannot_be_held_is_refused() {
 }
 
 #[test]
-fn joints_without_a_single_axis_are_held_and_a_word_said() {
+fn joints_without_a_single_axis_are_frozen_with_a_caution() {
     for (kind, word) in
         [("planar", "planar"), ("floating", "floating"), ("spherical", "spherical"), ("ball", "spherical")]
     {
-        let robot = load(&chain(&[("revolute", "0 1 0"), (kind, "0 1 0")]));
-        assert_eq!(kept(&robot), ["j"]);
+        let robot = load(&massive(&[PITCH, (kind, "0 1 0")]));
+        assert_eq!(names(&robot), ["j"]);
         let why = format!("held at zero, being {word}: welded into b");
         assert_eq!(robot.left_out, [left_out("joint \"k\"", &why)]);
         let caution = "k could move in the plane and is held all the same, having no single axis: replace it by revolute \
@@ -185,42 +156,40 @@ fn joints_without_a_single_axis_are_held_and_a_word_said() {
 }
 
 #[test]
-fn axes_that_are_all_a_little_off_get_a_loud_word() {
+fn axes_that_are_all_a_little_off_get_a_caution() {
     // tan 5 degrees.
     let tilted = ("revolute", "0 1 0.087488663525924");
-    let robot = load(&chain(&[("revolute", "1 0 0"), tilted, tilted]));
+    let robot = load(&massive(&[ROLL, tilted, tilted]));
     assert!(robot.joints.is_empty());
-    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    let caution = only_caution(&robot);
     let held = "2 of 3 joints that could move are held only because their axes are 5.0 degrees off the plane (k, l); to keep them";
     // From y + z tan 5 degrees back to y is a turn about x by minus 5 degrees.
-    assert_eq!(caution, &format!("{held}: `hold: j=-0.087266`"));
-    let text = chain(&[("revolute", "1 0 0"), tilted, tilted]);
-    assert_eq!(kept(&reduce(&text, &Reduction { hold: vec![(0, -0.087266)], ..Reduction::default() })), ["k", "l"]);
+    assert_eq!(caution, format!("{held}: `hold: j=-0.087266`"));
+    let text = massive(&[ROLL, tilted, tilted]);
+    assert_eq!(names(&reduce(&text, &Reduction { hold: vec![(0, -0.087266)], ..Reduction::default() })), ["k", "l"]);
 
     // A mounting that is tilted cannot be held elsewhere.
-    let hinge = ("revolute", "0 1 0");
-    let mounted = chain(&[("fixed", "1 0 0"), hinge, hinge, ("revolute", "1 0 0")])
+    let mounted = massive(&[("fixed", "1 0 0"), PITCH, PITCH, ROLL])
         .replace("<child link=\"b\"/><origin", "<child link=\"b\"/><origin rpy=\"0.0872665 0 0\"");
     let robot = load(&mounted);
-    let [caution] = &robot.reading.cautions[..] else { panic!("{:?}", robot.reading.cautions) };
+    let caution = only_caution(&robot);
     assert!(caution.ends_with("(k, l); to keep them: straighten the rpy of j"), "{caution}");
 
     // Two shoulders among four joints that stay are no reason to shout.
-    let robot = load(&chain(&[hinge, hinge, hinge, hinge, tilted, tilted]));
+    let robot = load(&massive(&[PITCH, PITCH, PITCH, PITCH, tilted, tilted]));
     assert!(robot.reading.cautions.is_empty(), "{:?}", robot.reading.cautions);
 
-    let aside = load(&chain(&[("revolute", "1 0 0"), ("revolute", "0 0 1")]));
-    let [caution] = &aside.reading.cautions[..] else { panic!("{:?}", aside.reading.cautions) };
+    let aside = load(&massive(&[ROLL, YAW]));
+    let caution = only_caution(&aside);
     assert!(caution.starts_with("no joint moves in this plane"), "{caution}");
 }
 
 // Joints that follow others.
 
 #[test]
-fn a_follower_is_tied_to_the_last_of_its_leaders() {
+fn a_mimic_joint_is_tied_to_the_last_mimicked_one() {
     // j follows k by 2 q + 0.5, k follows m by -3 q: j = -6 q_m + 0.5.
-    let hinge = ("revolute", "0 1 0");
-    let text = chain(&[hinge, hinge, hinge, hinge]);
+    let text = massive(&[PITCH, PITCH, PITCH, PITCH]);
     let follow = |text: &str, joint: &str, mimic: &str| {
         text.replace(
             &format!("name=\"{joint}\" type=\"revolute\">"),
@@ -230,7 +199,7 @@ fn a_follower_is_tied_to_the_last_of_its_leaders() {
     let text = follow(&text, "j", "<mimic joint=\"k\" multiplier=\"2\" offset=\"0.5\"/>");
     let text = follow(&text, "k", "<mimic joint=\"m\" multiplier=\"-3\"/>");
     let robot = load(&text);
-    assert_eq!(kept(&robot), ["l", "m"]);
+    assert_eq!(names(&robot), ["l", "m"]);
     let followers: Vec<_> = robot
         .mimic_joints
         .iter()
@@ -249,9 +218,9 @@ fn a_follower_is_tied_to_the_last_of_its_leaders() {
 }
 
 #[test]
-fn a_follower_of_a_held_joint_is_held_with_it() {
+fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     let mimic = |axis: &str, leader: &str| {
-        chain(&[("revolute", axis), ("revolute", "0 1 0")]).replace(
+        massive(&[("revolute", axis), PITCH]).replace(
             "name=\"k\" type=\"revolute\">",
             &format!("name=\"k\" type=\"revolute\"><mimic joint=\"{leader}\" multiplier=\"2\" offset=\"0.1\"/>"),
         )
@@ -270,10 +239,10 @@ fn a_follower_of_a_held_joint_is_held_with_it() {
 
     // A follower off the plane is held as such; its leader stays.
     let robot = load(
-        &chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0")])
+        &massive(&[PITCH, ROLL])
             .replace("name=\"k\" type=\"revolute\">", "name=\"k\" type=\"revolute\"><mimic joint=\"j\"/>"),
     );
-    assert_eq!((kept(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
+    assert_eq!((names(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
     assert!(matches!(still(&robot, "k"), FreezeReason::OffPlane { .. }));
 }
 
@@ -281,7 +250,7 @@ fn a_follower_of_a_held_joint_is_held_with_it() {
 
 #[test]
 fn names_change_nothing() {
-    let text = chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0"), ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
+    let text = massive(&[PITCH, ROLL, ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
     // Each letter the one that stands opposite in the alphabet, so that their order turns round; joints named like
     // links.
     let opposite = |letter: char| char::from_u32('a' as u32 + 'z' as u32 - letter as u32).expect("a letter");
@@ -300,7 +269,7 @@ fn names_change_nothing() {
 
 #[test]
 fn order_in_the_file_changes_only_the_order() {
-    let text = chain(&[("revolute", "0 1 0"), ("revolute", "1 0 0"), ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
+    let text = massive(&[PITCH, ROLL, ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
     let forward = load(&text);
     let mut lines: Vec<&str> =
         text.lines().filter(|line| line.starts_with("<link") || line.starts_with("<joint")).collect();
@@ -310,8 +279,7 @@ fn order_in_the_file_changes_only_the_order() {
     for (a, b) in forward.bodies.iter().zip(&backward.bodies) {
         assert_eq!((&a.name, a.mass, a.com, a.moment), (&b.name, b.mass, b.com, b.moment));
     }
-    let names: Vec<&str> = kept(&forward).into_iter().rev().collect();
-    assert_eq!(names, kept(&backward));
+    assert_eq!(names(&forward).into_iter().rev().collect::<Vec<_>>(), names(&backward));
     for joint in &forward.joints {
         let other = &backward.joints[backward.joint(&joint.name).expect("the joint")];
         assert_eq!(joint, other);

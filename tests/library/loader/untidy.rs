@@ -21,7 +21,7 @@ fn a_misspelt_or_late_declaration_is_passed_over() {
 }
 
 #[test]
-fn prefixes_that_nothing_declares_are_told_and_passed_over() {
+fn undeclared_prefixes_are_listed_and_passed_over() {
     let text = format!(
         "<robot name=\"r\">\n{LINK}<sensor:camera name=\"c\"><sensor:image/></sensor:camera><controller:x/>\n\
          <link name=\"b\" drake:ignore=\"true\"/></robot>"
@@ -30,8 +30,8 @@ fn prefixes_that_nothing_declares_are_told_and_passed_over() {
     // The place is that of the file.
     assert_eq!(refused.to_string(), "3:1: link \"b\": links \"a\" and \"b\" are both roots");
     let robot = load(&text.replace("<link name=\"b\" drake:ignore=\"true\"/>", ""));
-    let told = |tag: &str| left_out(&format!("<{tag}> in <robot>"), "no part of the robot's mechanics");
-    assert_eq!(robot.left_out, [left_out("link \"a\"", POINT), told("camera"), told("x")]);
+    let listed = |tag: &str| left_out(&format!("<{tag}> in <robot>"), "no part of the robot's mechanics");
+    assert_eq!(robot.left_out, [left_out("link \"a\"", POINT), listed("camera"), listed("x")]);
 }
 
 const POINT: &str = "its <inertial> has no <inertia>: taken as a point mass";
@@ -43,7 +43,7 @@ fn declaring_macros_is_not_using_them() {
 }
 
 #[test]
-fn an_inertia_that_no_body_has_is_told() {
+fn an_inertia_that_no_body_has_is_listed() {
     let link = |ixx: f64, iyy: f64, izz: f64| {
         robot(&format!(
             "<link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"{ixx}\" iyy=\"{iyy}\" izz=\"{izz}\"/></inertial></link>"

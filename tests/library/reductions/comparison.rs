@@ -1,12 +1,13 @@
 //! Two answers to one question.
 
+use crate::support::impact::{outcomes, try_impact};
+use crate::support::scaled::largest;
 use heelstrike::Robot;
 use heelstrike::description::Description;
-use heelstrike::impact::{Analysis, Outcome};
-use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::impact::Outcome;
+use heelstrike::pipeline::{Impact, Options};
 use heelstrike::reductions::Reductions;
 use heelstrike::robot::{Base, Plane, Reduction};
-use heelstrike::state::{Defaults, State};
 
 /// Of scale.
 const TOLERANCE: f64 = 1e-12;
@@ -36,9 +37,7 @@ pub fn floating(urdf: &str, reductions: Reductions) -> Robot {
 
 /// The answer to a state of a robot, with its matrices.
 pub fn answer(robot: &Robot, state: &serde_json::Value, reductions: Reductions) -> heelstrike::Result<Impact> {
-    let state = State::from_json(&state.to_string(), robot, &Defaults::default())?;
-    let options = Options { reductions, matrices: true, ..Options::default() };
-    Pipeline::new(robot, options).impact(&state)
+    try_impact(robot, Options { reductions, matrices: true, ..Options::default() }, state)
 }
 
 /// What differs between two answers: contacts, verdict, modes, or numbers beyond 1e-12 of scale. Velocities by
@@ -52,8 +51,9 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         (Some(a), Some(b)) => (a, b),
         (a, b) => return Err(format!("{a:?} and {b:?}")),
     };
-    if a.verdict != b.verdict || (a.rank, a.index_sum) != (b.rank, b.index_sum) {
-        return Err(format!("{} and {}", words(a), words(b)));
+    let [found, expected] = [a, b].map(|of| (of.verdict, of.rank, of.index_sum));
+    if found != expected {
+        return Err(format!("verdict, rank and index sum {found:?} and {expected:?}"));
     }
     if let (Some(one), Some(other)) = (a.condition, b.condition) {
         // It reports how many of its own digits are lost.
@@ -66,9 +66,9 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
     }
     let delassus = &one.matrices.as_ref().expect("asked for").delassus;
     let mobility: Vec<f64> = (0..delassus.len()).map(|row| delassus[row][row].max(0.0).sqrt()).collect();
-    let largest = mobility.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let most = largest(&mobility).max(f64::MIN_POSITIVE);
     // A row that nothing moves has no size of its own.
-    let mobility: Vec<f64> = mobility.into_iter().map(|own| if own > 0.0 { own } else { largest }).collect();
+    let mobility: Vec<f64> = mobility.into_iter().map(|own| if own > 0.0 { own } else { most }).collect();
     // sqrt J, as margins are measured.
     let speeds = one.velocity_before.iter().flatten().zip(&mobility);
     let speed = speeds.map(|(c, mobility)| c.abs() / mobility).fold(f64::MIN_POSITIVE, f64::max);
@@ -81,8 +81,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         if let Some(rate) = rate {
             let [loops, others] = [a, b]
                 .map(|own| own.loop_impulse.iter().flatten().flat_map(|own| own.components()).collect::<Vec<f64>>());
-            let largest = a.impulse.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-            near("impulses of loops", &loops, &others, largest)?;
+            near("impulses of loops", &loops, &others, largest(a.impulse.as_flattened()))?;
             let [velocities, others] = [a, b].map(|own| own.velocity().collect::<Vec<_>>());
             near("velocities", &velocities, &others, rate)?;
         }
@@ -94,32 +93,22 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
 /// The largest of a state's rates.
 pub fn largest_rate(state: &serde_json::Value) -> f64 {
     let parts = ["base", "joints"].into_iter().filter_map(|part| state["velocity"][part].as_object());
-    parts
-        .flat_map(|part| part.values())
-        .filter_map(serde_json::Value::as_f64)
-        .fold(0.0, |most, rate| most.max(rate.abs()))
+    largest(&parts.flat_map(|part| part.values()).filter_map(serde_json::Value::as_f64).collect::<Vec<_>>())
 }
 
 fn near(what: &str, a: &[f64], b: &[f64], least: f64) -> Result<(), String> {
-    let size = a.iter().chain(b).fold(least, |size, entry| size.max(entry.abs()));
+    let size = least.max(largest(a)).max(largest(b));
     // A NaN is near nothing.
-    match a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= TOLERANCE * size) {
-        true => Ok(()),
-        false => {
-            let far = a.iter().zip(b).map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max);
-            Err(format!("{what} {far:.1e} of scale apart: {a:?} and {b:?}"))
-        }
+    if a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= TOLERANCE * size) {
+        return Ok(());
     }
+    let far = a.iter().zip(b).map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max);
+    Err(format!("{what} {far:.1e} of scale apart: {a:?} and {b:?}"))
 }
 
 /// Outcomes in the order of their modes, each with its place.
 fn sorted(impact: &Impact) -> Vec<&Outcome> {
-    let outcomes = &impact.analysis.as_ref().expect("compared already").outcomes;
-    let mut outcomes: Vec<_> = outcomes.iter().collect();
+    let mut outcomes: Vec<_> = outcomes(impact).iter().collect();
     outcomes.sort_by(|a, b| a.modes.cmp(&b.modes));
     outcomes
-}
-
-fn words(analysis: &Analysis) -> String {
-    format!("{:?} of rank {}, sum {:?}", analysis.verdict, analysis.rank, analysis.index_sum)
 }

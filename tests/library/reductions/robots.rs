@@ -1,20 +1,13 @@
 //! The robots of other people's projects (`data/robots`), with and without what their scenes need.
 
-use std::collections::BTreeMap;
-use std::fs;
-
+use crate::support::parallel::total;
+use crate::support::robots::{ROBOTS, robot_and_reference};
 use heelstrike::description::Description;
 use heelstrike::reductions::Reductions;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::comparison::{FEWER, answer, difference, largest_rate, robot};
-
-#[derive(Deserialize)]
-struct Reference {
-    urdf: String,
-    variants: BTreeMap<String, Value>,
-}
 
 #[derive(Deserialize)]
 struct Variant {
@@ -42,12 +35,9 @@ fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
     let named = |values: &[f64]| {
         let entries = variant.coordinates.iter().zip(values).map(|(name, &value)| (name.clone(), json!(value)));
         let (base, joints): (Vec<_>, Vec<_>) = entries.enumerate().partition(|(index, _)| *index < base);
-        let [base, joints] = [base, joints].map(|part| Value::Object(part.into_iter().map(|(_, own)| own).collect()));
-        if base.as_object().is_some_and(|base| base.is_empty()) {
-            json!({"joints": joints})
-        } else {
-            json!({"base": base, "joints": joints})
-        }
+        let parts = [("base", base), ("joints", joints)].into_iter().filter(|(_, part)| !part.is_empty());
+        let entries = |part: Vec<(usize, (String, Value))>| part.into_iter().map(|(_, own)| own).collect::<Value>();
+        parts.map(|(name, part)| (name.to_owned(), entries(part))).collect::<Value>()
     };
     let held: Vec<&String> = joints.iter().step_by(2).collect();
     let mut states = Vec::new();
@@ -67,11 +57,7 @@ fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
 }
 
 fn compare(name: &str, variant: &str) {
-    let folder = format!("{}/tests/data/robots/{name}", env!("CARGO_MANIFEST_DIR"));
-    let text = fs::read_to_string(format!("{folder}/reference.json")).expect("the robot's reference");
-    let Reference { urdf, mut variants } = serde_json::from_str(&text).expect("the reference is readable");
-    let variant: Variant = serde_json::from_value(variants.remove(variant).expect("the variant")).expect("readable");
-    let urdf = fs::read_to_string(format!("{folder}/{urdf}")).expect("the robot");
+    let (urdf, variant) = robot_and_reference::<Variant>((name, variant));
     let description = Description::from_urdf(&urdf).expect("a good file");
     let reduced = robot(&description, Reductions::ALL);
     let joints: Vec<String> = reduced.joints.iter().map(|joint| joint.name.clone()).collect();
@@ -109,22 +95,12 @@ fn compare(name: &str, variant: &str) {
     assert!(compared >= FEWER.len() * states.len() / 2, "{name}: {compared} compared");
 }
 
-macro_rules! robots {
-    ($($name:ident $variant:literal)*) => {$(
-        #[test]
-        fn $name() {
-            compare(stringify!($name), $variant);
-        }
-    )*};
-}
-
-robots! {
-    a1 "default"
-    acrobot "fixed"
-    cartpole "fixed_prismatic"
-    h1 "default"
-    planar_walker_torso "rerooted"
-    rabbit "default"
-    solo8 "default"
-    upkie "default"
+#[test]
+fn robots_of_others_need_none_of_what_is_left_out() {
+    let [compared] = total(ROBOTS.len() as u64, |index| {
+        let (name, variant) = ROBOTS[index as usize];
+        compare(name, variant);
+        [1]
+    });
+    assert_eq!(compared, 8);
 }

@@ -2,6 +2,7 @@
 
 use crate::support::command::{Run, heelstrike_reads};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -45,18 +46,16 @@ pub fn run(robot: &str, study: &Value, arguments: &[&str]) -> Run {
     heelstrike_reads(&[&["sweep", robot, "-"], arguments].concat(), study.to_string())
 }
 
-/// The regions, borders and samples of a study that is answered everywhere.
-pub fn sweep(robot: &str, study: &Value) -> Sweep {
-    let Run { status, stdout, stderr, .. } = run(robot, study, &["--format", "json"]);
+/// What is written of a study that is answered everywhere.
+pub fn written<T: DeserializeOwned>(robot: &str, study: &Value, arguments: &[&str]) -> T {
+    let Run { status, stdout, stderr, .. } = run(robot, study, &[&["--format", "json"], arguments].concat());
     assert_eq!(status, 0, "{study}\n{stderr}");
     serde_json::from_str(&stdout).unwrap_or_else(|error| panic!("{error}: {stdout}"))
 }
 
-impl Sweep {
-    /// Where each region begins, and its outcomes.
-    pub fn begins(&self) -> Vec<(f64, BTreeSet<String>)> {
-        self.regions.iter().map(|region| (region.from, region.set())).collect()
-    }
+/// The regions, borders and samples of a study that is answered everywhere.
+pub fn sweep(robot: &str, study: &Value) -> Sweep {
+    written(robot, study, &[])
 }
 
 impl Region {
@@ -69,9 +68,8 @@ impl Region {
 /// Checks where the regions begin, the first one aside, to `within`, and the set of outcomes of each, in which a bar
 /// parts the outcomes.
 pub fn assert_begins(place: &str, sweep: &Sweep, expected: &[(f64, &str)], within: f64) {
-    let found = sweep.begins();
-    let told: Vec<String> = found.iter().map(|(from, set)| format!("{from:?} {set:?}")).collect();
-    assert_eq!(found.len(), expected.len(), "{place}: {told:#?}");
+    let found: Vec<_> = sweep.regions.iter().map(|region| (region.from, region.set())).collect();
+    assert_eq!(found.len(), expected.len(), "{place}: {found:#?}");
     for (at, ((from, set), (begin, outcomes))) in found.iter().zip(expected).enumerate() {
         let should: BTreeSet<String> = outcomes.split('|').map(str::to_owned).collect();
         assert_eq!(*set, should, "{place}, region {at} from {from}");

@@ -1,7 +1,7 @@
-//! The same study told another way has the same regions.
+//! The same study written another way has the same regions.
 
 use crate::sweep::command::{Sweep, run, sweep};
-use crate::sweep::walkers::{kneed, straight};
+use crate::sweep::walkers::{RANGE, kneed, straight};
 use serde_json::{Value, json};
 
 const ROBOT: &str = "urdf/ramone_paper.urdf";
@@ -30,7 +30,7 @@ fn a_rescaled_parameter_has_the_same_regions() {
     let one = sweep(ROBOT, &kneed());
     for factor in [1e-6, 0.3, 1e6] {
         let mut study = renamed(&kneed(), "alpha", "(factor*beta)");
-        let [from, to] = crate::sweep::walkers::RANGE.map(|end| end / factor);
+        let [from, to] = RANGE.map(|end| end / factor);
         study["parameters"] = json!({"beta": {"from": from, "to": to, "steps": 50}});
         study["constants"]["factor"] = json!(factor);
         assert_same(&one, &sweep(ROBOT, &study), |beta| factor * beta, 1.57);
@@ -40,7 +40,7 @@ fn a_rescaled_parameter_has_the_same_regions() {
 #[test]
 fn a_reversed_parameter_has_the_same_regions_from_the_other_end() {
     let mut study = renamed(&kneed(), "alpha", "(-beta)");
-    let [from, to] = crate::sweep::walkers::RANGE;
+    let [from, to] = RANGE;
     study["parameters"] = json!({"beta": {"from": -to, "to": -from, "steps": 50}});
     let (one, other) = (sweep(ROBOT, &kneed()), sweep(ROBOT, &study));
     assert_eq!(one.regions.len(), other.regions.len());
@@ -49,12 +49,10 @@ fn a_reversed_parameter_has_the_same_regions_from_the_other_end() {
         assert!((one.from + other.to).abs() < 4e-12 && (one.to + other.from).abs() < 4e-12);
     }
     for (one, other) in one.borders.iter().zip(other.borders.iter().rev()) {
-        let swap = |side: &str| if side == "below" { "above" } else { "below" }.to_owned();
-        let mut there = other.turns.to_vec();
-        there.iter_mut().for_each(|turn| turn.valid = swap(&turn.valid));
-        there.sort();
-        let mut here = one.turns.clone();
+        let [mut here, mut there] = [one, other].map(|border| border.turns.clone());
+        there.iter_mut().for_each(|turn| turn.valid = if turn.valid == "below" { "above" } else { "below" }.to_owned());
         here.sort();
+        there.sort();
         assert_eq!(here, there);
     }
 }
@@ -68,17 +66,11 @@ fn names_of_constants_do_not_matter() {
 /// Seen from behind, each angle and each tangential direction turns.
 #[test]
 fn a_mirrored_robot_slides_the_other_way_at_the_same_places() {
-    let mirrored = json!({
-        "parameters": straight(None)["parameters"],
-        "state": {
-            "position": {"base": {"pitch": "alpha"}, "joints": {"hip": "2*alpha"}},
-            "velocity": {"base": {"pitch": 1}},
-            "stance": "left_leg",
-            "friction": 1,
-        },
-    });
     let mut study = straight(None);
     study["state"]["friction"] = json!(1);
+    let mut mirrored = study.clone();
+    mirrored["state"]["position"] = json!({"base": {"pitch": "alpha"}, "joints": {"hip": "2*alpha"}});
+    mirrored["state"]["velocity"]["base"]["pitch"] = json!(1);
     let (one, other) = (sweep("urdf/minimalistic.urdf", &study), sweep("urdf/minimalistic.urdf", &mirrored));
     assert_eq!(one.regions.len(), 6);
     let turned = |modes: String| modes.replace("e+", "e*").replace("e-", "e+").replace("e*", "e-");

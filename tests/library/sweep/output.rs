@@ -1,7 +1,7 @@
 //! What is written: samples, tables, text, endings, and what happens to refused samples.
 
 use crate::support::command::{Run, heelstrike_reads, place};
-use crate::sweep::command::{run, sweep};
+use crate::sweep::command::{assert_begins, run, sweep, written};
 use crate::sweep::walkers::{kneed, straight};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -17,10 +17,7 @@ fn every_sample_is_the_result_of_impact_for_the_same_numbers() {
         let mut study = kneed();
         study["parameters"]["alpha"]["steps"] = json!(7);
         study["state"]["id"] = json!("alpha");
-        let Run { status, stdout, stderr, .. } =
-            run("urdf/ramone.urdf", &study, &[&["--format", "json"], arguments].concat());
-        assert_eq!(status, 0, "{stderr}");
-        let written: Value = serde_json::from_str(&stdout).expect("JSON");
+        let written: Value = written("urdf/ramone.urdf", &study, arguments);
         let samples = written["samples"].as_array().expect("a list");
         assert_eq!(samples.len(), 7);
         for sample in samples {
@@ -56,12 +53,8 @@ fn samples_on_borders_make_no_regions_of_their_own() {
     let mut study = straight(None);
     study["parameters"]["alpha"] = json!({"from": "pi/12", "to": "5*pi/12", "steps": 5});
     let found = sweep("urdf/minimalistic.urdf", &study);
-    crate::sweep::command::assert_begins(
-        "between borders",
-        &found,
-        &[(PI / 12.0, "slide-/stick"), (PI / 6.0, "stick/stick")],
-        1e-12,
-    );
+    let expected = [(PI / 12.0, "slide-/stick"), (PI / 6.0, "stick/stick")];
+    assert_begins("between borders", &found, &expected, 1e-12);
     assert_eq!((found.regions[0].from, found.regions[1].to), (PI / 12.0, 5.0 * PI / 12.0));
 }
 
@@ -138,8 +131,7 @@ fn tables_have_the_parameter_and_the_region_beside_the_columns_of_batch() {
     assert_eq!(of("region"), ["A", "C", "C", "D", "D", "D"]);
     assert_eq!(of("outcome"), ["1", "1", "1", "1", "2", "3"]);
     assert_eq!(of("mode_left_leg"), ["separate", "stick", "stick", "separate", "stick", "slide+"]);
-    assert_eq!(of("alpha")[0], "0.001");
-    assert_eq!(of("alpha")[5], "1.57");
+    assert_eq!([&of("alpha")[0], &of("alpha")[5]], ["0.001", "1.57"]);
 
     let Run { status, stdout, .. } = run("urdf/block.urdf", &partly_refused(), &["--format", "csv"]);
     assert_eq!(status, 1);
@@ -156,8 +148,8 @@ fn the_ending_of_the_output_chooses_its_form() {
         let path = &place(&format!("sweep.{ending}"));
         let written = run("urdf/minimalistic.urdf", &study, &["-o", path]);
         assert_eq!((written.status, written.stdout.as_str()), (0, ""), "{}", written.stderr);
-        let told = run("urdf/minimalistic.urdf", &study, &["--format", format]).stdout;
-        assert_eq!(std::fs::read_to_string(path).expect("the output"), told, "{ending}");
+        let printed = run("urdf/minimalistic.urdf", &study, &["--format", format]).stdout;
+        assert_eq!(std::fs::read_to_string(path).expect("the output"), printed, "{ending}");
     }
 }
 

@@ -11,7 +11,7 @@
 //! alone (lift-off: c_n+ = 0 of the trailing foot). Where neither is valid the trailing foot slides, and where both
 //! are, it does as well: three outcomes.
 
-use crate::sweep::command::{Sweep, assert_begins, run, sweep};
+use crate::sweep::command::{Sweep, assert_begins, sweep, written};
 use crate::sweep::walkers::{RANGE, straight};
 use serde_json::json;
 
@@ -23,6 +23,10 @@ const LIFT_OFF: &str = "separate/stick";
 const SLIDE: &str = "slide-/stick";
 const STOP: &str = "stick/stick";
 const ALL: &str = "separate/stick|slide+/stick|stick/stick";
+
+fn walker(j: f64) -> Sweep {
+    sweep("urdf/pdw.urdf", &straight(Some(j)))
+}
 
 /// Where u is.
 fn alpha(u: f64) -> f64 {
@@ -59,7 +63,7 @@ fn a_band_between_two_crossing_inequalities_is_found_however_thin() {
             within_range([(0.0, LIFT_OFF), (alpha(first), SLIDE), (alpha(stop_begins(j)), STOP), (alpha(last), ALL)]);
         let width = expected[2].0 - expected[1].0;
         assert!((0.8..1.5).contains(&(width / off)), "{width}");
-        let sweep = sweep("urdf/pdw.urdf", &straight(Some(j)));
+        let sweep = walker(j);
         // Of 1e-12 of the range, and what rounding does to numbers of about 1.
         assert_begins(&format!("a band of {width:.1e}"), &sweep, &expected, 4e-12);
         let found = sweep.regions[1].to - sweep.regions[1].from;
@@ -75,7 +79,7 @@ fn a_thin_band_of_three_outcomes_is_found() {
         let [first, last] = lift_off_ends(j).expect("it ends and begins again");
         let expected =
             within_range([(0.0, LIFT_OFF), (alpha(stop_begins(j)), ALL), (alpha(first), STOP), (alpha(last), ALL)]);
-        assert_begins(&format!("{off:.0e}"), &sweep("urdf/pdw.urdf", &straight(Some(j))), &expected, 4e-12);
+        assert_begins(&format!("{off:.0e}"), &walker(j), &expected, 4e-12);
     }
 }
 
@@ -95,29 +99,24 @@ fn a_band_that_opens_by_an_extremum_is_found() {
         // A double root: an error of a few 1e-16 of N moves both ends by it over the width.
         let within = 2e-15 / width + 4e-12;
         assert!(within < 0.1 * width, "{width}");
-        assert_begins(
-            &format!("a band of {width:.1e}"),
-            &sweep("urdf/pdw.urdf", &straight(Some(j))),
-            &expected,
-            within,
-        );
+        assert_begins(&format!("a band of {width:.1e}"), &walker(j), &expected, within);
     }
     // Beyond there is none.
     for off in [1e-12, 1e-6] {
         let j = merged + off;
         assert_eq!(lift_off_ends(j), None);
         let expected = [(0.0, LIFT_OFF), (alpha(stop_begins(j)), ALL)];
-        assert_begins("no band", &sweep("urdf/pdw.urdf", &straight(Some(j))), &expected, 4e-12);
+        assert_begins("no band", &walker(j), &expected, 4e-12);
     }
 }
 
 const BLOCK: &str = "urdf/block.urdf";
 
-/// The study of a block whose `numbers` are the fields of the state.
-fn of_block(numbers: serde_json::Value) -> serde_json::Value {
-    let mut state = json!({"friction": 0.9});
-    state.as_object_mut().expect("an object").extend(numbers.as_object().expect("an object").clone());
-    json!({"parameters": {"s": {"from": -1, "to": 1, "steps": 51}}, "state": state})
+/// The places from which the regions of a block go that has this height and this rate of it.
+fn of_block(z: &str, rate: &str, arguments: &[&str]) -> Vec<f64> {
+    let study = json!({"parameters": {"s": {"from": -1, "to": 1, "steps": 51}}, "state": {"friction": 0.9,
+        "position": {"base": {"z": z}}, "velocity": {"base": {"x": 0.5, "z": rate}}}});
+    written::<Sweep>(BLOCK, &study, arguments).regions.iter().map(|region| region.from).collect()
 }
 
 /// A foot that touches for a moment between two samples: (s - 0.42278)^2 is within the contact tolerance for |s -
@@ -125,18 +124,13 @@ fn of_block(numbers: serde_json::Value) -> serde_json::Value {
 #[test]
 fn a_foot_that_grazes_the_ground_is_seen() {
     for half in [1e-5, 1e-4, 1e-3] {
-        for centre in [0.42278, -0.17113, 0.90311] {
-            let height = format!("(s - {centre})^2");
-            let study = of_block(json!({
-                "position": {"base": {"z": height}}, "velocity": {"base": {"x": 0.5, "z": -1}}
-            }));
+        for center in [0.42278, -0.17113, 0.90311] {
             let tolerance = (half * half).to_string();
-            let run = run(BLOCK, &study, &["--format", "json", "--contact-tolerance", &tolerance]);
-            let sweep: Sweep = serde_json::from_str(&run.stdout).expect("JSON");
-            let places: Vec<f64> = sweep.regions.iter().map(|region| region.from - centre).collect();
-            assert_eq!(places.len(), 3, "{half} {centre}");
+            let from = of_block(&format!("(s - {center})^2"), "-1", &["--contact-tolerance", &tolerance]);
+            assert_eq!(from.len(), 3, "{half} {center}");
+            let [begins, ends] = [from[1] - center + half, from[2] - center - half];
             // The tolerance is rounded at the block's own size.
-            assert!((places[1] + half).abs() < 1e-3 * half && (places[2] - half).abs() < 1e-3 * half, "{places:?}");
+            assert!(begins.abs() < 1e-3 * half && ends.abs() < 1e-3 * half, "{half} {center}: {from:?}");
         }
     }
 }
@@ -145,10 +139,7 @@ fn a_foot_that_grazes_the_ground_is_seen() {
 /// between.
 #[test]
 fn a_region_that_ends_beside_a_sample_is_seen() {
-    let study = of_block(json!({"velocity": {"base": {"x": 0.5, "z": "s*(s + 0.001) + 1e-17"}}}));
-    let run = run(BLOCK, &study, &["--format", "json"]);
-    let sweep: Sweep = serde_json::from_str(&run.stdout).expect("JSON");
-    let from: Vec<f64> = sweep.regions.iter().map(|region| region.from).collect();
+    let from = of_block("0", "s*(s + 0.001) + 1e-17", &[]);
     assert_eq!(from.len(), 3, "{from:?}");
     assert!((from[1] + 0.001).abs() < 1e-10 && from[2].abs() < 1e-10, "{from:?}");
 }

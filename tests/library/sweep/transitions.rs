@@ -11,9 +11,9 @@ fn sorted(border: &Border) -> Vec<Turn> {
     turns
 }
 
-fn turn(contact: &str, inequality: &str, modes: [&str; 2], valid: &str) -> Turn {
+fn turn(contact: &str, inequality: &str, modes: &str, valid: &str) -> Turn {
     let [contact, inequality, valid] = [contact, inequality, valid].map(str::to_owned);
-    Turn { contact, inequality, modes: modes.map(str::to_owned).into(), valid }
+    Turn { contact, inequality, modes: modes.split('/').map(str::to_owned).collect(), valid }
 }
 
 /// Of the trailing foot, the paper's three cases: lift-off needs c_n+ >= 0, stop L_n >= 0, and a slide without
@@ -22,23 +22,15 @@ fn turn(contact: &str, inequality: &str, modes: [&str; 2], valid: &str) -> Turn 
 #[test]
 fn the_borders_of_the_minimalistic_biped_turn_by_the_trailing_foot() {
     let sweep = sweep("urdf/minimalistic.urdf", &straight(None));
-    let trailing = |inequality, mode, valid| turn("left_leg", inequality, [mode, "stick"], valid);
     let expected = [
-        (
-            PI / 12.0,
-            vec![trailing("normal_velocity", "separate", "below"), trailing("tangential_impulse", "slide-", "above")],
-        ),
-        (
-            PI / 6.0,
-            vec![trailing("normal_impulse", "stick", "above"), trailing("tangential_velocity", "slide-", "below")],
-        ),
-        (
-            5.0 * PI / 12.0,
-            vec![trailing("normal_velocity", "separate", "above"), trailing("tangential_impulse", "slide+", "above")],
-        ),
+        (1.0, ("normal_velocity", "separate/stick", "below"), ("tangential_impulse", "slide-/stick", "above")),
+        (2.0, ("normal_impulse", "stick/stick", "above"), ("tangential_velocity", "slide-/stick", "below")),
+        (5.0, ("normal_velocity", "separate/stick", "above"), ("tangential_impulse", "slide+/stick", "above")),
     ];
     assert_eq!(sweep.borders.len(), expected.len());
-    for (border, (at, turns)) in sweep.borders.iter().zip(expected) {
+    for (border, (twelfths, one, other)) in sweep.borders.iter().zip(expected) {
+        let at = twelfths * PI / 12.0;
+        let turns = [one, other].map(|(inequality, modes, valid)| turn("left_leg", inequality, modes, valid));
         assert!((border.at - at).abs() < 4e-12, "{} instead of {at}", border.at);
         assert_eq!(sorted(border), turns, "at {at}");
         assert!(border.opening.is_empty() && border.closing.is_empty());
@@ -57,13 +49,8 @@ fn a_cone_turns_where_friction_suffices() {
     let sweep = sweep("urdf/block.urdf", &study);
     let [border] = &sweep.borders[..] else { panic!("{:?}", sweep.borders) };
     assert!((border.at - 0.75).abs() < 4e-12, "{}", border.at);
-    let of = |inequality: &str, mode: &str, valid: &str| Turn {
-        contact: "block".into(),
-        inequality: inequality.into(),
-        modes: vec![mode.into()],
-        valid: valid.into(),
-    };
-    let expected = [of("friction_cone", "stick", "above"), of("tangential_velocity", "slide-", "below")];
+    let expected = [("friction_cone", "stick", "above"), ("tangential_velocity", "slide-", "below")];
+    let expected = expected.map(|(inequality, mode, valid)| turn("block", inequality, mode, valid));
     assert_eq!(sorted(border), expected);
 }
 
@@ -76,17 +63,12 @@ fn a_border_where_a_contact_opens_names_it() {
     });
     let sweep = sweep("urdf/block.urdf", &study);
     let [below, above] = &sweep.regions[..] else { panic!("{:?}", sweep.regions) };
-    assert_eq!(
-        (below.contacts.as_deref(), above.contacts.as_deref()),
-        (Some(&["block".to_owned()][..]), Some(&[][..]))
-    );
+    let block = || vec!["block".to_owned()];
+    assert_eq!((&below.contacts, &above.contacts), (&Some(block()), &Some(vec![])));
     assert_eq!(above.outcomes, Some(vec![vec![]]));
     let border = &sweep.borders[0];
     // The contact tolerance is 1e-6 of the robot's size, the distance of its CoG at (-1, 1).
     let tolerance = 1e-6 * f64::sqrt(2.0);
     assert!((border.at - tolerance).abs() < 2e-12, "{} instead of {tolerance}", border.at);
-    assert_eq!(
-        (&border.opening[..], &border.closing[..], &border.turns[..]),
-        (&["block".to_owned()][..], &[][..], &[][..])
-    );
+    assert_eq!((&border.opening, &border.closing, &border.turns), (&block(), &vec![], &vec![]));
 }
