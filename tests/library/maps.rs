@@ -1,12 +1,11 @@
 //! Studies of two parameters: the areas and curves of a map against single states, and against studies of one
 //! parameter.
 
+use crate::support::random::Random;
 use crate::sweep::studies::with;
 use crate::sweep::walkers::straight;
 use heelstrike::impact::Mode;
 use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Survey, Workers};
-use proptest::strategy::{Strategy, ValueTree};
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use serde_json::{Value, json};
 
 const PDW: &str = include_str!("../../urdf/pdw.urdf");
@@ -23,11 +22,12 @@ fn inertia(along: f64) -> Value {
     study
 }
 
-fn map(model: &RobotStudy) -> Map {
-    match Findings::of(model, WORKERS) {
-        Findings::Map(map) => map,
+/// Asks about the model of a study and its map.
+fn with_map<T>(urdf: &str, study: &Value, ask: impl FnOnce(&RobotStudy, &Map) -> T) -> T {
+    with(urdf, study, 0, |model| match Findings::of(model, WORKERS) {
+        Findings::Map(map) => ask(model, &map),
         Findings::Along(_) => panic!("two parameters make a map"),
-    }
+    })
 }
 
 /// How often the loops of an area wind around a point: once inside of it, else not at all.
@@ -52,15 +52,12 @@ fn outcomes(area: &Area) -> Vec<Vec<Mode>> {
 
 /// Random points of the ranges lie within exactly one area, and have its regime but for a thin seam at its curves.
 fn points_lie_in_their_areas(urdf: &str, study: &Value) {
-    with(urdf, study, 0, |model| {
-        let map = map(model);
+    with_map(urdf, study, |model, map| {
         let mut solver = Solver::new(model);
         let [first, second] = model.study.parameters() else { panic!("two parameters") };
-        let mut runner = TestRunner::new_with_rng(Config::default(), TestRng::deterministic_rng(RngAlgorithm::ChaCha));
-        let ranges = (first.from..first.to, second.from..second.to);
-        let (mut wrong, count) = (0, 4_000);
+        let (mut random, mut wrong, count) = (Random::new(0), 0, 4_000);
         for _ in 0..count {
-            let (x, y) = ranges.new_tree(&mut runner).expect("a point").current();
+            let [x, y] = [first, second].map(|parameter| random.between(parameter.from, parameter.to));
             let inside: Vec<&Area> = map.areas.iter().filter(|area| winding(area, [x, y]) != 0).collect();
             let [only] = inside[..] else { panic!("{x}, {y} lies in {} areas", inside.len()) };
             assert_eq!(winding(only, [x, y]), 1, "holes run the other way");
@@ -85,13 +82,12 @@ fn points_lie_in_the_area_of_their_outcomes_where_many_areas_meet() {
     points_lie_in_their_areas(MINIMALISTIC, &study);
 }
 
-/// The paper: both bands close where the leg's centre of percussion, with the hip as pivot, is the foot.
+/// The paper: both bands close where the leg's center of percussion, with the hip as pivot, is the foot.
 #[test]
 fn the_walker_s_bands_close_at_its_critical_inertia() {
     for along in [0.3_f64, 0.4, 0.5] {
         let critical = along * (1.0 - along);
-        with(PDW, &inertia(along), 0, |model| {
-            let map = map(model);
+        with_map(PDW, &inertia(along), |_, map| {
             let area = |wanted: &[[Mode; 2]]| {
                 let found = map.areas.iter().find(|area| outcomes(area) == wanted);
                 found.unwrap_or_else(|| panic!("no area of {wanted:?} at {along}"))
@@ -114,8 +110,7 @@ fn the_walker_s_bands_close_at_its_critical_inertia() {
 #[test]
 fn a_section_of_a_map_is_the_study_of_one_parameter() {
     let areas_along = |j: f64| {
-        with(PDW, &inertia(0.4), 0, |model| {
-            let map = map(model);
+        with_map(PDW, &inertia(0.4), |_, map| {
             let regions = (0..=2_000).map(|k| {
                 let at = [0.001 + 1.5687 * f64::from(k) / 2_000.0, j];
                 map.areas.iter().find(|area| winding(area, at) == 1).map(outcomes).unwrap_or_default()
@@ -152,8 +147,7 @@ fn a_map_is_the_same_for_any_number_of_threads() {
 
 #[test]
 fn curves_and_areas_are_labelled_with_what_turns_and_what_holds() {
-    with(PDW, &inertia(0.4), 0, |model| {
-        let map = map(model);
+    with_map(PDW, &inertia(0.4), |model, map| {
         let mut solver = Solver::new(model);
         for area in &map.areas {
             assert!(!area.middles.is_empty());
@@ -177,8 +171,7 @@ fn an_island_has_its_size() {
         let z = format!("(g - 0.15)^2 + (h - 0.25)^2 - {radius}^2");
         let study = json!({"parameters": {"g": range, "h": range},
             "state": {"friction": 0.9, "velocity": {"base": {"x": 0.5, "z": z}}}});
-        with(include_str!("../../urdf/block.urdf"), &study, 0, |model| {
-            let map = map(model);
+        with_map(include_str!("../../urdf/block.urdf"), &study, |_, map| {
             let inside = |area: &&Area| winding(area, [0.15, 0.25]) == 1;
             let island = map.areas.iter().find(inside).expect("an island");
             let points = &island.loops[0];

@@ -86,11 +86,10 @@ fn analysis(impact: &Impact) -> &Analysis {
 
 /// How the numbers of another view follow from the first one's.
 struct View<'a> {
-    mode: fn(Mode) -> Mode,
-    /// Of L_t and L_n.
-    impulse: [f64; 2],
-    /// Of c_t and c_n.
-    contact_velocity: [f64; 2],
+    /// -1 in a mirror.
+    side: f64,
+    /// Of impulses and of contact velocities.
+    units: [f64; 2],
     /// v of the first view from v of the other one.
     velocity: &'a dyn Fn(&[f64]) -> Vec<f64>,
 }
@@ -105,19 +104,20 @@ impl View<'_> {
         assert_eq!(analysis.outcomes.len(), others.outcomes.len(), "{}", context());
         assert_eq!(analysis.index_sum, others.index_sum, "{}", context());
         for (outcome, velocity) in analysis.outcomes.iter().zip(&velocities_after(impact)) {
-            let modes: Vec<Mode> = outcome.modes.iter().map(|&mode| (self.mode)(mode)).collect();
+            let modes = outcome.modes.iter().map(|&mode| if self.side < 0.0 { mirror(mode) } else { mode });
+            let modes: Vec<Mode> = modes.collect();
             let place = others.outcomes.iter().position(|other| other.modes == modes);
             let place = place.unwrap_or_else(|| panic!("no {modes:?} among {:?}\n{}", others.outcomes, context()));
             let twin = &others.outcomes[place];
             assert_eq!(outcome.index, twin.index, "{}", context());
             assert_near(&[outcome.margin.expect("one")], &[twin.margin.expect("one")], 1.0, "margin", context);
-            let turned = |values: &[[f64; 2]], [t, n]: [f64; 2]| -> Vec<f64> {
-                values.iter().flat_map(|value| [t * value[0], n * value[1]]).collect()
+            let seen = |values: &[[f64; 2]], unit: f64| -> Vec<f64> {
+                values.iter().flat_map(|[t, n]| [self.side * unit * t, unit * n]).collect()
             };
-            let impulse = turned(&outcome.impulse, self.impulse);
-            assert_near(&impulse, &twin.impulse.concat(), 0.0, "impulse", context);
-            let before = largest(&turned(&impact.velocity_before, self.contact_velocity));
-            let after = turned(&outcome.velocity_after, self.contact_velocity);
+            let [push, speed] = self.units;
+            assert_near(&seen(&outcome.impulse, push), &twin.impulse.concat(), 0.0, "impulse", context);
+            let before = largest(&seen(&impact.velocity_before, speed));
+            let after = seen(&outcome.velocity_after, speed);
             assert_near(&after, &twin.velocity_after.concat(), before, "velocity after", context);
             let other = (self.velocity)(&velocities_after(other)[place]);
             assert_near(velocity, &other, largest(&model.v), "v after", context);
@@ -163,7 +163,7 @@ fn a_mirrored_robot_slides_the_other_way() {
         }
         let seen = |v: &[f64]| [&[-v[0], v[1], -v[2]], &v[3..]].concat();
         (mirrored.q, mirrored.v) = (seen(&model.q), seen(&model.v));
-        let view = View { mode: mirror, impulse: [-1.0, 1.0], contact_velocity: [-1.0, 1.0], velocity: &seen };
+        let view = View { side: -1.0, units: [1.0; 2], velocity: &seen };
         view.check(model, impact, &mirrored, &|| model.report(seed));
     });
 }
@@ -187,12 +187,8 @@ fn units_change_no_verdict_and_no_margin_of_a_robot() {
             let unit = |k: usize| if slides(k) { length } else { 1.0 };
             scaled.q.iter_mut().enumerate().for_each(|(k, q)| *q *= unit(k));
             scaled.v.iter_mut().enumerate().for_each(|(k, v)| *v *= unit(k) / time);
-            let view = View {
-                mode: |mode| mode,
-                impulse: [mass * length / time; 2],
-                contact_velocity: [length / time; 2],
-                velocity: &|v| v.iter().enumerate().map(|(k, v)| v * time / unit(k)).collect(),
-            };
+            let seen = |v: &[f64]| v.iter().enumerate().map(|(k, v)| v * time / unit(k)).collect();
+            let view = View { side: 1.0, units: [mass * length / time, length / time], velocity: &seen };
             let units = format!("units of mass {mass}, length {length}, time {time}");
             view.check(model, impact, &scaled, &|| format!("{units}, {}", model.report(seed)));
         }
@@ -213,7 +209,7 @@ fn a_flipped_axis_with_its_coordinate_negated_is_the_same_joint() {
             }
         }
         (flipped.q, flipped.v) = (seen(&model.q), seen(&model.v));
-        let view = View { mode: |mode| mode, impulse: [1.0; 2], contact_velocity: [1.0; 2], velocity: &seen };
+        let view = View { side: 1.0, units: [1.0; 2], velocity: &seen };
         view.check(model, impact, &flipped, &|| model.report(seed));
     });
 }
@@ -248,12 +244,8 @@ fn a_slope_is_level_ground_seen_askew() {
         askew.slope = slope;
         askew.q[2] -= slope;
         askew.v[..2].copy_from_slice(&turn([model.v[0], model.v[1]], sin));
-        let view = View {
-            mode: |mode| mode,
-            impulse: [1.0; 2],
-            contact_velocity: [1.0; 2],
-            velocity: &|v| [&turn([v[0], v[1]], -sin)[..], &v[2..]].concat(),
-        };
+        let seen = |v: &[f64]| [&turn([v[0], v[1]], -sin)[..], &v[2..]].concat();
+        let view = View { side: 1.0, units: [1.0; 2], velocity: &seen };
         view.check(model, impact, &askew, &|| model.report(seed));
     });
 }

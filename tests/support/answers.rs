@@ -8,28 +8,21 @@ use serde::Deserialize;
 use serde_json::Value;
 
 /// A result line, as far as the tests read it.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default)]
 pub struct Answer {
     pub id: Option<Value>,
     pub verdict: Option<String>,
-    #[serde(default)]
     pub proven: bool,
-    #[serde(default)]
     pub contacts: Vec<Contact>,
-    #[serde(default)]
     pub outcomes: Vec<Outcome>,
-    #[serde(default)]
     pub rejected: Vec<Rejected>,
     pub kinetic_energy: Option<f64>,
     pub index_sum: Option<i64>,
     pub rank: Option<usize>,
-    #[serde(default)]
     pub coordinates: Vec<String>,
-    #[serde(default)]
     pub mass_matrix: Vec<Vec<f64>>,
-    #[serde(default)]
     pub contact_jacobian: Vec<Vec<f64>>,
-    #[serde(default)]
     pub delassus: Vec<Vec<f64>>,
     pub error: Option<Value>,
 }

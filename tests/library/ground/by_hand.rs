@@ -42,7 +42,7 @@ fn a_tilted_sole_on_an_edge_touches_along_its_own_normal() {
 }
 
 #[test]
-fn a_disc_strikes_a_convex_corner_along_the_line_to_its_centre() {
+fn a_disc_strikes_a_convex_corner_along_the_line_to_its_center() {
     for angle in [-0.7, -0.2, 0.4, 1.2] {
         let (sin, cos) = f64::sin_cos(angle);
         // A ridge too steep for the disc to touch beside its top.

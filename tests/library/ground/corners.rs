@@ -3,23 +3,25 @@
 use super::*;
 use std::f64::consts::FRAC_1_SQRT_2;
 
+/// The only contact's normal.
+#[track_caller]
+fn assert_normal(found: &Impact, [x, z]: [f64; 2]) {
+    let [contact] = &found.contacts[..] else { panic!("{:?}", touches(found)) };
+    let own = contact.normal();
+    assert!((own.x - x).abs() < 1e-9 && (own.z - z).abs() < 1e-9, "{own:?} is not {x}, {z}");
+}
+
 #[test]
 fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     // A point on the edge of a step: halfway between tread and riser.
     let edge = [[-2.0, 0.0], [0.0, 0.0], [1e-9, -2.0], [2.0, -2.0]];
     let s = FRAC_1_SQRT_2;
-    let found = impact(&point(), &state([0.0; 3], FALLING, 1, &edge));
-    assert_eq!(found.contacts.len(), 1);
-    let Vector { x, z } = found.contacts[0].normal();
-    assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
+    assert_normal(&impact(&point(), &state([0.0; 3], FALLING, 1, &edge)), [s, s]);
     // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over
     // the void: all of the quarter between riser and tread.
     let flat = impact(&sole(), &state([-0.2, 0.1, 0.0], FALLING, 1, &edge));
     assert_touches(&flat, &[[[-0.4, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]]]);
-    let hung = impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, 1, &edge));
-    assert_eq!(hung.contacts.len(), 1);
-    let Vector { x, z } = hung.contacts[0].normal();
-    assert!((x - s).abs() < 1e-9 && (z - s).abs() < 1e-9);
+    assert_normal(&impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, 1, &edge)), [s, s]);
     // The heel of a sole that is pitched by -0.4 (nose up) allows -0.4 to pi/2 - 0.4 from upright toward +x; the edge 0
     // to pi/2. The middle of both is pi/4 - 0.2.
     let (sin, cos) = 0.4_f64.sin_cos();
@@ -27,9 +29,7 @@ fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
     let heel = [-0.2 * cos + 0.1 * sin, -0.1 * cos - 0.2 * sin];
     let tilted = impact(&sole(), &state([-heel[0], -heel[1], -0.4], FALLING, 1, &edge));
     let angle = std::f64::consts::FRAC_PI_4 - 0.2;
-    assert_eq!(tilted.contacts.len(), 1);
-    let Vector { x, z } = tilted.contacts[0].normal();
-    assert!((x - angle.sin()).abs() < 1e-9 && (z - angle.cos()).abs() < 1e-9, "{x} {z}");
+    assert_normal(&tilted, [angle.sin(), angle.cos()]);
 }
 
 #[test]
@@ -71,24 +71,16 @@ fn oblique(yaw: f64) -> Robot {
 fn an_oblique_cylinder_meets_segments_and_corners() {
     let yaw = 0.7_f64;
     let (robot, half, reach) = (oblique(yaw), 0.2 * yaw.cos(), 0.25 * yaw.sin());
-    let near = |found: &Impact, expected: &[[[f64; 2]; 2]]| {
-        let (found, expected) = (touches(found), expected.as_flattened().as_flattened());
-        let found = found.as_flattened().as_flattened();
-        assert!(
-            found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12),
-            "{found:?}"
-        );
+    let near = |place: [f64; 3], profile: &[[f64; 2]], expected: &[[[f64; 2]; 2]]| {
+        let found = touches(&impact(&robot, &state(place, FALLING, 1, profile)));
+        let numbers = found.as_flattened().iter().zip(expected.as_flattened());
+        let near = numbers.flat_map(|(a, b)| a.iter().zip(b)).all(|(a, b)| (a - b).abs() < 1e-12);
+        assert!(found.len() == expected.len() && near, "{found:?}");
     };
     // Flat on a tread, and with its middle on an edge.
     let up = [0.0, 1.0];
-    near(
-        &impact(&robot, &state([-1.0, 0.2, 0.0], FALLING, 1, &step_down(0.0, 1.0))),
-        &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]],
-    );
-    near(
-        &impact(&robot, &state([0.0, 0.2, 0.0], FALLING, 1, &step_down(0.0, 1.0))),
-        &[[[-reach, 0.0], up], [[0.0, 0.0], up]],
-    );
+    near([-1.0, 0.2, 0.0], &step_down(0.0, 1.0), &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]]);
+    near([0.0, 0.2, 0.0], &step_down(0.0, 1.0), &[[[-reach, 0.0], up], [[0.0, 0.0], up]]);
     // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there
     // is along (cos s / half, sin s / 0.2).
     let s = FRAC_1_SQRT_2;
@@ -96,18 +88,20 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     let size = f64::hypot(out[0], out[1]);
     let place = [-reach - half * s, 0.2 * s, 0.0];
     let ridge = [[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]];
-    near(&impact(&robot, &state(place, FALLING, 1, &ridge)), &[[[0.0, 0.0], [-out[0] / size, -out[1] / size]]]);
+    near(place, &ridge, &[[[0.0, 0.0], [-out[0] / size, -out[1] / size]]]);
     // On a slope up: the front end reaches hypot(half sin, 0.2 cos) along the normal.
     let (sin, cos) = 0.5_f64.sin_cos();
     let far = f64::hypot(half * sin, 0.2 * cos);
     let place = [-reach - far * sin, far * cos, 0.0];
-    let found = impact(&robot, &state(place, FALLING, 1, &[[-4.0 * cos, -4.0 * sin], [4.0 * cos, 4.0 * sin]]));
     let point = [-far * sin + half * half * sin / far, far * cos - 0.2 * 0.2 * cos / far];
-    near(&found, &[[point, [-sin, cos]]]);
+    near(place, &[[-4.0 * cos, -4.0 * sin], [4.0 * cos, 4.0 * sin]], &[[point, [-sin, cos]]]);
     // Sunk: by as much as it is too low.
-    assert!((depth(&robot, &state([-1.0, 0.15, 0.0], [0.0; 3], 1, &step_down(0.0, 1.0))) - 0.05).abs() < 1e-12);
-    assert!((depth(&robot, &state([0.0, 0.15, 0.0], [0.0; 3], 1, &ridge)) - 0.05).abs() < 1e-12);
-    assert!((depth(&robot, &state([-1.0, -0.3, 0.0], [0.0; 3], 1, &step_down(0.0, 1.0))) - 0.5).abs() < 1e-12);
+    let sunk = |[x, z]: [f64; 2], profile: &[[f64; 2]]| depth(&robot, &state([x, z, 0.0], [0.0; 3], 1, profile));
+    let depths =
+        [sunk([-1.0, 0.15], &step_down(0.0, 1.0)), sunk([0.0, 0.15], &ridge), sunk([-1.0, -0.3], &step_down(0.0, 1.0))];
+    for (found, expected) in depths.into_iter().zip([0.05, 0.05, 0.5]) {
+        assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
+    }
 }
 
 #[test]

@@ -22,20 +22,20 @@ fn over_a_gap_and_beyond_an_end_there_is_nothing() {
 
 #[test]
 fn a_foot_in_the_ground_is_refused_with_its_depth() {
-    let near = |depth: f64, expected: f64| assert!((depth - expected).abs() < 2e-6, "{depth} is not {expected}");
     let level = [0.0; 3];
-    // Its toe is 0.02 m in the riser.
-    near(depth(&sole(), &state([0.02, 0.1, 0.0], level, 1, &step_up(0.2, 0.5))), 0.02);
-    // It is 0.05 m in the tread, and then as a whole far below it.
-    near(depth(&sole(), &state([-1.0, 0.05, 0.0], level, 1, &step_up(0.2, 0.5))), 0.05);
-    near(depth(&sole(), &state([-1.0, -0.9, 0.0], level, 1, &step_up(0.2, 0.5))), 1.0);
-    // Below the upper tread, where a lower one would still be far beneath.
-    near(depth(&sole(), &state([-1.0, -0.2, 0.0], level, 1, &step_down(0.5, 3.0))), 0.3);
-    // A disc, its centre above and below the ground.
-    near(depth(&disc(), &state([-1.0, 0.4, 0.0], level, 1, &step_up(0.2, 0.5))), 0.1);
-    near(depth(&disc(), &state([-1.0, -0.3, 0.0], level, 1, &step_up(0.2, 0.5))), 0.8);
-    // A ridge pokes 0.03 m into a sole whose corners are free.
-    near(depth(&sole(), &state([0.0, 0.1, 0.0], level, 1, &[[-1.0, -5.0], [0.0, 0.03], [1.0, -5.0]])), 0.03);
+    for (what, robot, [x, z], profile, expected) in [
+        ("toe in the riser", sole(), [0.02, 0.1], &step_up(0.2, 0.5)[..], 0.02),
+        ("in the tread", sole(), [-1.0, 0.05], &step_up(0.2, 0.5), 0.05),
+        ("as a whole far below the tread", sole(), [-1.0, -0.9], &step_up(0.2, 0.5), 1.0),
+        // Where a lower one would still be far beneath.
+        ("below the upper tread", sole(), [-1.0, -0.2], &step_down(0.5, 3.0), 0.3),
+        ("disc, its middle above the ground", disc(), [-1.0, 0.4], &step_up(0.2, 0.5), 0.1),
+        ("disc, its middle below the ground", disc(), [-1.0, -0.3], &step_up(0.2, 0.5), 0.8),
+        ("a ridge pokes between free corners", sole(), [0.0, 0.1], &[[-1.0, -5.0], [0.0, 0.03], [1.0, -5.0]], 0.03),
+    ] {
+        let found = depth(&robot, &state([x, z, 0.0], level, 1, profile));
+        assert!((found - expected).abs() < 2e-6, "{what}: {found} is not {expected}");
+    }
     // A thin pillar goes right through: no corner is inside of anything, and the shortest way out is along the box.
     let pillar = [[-1.0, -5.0], [-0.01, -5.0], [-0.009, 5.0], [0.009, 5.0], [0.01, -5.0], [1.0, -5.0]];
     let found = depth(&sole(), &state([0.0, 0.1, 0.0], level, 1, &pillar));

@@ -65,8 +65,7 @@ fn the_robot_keeps_the_axes_of_the_files_root_behind_a_turned_chain() {
         .replace("<origin xyz=\"0 0 0\"/><mass value=\"2\"/>", "<origin xyz=\"0 -0.3 0.2\"/><mass value=\"2\"/>");
     let robot = load(&text);
     assert_eq!(found(&robot), (Base::Floating, "d", vec![]));
-    let Vector { x, z } = robot.bodies[0].com;
-    assert!((x - 0.3).abs() < 1e-15 && (z - 0.2).abs() < 1e-15, "{x} {z}");
+    assert_at(robot.bodies[0].com, [0.3, 0.2]);
 }
 
 #[test]

@@ -33,6 +33,17 @@ fn reduce(text: &str, reduction: &Reduction) -> Robot {
     Robot::reduce(&Description::from_urdf(text).expect("a description"), reduction).expect("a robot")
 }
 
+/// With these joints held at values.
+fn holding(text: &str, hold: &[(usize, f64)]) -> Robot {
+    reduce(text, &Reduction { hold: hold.to_vec(), ..Reduction::default() })
+}
+
+/// With an element in a revolute joint.
+fn with_mimic(text: &str, joint: &str, mimic: &str) -> String {
+    let joint = format!("name=\"{joint}\" type=\"revolute\">");
+    text.replace(&joint, &format!("{joint}<mimic {mimic}/>"))
+}
+
 /// A robot of these elements, on the line after its first tag.
 fn robot(body: &str) -> String {
     format!("<robot name=\"r\">\n{body}\n</robot>")
@@ -87,6 +98,12 @@ fn two_links(kind: &str, elements: &str) -> String {
     massive(&[(kind, "")]).replace("<origin xyz=\"0 0 -1\"/><axis xyz=\"\"/>", elements)
 }
 
+/// Rounding of a few operations on numbers of order one.
+#[track_caller]
+fn assert_at(found: Vector, [x, z]: [f64; 2]) {
+    assert!((found.x - x).abs() < 1e-15 && (found.z - z).abs() < 1e-15, "{found:?} is not {x}, {z}");
+}
+
 fn left_out(what: &str, why: &str) -> LeftOut {
     LeftOut { what: what.into(), why: why.into() }
 }
@@ -114,8 +131,8 @@ fn ramone_keeps_the_digits_of_table_1() {
         ];
         assert_eq!(bodies, expected.map(|(name, mass, com, moment)| (name.to_owned(), mass, com, moment)));
 
-        let joints: Vec<_> =
-            ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin.components())).collect();
+        let joints = ramone.joints.iter().map(|joint| (joint.parent, joint.child, joint.origin.components()));
+        let joints: Vec<_> = joints.collect();
         let (hip, knee) = ([0.0, -0.137675], [0.0, -0.200]);
         assert_eq!(joints, [(0, 1, hip), (1, 2, knee), (0, 3, hip), (3, 4, knee)]);
         assert!(ramone.joints.iter().all(|joint| joint.axis == Axis::Revolute { sign: -1.0 }));
@@ -345,24 +362,20 @@ fn fixed_links_are_merged_with_their_turned_inertia() {
         assert!((value - expected).abs() < 1e-14, "{value} is not {expected}");
     }
     // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
-    let Vector { x, z } = robot.links[1].point::<f64>([1.0, 2.0, 3.0]);
-    assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15);
+    assert_at(robot.links[1].point::<f64>([1.0, 2.0, 3.0]), [0.0, -1.0]);
     assert_eq!((disc(&robot.links[1]), robot.links[1].body), (([2.0, 0.0], 0.1), 0));
     // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
-    let Vector { x, z } = robot.joints[0].origin;
-    assert!((x - 2.0).abs() < 1e-15 && z.abs() < 1e-15);
+    assert_at(robot.joints[0].origin, [2.0, 0.0]);
     assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Revolute { sign: 1.0 }));
 }
 
 #[test]
 fn a_box_foot_keeps_its_exact_corners_through_a_weld() {
-    let text = robot(&format!(
-        "<link name=\"a\">{}</link><link name=\"foot\"><collision><origin xyz=\"0.05 0 0\"/><geometry>\
-         <box size=\"0.2 0.1 0.04\"/></geometry></collision></link><joint name=\"j\" type=\"fixed\">\
-         <parent link=\"a\"/><child link=\"foot\"/><origin xyz=\"0 0 -0.3\"/></joint>",
-        inertial(1.0, "0 0 0", 1.0)
-    ));
-    let robot = load(&text);
+    let robot = load(&urdf::robot(&[
+        link("a", 1.0, [0.0; 2], 1.0, ""),
+        format!("<link name=\"foot\">{}</link>", urdf::collision([0.05, 0.0], "box size=\"0.2 0.1 0.04\"")),
+        joint("j", urdf::Axis::Fixed, ["a", "foot"], [0.0, -0.3], ""),
+    ]));
     let [polygon] = &robot.links[1].shapes[..] else { panic!("one polygon") };
     let (rear, front, low, high) = (0.05 - 0.1, 0.05 + 0.1, -0.3 - 0.02, -0.3 + 0.02);
     assert_eq!(polygon.corners(), [[rear, low], [front, low], [front, high], [rear, high]]);
@@ -386,19 +399,13 @@ fn links_without_inertial_or_inertia_are_read() {
 
 #[test]
 fn skipped_shapes_are_listed_one_by_one() {
-    let shape = |geometry: &str| format!("<collision><geometry>{geometry}</geometry></collision>");
-    let text = robot(&format!(
-        "<link name=\"a\">{}{}{}{}</link>",
-        inertial(1.0, "0 0 0", 1.0),
-        shape("<mesh filename=\"foot.stl\"/>"),
-        shape("<plane/>"),
-        shape("<sphere radius=\"1\"/>"),
-    ));
-    let robot = load(&text);
+    let shapes = ["mesh filename=\"foot.stl\"", "plane", "sphere radius=\"1\""];
+    let shapes = shapes.map(|shape| urdf::collision([0.0; 2], shape)).concat();
+    let robot = load(&urdf::body(1.0, &shapes));
     assert_eq!(robot.links[0].shapes.len(), 1);
     let expected = [
-        left_out("collision mesh \"foot.stl\" of link \"a\"", "its file was not read"),
-        left_out("collision <plane> of link \"a\"", "no shape of URDF"),
+        left_out("collision mesh \"foot.stl\" of link \"body\"", "its file was not read"),
+        left_out("collision <plane> of link \"body\"", "no shape of URDF"),
     ];
     assert_eq!(robot.left_out, expected);
 }

@@ -98,8 +98,7 @@ fn frozen_joints_stay_at_their_values_and_axes_are_judged_there() {
     assert_eq!((names(&robot), robot.joints[0].axis), (vec!["k"], Axis::Revolute { sign: -1.0 }));
     assert_eq!(still(&robot, "j"), &FreezeReason::Asked { value: FRAC_PI_2 });
     // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
-    let Vector { x, z } = robot.joints[0].origin;
-    assert!(x.abs() < 1e-15 && (z + 1.0).abs() < 1e-15, "{x} {z}");
+    assert_at(robot.joints[0].origin, [0.0, -1.0]);
 
     // A slide that is held carries its child along: 1 m down and 0.25 m up.
     let robot = reduce(&text, &hold(&[(2, 0.25)]));
@@ -109,17 +108,15 @@ fn frozen_joints_stay_at_their_values_and_axes_are_judged_there() {
     assert!(robot.left_out.contains(&left_out("joint \"l\"", why)), "{:?}", robot.left_out);
 
     // A joint of the plane can be held as well, and then gives no plane.
-    let robot = reduce(&massive(&[ROLL, YAW]), &Reduction { hold: vec![(0, 0.0)], ..Reduction::default() });
+    let robot = holding(&massive(&[ROLL, YAW]), &[(0, 0.0)]);
     assert_eq!((robot.reading.plane, names(&robot)), (Plane::XY, vec!["k"]));
 }
 
 #[test]
 fn a_frozen_pitch_turns_all_that_depends_on_it() {
     // j dips the nose by a: what hung down points backward by sin a.
-    let text = massive(&[PITCH, PITCH]);
-    let robot = reduce(&text, &Reduction { hold: vec![(0, 0.3)], ..Reduction::default() });
-    let Vector { x, z } = robot.joints[0].origin;
-    assert!((x + 0.3_f64.sin()).abs() < 1e-15 && (z + 1.0 + 0.3_f64.cos()).abs() < 1e-15);
+    let robot = holding(&massive(&[PITCH, PITCH]), &[(0, 0.3)]);
+    assert_at(robot.joints[0].origin, [-0.3_f64.sin(), -1.0 - 0.3_f64.cos()]);
 }
 
 #[test]
@@ -135,7 +132,7 @@ fn what_cannot_be_held_is_refused() {
     assert_eq!(refused(&text, &[(1, 0.0), (1, 1.0)]), "7:1: joint \"k\": held joint \"k\" is given twice");
     let value = "7:1: joint \"k\": the value at which it is held must be a finite number, not NaN";
     assert_eq!(refused(&text, &[(1, f64::NAN)]), value);
-    let mimic = text.replace("type=\"fixed\">", "type=\"revolute\"><mimic joint=\"k\"/>");
+    let mimic = with_mimic(&text.replace("fixed", "revolute"), "j", "joint=\"k\"");
     let error = "6:1: joint \"j\": it cannot be held by itself: it follows joint \"k\"";
     assert_eq!(refused(&mimic, &[(0, 0.0)]), error);
 }
@@ -159,14 +156,14 @@ fn joints_without_a_single_axis_are_frozen_with_a_caution() {
 fn axes_that_are_all_a_little_off_get_a_caution() {
     // tan 5 degrees.
     let tilted = ("revolute", "0 1 0.087488663525924");
-    let robot = load(&massive(&[ROLL, tilted, tilted]));
+    let text = massive(&[ROLL, tilted, tilted]);
+    let robot = load(&text);
     assert!(robot.joints.is_empty());
     let caution = only_caution(&robot);
     let held = "2 of 3 joints that could move are held only because their axes are 5.0 degrees off the plane (k, l); to keep them";
     // From y + z tan 5 degrees back to y is a turn about x by minus 5 degrees.
     assert_eq!(caution, format!("{held}: `hold: j=-0.087266`"));
-    let text = massive(&[ROLL, tilted, tilted]);
-    assert_eq!(names(&reduce(&text, &Reduction { hold: vec![(0, -0.087266)], ..Reduction::default() })), ["k", "l"]);
+    assert_eq!(names(&holding(&text, &[(0, -0.087266)])), ["k", "l"]);
 
     // A mounting that is tilted cannot be held elsewhere.
     let mounted = massive(&[("fixed", "1 0 0"), PITCH, PITCH, ROLL])
@@ -184,64 +181,42 @@ fn axes_that_are_all_a_little_off_get_a_caution() {
     assert!(caution.starts_with("no joint moves in this plane"), "{caution}");
 }
 
-// Joints that follow others.
+// Mimic joints.
 
 #[test]
 fn a_mimic_joint_is_tied_to_the_last_mimicked_one() {
     // j follows k by 2 q + 0.5, k follows m by -3 q: j = -6 q_m + 0.5.
     let text = massive(&[PITCH, PITCH, PITCH, PITCH]);
-    let follow = |text: &str, joint: &str, mimic: &str| {
-        text.replace(
-            &format!("name=\"{joint}\" type=\"revolute\">"),
-            &format!("name=\"{joint}\" type=\"revolute\">{mimic}"),
-        )
-    };
-    let text = follow(&text, "j", "<mimic joint=\"k\" multiplier=\"2\" offset=\"0.5\"/>");
-    let text = follow(&text, "k", "<mimic joint=\"m\" multiplier=\"-3\"/>");
+    let text = with_mimic(&text, "j", "joint=\"k\" multiplier=\"2\" offset=\"0.5\"");
+    let text = with_mimic(&text, "k", "joint=\"m\" multiplier=\"-3\"");
     let robot = load(&text);
     assert_eq!(names(&robot), ["l", "m"]);
-    let followers: Vec<_> = robot
-        .mimic_joints
-        .iter()
-        .map(|follower| (follower.joint.name.as_str(), follower.mimicked, follower.multiplier, follower.offset))
-        .collect();
-    assert_eq!(followers, [("j", 1, -6.0, 0.5), ("k", 1, -3.0, 0.0)]);
+    let mimics = robot.mimic_joints.iter().map(|own| (own.joint.name.as_str(), own.mimicked, own.multiplier, own.offset));
+    assert_eq!(mimics.collect::<Vec<_>>(), [("j", 1, -6.0, 0.5), ("k", 1, -3.0, 0.0)]);
     let movers: Vec<_> = robot.bodies.iter().map(|body| body.joint).collect();
-    let expected = [
-        None,
-        Some(ParentJoint::Mimic(0)),
-        Some(ParentJoint::Mimic(1)),
-        Some(ParentJoint::Joint(0)),
-        Some(ParentJoint::Joint(1)),
-    ];
-    assert_eq!(movers, expected);
+    let (mimic, joint) = (ParentJoint::Mimic, ParentJoint::Joint);
+    assert_eq!(movers, [None, Some(mimic(0)), Some(mimic(1)), Some(joint(0)), Some(joint(1))]);
 }
 
 #[test]
 fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
-    let mimic = |axis: &str, leader: &str| {
-        massive(&[("revolute", axis), PITCH]).replace(
-            "name=\"k\" type=\"revolute\">",
-            &format!("name=\"k\" type=\"revolute\"><mimic joint=\"{leader}\" multiplier=\"2\" offset=\"0.1\"/>"),
-        )
+    let mimic = |axis: &str| {
+        with_mimic(&massive(&[("revolute", axis), PITCH]), "k", "joint=\"j\" multiplier=\"2\" offset=\"0.1\"")
     };
-    let robot = load(&mimic("1 0 0", "j"));
+    let robot = load(&mimic("1 0 0"));
     assert!(robot.joints.is_empty() && robot.mimic_joints.is_empty());
     // At zero, whatever its offset.
     assert_eq!(still(&robot, "k"), &FreezeReason::Follows { mimicked: "j".into() });
     assert_eq!(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), [0.0, -3.0]);
 
-    // A leader that is held at a value takes its follower along: 2 * 0.2 + 0.1.
-    let robot = reduce(&mimic("0 1 0", "j"), &Reduction { hold: vec![(0, 0.2)], ..Reduction::default() });
-    let Vector { x, z } = robot.links[2].point::<f64>([0.0, 0.0, -1.0]);
+    // A mimicked joint that is held at a value takes its mimic joint along: 2 * 0.2 + 0.1.
+    let robot = holding(&mimic("0 1 0"), &[(0, 0.2)]);
     let (first, both): (f64, f64) = (0.2, 0.2 + 2.0 * 0.2 + 0.1);
-    assert!((x + first.sin() + both.sin()).abs() < 1e-15 && (z + 1.0 + first.cos() + both.cos()).abs() < 1e-15);
+    let expected = [-first.sin() - both.sin(), -1.0 - first.cos() - both.cos()];
+    assert_at(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), expected);
 
-    // A follower off the plane is held as such; its leader stays.
-    let robot = load(
-        &massive(&[PITCH, ROLL])
-            .replace("name=\"k\" type=\"revolute\">", "name=\"k\" type=\"revolute\"><mimic joint=\"j\"/>"),
-    );
+    // A mimic joint off the plane is held as such; the mimicked one stays.
+    let robot = load(&with_mimic(&massive(&[PITCH, ROLL]), "k", "joint=\"j\""));
     assert_eq!((names(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
     assert!(matches!(still(&robot, "k"), FreezeReason::OffPlane { .. }));
 }
@@ -271,10 +246,8 @@ fn names_change_nothing() {
 fn order_in_the_file_changes_only_the_order() {
     let text = massive(&[PITCH, ROLL, ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
     let forward = load(&text);
-    let mut lines: Vec<&str> =
-        text.lines().filter(|line| line.starts_with("<link") || line.starts_with("<joint")).collect();
-    lines.reverse();
-    let backward = load(&robot(&lines.join("\n")));
+    let elements = text.lines().rev().filter(|line| line.starts_with("<link") || line.starts_with("<joint"));
+    let backward = load(&robot(&elements.collect::<String>()));
     assert_eq!(forward.bodies.len(), backward.bodies.len());
     for (a, b) in forward.bodies.iter().zip(&backward.bodies) {
         assert_eq!((&a.name, a.mass, a.com, a.moment), (&b.name, b.mass, b.com, b.moment));

@@ -3,7 +3,5 @@
 
 mod command;
 mod comparison;
-mod infinite;
 mod robots;
-mod roots;
 mod trees;

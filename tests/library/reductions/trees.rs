@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::comparison::{FEWER, answer, difference, floating, largest_rate};
+use crate::support::impact::modes;
 use crate::support::mechanism::{Mechanism, Point, mechanism, motion};
 use std::collections::BTreeSet;
 
@@ -68,7 +69,7 @@ impl Case {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 96, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 128, ..ProptestConfig::default() })]
 
     #[test]
     fn nothing_depends_on_what_is_left_out(case in case()) {
@@ -101,5 +102,40 @@ proptest! {
         let reductions = Reductions { weld: true, massless: true, ..Reductions::NONE };
         let other = answer(&floating(&urdf, Reductions::ALL), &state, reductions).expect("an answer");
         prop_assert_eq!(difference(&one, &other, Some(largest_rate(&state))), Ok(()), "{}", state);
+    }
+
+    /// Which link is the root is a matter of writing.
+    #[test]
+    fn every_link_may_be_the_root(case in case()) {
+        let answer = |root: usize| {
+            let robot = floating(&case.mechanism.urdf(root), Reductions::ALL);
+            answer(&robot, &case.state(root), Reductions::ALL).expect("an answer")
+        };
+        let one = answer(0);
+        for root in 1..case.mechanism.links.len() {
+            let other = answer(root);
+            for (a, b) in one.contacts.iter().zip(&other.contacts) {
+                // Sums of a few lengths of order one.
+                prop_assert!((a.point - b.point).length() < 1e-13 * 16.0, "root {root}: {:?} and {:?}", a.point, b.point);
+            }
+            prop_assert_eq!(difference(&one, &other, None), Ok(()), "root {}\n{}", root, case.state(root));
+        }
+    }
+
+    /// Infinite friction has no cone to test: the pair (a, b) = (1, 0) of a L_n >= b |L_t| asks for pressure alone. No
+    /// unreduced computation would be another; a huge finite coefficient must lead to the same modes.
+    #[test]
+    fn huge_friction_leads_to_the_modes_of_infinite_friction(case in case()) {
+        let robot = floating(&case.mechanism.urdf(0), Reductions::ALL);
+        let outcomes = |friction| {
+            let mut state = case.state(0);
+            // Two contacts of one link may be pressed together without bound, which no finite friction allows.
+            state["contacts"].as_array_mut().expect("a list").truncate(1);
+            state["friction"] = friction;
+            let mut modes = modes(&answer(&robot, &state, Reductions::ALL).expect("an answer"));
+            modes.sort();
+            modes
+        };
+        prop_assert_eq!(outcomes(json!("infinite")), outcomes(json!(1e12)));
     }
 }
