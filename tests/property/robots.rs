@@ -4,7 +4,7 @@ use super::problems::mirror;
 use crate::support::impact::{impact, robot, velocities_after};
 use crate::support::mechanism::{Kind, Mechanism, Point};
 use crate::support::random::Random;
-use crate::support::scaled::largest;
+use crate::support::scaled::{largest, near};
 use heelstrike::impact::{Analysis, Mode, Outcome, Verdict};
 use heelstrike::pipeline::Impact;
 use serde_json::{Value, json};
@@ -128,8 +128,7 @@ impl View<'_> {
 /// Both equal to 1e-9 of the largest entry or `scale`.
 fn assert_near(a: &[f64], b: &[f64], scale: f64, what: &str, context: &dyn Fn() -> String) {
     let scale = scale.max(largest(a));
-    let near = a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * scale);
-    assert!(near, "{what}: {a:?} is not {b:?}\n{}", context());
+    assert!(near(a, b, 1e-9 * scale), "{what}: {a:?} is not {b:?}\n{}", context());
 }
 
 /// Runs `check` on every model that is decided; most must be.

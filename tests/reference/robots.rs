@@ -2,26 +2,16 @@
 //! with the reference's contacts named by hand, then each contact struck alone. Of a reference's variants the one is
 //! taken that the rules of `robot` mean: `default` where the root link floats.
 
-use std::collections::BTreeMap;
-use std::ops::Range;
-
 use nalgebra::{DMatrix, DVector};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::support::answers::{Outcome, answers};
-use crate::support::command::read;
+use crate::support::robots::{Contact, ROBOTS, by_name, robot_and_reference};
 use crate::support::scaled::{Differences, largest, matrix};
 
 /// To this share of the largest entry.
 const TOLERANCE: f64 = 1e-10;
-
-#[derive(Deserialize)]
-struct Reference {
-    urdf: String,
-    /// Some variants lack a Delassus matrix, so each is read when it is wanted.
-    variants: BTreeMap<String, Value>,
-}
 
 #[derive(Deserialize)]
 struct Variant {
@@ -34,13 +24,6 @@ struct Variant {
 #[derive(Deserialize)]
 struct Base {
     mode: String,
-}
-
-#[derive(Deserialize, Serialize)]
-struct Contact {
-    link: String,
-    offset: [f64; 3],
-    radius: f64,
 }
 
 /// A configuration with the values there; contact rows are x then z.
@@ -79,28 +62,14 @@ struct Robot {
 }
 
 impl Robot {
-    fn read(name: &'static str, variant: &str) -> Self {
-        let folder = format!("tests/data/robots/{name}");
-        let reference = read(&format!("{folder}/reference.json"));
-        let Reference { urdf, mut variants } = serde_json::from_str(&reference).expect("the reference is readable");
-        let variant = variants.remove(variant).expect("the variant");
-        let variant = serde_json::from_value(variant).expect("the variant is readable");
-        Self { name, urdf: format!("{folder}/{urdf}"), variant }
+    fn read(named: (&'static str, &str)) -> Self {
+        let (urdf, variant) = robot_and_reference(named);
+        Self { name: named.0, urdf, variant }
     }
 
     /// The state of a configuration with these contacts.
     fn state(&self, id: &str, config: &Config, contacts: &[Contact], friction: f64) -> Value {
-        let named = |values: &[f64]| {
-            let named = |range: Range<usize>| -> BTreeMap<_, _> {
-                range.map(|index| (&self.variant.coordinates[index], values[index])).collect()
-            };
-            let mut named =
-                json!({"base": named(0..self.base_dofs()), "joints": named(self.base_dofs()..values.len())});
-            if self.base_dofs() == 0 {
-                named.as_object_mut().map(|named| named.remove("base"));
-            }
-            named
-        };
+        let named = |values: &[f64]| by_name(&self.variant.coordinates, self.base_dofs(), values);
         json!({
             "id": format!("{}, {id}", self.name),
             "position": named(&config.q),
@@ -129,17 +98,8 @@ impl Robot {
 #[test]
 fn robots_equal_their_references() {
     let mut differences = Differences::default();
-    for (name, variant) in [
-        ("a1", "default"),
-        ("acrobot", "fixed"),
-        ("cartpole", "fixed_prismatic"),
-        ("h1", "default"),
-        ("planar_walker_torso", "rerooted"),
-        ("rabbit", "default"),
-        ("solo8", "default"),
-        ("upkie", "default"),
-    ] {
-        let robot = Robot::read(name, variant);
+    for named in ROBOTS {
+        let robot = Robot::read(named);
         compare_matrices(&robot, &mut differences);
         compare_single_contacts(&robot, &mut differences);
     }

@@ -5,6 +5,7 @@
 //! (at the link's own anchor for the root), so that another root moves frames, turns joints round, and moves no matter.
 //! q and v are x, z and pitch of link 0 for the frame at its anchor, then an entry per joint.
 
+use super::urdf;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -153,62 +154,50 @@ impl Mechanism {
     }
 
     /// A point of the world of zero in a link's frame.
-    fn local(&self, frames: &[Point], link: usize, point: Point) -> [f64; 3] {
-        let [x, z] = turned(minus(point, frames[link]), -self.links[link].turn);
-        [x, 0.0, z]
+    fn local(&self, frames: &[Point], link: usize, point: Point) -> Point {
+        turned(minus(point, frames[link]), -self.links[link].turn)
     }
 
     /// The URDF with this root.
     pub fn urdf(&self, root: usize) -> String {
         let frames = self.frames(root);
-        let mut out = "<robot name=\"mechanism\">\n".to_owned();
-        let triple = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
-        for (index, link) in self.links.iter().enumerate() {
-            let origin = |point| format!("<origin xyz=\"{}\"/>", triple(self.local(&frames, index, point)));
-            let Link { name, mass, com, moment, .. } = link;
-            out += &format!("<link name=\"{name}\">");
-            if *mass > 0.0 {
-                let inertia = format!("<inertia ixx=\"{moment}\" iyy=\"{moment}\" izz=\"{moment}\"/>");
-                out += &format!("<inertial>{}<mass value=\"{mass}\"/>{inertia}</inertial>", origin(*com));
+        let along = |[x, z]: Point| format!("{x} 0 {z}");
+        let link = |(index, Link { name, mass, com, moment, spheres, .. }): (usize, &Link)| {
+            let sphere = |&(center, radius): &(Point, f64)| {
+                urdf::collision(self.local(&frames, index, center), &format!("sphere radius=\"{radius}\""))
+            };
+            let spheres: String = spheres.iter().map(sphere).collect();
+            if *mass == 0.0 {
+                return format!("<link name=\"{name}\">{spheres}</link>\n");
             }
-            for &(center, radius) in &link.spheres {
-                let sphere = format!("<geometry><sphere radius=\"{radius}\"/></geometry>");
-                out += &format!("<collision>{}{sphere}</collision>", origin(center));
-            }
-            out += "</link>\n";
-        }
-        for (index, link) in self.links.iter().enumerate().skip(1) {
+            urdf::link(name, *mass, self.local(&frames, index, *com), *moment, &spheres)
+        };
+        let joint = |(index, link): (usize, &Link)| {
             let [parent, child] = self.ends(index, root);
             let (turn, sign) = (self.links[child].turn, if child == index { 1.0 } else { -1.0 });
             let (kind, axis) = match link.kind {
-                Kind::Turn(about) => ("continuous", [0.0, sign * about, 0.0]),
-                Kind::Slide(along) => {
-                    let [x, z] = turned(along, -turn);
-                    ("prismatic", [sign * x, 0.0, sign * z])
-                }
-                Kind::Fixed => ("fixed", [1.0, 0.0, 0.0]),
-                Kind::OffPlane => {
-                    let [x, z] = turned([0.0, sign], -turn);
-                    ("continuous", [x, 0.0, z])
-                }
+                Kind::Turn(about) => ("continuous", format!("0 {} 0", sign * about)),
+                Kind::Slide(direction) => ("prismatic", along(turned(direction, -turn).map(|entry| sign * entry))),
+                Kind::Fixed => ("fixed", along([1.0, 0.0])),
+                Kind::OffPlane => ("continuous", along(turned([0.0, sign], -turn))),
             };
             let limit = "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>";
             let mimic = link.follows.as_ref().map_or(String::new(), |(mimicked, multiplier, offset)| {
                 format!("<mimic joint=\"{mimicked}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>")
             });
-            out += &format!(
+            format!(
                 "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{}\"/><child link=\"{}\"/>\
-                 <origin xyz=\"{}\" rpy=\"0 {} 0\"/><axis xyz=\"{}\"/>{}{mimic}</joint>\n",
+                 <origin xyz=\"{}\" rpy=\"0 {} 0\"/><axis xyz=\"{axis}\"/>{}{mimic}</joint>\n",
                 link.name,
                 self.links[parent].name,
                 self.links[child].name,
-                triple(self.local(&frames, parent, link.place)),
+                along(self.local(&frames, parent, link.place)),
                 turn - self.links[parent].turn,
-                triple(axis),
                 if kind == "prismatic" { limit } else { "" }
-            );
-        }
-        out + "</robot>\n"
+            )
+        };
+        let links = self.links.iter().enumerate();
+        urdf::robot(&links.clone().map(link).chain(links.skip(1).map(joint)).collect::<Vec<_>>())
     }
 
     /// Where all links are.
@@ -288,14 +277,14 @@ impl Mechanism {
 
     /// The ends of a loop, as JSON for the URDF with this root: a point of one link, and the point of another that is
     /// there in this position.
-    pub fn meeting(&self, root: usize, q: &[f64], (link, point): (usize, Point), other: usize) -> Value {
+    pub fn meeting(&self, root: usize, q: &[f64], (link, at): (usize, Point), other: usize) -> Value {
         let frames = self.frames(root);
         let poses = self.poses(q, q);
-        let there = poses.point(link, point)[0];
+        let there = poses.point(link, at)[0];
         let there = turned(minus(there, poses.origin[other][0]), -poses.pitch[other][0]);
         let end =
             |link: usize, point| json!({"link": self.links[link].name, "offset": self.local(&frames, link, point)});
-        json!({"a": end(link, point), "b": end(other, there)})
+        json!({"a": end(link, at), "b": end(other, there)})
     }
 
     /// The state, as JSON for the URDF with this root, with contacts at points of links.
@@ -309,7 +298,11 @@ impl Mechanism {
             let joints: Value = moving.map(|(link, value)| (link.name.clone(), json!(value))).collect();
             json!({"base": {"x": x, "z": z, "pitch": pitch}, "joints": joints})
         };
-        let contact = |&(link, point, radius): &(usize, Point, f64)| json!({"link": self.links[link].name, "offset": self.local(&frames, link, point), "radius": radius});
+        let contact = |&(link, at, radius): &(usize, Point, f64)| {
+            let mut contact = point(&self.links[link].name, self.local(&frames, link, at));
+            contact["radius"] = json!(radius);
+            contact
+        };
         json!({
             "position": part(place, pitch + self.links[root].turn, q),
             "velocity": part(speed, rate, v),

@@ -2,7 +2,9 @@
 
 use super::command::read;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::ops::Range;
 
 /// Their folders, and which variant of the reference is the robot as it is read.
 pub const ROBOTS: [(&str, &str); 8] = [
@@ -16,10 +18,28 @@ pub const ROBOTS: [(&str, &str); 8] = [
     ("upkie", "default"),
 ];
 
-/// The URDF in a folder and that variant of its reference; variants differ in their fields.
+/// A contact of a reference, as states name it.
+#[derive(Deserialize, Serialize)]
+pub struct Contact {
+    pub link: String,
+    pub offset: [f64; 3],
+    pub radius: f64,
+}
+
+/// The path of the URDF in a folder and that variant of its reference; variants differ in their fields.
 pub fn robot_and_reference<T: DeserializeOwned>((folder, variant): (&str, &str)) -> (String, T) {
     let folder = format!("tests/data/robots/{folder}");
     let reference: Value = serde_json::from_str(&read(&format!("{folder}/reference.json"))).expect("a reference");
-    let urdf = read(&format!("{folder}/{}", reference["urdf"].as_str().expect("a file's name")));
+    let urdf = format!("{folder}/{}", reference["urdf"].as_str().expect("a file's name"));
     (urdf, serde_json::from_value(reference["variants"][variant].clone()).expect("the variant"))
+}
+
+/// Values of coordinates as states name them; the first `base` ones are those of a base that floats.
+pub fn by_name(coordinates: &[String], base: usize, values: &[f64]) -> Value {
+    let part = |range: Range<usize>| -> Value { range.map(|k| (coordinates[k].clone(), json!(values[k]))).collect() };
+    let mut named = json!({"joints": part(base..values.len())});
+    if base > 0 {
+        named["base"] = part(0..base);
+    }
+    named
 }

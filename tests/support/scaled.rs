@@ -22,8 +22,7 @@ impl Differences {
         if is.len() != should.len() {
             return self.note(place, format!("{} numbers instead of {}", is.len(), should.len()));
         }
-        // A NaN is within no tolerance.
-        if !is.iter().zip(should).all(|(is, should)| (is - should).abs() <= tolerance) {
+        if !near(is, should, tolerance) {
             let off = largest(&is.iter().zip(should).map(|(is, should)| is - should).collect::<Vec<_>>());
             self.note(place, format!("off by {off:.3e} of {tolerance:.3e}\n  is     {is:?}\n  should {should:?}"));
         }
@@ -42,6 +41,11 @@ impl Differences {
     pub fn finish(self) {
         assert!(self.0.is_empty(), "{} differences:\n{}", self.0.len(), self.0.join("\n"));
     }
+}
+
+/// Whether both have as many numbers, the same to an absolute tolerance; a NaN is within none.
+pub fn near(is: &[f64], should: &[f64], tolerance: f64) -> bool {
+    is.len() == should.len() && is.iter().zip(should).all(|(is, should)| (is - should).abs() <= tolerance)
 }
 
 /// Largest magnitude.

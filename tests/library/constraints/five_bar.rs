@@ -4,7 +4,7 @@
 use crate::constraints::{assert_near, flat, impact, matrices};
 use crate::support::impact::{loop_impulses, modes, outcomes, robot, velocities_after};
 use crate::support::mechanism::{Mechanism, Point, point};
-use crate::support::scaled::matrix;
+use crate::support::scaled::{matrix, near};
 use heelstrike::pipeline::Impact;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -127,10 +127,7 @@ fn proven(found: Impact) -> Impact {
 
 #[track_caller]
 fn assert_vectors_near(found: &[f64], expected: &[f64], size: f64) {
-    assert_eq!(found.len(), expected.len());
-    for (found, expected) in found.iter().zip(expected) {
-        assert!((found - expected).abs() <= ROUNDINGS * f64::EPSILON * size, "{found} {expected}");
-    }
+    assert!(near(found, expected, ROUNDINGS * f64::EPSILON * size), "{found:?} {expected:?}");
 }
 
 proptest! {

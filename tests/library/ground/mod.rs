@@ -12,6 +12,7 @@ mod level;
 mod scenes;
 
 use crate::support::impact::{impact, outcomes, robot, try_impact, velocities_after};
+use crate::support::scaled::near;
 use crate::support::urdf;
 use heelstrike::impact::Verdict;
 use heelstrike::pipeline::{Impact, Options};
@@ -50,8 +51,7 @@ const FALLING: [f64; 3] = [0.0, -1.0, 0.0];
 /// Rounding of a few operations on numbers of order one.
 #[track_caller]
 fn assert_close(found: &[f64], expected: &[f64]) {
-    let near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 64.0 * f64::EPSILON);
-    assert!(near && found.len() == expected.len(), "{found:?} is not {expected:?}");
+    assert!(near(found, expected, 64.0 * f64::EPSILON), "{found:?} is not {expected:?}");
 }
 
 /// Points and normals of all contacts.
@@ -95,10 +95,9 @@ fn assert_same_outcomes(one: &Impact, other: &Impact) {
     assert_eq!(verdict(one), verdict(other));
     assert_eq!(outcomes(one).len(), outcomes(other).len());
     let velocities = velocities_after(one).into_iter().zip(velocities_after(other));
-    let near = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
     for ((a, b), (before, after)) in outcomes(one).iter().zip(outcomes(other)).zip(velocities) {
         assert_eq!(a.modes, b.modes);
-        assert!(near(a.impulse.as_flattened(), b.impulse.as_flattened()), "{:?} {:?}", a.impulse, b.impulse);
-        assert!(near(&before, &after), "{before:?} {after:?}");
+        assert!(near(a.impulse.as_flattened(), b.impulse.as_flattened(), 1e-12), "{:?} {:?}", a.impulse, b.impulse);
+        assert!(near(&before, &after, 1e-12), "{before:?} {after:?}");
     }
 }

@@ -98,7 +98,7 @@ fn a_circle_that_stands_in_a_notch_rests_on_one_side() {
     let found = impact(&disc(), &text);
     let s = FRAC_1_SQRT_2;
     assert_touches(&found, &[[[0.0, 0.0], [0.0, 1.0]], [[0.5 * s, 0.5 - 0.5 * s], [-s, s]]]);
-    // It rolls at 1 rad/s: the centre at 0.5 m/s forward; the wall's point, at (0.5 s, -0.5 s) from there, moves by
+    // It rolls at 1 rad/s: the center at 0.5 m/s forward; the wall's point, at (0.5 s, -0.5 s) from there, moves by
     // (-0.5 s, -0.5 s) more.
     assert_eq!(found.velocity_before[0], [0.0; 2]);
     let [x, z] = [0.5 - 0.5 * s, -0.5 * s];

@@ -20,10 +20,10 @@ fn a_root_with_mass_floats_however_little_it_weighs() {
     let robot = load(&chain(&[0.001, 1.0], &[PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["j"]));
     assert_eq!(robot.reading.base_because, "the root has mass");
-    // Massless by itself, but welded to what has mass.
+    // Massless by itself, but fixed to what has mass.
     let robot = load(&chain(&[0.0, 1.0, 1.0], &[FIXED, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["k"]));
-    // A joint that is held welds as well.
+    // A joint that is held fixes as well.
     let robot = load(&chain(&[0.0, 1.0, 1.0], &[ROLL, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["k"]));
 }

@@ -1,4 +1,4 @@
-//! URDF text -> robot: what is read, to which digits, what is welded, skipped or refused, and with which words.
+//! URDF text -> robot: what is read, to which digits, what is merged, skipped or refused, and with which words.
 //!
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
@@ -144,11 +144,11 @@ fn ramone_keeps_the_digits_of_table_1() {
             assert_eq!(foot.point::<f64>([0.001, 0.5, 0.0]), [0.001, -0.2385]);
         }
         assert_eq!(ramone.links.iter().filter(|link| !link.shapes.is_empty()).count(), 2);
-        let welds = [
+        let fixed = [
             left_out("joint \"left_ankle\"", "fixed: welded into left_shank"),
             left_out("joint \"right_ankle\"", "fixed: welded into right_shank"),
         ];
-        assert_eq!(ramone.left_out, welds);
+        assert_eq!(ramone.left_out, fixed);
     }
 }
 
@@ -211,7 +211,7 @@ struct ReferenceBody {
 fn robots_of_others_equal_the_values_of_pinocchio() {
     for named in ROBOTS {
         let (urdf, expected) = robot_and_reference::<Model>(named);
-        let (robot, folder) = (load(&urdf), named.0);
+        let (robot, folder) = (load(&read(&urdf)), named.0);
         assert_eq!(robot.coordinates().collect::<Vec<_>>(), expected.coordinates, "{folder}");
         assert_eq!(robot.bodies.len(), expected.bodies.len(), "{folder}");
         close(robot.mass(), expected.total_mass);
@@ -352,7 +352,7 @@ fn fixed_links_are_merged_with_their_turned_inertia() {
         inertial(1.0, "0 0 4", 0.5),
         inertial(1.0, "0 0 0", 1.0)
     ));
-    // The weld turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment izz.
+    // The fixed joint turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment izz.
     let robot = load(&text);
     let body = &robot.bodies[0];
     assert_eq!((robot.bodies.len(), body.mass), (2, 4.0));
@@ -364,7 +364,7 @@ fn fixed_links_are_merged_with_their_turned_inertia() {
     // The point (1, 2, 3) of b: (2, 5, 0) + (-2, 3, -1).
     assert_at(robot.links[1].point::<f64>([1.0, 2.0, 3.0]), [0.0, -1.0]);
     assert_eq!((disc(&robot.links[1]), robot.links[1].body), (([2.0, 0.0], 0.1), 0));
-    // The hinge stands in the welded body at (2, 6, 0); c's x is b's z, the normal.
+    // The hinge stands in the merged body at (2, 6, 0); c's x is b's z, the normal.
     assert_at(robot.joints[0].origin, [2.0, 0.0]);
     assert_eq!((robot.joints[0].parent, robot.joints[0].axis), (0, Axis::Revolute { sign: 1.0 }));
 }

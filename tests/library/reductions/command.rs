@@ -1,4 +1,4 @@
-//! `--no-reduction` on the command line, and what results tell of it.
+//! `--no-reduction` on the command line, and what results say of it.
 
 use crate::support::command::heelstrike_reads;
 use serde_json::{Value, json};
@@ -25,7 +25,7 @@ fn left_out(result: &Value) -> Vec<[&str; 2]> {
 }
 
 #[test]
-fn a_result_tells_what_its_scene_did_not_need() {
+fn a_result_lists_what_its_scene_did_not_need() {
     let held = ["joint \"left_knee\"", "held: it keeps its rate and has no column"];
     let high = ["1 shape out of reach", "too high to reach the ground"];
     for (friction, more) in [

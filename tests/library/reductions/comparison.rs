@@ -1,7 +1,7 @@
 //! Two answers to one question.
 
 use crate::support::impact::{outcomes, try_impact};
-use crate::support::scaled::largest;
+use crate::support::scaled::{largest, near};
 use heelstrike::Robot;
 use heelstrike::description::Description;
 use heelstrike::impact::Outcome;
@@ -57,7 +57,7 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
     }
     if let (Some(one), Some(other)) = (a.condition, b.condition) {
         // It reports how many of its own digits are lost.
-        near("conditions", &[one.recip()], &[other.recip()], 1.0)?;
+        compare("conditions", &[one.recip()], &[other.recip()], 1.0)?;
     }
     let [a, b] = [one, other].map(sorted);
     let modes = |outcomes: &[&Outcome]| outcomes.iter().map(|own| own.modes.clone()).collect::<Vec<_>>();
@@ -76,16 +76,16 @@ pub fn difference(one: &Impact, other: &Impact, rate: Option<f64>) -> Result<(),
         let scaled = |rows: &[[f64; 2]], power: i32| -> Vec<f64> {
             rows.iter().flatten().zip(&mobility).map(|(entry, mobility)| entry * mobility.powi(power) / speed).collect()
         };
-        near("impulses", &scaled(&a.impulse, 1), &scaled(&b.impulse, 1), 1.0)?;
-        near("contact velocities", &scaled(&a.velocity_after, -1), &scaled(&b.velocity_after, -1), 1.0)?;
+        compare("impulses", &scaled(&a.impulse, 1), &scaled(&b.impulse, 1), 1.0)?;
+        compare("contact velocities", &scaled(&a.velocity_after, -1), &scaled(&b.velocity_after, -1), 1.0)?;
         if let Some(rate) = rate {
             let [loops, others] = [a, b]
                 .map(|own| own.loop_impulse.iter().flatten().flat_map(|own| own.components()).collect::<Vec<f64>>());
-            near("impulses of loops", &loops, &others, largest(a.impulse.as_flattened()))?;
+            compare("impulses of loops", &loops, &others, largest(a.impulse.as_flattened()))?;
             let [velocities, others] = [a, b].map(|own| own.velocity().collect::<Vec<_>>());
-            near("velocities", &velocities, &others, rate)?;
+            compare("velocities", &velocities, &others, rate)?;
         }
-        near("energies", &[a.energy_loss / speed / speed], &[b.energy_loss / speed / speed], 1.0)?;
+        compare("energies", &[a.energy_loss / speed / speed], &[b.energy_loss / speed / speed], 1.0)?;
     }
     Ok(())
 }
@@ -96,10 +96,9 @@ pub fn largest_rate(state: &serde_json::Value) -> f64 {
     largest(&parts.flat_map(|part| part.values()).filter_map(serde_json::Value::as_f64).collect::<Vec<_>>())
 }
 
-fn near(what: &str, a: &[f64], b: &[f64], least: f64) -> Result<(), String> {
+fn compare(what: &str, a: &[f64], b: &[f64], least: f64) -> Result<(), String> {
     let size = least.max(largest(a)).max(largest(b));
-    // A NaN is near nothing.
-    if a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= TOLERANCE * size) {
+    if near(a, b, TOLERANCE * size) {
         return Ok(());
     }
     let far = a.iter().zip(b).map(|(a, b)| (a - b).abs() / size).fold(0.0, f64::max);

@@ -1,10 +1,11 @@
 //! The robots of other people's projects (`data/robots`), with and without what their scenes need.
 
+use crate::support::command::read;
 use crate::support::parallel::total;
-use crate::support::robots::{ROBOTS, robot_and_reference};
+use crate::support::robots::{Contact, ROBOTS, by_name, robot_and_reference};
 use heelstrike::description::Description;
 use heelstrike::reductions::Reductions;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::comparison::{FEWER, answer, difference, largest_rate, robot};
@@ -16,13 +17,6 @@ struct Variant {
     configs: Vec<Config>,
 }
 
-#[derive(Deserialize, Serialize)]
-struct Contact {
-    link: String,
-    offset: [f64; 3],
-    radius: f64,
-}
-
 #[derive(Deserialize)]
 struct Config {
     q: Vec<f64>,
@@ -32,13 +26,7 @@ struct Config {
 /// The states that a robot's reference has, with one contact and with all, three kinds of friction, joints held and
 /// not.
 fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
-    let named = |values: &[f64]| {
-        let entries = variant.coordinates.iter().zip(values).map(|(name, &value)| (name.clone(), json!(value)));
-        let (base, joints): (Vec<_>, Vec<_>) = entries.enumerate().partition(|(index, _)| *index < base);
-        let parts = [("base", base), ("joints", joints)].into_iter().filter(|(_, part)| !part.is_empty());
-        let entries = |part: Vec<(usize, (String, Value))>| part.into_iter().map(|(_, own)| own).collect::<Value>();
-        parts.map(|(name, part)| (name.to_owned(), entries(part))).collect::<Value>()
-    };
+    let named = |values: &[f64]| by_name(&variant.coordinates, base, values);
     let held: Vec<&String> = joints.iter().step_by(2).collect();
     let mut states = Vec::new();
     for config in &variant.configs {
@@ -58,7 +46,7 @@ fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
 
 fn compare(name: &str, variant: &str) {
     let (urdf, variant) = robot_and_reference::<Variant>((name, variant));
-    let description = Description::from_urdf(&urdf).expect("a good file");
+    let description = Description::from_urdf(&read(&urdf)).expect("a good file");
     let reduced = robot(&description, Reductions::ALL);
     let joints: Vec<String> = reduced.joints.iter().map(|joint| joint.name.clone()).collect();
     let mut states = states(&variant, reduced.base_dofs(), &joints);

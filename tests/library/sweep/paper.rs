@@ -1,42 +1,27 @@
 //! The borders of every model of the paper from 50 samples, against `data/paper.json` (40-digit values) and the bands
 //! that are printed.
 
+use crate::support::paper::{MODELS, Model, REFERENCE};
 use crate::sweep::command::{Sweep, assert_begins, sweep};
 use crate::sweep::walkers::{kneed, straight};
-use serde::Deserialize;
-use serde_json::{Value, json};
-use std::collections::BTreeMap;
-
-#[derive(Deserialize)]
-struct Reference {
-    regions: BTreeMap<String, Vec<(String, String)>>,
-}
-
-/// Name in the reference, URDF file and study.
-fn models() -> [(&'static str, &'static str, Value); 7] {
-    [
-        ("minimalistic", "urdf/minimalistic.urdf", straight(None)),
-        // The file's own inertia, and the same from the study.
-        ("pdw_j0.04", "urdf/pdw.urdf", straight(None)),
-        ("pdw_j0.04", "urdf/pdw.urdf", straight(Some(0.04))),
-        ("pdw_j0.24", "urdf/pdw.urdf", straight(Some(0.24))),
-        ("pdw_j0.44", "urdf/pdw.urdf", straight(Some(0.44))),
-        ("ramone_table1_script_precision", "urdf/ramone.urdf", kneed()),
-        ("ramone_as_computed_in_paper", "urdf/ramone_paper.urdf", kneed()),
-    ]
-}
+use serde_json::json;
 
 #[test]
 fn every_border_of_the_reference_is_found_from_50_samples() {
-    let reference: BTreeMap<String, Reference> =
-        serde_json::from_str(include_str!("../../data/paper.json")).expect("the reference is readable");
     let mut borders = 0;
-    for (name, urdf, mut study) in models() {
-        for (friction, regions) in &reference[name].regions {
+    for Model { name, urdf, inertia, kneed: bends } in MODELS {
+        let number = |inertia: &str| inertia.parse().expect("a number");
+        // The inertia of pdw is that of its file, and the same from the study.
+        let mut studies = if bends { vec![kneed()] } else { vec![straight(inertia.map(number))] };
+        studies.extend((name == "pdw_j0.04").then(|| straight(Some(0.04))));
+        for (mut study, (friction, regions)) in
+            studies.into_iter().flat_map(|study| REFERENCE[name].regions.iter().map(move |own| (study.clone(), own)))
+        {
             study["state"]["friction"] = friction.parse().map_or(json!(friction), |number: f64| json!(number));
             let expected: Vec<(f64, &str)> =
                 regions.iter().map(|(begin, outcomes)| (begin.parse().expect("a number"), outcomes.as_str())).collect();
-            assert_begins(&format!("{name}, friction {friction}"), &sweep(urdf, &study), &expected, 1e-10);
+            let found = sweep(&format!("urdf/{urdf}.urdf"), &study);
+            assert_begins(&format!("{name}, friction {friction}"), &found, &expected, 1e-10);
             borders += expected.len() - 1;
         }
     }
@@ -62,7 +47,7 @@ fn bands_of_ramone_are_those_that_are_printed() {
     assert!(printed(&table, several).is_empty());
 }
 
-/// With the centre of percussion in the foot all outcomes touch at pi/4: one border, and whatever the result of the
+/// With the center of percussion in the foot all outcomes touch at pi/4: one border, and whatever the result of the
 /// sample on it, no region of its own.
 #[test]
 fn the_degenerate_place_of_the_walker_is_one_border() {

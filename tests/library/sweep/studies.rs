@@ -8,7 +8,7 @@ use heelstrike::pipeline::Options;
 use heelstrike::robot::Reduction;
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{RobotStudy, Study};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// A robot and what a study may ask of it.
 pub struct Subject {
@@ -89,65 +89,51 @@ fn friction(random: &mut Random) -> Value {
 pub fn study(subject: &Subject, random: &mut Random, steps: usize) -> Value {
     let robot = &subject.robot;
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.as_str()).collect();
-    let shaped: Vec<&str> =
-        robot.links.iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str()).collect();
+    let shaped = robot.links.iter().filter(|link| !link.shapes.is_empty()).map(|link| link.name.as_str());
+    let shaped: Vec<&str> = shaped.collect();
     let floats = robot.base_dofs() == 3;
     let standing = floats && !shaped.is_empty() && !random.once_in(4);
 
-    let mut state = Map::new();
+    let mut state = json!({});
     for (name, size) in [("position", 1.2), ("velocity", 2.0)] {
-        let joints: Map<String, Value> =
-            robot.joints.iter().map(|joint| (joint.name.clone(), linear(random, size))).collect();
-        let mut coordinates = Map::from_iter([("joints".to_owned(), Value::Object(joints))]);
-        if floats {
-            let mut base = Map::from_iter([("pitch".to_owned(), linear(random, size))]);
-            if !standing {
-                base.insert("x".into(), linear(random, size));
-                base.insert("z".into(), linear(random, size));
-            }
-            coordinates.insert("base".into(), base.into());
+        let joints = robot.joints.iter().map(|joint| (joint.name.clone(), linear(random, size)));
+        state[name]["joints"] = joints.collect();
+        let base = if standing { &["pitch"][..] } else { &["pitch", "x", "z"] };
+        for coordinate in base.iter().filter(|_| floats) {
+            state[name]["base"][coordinate] = linear(random, size);
         }
-        state.insert(name.into(), coordinates.into());
     }
     if standing {
-        state.insert("stance".into(), json!(random.pick(&shaped)));
+        state["stance"] = json!(random.pick(&shaped));
     }
-    let by_hand = !standing || random.once_in(2);
-    if by_hand {
-        let mut places: Vec<&str> = if standing { shaped.clone() } else { links.clone() };
+    if !standing || random.once_in(2) {
+        let mut places: Vec<&str> = if standing { shaped } else { links.clone() };
         if standing {
             // The stance rests on a contact of its own.
-            let stance = state["stance"].as_str().map(str::to_owned);
-            places.retain(|link| Some((*link).to_owned()) == stance || random.once_in(2));
+            places.retain(|link| state["stance"] == **link || random.once_in(2));
         }
         let order = random.permutation(places.len());
         let count = if standing { places.len() } else { random.whole(1, 3) as usize };
-        let contacts: Vec<Value> = order
-            .into_iter()
-            .take(count)
-            .map(|at| {
-                let offset = [linear(random, 0.5), json!(0), linear(random, 0.5)];
-                json!({"link": places[at], "offset": offset, "radius": random.pick(&[json!(0), json!(0.05), json!("0.1+0.05*p")])})
-            })
-            .collect();
-        state.insert("contacts".into(), contacts.into());
+        let contacts = order.into_iter().take(count).map(|at| {
+            let offset = [linear(random, 0.5), json!(0), linear(random, 0.5)];
+            let radius = random.pick(&[json!(0), json!(0.05), json!("0.1+0.05*p")]);
+            json!({"link": places[at], "offset": offset, "radius": radius})
+        });
+        state["contacts"] = contacts.collect();
     }
-    let frictions = match random.once_in(3) {
-        true => {
-            let mut by_link = Map::from_iter([("default".to_owned(), friction(random))]);
-            by_link.insert(random.pick(&links).to_owned(), friction(random));
-            by_link.into()
-        }
-        false => friction(random),
+    state["friction"] = if random.once_in(3) {
+        let mut by_link = json!({"default": friction(random)});
+        by_link[random.pick(&links)] = friction(random);
+        by_link
+    } else {
+        friction(random)
     };
-    state.insert("friction".into(), frictions);
     if random.once_in(5) {
-        state.insert("restitution".into(), random.pick(&[json!(0.5), json!("0.5+0.4*p")]));
+        state["restitution"] = random.pick(&[json!(0.5), json!("0.5+0.4*p")]);
     }
     if random.once_in(5) {
-        state.insert("ground".into(), json!({"slope": linear(random, 0.3)}));
+        state["ground"] = json!({"slope": linear(random, 0.3)});
     }
-
     let mut study = json!({"parameters": {"p": {"from": -1, "to": 1, "steps": steps}}, "state": state});
     if random.once_in(3) {
         study["robot"] = variation(subject, random);
@@ -159,24 +145,20 @@ pub fn study(subject: &Subject, random: &mut Random, steps: usize) -> Value {
 fn variation(subject: &Subject, random: &mut Random) -> Value {
     let massive: Vec<_> = subject.description.links.iter().filter(|link| link.inertial.is_some()).collect();
     let link = random.pick(&massive);
-    let mut fields = Map::new();
-    if let Some(inertial) = &link.inertial {
-        if random.once_in(2) {
-            fields.insert("mass".into(), near(random, inertial.mass));
-        }
-        if random.once_in(2) {
-            fields.insert("com".into(), json!([linear(random, 0.3), 0, linear(random, 0.3)]));
-        }
-        if fields.is_empty() || random.once_in(2) {
-            fields.insert("inertia".into(), near(random, 0.2));
-        }
+    let mut fields = json!({});
+    if random.once_in(2) {
+        fields["mass"] = near(random, link.inertial.as_ref().map_or(0.0, |inertial| inertial.mass));
+    }
+    if random.once_in(2) {
+        fields["com"] = json!([linear(random, 0.3), 0, linear(random, 0.3)]);
+    }
+    if fields == json!({}) || random.once_in(2) {
+        fields["inertia"] = near(random, 0.2);
     }
     let mut robot = json!({"links": {link.name.clone(): fields}});
-    if random.once_in(2) {
-        let moving: Vec<&str> = subject.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-        if !moving.is_empty() {
-            robot["joints"] = json!({random.pick(&moving): {"origin": [linear(random, 0.3), 0, linear(random, 0.3)]}});
-        }
+    let moving: Vec<&str> = subject.robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    if random.once_in(2) && !moving.is_empty() {
+        robot["joints"] = json!({random.pick(&moving): {"origin": [linear(random, 0.3), 0, linear(random, 0.3)]}});
     }
     robot
 }

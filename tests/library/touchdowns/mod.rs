@@ -7,6 +7,7 @@ mod sagittal;
 
 use crate::support::command::{heelstrike, read};
 use crate::support::impact::{outcomes, robot};
+use crate::support::scaled::near;
 use heelstrike::gait::{At, Difference, Landing, Sample, Sampled, Touching, find, rates};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::table::{Header, Rates};
@@ -95,8 +96,7 @@ fn assert_close(found: &[f64], expected: &Value, within: f64) {
         .flat_map(|entry| entry.as_array().cloned().unwrap_or(vec![entry.clone()]))
         .map(|n| n.as_f64().unwrap())
         .collect();
-    let near = found.iter().zip(&expected).all(|(found, expected)| (found - expected).abs() < within);
-    assert!(near && found.len() == expected.len(), "{found:?} {expected:?}");
+    assert!(near(found, &expected, within), "{found:?} {expected:?}");
 }
 
 #[test]

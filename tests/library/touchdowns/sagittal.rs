@@ -3,6 +3,7 @@
 use super::samples;
 use crate::support::command::read;
 use crate::support::impact::robot;
+use crate::support::scaled::near;
 use crate::support::urdf;
 use heelstrike::Robot;
 use heelstrike::gait::{Dropped, Sampled, sagittal};
@@ -50,11 +51,8 @@ fn positions(table: &str) -> Vec<Vec<f64>> {
 }
 
 fn close(found: &[Vec<f64>], expected: &[Vec<f64>]) {
-    assert_eq!(found.len(), expected.len());
-    for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
-        // Digits of sums of up to ten metres.
-        assert!((found - expected).abs() < 1e-13, "{found} {expected}");
-    }
+    // Digits of sums of up to ten metres.
+    assert!(near(&found.concat(), &expected.concat(), 1e-13), "{found:?} {expected:?}");
 }
 
 #[test]
