@@ -191,7 +191,8 @@ fn a_mimic_joint_is_tied_to_the_last_mimicked_one() {
     let text = with_mimic(&text, "k", "joint=\"m\" multiplier=\"-3\"");
     let robot = load(&text);
     assert_eq!(names(&robot), ["l", "m"]);
-    let mimics = robot.mimic_joints.iter().map(|own| (own.joint.name.as_str(), own.mimicked, own.multiplier, own.offset));
+    let mimics =
+        robot.mimic_joints.iter().map(|own| (own.joint.name.as_str(), own.mimicked, own.multiplier, own.offset));
     assert_eq!(mimics.collect::<Vec<_>>(), [("j", 1, -6.0, 0.5), ("k", 1, -3.0, 0.0)]);
     let movers: Vec<_> = robot.bodies.iter().map(|body| body.joint).collect();
     let (mimic, joint) = (ParentJoint::Mimic, ParentJoint::Joint);
