@@ -1,10 +1,9 @@
 //! Errors against run time as a picture: a panel for G and one for the outcomes.
 
 use crate::accuracy::{Factorization, Method, MethodErrors};
-use crate::draw::plot::{
-    Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, range,
-};
+use crate::draw::plot::{Color, LegendEntry, LegendKey, MARK, Mark, Panel, Picture, PlotAxis, PlotShape, range};
 use crate::write::accuracy::{Accuracy, name_of};
+use crate::write::words::grouped;
 
 /// Marks that distinguish cases, if there are not more cases than marks.
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
@@ -25,13 +24,10 @@ impl Accuracy {
             let cases = self.studies.iter().enumerate();
             cases.flat_map(|(case, study)| study.methods.iter().filter(is_drawn).map(move |method| (case, method)))
         };
-        let mut legend: Vec<LegendEntry> = Vec::new();
-        for (_, method) in drawn() {
-            let name = name_of(method);
-            if !legend.iter().any(|entry| entry.name == name) {
-                legend.push(LegendEntry::new(name, LegendKey::Mark(Mark::Circle, color(method))));
-            }
-        }
+        let groups = grouped(drawn().map(|(_, method)| (name_of(method), method)));
+        let key = |method| LegendKey::Mark(Mark::Circle, color(method));
+        let mut legend: Vec<LegendEntry> =
+            groups.into_iter().map(|(name, methods)| LegendEntry::new(name, key(methods[0]))).collect();
         if named && self.studies.len() > 1 {
             let cases = self.studies.iter().enumerate().filter(|(_, study)| study.methods.iter().any(|m| is_drawn(&m)));
             // A mark of any method.
@@ -39,17 +35,11 @@ impl Accuracy {
             legend.extend(cases.map(|(case, study)| LegendEntry::new(&study.name, key(case))));
         }
         let panel = |what: &str, pick: fn(&MethodErrors) -> Option<f64>| {
-            let mut series: Vec<(Mark, Color, Vec<PlotPoint>)> = Vec::new();
-            for (case, method) in drawn() {
-                let error = method.error.as_ref().and_then(pick);
-                let (Some(time), Some(error)) = (method.time, error) else { continue };
-                let (mark, color, point) = (mark(case), color(method), (time.median, error));
-                match series.iter_mut().find(|series| (series.0, series.1) == (mark, color)) {
-                    Some((_, _, points)) => points.push(point),
-                    None => series.push((mark, color, vec![point])),
-                }
-            }
-            let marks = |(mark, color, points)| PlotShape::Marks { points, mark, color, size: MARK };
+            let series = grouped(drawn().filter_map(|(case, method)| {
+                let point = (method.time?.median, method.error.as_ref().and_then(pick)?);
+                Some(((mark(case), color(method)), point))
+            }));
+            let marks = |((mark, color), points)| PlotShape::Marks { points, mark, color, size: MARK };
             let axis = |label: &str| PlotAxis { logarithmic: true, ..PlotAxis::new(label) };
             let shapes = series.into_iter().map(marks).collect();
             Panel { shapes, ..Panel::new(axis("time from state to G [s]"), axis(what)) }
@@ -67,12 +57,10 @@ impl Accuracy {
     }
 }
 
-/// Whether the method is in the picture.
 fn is_drawn(method: &&Method) -> bool {
     method.number != "reference" && method.factorization.is_some() && method.time.is_some() && method.error.is_some()
 }
 
-/// The color of a method.
 fn color(method: &Method) -> Color {
     match (method.number, method.factorization) {
         ("f32", Some(Factorization::ArticulatedBodies)) => Color::Vermilion,

@@ -8,7 +8,6 @@ use crate::robot::Robot;
 use crate::state::{NamedContact, State};
 use serde_json::Value;
 
-/// A state that a page can show.
 #[derive(Debug, Clone)]
 pub struct Keyframe {
     /// The robot, its contacts and the ground; `None` if the state is refused.
@@ -19,7 +18,6 @@ pub struct Keyframe {
     pub notes: Vec<String>,
 }
 
-/// The outcomes of an impact.
 #[derive(Debug, Clone)]
 pub struct KeyframeAnswer {
     pub verdict: Verdict,
@@ -28,12 +26,10 @@ pub struct KeyframeAnswer {
     pub outcomes: Vec<Outcome>,
 }
 
-/// A state of a batch that a page can show.
 #[derive(Debug, Clone)]
 pub struct ListedKeyframe {
     /// The line on which it begins, from 1.
     pub line: usize,
-    /// Its name in the input.
     pub id: Option<Value>,
     /// In s.
     pub time: Option<f64>,
@@ -52,7 +48,6 @@ impl Keyframe {
         Self { drawing, answer, notes: impact.notes.clone() }
     }
 
-    /// A state that is refused.
     pub fn refused(error: Error) -> Self {
         Self { drawing: None, answer: Err(error), notes: Vec::new() }
     }

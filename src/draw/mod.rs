@@ -2,8 +2,6 @@
 
 #[cfg(feature = "plot")]
 pub mod plot;
-#[cfg(feature = "plot")]
-mod caption;
 pub mod robot;
 mod keyframe;
 #[cfg(feature = "plot")]

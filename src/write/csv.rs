@@ -4,7 +4,7 @@ use crate::contact::Feet;
 use crate::impact::Outcome;
 use crate::read::table::{Carried, Header, prefixed};
 use crate::state::NamedContact;
-use crate::write::{ErrorObject, Refused, Report, Touchdown, words};
+use crate::write::{Refused, Report, words};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
@@ -12,15 +12,8 @@ use std::collections::{HashMap, HashSet};
 /// The columns before those of the contacts.
 const FIRST: [&str; 5] = ["id", "verdict", "outcome", "margin", "proven"];
 
-/// The columns of a touchdown.
-const TOUCHDOWN: [&str; 6] = [
-    "touchdown_row",
-    "touchdown_time",
-    "touchdown_striking",
-    "touchdown_shift_z",
-    "touchdown_at",
-    "touchdown_touching",
-];
+/// The columns of a touchdown, behind `touchdown_`.
+const TOUCHDOWN: [&str; 6] = ["row", "time", "striking", "shift_z", "at", "touching"];
 
 /// The last columns, behind all that the contract orders and the carried ones.
 const LAST: [&str; 3] = ["border", "family", "error"];
@@ -85,26 +78,23 @@ impl Columns {
         }
         names.extend(robot.coordinates().map(|name| format!("v_{}", prefixed(robot, name))));
         if touchdowns {
-            names.extend(TOUCHDOWN.map(str::to_owned));
+            names.extend(TOUCHDOWN.map(|name| format!("touchdown_{name}")));
         }
         let own: HashSet<String> = names.iter().cloned().chain(LAST.map(str::to_owned)).collect();
         let through: Vec<&str> = through.collect();
         let taken: HashSet<&str> = through.iter().copied().collect();
-        let mut carried = 0;
-        for column in through {
-            let mut name = column.to_owned();
-            while own.contains(&name) || (name != column && taken.contains(name.as_str())) {
+        for column in &through {
+            let mut name = (*column).to_owned();
+            while own.contains(&name) || (name != *column && taken.contains(name.as_str())) {
                 name.insert_str(0, "in_");
             }
             names.push(name);
-            carried += 1;
         }
         names.extend(LAST.map(str::to_owned));
-        let contacts = contacts.into_iter().enumerate().map(|(at, name)| (name, at)).collect();
-        Self { names, contacts, coordinates: robot.dofs(), touchdowns, carried }
+        let contacts = contacts.into_iter().zip(0..).collect();
+        Self { names, contacts, coordinates: robot.dofs(), touchdowns, carried: through.len() }
     }
 
-    /// Appends the line that names the columns.
     pub fn append_header(&self, out: &mut Vec<u8>) {
         append(&self.names, out);
     }
@@ -117,17 +107,19 @@ impl Columns {
     pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut Vec<u8>) -> Result<()> {
         let mut cells = self.cells(report.id.as_deref(), carried);
         cells.text(1, report.verdict.map_or(String::new(), |verdict| verdict.to_string()));
-        if let Some(proven) = report.proven {
-            cells.text(4, proven.to_string());
+        cells.text(4, report.proven.map_or(String::new(), |proven| proven.to_string()));
+        if let Some(touchdown) = report.touchdown.as_ref().filter(|_| self.touchdowns) {
+            let start = self.velocities() + self.coordinates;
+            cells.text(start, touchdown.row.to_string());
+            cells.number(start + 1, touchdown.time);
+            cells.text(start + 2, &*touchdown.striking);
+            cells.number(start + 3, touchdown.shift_z);
+            cells.text(start + 4, &*touchdown.at);
+            cells.text(start + 5, &touchdown.touching);
         }
-        if let Some(touchdown) = &report.touchdown {
-            self.touchdown(touchdown, &mut cells);
-        }
-        if let Some(error) = &report.error {
-            cells.text(self.last() + 2, sentence(error));
-        }
-        let places: Vec<usize> =
-            report.contacts.iter().map(|contact| self.place(&contact.name)).collect::<Result<_>>()?;
+        cells.text(self.last() + 2, report.error.as_ref().map_or(String::new(), ToString::to_string));
+        let places = report.contacts.iter().map(|contact| self.place(&contact.name));
+        let places: Vec<usize> = places.collect::<Result<_>>()?;
         let outcomes = report.outcomes.as_deref().unwrap_or_default();
         if outcomes.is_empty() {
             append(&cells.0, out);
@@ -140,24 +132,16 @@ impl Columns {
         Ok(())
     }
 
-    /// Appends the row of a refused state.
     pub fn append_refused(&self, refused: &Refused, carried: Option<&Carried>, out: &mut Vec<u8>) {
-        let line = format!("line {}: ", refused.line);
-        self.append_error(refused.id.as_ref(), &line, &refused.error, carried, out);
+        let error = format!("line {}: {}", refused.line, refused.error);
+        self.append_error(refused.id.as_ref(), &error, carried, out);
     }
 
-    /// Appends the row of a state that has an error in place of outcomes, with `before` in front of it.
-    pub fn append_error(
-        &self,
-        id: Option<&Value>,
-        before: &str,
-        error: &ErrorObject,
-        carried: Option<&Carried>,
-        out: &mut Vec<u8>,
-    ) {
+    /// Appends the row of a state that has an error in place of outcomes.
+    pub fn append_error(&self, id: Option<&Value>, error: &str, carried: Option<&Carried>, out: &mut Vec<u8>) {
         let mut cells = self.cells(id, carried);
         cells.text(1, "refused");
-        cells.text(self.last() + 2, before.to_owned() + &sentence(error));
+        cells.text(self.last() + 2, error);
         append(&cells.0, out);
     }
 
@@ -165,10 +149,8 @@ impl Columns {
     fn cells(&self, id: Option<&Value>, carried: Option<&Carried>) -> Cells {
         let mut cells = Cells(vec![Vec::new(); self.names.len()]);
         cells.text(0, id.map_or(String::new(), words::id));
-        let start = self.last() - self.carried;
-        for (at, field) in carried.into_iter().flat_map(Carried::fields).take(self.carried).enumerate() {
-            cells.text(start + at, field);
-        }
+        let carried = carried.into_iter().flat_map(Carried::fields).take(self.carried);
+        carried.zip(self.last() - self.carried..).for_each(|(field, at)| cells.text(at, field));
         cells
     }
 
@@ -178,29 +160,14 @@ impl Columns {
         cells.text(4, outcome.proven.to_string());
         for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
             cells.text(place, mode.to_string());
-            cells.number(place + 1, impulse[0]);
-            cells.number(place + 2, impulse[1]);
+            impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.number(at, entry));
         }
-        let start = self.velocities();
-        for (at, velocity) in outcome.velocity().take(self.coordinates).enumerate() {
-            cells.number(start + at, velocity);
-        }
+        let velocities = outcome.velocity().take(self.coordinates);
+        velocities.zip(self.velocities()..).for_each(|(velocity, at)| cells.number(at, velocity));
         let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
         let at_zero: Vec<String> = at_zero.map(|zero| format!("{}: {}", zero.contact, zero.inequality)).collect();
         cells.text(self.last(), at_zero.join("; "));
         cells.text(self.last() + 1, outcome.family.to_string());
-    }
-
-    fn touchdown(&self, touchdown: &Touchdown, cells: &mut Cells) {
-        if self.touchdowns {
-            let start = self.velocities() + self.coordinates;
-            cells.text(start, touchdown.row.to_string());
-            cells.number(start + 1, touchdown.time);
-            cells.text(start + 2, &*touchdown.striking);
-            cells.number(start + 3, touchdown.shift_z);
-            cells.text(start + 4, &*touchdown.at);
-            cells.text(start + 5, &touchdown.touching);
-        }
     }
 
     /// The first of the last columns.
@@ -238,13 +205,6 @@ fn contacts(robot: &Robot, feet: &[NamedContact], every_corner: bool) -> Vec<Str
         }
     }
     names
-}
-
-/// An error in one cell.
-fn sentence(ErrorObject { message, place, hint }: &ErrorObject) -> String {
-    let place = place.as_ref().map_or(String::new(), |place| format!("{place}: "));
-    let hint = hint.as_ref().map_or(String::new(), |hint| format!("; {hint}"));
-    format!("{place}{message}{hint}")
 }
 
 fn append<F: AsRef<[u8]>>(fields: &[F], out: &mut Vec<u8>) {

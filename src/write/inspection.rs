@@ -2,32 +2,23 @@
 
 mod text;
 
-use super::Palette;
 use super::result::LeftOutRecord;
 use crate::Robot;
 use crate::planar::Vector;
-use crate::robot::{self, Axis, Base, FootShape, FreezeReason, ParentJoint, Rim};
+use crate::robot::{Axis, Base, Body, FootShape, FreezeReason, FrozenJoint, Joint, MimicJoint, ParentJoint, Rim};
 use crate::state::NamedContact;
 use serde::Serialize;
 
-/// The reduced robot as it is written; what is proven refers to these numbers.
-///
-/// ```
-/// # fn main() -> heelstrike::Result<()> {
-/// # let urdf = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/minimalistic.urdf"));
-/// use heelstrike::{Inspection, Robot};
-///
-/// let robot = Robot::from_urdf(urdf)?;
-/// assert!(serde_json::to_string(&Inspection::new(&robot, &[])).is_ok());
-/// # Ok(())
-/// # }
-/// ```
+/// The reduced robot as it is written; what is proven refers to these numbers. [`Report`](super::Report) has an example.
 #[derive(Debug, Clone, Serialize)]
 pub struct Inspection<'a> {
     /// The robot's name in the file.
     pub name: &'a str,
     /// Forward and up in the file's root frame.
     pub plane: &'static str,
+    /// Its normal there, with its sign.
+    #[serde(skip)]
+    normal: &'static str,
     /// Why this plane.
     pub plane_because: String,
     /// `floating` or `fixed`.
@@ -41,27 +32,25 @@ pub struct Inspection<'a> {
     /// Names of the coordinates in the order of q.
     pub coordinates: Vec<&'a str>,
     /// Rigid bodies; a parent comes before its children.
-    pub bodies: Vec<Body<'a>>,
+    pub bodies: Vec<BodyRecord<'a>>,
     /// Moving joints in the file's order.
-    pub joints: Vec<Joint<'a>>,
+    pub joints: Vec<JointRecord<'a>>,
     /// Joints that follow these, in the file's order; they have no coordinate of their own.
-    pub followers: Vec<Follower<'a>>,
+    pub followers: Vec<MimicRecord<'a>>,
     /// Joints of the file that have no coordinate, in its order.
-    pub held: Vec<Held<'a>>,
+    pub held: Vec<FrozenRecord<'a>>,
     /// Links in the file's order.
-    pub links: Vec<Link<'a>>,
+    pub links: Vec<LinkRecord<'a>>,
     /// Shapes that can touch the ground, in the links' order.
-    pub feet: Vec<Foot<'a>>,
+    pub feet: Vec<FootRecord<'a>>,
     /// What of the file does not enter the analysis, and why.
     pub left_out: Vec<LeftOutRecord<'a>>,
 }
 
-/// Links that no moving joint separates.
+/// Links that no moving joint separates, in the file's order; named after the one that carries its frame.
 #[derive(Debug, Clone, Serialize)]
-pub struct Body<'a> {
-    /// The link that carries its frame.
+pub struct BodyRecord<'a> {
     pub name: &'a str,
-    /// Its links in the file's order.
     pub links: Vec<&'a str>,
     /// Mass \[kg\].
     pub mass: f64,
@@ -69,7 +58,7 @@ pub struct Body<'a> {
     pub com: Vector<f64>,
     /// Moment of inertia about the plane's normal through the CoG \[kg m^2\].
     pub moment: f64,
-    /// The body that it is rigid on, where links are not welded.
+    /// The body that it is rigid on, if it is kept apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed_to: Option<&'a str>,
     /// Its origin in that body's frame \[m\].
@@ -77,17 +66,14 @@ pub struct Body<'a> {
     pub origin: Option<Vector<f64>>,
 }
 
-/// A joint that moves in the plane.
+/// A joint that moves in the plane, from its parent body to the body it moves.
 #[derive(Debug, Clone, Serialize)]
-pub struct Joint<'a> {
-    /// Its name.
+pub struct JointRecord<'a> {
     pub name: &'a str,
     /// `turn` or `slide`.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// Its parent body.
     pub parent: &'a str,
-    /// The body it moves.
     pub child: &'a str,
     /// Its origin in the parent body's frame at coordinate zero \[m\].
     pub origin: Vector<f64>,
@@ -99,56 +85,46 @@ pub struct Joint<'a> {
     pub direction: Option<Vector<f64>>,
 }
 
-/// A joint that follows another (mimic): q = multiplier q_leader + offset.
+/// A joint that follows another: its coordinate is multiplier times that of the mimicked one plus offset \[rad, m\].
 #[derive(Debug, Clone, Serialize)]
-pub struct Follower<'a> {
-    /// What it is as a joint.
+pub struct MimicRecord<'a> {
     #[serde(flatten)]
-    pub joint: Joint<'a>,
-    /// The joint that it follows.
-    pub leader: &'a str,
-    /// How much it moves for a unit of its leader.
+    pub joint: JointRecord<'a>,
+    #[serde(rename = "leader")]
+    pub mimicked: &'a str,
     pub multiplier: f64,
-    /// Its coordinate where the leader's is zero \[rad, m\].
     pub offset: f64,
 }
 
-/// A joint of the file that has no coordinate.
+/// A joint of the file that has no coordinate, why, and the body that its child is fixed to.
 #[derive(Debug, Clone, Serialize)]
-pub struct Held<'a> {
-    /// Its name.
+pub struct FrozenRecord<'a> {
     pub name: &'a str,
-    /// The body that its child is welded into.
     pub body: &'a str,
-    /// Why it has none.
     pub why: String,
     #[serde(skip)]
-    still: &'a FreezeReason,
+    reason: &'a FreezeReason,
 }
 
-/// A link of the file.
+/// A link of the file, and the body it belongs to.
 #[derive(Debug, Clone, Serialize)]
-pub struct Link<'a> {
-    /// Its name.
+pub struct LinkRecord<'a> {
     pub name: &'a str,
-    /// The body it belongs to.
     pub body: &'a str,
     /// Whether the file gives it an inertial; without one it is massless.
     pub has_inertial: bool,
 }
 
-/// A shape that can touch the ground.
-#[derive(Debug, Clone, Serialize)]
-pub struct Foot<'a> {
-    /// Its link.
+/// A shape that can touch the ground, with the body whose frame it is given in.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct FootRecord<'a> {
     pub link: &'a str,
-    /// The body whose frame it is given in.
     pub body: &'a str,
     /// `disc` or `polygon`.
     pub shape: &'static str,
     /// Of a disc \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub centre: Option<Vector<f64>>,
+    #[serde(rename = "centre", skip_serializing_if = "Option::is_none")]
+    pub center: Option<Vector<f64>>,
     /// Of a disc, 0 for a point, and of the circle that sweeps a polygon \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
@@ -164,82 +140,90 @@ pub struct Foot<'a> {
 }
 
 impl<'a> Inspection<'a> {
-    /// All that is known about `robot`, with `feet` beside its own.
+    /// All that is known about `robot`, with `feet` in addition to its own.
     pub fn new(robot: &'a Robot, feet: &[NamedContact]) -> Self {
         let body_name = |body: usize| robot.bodies[body].name.as_str();
-        let bodies = robot.bodies.iter().enumerate().map(|(at, body)| {
-            let weld = match body.joint {
-                Some(ParentJoint::Fixed { parent, origin }) => Some((body_name(parent), origin)),
-                _ => None,
+        let body = |(at, body): (usize, &'a Body)| {
+            let (fixed_to, origin) = match body.joint {
+                Some(ParentJoint::Fixed { parent, origin }) => (Some(body_name(parent)), Some(origin)),
+                _ => (None, None),
             };
-            Body {
-                name: &body.name,
-                links: robot.links.iter().filter(|link| link.body == at).map(|link| link.name.as_str()).collect(),
-                mass: body.mass,
-                com: body.com,
-                moment: body.moment,
-                fixed_to: weld.map(|(parent, _)| parent),
-                origin: weld.map(|(_, origin)| origin),
-            }
-        });
-        let joint = |&robot::Joint { ref name, parent, child, origin, axis }: &'a robot::Joint| {
+            let links = robot.links.iter().filter(|link| link.body == at).map(|link| link.name.as_str()).collect();
+            let &Body { ref name, mass, com, moment, .. } = body;
+            BodyRecord { name, links, mass, com, moment, fixed_to, origin }
+        };
+        let joint = |&Joint { ref name, parent, child, origin, axis }: &'a Joint| {
             let (kind, sign, direction) = match axis {
                 Axis::Revolute { sign } => ("turn", Some(sign), None),
                 Axis::Prismatic { direction } => ("slide", None, Some(direction)),
             };
-            Joint { name, kind, parent: body_name(parent), child: body_name(child), origin, sign, direction }
+            JointRecord { name, kind, parent: body_name(parent), child: body_name(child), origin, sign, direction }
         };
-        let joints = robot.joints.iter().map(joint);
-        let followers = robot.mimic_joints.iter().map(|mimic| {
-            let leader = &robot.joints[mimic.mimicked].name;
-            Follower { joint: joint(&mimic.joint), leader, multiplier: mimic.multiplier, offset: mimic.offset }
+        let mimic = |mimic: &'a MimicJoint| {
+            let mimicked = &robot.joints[mimic.mimicked].name;
+            MimicRecord { joint: joint(&mimic.joint), mimicked, multiplier: mimic.multiplier, offset: mimic.offset }
+        };
+        let held = robot.reading.frozen.iter().map(|FrozenJoint { name, reason, body, .. }| FrozenRecord {
+            name,
+            body,
+            why: reason.to_string(),
+            reason,
         });
-        let reading = &robot.reading;
-        let held = reading.frozen.iter();
         let feet = robot.links.iter().enumerate().flat_map(|(at, link)| {
+            let foot = |shape: FootRecord<'a>| FootRecord { link: &link.name, body: body_name(link.body), ..shape };
             let given = feet.iter().filter(move |foot| foot.link == at);
-            let given = given.map(|foot| Foot::disc(robot, link, link.point(foot.offset), foot.radius));
-            link.shapes.iter().map(|shape| Foot::new(robot, link, shape)).chain(given)
+            let given = given.map(|foot| FootRecord::disc(link.point(foot.offset), foot.radius));
+            link.shapes.iter().map(FootRecord::new).chain(given).map(foot)
         });
         let links = robot.links.iter();
         Self {
             name: &robot.name,
-            plane: reading.plane.name(),
-            plane_because: reading.plane_in_words(),
+            plane: robot.reading.plane.name(),
+            normal: robot.reading.plane.normal(),
+            plane_because: robot.reading.plane_in_words(),
             base: match robot.base {
                 Base::Floating => "floating",
                 Base::Fixed => "fixed",
             },
-            base_because: &reading.base_because,
-            cautions: &reading.cautions,
+            base_because: &robot.reading.base_because,
+            cautions: &robot.reading.cautions,
             mass: robot.mass(),
             coordinates: robot.coordinates().collect(),
-            bodies: bodies.collect(),
-            joints: joints.collect(),
-            followers: followers.collect(),
-            held: held
-                .map(|held| Held {
-                    name: &held.name,
-                    body: &held.body,
-                    why: held.reason.to_string(),
-                    still: &held.reason,
-                })
-                .collect(),
+            bodies: robot.bodies.iter().enumerate().map(body).collect(),
+            joints: robot.joints.iter().map(joint).collect(),
+            followers: robot.mimic_joints.iter().map(mimic).collect(),
+            held: held.collect(),
             links: links
-                .map(|link| Link { name: &link.name, body: body_name(link.body), has_inertial: link.has_inertial })
+                .map(|link| LinkRecord {
+                    name: &link.name,
+                    body: body_name(link.body),
+                    has_inertial: link.has_inertial,
+                })
                 .collect(),
             feet: feet.collect(),
             left_out: LeftOutRecord::all(robot),
         }
     }
-
-    /// The same as text, with a line break at its end.
-    pub fn text(&self, palette: &Palette) -> String {
-        text::text(self, palette)
-    }
 }
 
-impl<'a> Foot<'a> {
+impl<'a> FootRecord<'a> {
+    fn new(shape: &'a FootShape) -> Self {
+        let polygon = |corners| Self { shape: "polygon", corners: Some(corners), ..Self::default() };
+        let outline = match (shape.corners(), shape.rim) {
+            (&[center], Rim::Circle { radius }) => Self::disc(center, radius),
+            (corners, Rim::Circle { radius: 0.0 }) => polygon(corners),
+            (corners, Rim::Circle { radius }) => Self { radius: Some(radius), ..polygon(corners) },
+            (corners, Rim::Ellipse { half_diameters }) => {
+                Self { half_diameters: Some(half_diameters), ..polygon(corners) }
+            }
+        };
+        Self { mesh: shape.mesh.as_deref(), ..outline }
+    }
+
+    fn disc(center: Vector<f64>, radius: f64) -> Self {
+        Self { shape: "disc", center: Some(center), radius: Some(radius), ..Self::default() }
+    }
+
     fn in_words(&self) -> String {
         let corners = self.corners.map_or(1, <[_]>::len);
         let shape = match (corners, self.radius, self.half_diameters) {
@@ -252,41 +236,5 @@ impl<'a> Foot<'a> {
             _ => format!("polygon of {corners} corners"),
         };
         self.mesh.map_or(shape.clone(), |mesh| format!("{shape} from {mesh}"))
-    }
-
-    fn new(robot: &'a Robot, link: &'a robot::Link, shape: &'a FootShape) -> Self {
-        let (radius, half_diameters) = match shape.rim {
-            Rim::Circle { radius } => (radius, None),
-            Rim::Ellipse { half_diameters } => (0.0, Some(half_diameters)),
-        };
-        match shape.corners() {
-            &[centre] if half_diameters.is_none() => {
-                Self { mesh: shape.mesh.as_deref(), ..Self::disc(robot, link, centre, radius) }
-            }
-            corners => Self {
-                link: &link.name,
-                body: &robot.bodies[link.body].name,
-                shape: "polygon",
-                centre: None,
-                radius: (radius > 0.0).then_some(radius),
-                corners: Some(corners),
-                half_diameters,
-                mesh: shape.mesh.as_deref(),
-            },
-        }
-    }
-
-    fn disc(robot: &'a Robot, link: &'a robot::Link, centre: Vector<f64>, radius: f64) -> Self {
-        let body = &robot.bodies[link.body].name;
-        Self {
-            link: &link.name,
-            body,
-            shape: "disc",
-            centre: Some(centre),
-            radius: Some(radius),
-            corners: None,
-            half_diameters: None,
-            mesh: None,
-        }
     }
 }

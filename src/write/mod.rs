@@ -5,19 +5,13 @@
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
 //!                                         └────> text for people        text.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
-//!     Robot, Impact ──> Drawing ──> JSON, picture                       drawing
-//!     Survey ──> Sweep, samples ──> JSON, CSV, text                     sweep
-//!     Impacts ──> Keyframes, a Picture ──> Page ──> HTML                keyframe, page
-//!     Study, Comparison ──> Accuracy ──> JSON, text, picture            accuracy
+//!     Survey, Map ──> Regions, samples ──> JSON, CSV, text              sweep
+//!     CaseStudy, Comparison ──> Accuracy ──> JSON, text                 accuracy
 //! ```
 
-mod list;
 pub(crate) mod table;
 pub(crate) mod words;
-mod touchdown;
 mod state;
-mod holds;
-mod problem;
 mod result;
 mod text;
 mod csv;
@@ -31,12 +25,14 @@ pub mod schema;
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
 pub use csv::Columns;
-pub use holds::{CounterexampleRecord, HoldsRecord};
 pub use inspection::Inspection;
 pub(crate) use result::short_id;
-pub use result::{Brief, ContactRecord, ErrorObject, LeftOutRecord, OutcomeInBrief, Refused, Rejected, Report};
+pub use result::{
+    Brief, CarriedFields, ContactRecord, ErrorObject, LeftOutRecord, OutcomeInBrief, Refused, Rejected, Report,
+    Touchdown,
+};
+pub use state::{CounterexampleRecord, HoldsRecord};
 pub use text::{Subject, text};
-pub use touchdown::{CarriedFields, Touchdown};
 
 use serde::Serialize;
 
@@ -49,6 +45,14 @@ pub struct Palette {
     pub faint: &'static str,
     /// Ends both.
     pub plain: &'static str,
+}
+
+/// The text that `write` writes.
+fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
+    let mut out = String::new();
+    // Writing into a string cannot fail.
+    let _ = write(&mut out);
+    out
 }
 
 /// How much of a result is written.

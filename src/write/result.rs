@@ -4,19 +4,19 @@
 //! singular matrix) are null. Numbers are written with every digit.
 
 use super::Detail;
-use super::holds::{CounterexampleRecord, HoldsRecord};
-use super::touchdown::{CarriedFields, Touchdown};
+use super::state::{CounterexampleRecord, HoldsRecord};
 use crate::contact::Contact;
 use crate::impact::{Analysis, Explanation, Outcome, Rejection, Verdict};
 use crate::law::Mode;
-use crate::pipeline::{self, Impact, Matrices};
+use crate::pipeline::{Impact, LeftOut};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
-use crate::state::State;
+use crate::state::{Named, State};
 use crate::{Error, Robot, description};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use std::borrow::Cow;
+use std::fmt::{self, Display};
 
 /// The result of a state or of a contact problem.
 ///
@@ -31,11 +31,12 @@ use std::borrow::Cow;
 /// let state = State::from_json(text, &robot, &Defaults::default())?;
 /// let impact = Pipeline::new(&robot, Options { explain_up_to: 2, ..Options::default() }).impact(&state)?;
 /// let report = heelstrike::Report::of_state(&robot, &state, &impact, heelstrike::write::Detail::default())?;
-/// assert_eq!(report.verdict.map(|verdict| verdict.to_string()).as_deref(), Some("unique"));
+/// assert_eq!(report.verdict, Some(heelstrike::Verdict::Unique));
+/// assert_eq!(heelstrike::Inspection::new(&robot, &[]).joints.len(), 1);
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report<'a> {
     /// What the user calls it.
@@ -109,6 +110,7 @@ pub struct Report<'a> {
     pub delassus: Option<Cow<'a, [Vec<f64>]>>,
     /// Fields of the table that the state comes from and that mean nothing here, as they stand there.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, String>>"))]
     pub carried: Option<CarriedFields<'a>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -116,7 +118,7 @@ pub struct Report<'a> {
 }
 
 /// A closed contact.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "Contact")]
 pub struct ContactRecord<'a> {
@@ -165,21 +167,54 @@ impl<'a> LeftOutRecord<'a> {
         let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };
         let of_scene = impact.left_out.iter().map(|left| {
             let (what, why) = match left {
-                pipeline::LeftOut::Column(joint) => {
+                LeftOut::Column(joint) => {
                     (description::joint_place(&robot.joints[*joint].name), "held: it keeps its rate and has no column")
                 }
-                pipeline::LeftOut::OutOfReach(count) => {
+                LeftOut::OutOfReach(count) => {
                     (format!("{} out of reach", shapes(*count)), "too high to reach the ground")
                 }
-                pipeline::LeftOut::NotAsked(count) => {
-                    (format!("{} of the file", shapes(*count)), "contacts are named by hand")
-                }
-                pipeline::LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
-                pipeline::LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
+                LeftOut::NotAsked(count) => (format!("{} of the file", shapes(*count)), "contacts are named by hand"),
+                LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
+                LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
             };
             Self { what: Cow::Owned(what), why: Cow::Borrowed(why) }
         });
         of_scene.chain(Self::all(robot)).collect()
+    }
+}
+
+/// Where in a recording a foot reached the ground, and how the state was taken.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Touchdown<'a> {
+    /// The row of the state, or the last one before it, counted from 0 without the header.
+    pub row: usize,
+    /// The time of the state \[s\].
+    pub time: f64,
+    /// The contact that reached the ground; of several at once the first.
+    pub striking: Cow<'a, str>,
+    /// What was added to the base's z so that this contact is at height 0 \[m\].
+    pub shift_z: f64,
+    /// `crossing` if the state lies between two rows, `row` if it is one.
+    pub at: Cow<'a, str>,
+    /// Which other feet take part: `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`.
+    pub touching: String,
+}
+
+/// Fields of a table that are carried through, written as an object.
+#[derive(Debug, Clone)]
+pub struct CarriedFields<'a>(pub Vec<(Cow<'a, str>, Cow<'a, str>)>);
+
+impl Serialize for CarriedFields<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, text)| (name, text)))
+    }
+}
+
+impl<'de> Deserialize<'de> for CarriedFields<'_> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let fields = Named::<String>::deserialize(deserializer)?;
+        Ok(Self(fields.iter().map(|(name, text)| (name.to_owned().into(), text.clone().into())).collect()))
     }
 }
 
@@ -210,7 +245,7 @@ pub struct OutcomeInBrief<'a> {
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
     /// False, and only then present, if the combination is neither shown nor excluded.
-    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    #[serde(default = "yes", skip_serializing_if = "bool::clone")]
     pub decided: bool,
 }
 
@@ -285,6 +320,14 @@ impl ErrorObject {
     }
 }
 
+/// In one line.
+impl Display for ErrorObject {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = self.place.as_ref().map_or(String::new(), |place| format!("{place}: "));
+        write!(out, "{place}{}{}", self.message, self.hint.as_ref().map_or(String::new(), |hint| format!("; {hint}")))
+    }
+}
+
 impl<'a> Report<'a> {
     /// The result of a state. If the outcomes were refused it has an `error`, next to the matrices that were asked for.
     ///
@@ -297,23 +340,21 @@ impl<'a> Report<'a> {
         };
         let contacts = impact.contacts.iter().zip(&impact.velocity_before);
         let contacts = contacts.map(|(contact, velocity)| ContactRecord::of_robot(robot, contact, *velocity)).collect();
-        let mut report = Self {
+        let matrices = impact.matrices.as_ref();
+        Ok(Self {
             id: state.id.as_ref().map(Cow::Borrowed),
             kinetic_energy: Some(impact.kinetic_energy),
             left_out: Some(LeftOutRecord::of_impact(robot, impact)),
             holds: impact.holds.as_ref().map(HoldsRecord::from),
             counterexample: impact.holds.as_ref().and_then(|holds| CounterexampleRecord::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),
+            coordinates: matrices.map(|matrices| Cow::Borrowed(&*matrices.coordinates)),
+            mass_matrix: matrices.map(|matrices| Cow::Borrowed(&*matrices.mass_matrix)),
+            contact_jacobian: matrices.map(|matrices| Cow::Borrowed(&*matrices.contact_jacobian)),
+            delassus: matrices.map(|matrices| Cow::Borrowed(&*matrices.delassus)),
             error: error.as_ref().map(ErrorObject::new),
             ..Self::of_analysis(contacts, impact.analysis.as_ref(), detail)
-        };
-        if let Some(Matrices { coordinates, mass_matrix, contact_jacobian, delassus }) = &impact.matrices {
-            report.coordinates = Some(Cow::Borrowed(coordinates));
-            report.mass_matrix = Some(Cow::Borrowed(mass_matrix));
-            report.contact_jacobian = Some(Cow::Borrowed(contact_jacobian));
-            report.delassus = Some(Cow::Borrowed(delassus));
-        }
-        Ok(report)
+        })
     }
 
     /// The result of a contact problem without a robot.
@@ -322,8 +363,8 @@ impl<'a> Report<'a> {
         let contacts = contacts.map(|(name, velocity)| ContactRecord::of_problem(name, *velocity)).collect();
         Self {
             id: problem.id.as_ref().map(Cow::Borrowed),
-            delassus: detail.matrices.then(|| Cow::Owned(super::problem::delassus(problem))),
-            notes: super::problem::notes(problem, analysis),
+            delassus: detail.matrices.then(|| Cow::Owned(delassus(problem))),
+            notes: notes(problem, analysis),
             ..Self::of_analysis(contacts, Some(analysis), detail)
         }
     }
@@ -336,29 +377,17 @@ impl<'a> Report<'a> {
             analysis.rejected.iter().map(|rejection| Rejected::new(rejection, &names)).collect()
         });
         Self {
-            id: None,
-            touchdown: None,
             verdict: known.map(|analysis| analysis.verdict),
             proven: known.map(|analysis| analysis.proven),
-            holds: None,
-            counterexample: None,
             outcomes: known.map(|analysis| Cow::Borrowed(&*analysis.outcomes)),
             rejected,
-            kinetic_energy: None,
             no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
             explain: explained.map(|analysis| analysis.explanation.as_ref().map(Cow::Borrowed)),
             index_sum: known.map(|analysis| analysis.index_sum),
             condition: known.map(|analysis| analysis.condition),
             rank: known.map(|analysis| analysis.rank),
-            left_out: None,
-            notes: Cow::Borrowed(&[]),
-            coordinates: None,
-            mass_matrix: None,
-            contact_jacobian: None,
-            delassus: None,
-            carried: None,
-            error: None,
             contacts,
+            ..Self::default()
         }
     }
 
@@ -375,7 +404,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Appends the result to `out` as one line of JSON, whole or in brief.
+    /// Appends the result as one line of JSON, whole or in brief.
     pub fn append_json(&self, detail: Detail, out: &mut Vec<u8>) {
         if detail.brief { super::append_line(out, &self.brief()) } else { super::append_line(out, self) }
     }
@@ -393,7 +422,7 @@ impl<'a> ContactRecord<'a> {
     }
 
     fn of_problem(name: &'a str, velocity_before: Pair<f64>) -> Self {
-        Self { link: None, name: Cow::Borrowed(name), point: None, normal: None, gap: None, velocity_before }
+        Self { name: Cow::Borrowed(name), velocity_before, ..Self::default() }
     }
 }
 
@@ -417,6 +446,32 @@ impl<'a> OutcomeInBrief<'a> {
     }
 }
 
+/// Beyond this condition the last digits alone decide whether a matrix is regular.
+const ILL_CONDITIONED: f64 = 1e14;
+
+/// What a reader of the analysis should know, in whole sentences.
+fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
+    let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
+    let repaired = || {
+        let rank = analysis.rank;
+        format!(
+            "the Delassus matrix is indefinite by its rounding: the nearest semidefinite one, of rank {rank}, was taken; {keep}"
+        )
+    };
+    let ill = |condition: f64| {
+        format!("the Delassus matrix has condition {condition:.1e} and may be singular except for rounding: {keep}")
+    };
+    let condition = analysis.condition.filter(|&condition| condition > ILL_CONDITIONED && problem.contact.is_given());
+    let notes = problem.contact.is_repaired().then(repaired).into_iter();
+    notes.chain(condition.map(ill)).chain(analysis.energy_note()).collect()
+}
+
+/// G, two rows and columns per contact.
+fn delassus(problem: &Problem) -> Vec<Vec<f64>> {
+    let rows = 0..2 * problem.contact.contacts();
+    rows.clone().map(|row| rows.clone().map(|column| problem.contact.delassus(row, column)).collect()).collect()
+}
+
 /// The most characters of an id that are repeated.
 const ID_LIMIT: usize = 200;
 
@@ -432,10 +487,6 @@ pub(crate) fn short_id(id: Value) -> Value {
 /// Reads a field that may be null although it may also be absent.
 fn present<'de, D: Deserializer<'de>, T: Deserialize<'de>>(field: D) -> Result<Option<T>, D::Error> {
     T::deserialize(field).map(Some)
-}
-
-fn is_true(flag: &bool) -> bool {
-    *flag
 }
 
 fn yes() -> bool {

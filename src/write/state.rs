@@ -1,11 +1,15 @@
-//! A state in the format in which it is read.
+//! A state in the format in which it is read, and whether a verdict holds on the box of its uncertainty.
 
 use crate::Robot;
-use crate::law::Friction;
+use crate::impact::Verdict;
+use crate::law::{Friction, Mode};
+use crate::pipeline::robust::Robustness;
 use crate::state::{ByLink, Ground, LinkPoint, Named, State, Uncertainty};
-use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
+use serde::{Deserialize, Serialize};
+use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
+use std::borrow::Cow;
 
 impl State {
     /// The state as the JSON object from which [`State::from_json`] reads it again.
@@ -18,9 +22,9 @@ impl State {
 }
 
 /// A state that is written with the names of its robot.
-pub(super) struct StateRecord<'a> {
-    pub robot: &'a Robot,
-    pub state: &'a State,
+struct StateRecord<'a> {
+    robot: &'a Robot,
+    state: &'a State,
 }
 
 impl StateRecord<'_> {
@@ -60,18 +64,15 @@ impl StateRecord<'_> {
 
     fn uncertainty(&self, uncertainty: &Uncertainty) -> Value {
         let Uncertainty { position, velocity, friction, rotor_inertia } = uncertainty;
-        let same = |values: &[f64]| values.windows(2).all(|pair| pair[0] == pair[1]).then(|| values.first().copied());
-        let half_widths = |values: &[f64]| match same(values) {
-            Some(width) => json!(width.unwrap_or(0.0)),
-            None => json!(self.coordinates(values)),
-        };
-        let rotors = match same(rotor_inertia) {
-            Some(width) => json!(width.unwrap_or(0.0)),
-            None => json!(self.by_joint(rotor_inertia)),
+        let half_widths = |values: &[f64], named: &dyn Fn(&[f64]) -> Value| match values {
+            [width, rest @ ..] if rest.iter().any(|other| other != width) => named(values),
+            _ => json!(values.first().unwrap_or(&0.0)),
         };
         json!({
-            "position": half_widths(position), "velocity": half_widths(velocity),
-            "friction": self.by_link(friction, |width| json!(width)), "rotor_inertia": rotors,
+            "position": half_widths(position, &|values| json!(self.coordinates(values))),
+            "velocity": half_widths(velocity, &|values| json!(self.coordinates(values))),
+            "friction": self.by_link(friction, |width| json!(width)),
+            "rotor_inertia": half_widths(rotor_inertia, &|values| json!(self.by_joint(values))),
         })
     }
 }
@@ -80,58 +81,102 @@ impl Serialize for StateRecord<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let State { id, position, velocity, scene, uncertainty } = self.state;
         let mut map = serializer.serialize_map(None)?;
-        if let Some(id) = id {
-            map.serialize_entry("id", id)?;
-        }
+        entry(&mut map, "id", id.is_some(), id)?;
         map.serialize_entry("position", &self.coordinates(position))?;
         map.serialize_entry("velocity", &self.coordinates(velocity))?;
-        if scene.friction != ByLink::default() {
-            map.serialize_entry("friction", &self.by_link(&scene.friction, friction))?;
-        }
-        if scene.restitution != ByLink::default() {
-            map.serialize_entry("restitution", &self.by_link(&scene.restitution, |value| json!(value)))?;
-        }
-        match &scene.ground {
-            Ground::Slope(0.0) => {}
-            Ground::Slope(slope) => map.serialize_entry("ground", &json!({"slope": slope}))?,
-            Ground::Profile(profile) => map.serialize_entry("ground", &json!({"profile": profile.points()}))?,
-        }
-        if let Some(stance) = scene.stance {
-            map.serialize_entry("stance", self.link(stance))?;
-        }
-        if !scene.held.is_empty() {
-            let held = scene.held.iter().map(|&joint| &self.robot.joints[joint].name);
-            map.serialize_entry("held", &held.collect::<Vec<_>>())?;
-        }
-        if !scene.rotor_inertia.is_empty() {
-            map.serialize_entry("rotor_inertia", &self.by_joint(&scene.rotor_inertia))?;
-        }
-        if let Some(contacts) = &scene.contacts {
-            let contacts = contacts.iter().map(
-                |contact| json!({"link": self.link(contact.link), "offset": contact.offset, "radius": contact.radius}),
-            );
-            map.serialize_entry("contacts", &contacts.collect::<Vec<_>>())?;
-        }
-        if !scene.loops.is_empty() {
-            let loops = scene.loops.iter().map(|own| json!({"a": self.point(own.a), "b": self.point(own.b)}));
-            map.serialize_entry("loops", &loops.collect::<Vec<_>>())?;
-        }
-        if let Some(uncertainty) = uncertainty {
-            map.serialize_entry("uncertainty", &self.uncertainty(uncertainty))?;
-        }
-        if !scene.impulses.is_empty() {
-            let impulses = scene.impulses.iter().map(
-                |applied| json!({"link": self.link(applied.link), "offset": applied.offset, "vector": applied.vector}),
-            );
-            map.serialize_entry("impulse", &impulses.collect::<Vec<_>>())?;
-        }
+        let friction = self.by_link(&scene.friction, |friction| match friction {
+            Friction::Finite(mu) => json!(mu),
+            Friction::Infinite => json!("infinite"),
+        });
+        entry(&mut map, "friction", scene.friction != ByLink::default(), &friction)?;
+        let restitution = self.by_link(&scene.restitution, |value| json!(value));
+        entry(&mut map, "restitution", scene.restitution != ByLink::default(), &restitution)?;
+        let ground = match &scene.ground {
+            Ground::Slope(slope) => json!({"slope": slope}),
+            Ground::Profile(profile) => json!({"profile": profile.points()}),
+        };
+        entry(&mut map, "ground", !matches!(scene.ground, Ground::Slope(0.0)), &ground)?;
+        let stance = scene.stance.map(|stance| self.link(stance));
+        entry(&mut map, "stance", stance.is_some(), &stance)?;
+        let held: Vec<_> = scene.held.iter().map(|&joint| &self.robot.joints[joint].name).collect();
+        entry(&mut map, "held", !held.is_empty(), &held)?;
+        let rotors = self.by_joint(&scene.rotor_inertia);
+        entry(&mut map, "rotor_inertia", !scene.rotor_inertia.is_empty(), &rotors)?;
+        let contacts = scene.contacts.iter().flatten().map(
+            |contact| json!({"link": self.link(contact.link), "offset": contact.offset, "radius": contact.radius}),
+        );
+        entry(&mut map, "contacts", scene.contacts.is_some(), &contacts.collect::<Vec<_>>())?;
+        let loops = scene.loops.iter().map(|own| json!({"a": self.point(own.a), "b": self.point(own.b)}));
+        entry(&mut map, "loops", !scene.loops.is_empty(), &loops.collect::<Vec<_>>())?;
+        let uncertainty = uncertainty.as_ref().map(|uncertainty| self.uncertainty(uncertainty));
+        entry(&mut map, "uncertainty", uncertainty.is_some(), &uncertainty)?;
+        let impulses = scene.impulses.iter().map(
+            |applied| json!({"link": self.link(applied.link), "offset": applied.offset, "vector": applied.vector}),
+        );
+        entry(&mut map, "impulse", !scene.impulses.is_empty(), &impulses.collect::<Vec<_>>())?;
         map.end()
     }
 }
 
-fn friction(friction: Friction) -> Value {
-    match friction {
-        Friction::Finite(mu) => json!(mu),
-        Friction::Infinite => json!("infinite"),
+fn entry<M: SerializeMap>(map: &mut M, name: &str, given: bool, value: &impl Serialize) -> Result<(), M::Error> {
+    if given { map.serialize_entry(name, value) } else { Ok(()) }
+}
+
+/// Whether every state of the box has the same outcomes, as lists of modes; `"unknown"` without a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "Value", try_from = "Value")]
+pub struct HoldsRecord(pub Option<bool>);
+
+impl From<HoldsRecord> for Value {
+    fn from(holds: HoldsRecord) -> Self {
+        holds.0.map_or("unknown".into(), Value::Bool)
     }
+}
+
+impl TryFrom<Value> for HoldsRecord {
+    type Error = &'static str;
+
+    fn try_from(value: Value) -> Result<Self, Self::Error> {
+        let is_known = value.is_boolean() || value == "unknown";
+        is_known.then_some(Self(value.as_bool())).ok_or("expected true, false or \"unknown\"")
+    }
+}
+
+impl From<&Robustness> for HoldsRecord {
+    fn from(holds: &Robustness) -> Self {
+        Self(match holds {
+            Robustness::Everywhere => Some(true),
+            Robustness::Not(_) => Some(false),
+            Robustness::Unknown => None,
+        })
+    }
+}
+
+/// A state of the box with other outcomes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "Counterexample")]
+pub struct CounterexampleRecord<'a> {
+    /// The state as it is read, with the contacts by name.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "any_object"))]
+    pub state: Box<RawValue>,
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// Its outcomes' lists of modes.
+    pub outcomes: Cow<'a, [Vec<Mode>]>,
+}
+
+impl<'a> CounterexampleRecord<'a> {
+    /// The counterexample of what was found about a state of `robot`; `None` if there is none.
+    pub fn of(robot: &'a Robot, holds: &'a Robustness) -> Option<Self> {
+        let Robustness::Not(found) = holds else { return None };
+        let state = to_raw_value(&StateRecord { robot, state: &found.state }).ok()?;
+        Some(Self { state, verdict: found.verdict, outcomes: Cow::Borrowed(&found.outcomes) })
+    }
+}
+
+/// Any object, of which there is a schema of its own.
+#[cfg(feature = "schema")]
+fn any_object(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    schemars::json_schema!({"type": "object"})
 }

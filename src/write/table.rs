@@ -1,6 +1,10 @@
 //! Tables for people: columns of text to the left, columns of numbers with their points below each other.
 
+use crate::planar::Pair;
 use std::fmt::Write;
+
+/// A pair of cells.
+type OptionalPair = Option<Pair<f64>>;
 
 /// Columns of equal length, each below its head.
 #[derive(Debug, Default)]
@@ -26,15 +30,22 @@ impl Table {
     /// Adds a column of numbers with as many decimals as its largest needs for six digits; `-` where there is none.
     ///
     /// What is left of a zero after rounding, beside numbers of the size `scale`, is written as `~0`.
-    pub(crate) fn numbers(
-        self,
-        head: &str,
-        scale: f64,
-        numbers: impl IntoIterator<Item = impl Into<Option<f64>>>,
-    ) -> Self {
+    pub(crate) fn numbers(self, head: &str, scale: f64, numbers: impl IntoIterator<Item: Into<Option<f64>>>) -> Self {
         let numbers: Vec<Option<f64>> = numbers.into_iter().map(Into::into).collect();
         let largest = self::scale(numbers.iter().flatten().copied().filter(|&number| !is_residue(number, scale)));
         self.column(head, scale, largest, numbers)
+    }
+
+    /// Adds a column for each entry of pairs.
+    pub(crate) fn pairs(
+        self,
+        heads: [&str; 2],
+        scale: f64,
+        pairs: impl IntoIterator<Item: Into<OptionalPair>>,
+    ) -> Self {
+        let pairs: Vec<OptionalPair> = pairs.into_iter().map(Into::into).collect();
+        let entries = |axis: usize| pairs.iter().map(move |pair| pair.map(|pair| pair[axis]));
+        self.numbers(heads[0], scale, entries(0)).numbers(heads[1], scale, entries(1))
     }
 
     /// A table of numbers that have the same decimals in all columns, without heads.
@@ -58,19 +69,12 @@ impl Table {
         self
     }
 
-    /// Writes the table, every line indented and without blanks at its end.
+    /// Writes the table, every line indented and without blanks at its end; heads only if there are any.
     pub(crate) fn write(&self, out: &mut String) {
-        self.write_from(0, out);
-    }
-
-    /// Writes the table without its heads.
-    pub(crate) fn write_body(&self, out: &mut String) {
-        self.write_from(1, out);
-    }
-
-    fn write_from(&self, first: usize, out: &mut String) {
+        let first = usize::from(self.columns.iter().all(|column| column.cells[0].is_empty()));
         let rows = self.columns.iter().map(|column| column.cells.len()).max().unwrap_or(0);
-        let widths: Vec<usize> = self.columns.iter().map(Column::width).collect();
+        let width = |column: &Column| column.cells.iter().map(|cell| cell.chars().count()).max();
+        let widths: Vec<usize> = self.columns.iter().filter_map(width).collect();
         for row in first..rows {
             let mut line = String::new();
             for (column, &width) in self.columns.iter().zip(&widths) {
@@ -82,12 +86,6 @@ impl Table {
             // Writing into a string cannot fail.
             let _ = writeln!(out, "{}", line.trim_end());
         }
-    }
-}
-
-impl Column {
-    fn width(&self) -> usize {
-        self.cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0)
     }
 }
 
@@ -138,13 +136,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_number_is_written_as_such() {
-        assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(number), ["NaN", "inf", "-inf"]);
-        assert_eq!(within(f64::NAN, 0.0), "NaN");
-        assert_eq!(within(1.0, f64::INFINITY), "1.000e0");
-    }
-
-    #[test]
     fn numbers_keep_their_points_below_each_other() {
         let mut out = String::new();
         let table = Table::default().text("name", ["a", "long name"]).numbers("value", 1.0, [Some(-12.5), None]);
@@ -153,17 +144,16 @@ mod tests {
             out,
             "  name          value    small\n  a          -12.5000  0.00100\n  long name         -  1.00000\n"
         );
+        out.clear();
+        Table::default().numbers("", 1.0, [0.0, 1e-17, 0.25]).write(&mut out);
+        assert_eq!(out, "         0\n        ~0\n  0.250000\n");
     }
 
     #[test]
-    fn zeros_and_extremes_are_told_apart() {
-        let mut out = String::new();
-        Table::default().numbers("", 1.0, [0.0, 1e-17, 0.25]).write_body(&mut out);
-        assert_eq!(out, "         0\n        ~0\n  0.250000\n");
-        assert_eq!(within(1e-9, 1.0), "1.000e-9");
-        assert_eq!(number(0.0000826), "8.26e-5");
-        assert_eq!(number(10.5), "10.5");
-        assert_eq!(number(300.0), "300");
-        assert_eq!(number(1234567.0), "1.235e6");
+    fn extremes_have_exponents_or_names() {
+        let numbers = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0000826, 10.5, 300.0, 1234567.0].map(number);
+        assert_eq!(numbers, ["NaN", "inf", "-inf", "8.26e-5", "10.5", "300", "1.235e6"]);
+        let within = [(f64::NAN, 0.0), (1.0, f64::INFINITY), (1e-9, 1.0)].map(|(value, most)| within(value, most));
+        assert_eq!(within, ["NaN", "1.000e0", "1.000e-9"]);
     }
 }

@@ -4,6 +4,8 @@ use super::table::number;
 use crate::impact::Verdict;
 use crate::law::Mode;
 use serde_json::Value;
+use std::collections::HashMap;
+use std::hash::Hash;
 
 /// `ramone (k17)`.
 pub(crate) fn titled(name: &str, id: &Option<Value>) -> String {
@@ -23,33 +25,31 @@ pub(crate) fn grades(margin: Option<f64>, index: Option<i8>) -> String {
 }
 
 /// `left_foot lifts off, right_foot sticks`.
-pub(crate) fn modes<'a>(names: impl Iterator<Item = &'a str>, modes: &[Mode]) -> String {
-    let clauses = names.zip(modes).map(|(name, mode)| format!("{name} {}", verb(*mode)));
+pub(crate) fn modes(names: impl IntoIterator<Item: AsRef<str>>, modes: &[Mode]) -> String {
+    let clauses = names.into_iter().zip(modes).map(|(name, mode)| format!("{} {}", name.as_ref(), verb(*mode)));
     clauses.collect::<Vec<_>>().join(", ")
 }
 
+const NUMBERS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
+
 /// The verdict as a sentence.
 pub(crate) fn verdict(verdict: Verdict, outcomes: usize) -> String {
-    match verdict {
-        Verdict::Unique => "Exactly one outcome.".to_owned(),
-        Verdict::Ambiguous => format!("{} outcomes are equally valid.", counted(outcomes)),
+    let sentence = match verdict {
+        Verdict::Unique => "Exactly one outcome.",
+        Verdict::Ambiguous => {
+            let count = NUMBERS.get(outcomes).map_or(outcomes.to_string(), |word| (*word).to_owned());
+            return format!("{count} outcomes are equally valid.");
+        }
         // Regular contacts always have an outcome.
         Verdict::None => {
             "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on each \
              other, or nothing that may move moves them."
-                .to_owned()
         }
-        Verdict::Undecided => {
-            "Undecided: some sign was settled by no precision; what it leaves open is listed.".to_owned()
-        }
-        Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.".to_owned(),
-        Verdict::NoContact => "No contact: the ground gives no impulse.".to_owned(),
-    }
-}
-
-fn counted(number: usize) -> String {
-    const WORDS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
-    WORDS.get(number).map_or_else(|| number.to_string(), |word| (*word).to_owned())
+        Verdict::Undecided => "Undecided: some sign was settled by no precision; what it leaves open is listed.",
+        Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.",
+        Verdict::NoContact => "No contact: the ground gives no impulse.",
+    };
+    sentence.to_owned()
 }
 
 fn verb(mode: Mode) -> &'static str {
@@ -59,4 +59,33 @@ fn verb(mode: Mode) -> &'static str {
         Mode::SlidePlus => "slides forward",
         Mode::SlideMinus => "slides backward",
     }
+}
+
+/// The names that there is `room` for, at least the first, and how many more there are.
+pub(crate) fn list(names: &[impl AsRef<str>], room: usize) -> String {
+    let lengths = names.iter().map(|name| name.as_ref().chars().count() + 2);
+    let ends = lengths.scan(0, |end, length| {
+        *end += length;
+        Some(*end)
+    });
+    let shown = ends.take_while(|&end| end <= room + 2).count().max(1).min(names.len());
+    let mut text = names[..shown].iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
+    if shown < names.len() {
+        text.push_str(&format!(" and {} more", names.len() - shown));
+    }
+    text
+}
+
+/// Things by their key, in the order of the first of each.
+pub(crate) fn grouped<K: Clone + Eq + Hash, T>(pairs: impl IntoIterator<Item = (K, T)>) -> Vec<(K, Vec<T>)> {
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    let mut places: HashMap<K, usize> = HashMap::new();
+    for (key, thing) in pairs {
+        let place = *places.entry(key.clone()).or_insert(groups.len());
+        match groups.get_mut(place) {
+            Some((_, things)) => things.push(thing),
+            None => groups.push((key, vec![thing])),
+        }
+    }
+    groups
 }

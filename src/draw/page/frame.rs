@@ -1,11 +1,9 @@
 //! States as the data of a page: bodies, contacts and outcomes, and the scale of all drawings.
 
-use super::number::{place, significant, to_unit, unit, vector};
 use super::{Interned, PageState};
 use crate::Error;
-use crate::draw::caption;
 use crate::draw::keyframe::KeyframeAnswer;
-use crate::draw::robot::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnShape, Extent};
+use crate::draw::robot::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnShape, Extent, picture};
 use crate::impact::{Outcome, Verdict};
 use crate::planar::{Pair, Vector};
 use crate::write::words;
@@ -31,7 +29,6 @@ pub(super) struct PageFrame {
     outcomes: Vec<PageOutcome>,
 }
 
-/// A robot in its configuration.
 #[derive(Debug, Clone, Serialize)]
 struct PageDrawing {
     /// Of each body its part, and its frame's origin and x axis in the world.
@@ -80,7 +77,7 @@ struct PageOutcome {
 }
 
 /// The scale of all drawings of a page.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize)]
 pub(super) struct PageScale {
     /// Coordinates are multiples of this \[m\].
     #[serde(skip)]
@@ -104,7 +101,6 @@ const FIXED: f64 = 1.5;
 const USUAL: usize = 90;
 
 impl PageScale {
-    /// The scale of these states.
     pub fn of(states: &[PageState]) -> Self {
         let drawings: Vec<&Drawing> = states.iter().filter_map(|state| state.keyframe.drawing.as_ref()).collect();
         let extents: Vec<Extent> = drawings.iter().map(|drawing| drawing.extent()).collect();
@@ -162,22 +158,21 @@ impl PageFrame {
 
 /// Why a state is refused, where and what to do.
 fn refusal(error: &Error) -> String {
-    let place = error.place().map(|place| format!("{place}: ")).unwrap_or_default();
-    let remedy = error.remedy().map(|remedy| format!(" (hint: {remedy})")).unwrap_or_default();
+    let place = error.place().map_or(String::new(), |place| format!("{place}: "));
+    let remedy = error.remedy().map_or(String::new(), |remedy| format!(" (hint: {remedy})"));
     format!("Refused: {place}{}{remedy}", error.reason())
 }
 
 fn outcomes(answer: &KeyframeAnswer, contacts: &[DrawnContact], texts: &mut Interned) -> Vec<PageOutcome> {
-    let names = || contacts.iter().map(|contact| contact.name.as_str());
-    let pair = |pair: &Pair<f64>| pair.map(|entry| significant(entry, 5));
+    let pairs = |pairs: &[Pair<f64>]| pairs.iter().map(|pair| pair.map(|entry| significant(entry, 5))).collect();
     let outcome = |outcome: &Outcome| PageOutcome {
-        words: texts.number(caption::modes(names(), outcome)),
-        remarks: caption::remarks(outcome).into_iter().map(|remark| texts.number(remark)).collect(),
+        words: texts.number(picture::modes(contacts.iter().map(|contact| &contact.name), outcome)),
+        remarks: picture::remarks(outcome).into_iter().map(|remark| texts.number(remark)).collect(),
         margin: outcome.margin.map(|margin| significant(margin, 5)),
         index: outcome.index,
         energy_loss: significant(outcome.energy_loss, 5),
-        impulse: outcome.impulse.iter().map(pair).collect(),
-        after: outcome.velocity_after.iter().map(pair).collect(),
+        impulse: pairs(&outcome.impulse),
+        after: pairs(&outcome.velocity_after),
     };
     answer.outcomes.iter().map(outcome).collect()
 }
@@ -185,28 +180,31 @@ fn outcomes(answer: &KeyframeAnswer, contacts: &[DrawnContact], texts: &mut Inte
 impl PageDrawing {
     fn new(drawing: &Drawing, unit: f64, parts: &mut Interned, texts: &mut Interned) -> Self {
         let at = |point: &Vector<f64>| place(*point, unit);
-        let bodies = drawing.bodies.iter().map(|body| {
+        let body = |body: &DrawnBody| {
             // Writing into memory cannot fail.
             let part = parts.number(serde_json::to_string(&BodyPart::new(body, unit)).unwrap_or_default());
             let (origin, axis) = (at(&body.origin), vector(&body.x_axis));
             (part, origin.x, origin.z, axis.x, axis.z)
-        });
-        let bones = drawing.bodies.iter().flat_map(|body| body.bones.iter().map(|end| [at(&body.origin), at(end)]));
-        let contacts = drawing.contacts.iter().map(|contact| PageContact {
+        };
+        let bone = |from: Vector<f64>, to: Vector<f64>| [from.x, from.z, to.x, to.z];
+        let bones = |body: &'_ DrawnBody| -> Vec<[f64; 4]> {
+            body.bones.iter().map(|end| bone(at(&body.origin), at(end))).collect()
+        };
+        let contact = |contact: &DrawnContact| PageContact {
             name: texts.number(&contact.name),
             point: at(&contact.point),
             normal: vector(&contact.normal),
             before: vector(&contact.velocity_before),
-        });
-        let applied = drawing.applied.iter();
+        };
+        let arrow = |arrow: &Arrow| Arrow { point: at(&arrow.point), vector: vector(&arrow.vector) };
         let Extent { low, high } = drawing.extent();
         Self {
-            bodies: bodies.collect(),
-            bones: bones.map(|[from, to]| [from.x, from.z, to.x, to.z]).collect(),
+            bodies: drawing.bodies.iter().map(body).collect(),
+            bones: drawing.bodies.iter().flat_map(bones).collect(),
             joints: drawing.joints.iter().map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
-            contacts: contacts.collect(),
-            applied: applied.map(|arrow| Arrow { point: at(&arrow.point), vector: vector(&arrow.vector) }).collect(),
+            contacts: drawing.contacts.iter().map(contact).collect(),
+            applied: drawing.applied.iter().map(arrow).collect(),
             middle: at(&((low + high) * 0.5)),
         }
     }
@@ -227,5 +225,51 @@ impl BodyPart {
             mass: significant(body.mass, 5),
             last: body.is_last,
         }
+    }
+}
+
+/// With so many significant digits.
+fn significant(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
+/// The vector with five digits in each entry.
+fn vector(vector: &Vector<f64>) -> Vector<f64> {
+    vector.map(|entry| significant(entry, 5))
+}
+
+/// The unit of coordinates \[m\], a power of ten: a robot of this size spans ten thousand of them or more.
+fn unit(size: f64) -> f64 {
+    let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+    libm::pow(10.0, libm::floor(libm::log10(size)) - 4.0)
+}
+
+/// The multiple of `unit`, a power of ten, that is nearest.
+fn to_unit(value: f64, unit: f64) -> f64 {
+    let whole = (value / unit).round();
+    // A quotient by a power of ten has fewer digits than a product has; zero has no sign.
+    let rounded = if unit < 1.0 { whole / (1.0 / unit).round() } else { whole * unit };
+    if rounded.is_finite() { rounded + 0.0 } else { value }
+}
+
+/// The point whose entries are multiples of `unit`.
+fn place(point: Vector<f64>, unit: f64) -> Vector<f64> {
+    point.map(|entry| to_unit(entry, unit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_of_a_screen() {
+        let unit = unit(1.3);
+        assert_eq!(
+            [0.1 + 0.2, -1e-9, 1234.56789].map(|value| format!("{}", to_unit(value, unit))),
+            ["0.3", "0", "1234.5679"]
+        );
+        assert_eq!(to_unit(123_456.0, super::unit(5e6)), 123_500.0);
+        assert_eq!([1.0 / 3.0, 2e-300, -123_456.7].map(|value| significant(value, 5)), [0.33333, 2e-300, -123_460.0]);
+        assert_eq!(super::unit(0.0), 1e-4);
     }
 }

@@ -10,34 +10,27 @@ use crate::law::Mode;
 use crate::write::words;
 
 /// States in their order, at most [`MOST`] of them: of more every second, third ... one is kept.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Gait {
     states: Vec<ListedKeyframe>,
-    every: usize,
+    halvings: u32,
     count: usize,
 }
 
-impl Default for Gait {
-    fn default() -> Self {
-        Self { states: Vec::new(), every: 1, count: 0 }
-    }
-}
-
-/// Successive states with the same outcomes, and their values on the axis.
+/// Successive states with the same outcomes, at least one, and their values on the axis.
 struct GaitRun<'g> {
     states: &'g [ListedKeyframe],
     at: &'g [f64],
 }
 
 impl Gait {
-    /// Takes the next state.
     pub fn push(&mut self, state: ListedKeyframe) {
-        if self.count.is_multiple_of(self.every) {
+        if self.count.is_multiple_of(1 << self.halvings) {
             self.states.push(state);
         }
         self.count += 1;
         if self.states.len() > MOST {
-            self.every *= 2;
+            self.halvings += 1;
             let mut kept = [true, false].into_iter().cycle();
             self.states.retain(|_| kept.next().unwrap_or(true));
         }
@@ -53,18 +46,15 @@ impl Gait {
     }
 
     fn runs<'g>(&'g self, order: &'g [f64]) -> Vec<GaitRun<'g>> {
-        let mut from = 0;
-        self.states
-            .chunk_by(|a, b| happening(a) == happening(b))
-            .map(|states| {
-                let at = &order[from..from + states.len()];
-                from += states.len();
-                GaitRun { states, at }
-            })
-            .collect()
+        let mut rest = order;
+        let runs = self.states.chunk_by(|a, b| happening(a) == happening(b)).map(|states| {
+            let (at, later) = rest.split_at(states.len());
+            rest = later;
+            GaitRun { states, at }
+        });
+        runs.collect()
     }
 
-    /// The margins of all outcomes against time or line.
     pub fn picture(&self, robot: &str) -> Picture {
         let (name, order) = self.order();
         let runs = self.runs(&order);
@@ -79,14 +69,12 @@ impl Gait {
         }
     }
 
-    /// The page; `rendered` is the picture.
     pub fn page(&self, robot: &str, rendered: Rendered) -> Page {
         let (name, order) = self.order();
         let runs = self.runs(&order);
-        let region = |run: &GaitRun| PageRegion {
-            name: run.look().words.into(),
-            fill: run.look().fill.hex(),
-            borders: Vec::new(),
+        let region = |run: &GaitRun| {
+            let StateLook { words, fill, .. } = run.look();
+            PageRegion { name: (*words).into(), fill: fill.hex(), borders: Vec::new() }
         };
         let numbers = runs.iter().enumerate().flat_map(|(number, run)| vec![number; run.states.len()]);
         let page_state = |(state, region): (&ListedKeyframe, usize)| {
@@ -96,10 +84,11 @@ impl Gait {
         };
         let states: Vec<PageState> = self.states.iter().zip(numbers).map(page_state).collect();
         let regions = runs.iter().map(region).collect();
-        let thinned = || format!("this page shows one of every {} of the {} states", self.every, self.count);
-        let notes = (self.every > 1).then(thinned).into_iter().collect();
+        let thinned = || format!("this page shows one of every {} of the {} states", 1 << self.halvings, self.count);
+        let notes = (self.halvings > 0).then(thinned).into_iter().collect();
         let axes = vec![PageAxis { name: name.into(), values: order.clone() }];
-        Page::new(format!("{robot}, state by state"), axes, regions, &states, rendered, notes)
+        let title = format!("{robot}, state by state");
+        Page { title, axes, regions, notes, ..Page::of(&states, rendered) }
     }
 }
 
@@ -111,8 +100,7 @@ fn bands(runs: &[GaitRun]) -> Vec<Band> {
     let mut bands: Vec<Band> = Vec::new();
     let mut last = None;
     for run in runs {
-        let [Some(&from), Some(&to)] = [run.at.first(), run.at.last()] else { continue };
-        let look = run.look();
+        let (from, to, look) = (run.at[0], run.at[run.at.len() - 1], run.look());
         match bands.last_mut() {
             Some(band) if last == Some(look.answer) => band.to = to,
             before => {
@@ -132,13 +120,12 @@ fn bands(runs: &[GaitRun]) -> Vec<Band> {
 /// The verdict, and the modes of all outcomes; `None` if the state is refused.
 fn happening(state: &ListedKeyframe) -> Option<(Verdict, Vec<&[Mode]>)> {
     let answer = state.keyframe.answer.as_ref().ok()?;
-    Some((answer.verdict, answer.outcomes.iter().map(|outcome| outcome.modes.as_slice()).collect()))
+    Some((answer.verdict, answer.outcomes.iter().map(|outcome| &*outcome.modes).collect()))
 }
 
 impl GaitRun<'_> {
     fn look(&self) -> &'static StateLook {
-        let answer = self.states.first().and_then(|state| state.keyframe.answer.as_ref().ok());
-        let answer = answer.map(|answer| answer.verdict);
+        let answer = self.states[0].keyframe.answer.as_ref().ok().map(|answer| answer.verdict);
         LOOKS.iter().find(|look| look.answer == answer).unwrap_or(&LOOKS[0])
     }
 
@@ -162,7 +149,6 @@ impl GaitRun<'_> {
     }
 }
 
-/// How states with one answer are drawn.
 struct StateLook {
     /// `None` if they are refused.
     answer: Option<Verdict>,

@@ -2,16 +2,14 @@
 //!
 //! ```text
 //!     study, findings --[study]--┐
-//!     Gait (a batch)  --[gait]---┴--> states, regions --[frame]--> Page --[html]--> HTML
+//!     Gait (a batch)  --[gait]---┴--> states, regions --[frame]--> Page --> HTML
 //!     Picture --rendered--> SVG, windows of its panels ──────────────┘
 //! ```
 //!
 //! A page stops at states with the robot in its configuration and every outcome. Texts and collision shapes that many
 //! states share are in the data once; numbers have the digits that a screen shows.
 
-mod number;
 mod frame;
-mod html;
 mod study;
 mod gait;
 
@@ -25,11 +23,21 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 use std::collections::HashMap;
 
+const TEMPLATE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+/// In the order in which they need each other.
+const PROGRAM: [&str; 5] = [
+    include_str!("robot.js"),
+    include_str!("plots.js"),
+    include_str!("answer.js"),
+    include_str!("slider.js"),
+    include_str!("page.js"),
+];
+
 /// The most states that a page stops at; of more it takes every second, third ... one.
 pub const MOST: usize = 5000;
 
-/// An interactive page.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Page {
     title: String,
     /// One or two: what the states are ordered by.
@@ -46,7 +54,6 @@ pub struct Page {
     svg: String,
 }
 
-/// What states are ordered by.
 #[derive(Debug, Clone, Serialize)]
 struct PageAxis {
     name: String,
@@ -89,18 +96,40 @@ impl Interned {
 }
 
 impl Page {
-    fn new(
-        title: String,
-        axes: Vec<PageAxis>,
-        regions: Vec<PageRegion>,
-        states: &[PageState],
-        Rendered { svg, windows }: Rendered,
-        notes: Vec<String>,
-    ) -> Self {
+    /// The frames of a page; `svg` is its picture.
+    fn of(states: &[PageState], Rendered { svg, windows }: Rendered) -> Self {
         let (mut parts, mut texts) = (Interned::default(), Interned::default());
         let scale = PageScale::of(states);
         let frames = states.iter().map(|state| PageFrame::new(state, scale.unit, &mut parts, &mut texts)).collect();
         let parts = parts.all.into_iter().filter_map(|part| RawValue::from_string(part).ok()).collect();
-        Self { title, axes, regions, frames, parts, texts: texts.all, scale, windows, notes, svg }
+        Self { frames, parts, texts: texts.all, scale, windows, svg, ..Self::default() }
+    }
+
+    pub fn html(&self) -> String {
+        // As text of HTML.
+        let title = self.title.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let parts: [(&str, &str); 6] = [
+            ("{title}", &title),
+            ("{style}", STYLE),
+            ("{heading}", &title),
+            ("{plots}", &self.svg),
+            ("{data}", &self.data()),
+            ("{program}", &PROGRAM.concat()),
+        ];
+        let (mut html, mut rest) = (String::new(), TEMPLATE);
+        for (place, content) in parts {
+            // Inserted text is never searched for further places.
+            let (before, after) = rest.split_once(place).unwrap_or((rest, ""));
+            html.extend([before, content]);
+            rest = after;
+        }
+        html + rest
+    }
+
+    /// The data as JSON in which no sign means anything to HTML.
+    fn data(&self) -> String {
+        // Writing into memory cannot fail.
+        let json = serde_json::to_string(self).unwrap_or_default();
+        json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
     }
 }

@@ -25,35 +25,36 @@ pub struct Stops {
 }
 
 impl Stops {
-    /// The stops of a study and its findings.
     pub fn new(model: &RobotStudy, findings: &Findings) -> Self {
         let parameters = model.study.parameters();
         let mut every = vec![1; parameters.len()];
-        let stops = |every: &[usize]| -> Vec<usize> {
-            parameters.iter().zip(every).map(|(parameter, every)| (parameter.steps - 1).div_ceil(*every) + 1).collect()
+        let samples = |every: &[usize]| -> Vec<Vec<f64>> {
+            let samples = parameters.iter().zip(every).map(|(parameter, every)| {
+                let last = parameter.steps - 1;
+                (0..last).step_by(*every).chain([last]).map(|index| parameter.sample(index)).collect()
+            });
+            samples.collect()
         };
-        let mut counts = stops(&every);
-        while counts.iter().product::<usize>() > MOST {
+        let mut values = samples(&every);
+        while values.iter().map(Vec::len).product::<usize>() > MOST {
             // Thin out the parameter with the most stops, step by step.
-            let longest = if counts.first() < counts.last() { counts.len() - 1 } else { 0 };
-            every[longest] += 1;
-            counts = stops(&every);
+            let last = values.len() - 1;
+            every[if values[0].len() < values[last].len() { last } else { 0 }] += 1;
+            values = samples(&every);
         }
-        // And the last one.
-        let samples = |(parameter, &every): (&Parameter, &usize)| {
-            let last = parameter.steps - 1;
-            (0..last).step_by(every).chain([last]).map(|index| parameter.sample(index)).collect()
-        };
-        let mut values: Vec<Vec<f64>> = parameters.iter().zip(&every).map(samples).collect();
         if let (Findings::Along(survey), [parameter], [values]) = (findings, parameters, &mut values[..]) {
-            values.extend(special(parameter, survey));
+            // Both sides and the middle of every region.
+            let away = AWAY * parameter.range();
+            values.extend(survey.regions.iter().flat_map(|&Region { from, to, .. }| {
+                let sides = [from + away, 0.5 * (from + to), to - away];
+                sides.into_iter().filter(move |side| from < *side && *side < to)
+            }));
             values.sort_unstable_by(f64::total_cmp);
             values.dedup();
         }
         Self { values, every }
     }
 
-    /// How many there are.
     pub fn count(&self) -> usize {
         self.values.iter().map(Vec::len).product()
     }
@@ -68,7 +69,6 @@ impl Stops {
         point
     }
 
-    /// A note on samples that are left out, if any are.
     fn note(&self, parameters: &[Parameter]) -> Option<String> {
         let thinned = parameters.iter().zip(&self.every).filter(|(_, every)| **every > 1);
         let parts: Vec<String> =
@@ -77,35 +77,18 @@ impl Stops {
     }
 }
 
-/// Both sides and the middle of every region.
-fn special(parameter: &Parameter, survey: &Survey) -> Vec<f64> {
-    let away = AWAY * parameter.range();
-    let of_region = |region: &Region| {
-        let (from, to) = (region.from, region.to);
-        let sides = [from + away, 0.5 * (from + to), to - away];
-        sides.into_iter().filter(move |side| from < *side && *side < to)
-    };
-    survey.regions.iter().flat_map(of_region).collect()
-}
-
 impl Page {
     /// The page of a study: what was found, the stops, its picture; `workers` count each stop.
-    pub fn of_study(
-        model: &RobotStudy,
-        findings: &Findings,
-        stops: &Stops,
-        rendered: Rendered,
-        workers: Workers,
-    ) -> Self {
+    pub fn of_study(model: &RobotStudy, found: &Findings, stops: &Stops, rendered: Rendered, workers: Workers) -> Self {
         let parameters = model.study.parameters();
         let look = |solver: &mut _, index| look(model, solver, &stops.point(index));
         let seen = workers.map(stops.count(), || Solver::new(model), look);
-        let (regions, notes) = match findings {
+        let (regions, notes) = match found {
             Findings::Along(survey) => along(Sweep::new(&parameters[0], survey), survey),
             Findings::Map(map) => areas(MapSweep::new(parameters, map), map),
         };
         let state = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| {
-            let region = match findings {
+            let region = match found {
                 Findings::Along(survey) => {
                     let at = stops.point(index)[0];
                     let region = survey.regions.partition_point(|region| region.to <= at);
@@ -120,7 +103,8 @@ impl Page {
         let title = format!("{} against {}", model.robot.name, names.join(" and "));
         let axis = |(name, values): (&str, &Vec<f64>)| PageAxis { name: name.to_owned(), values: values.clone() };
         let axes = names.into_iter().zip(&stops.values).map(axis).collect();
-        Self::new(title, axes, regions, &states, rendered, stops.note(parameters).into_iter().chain(notes).collect())
+        let notes = stops.note(parameters).into_iter().chain(notes).collect();
+        Self { title, axes, regions, notes, ..Self::of(&states, rendered) }
     }
 }
 
@@ -139,7 +123,6 @@ fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Re
     seen.unwrap_or_else(|error| (Keyframe::refused(error.clone()), Regime::of(&Err(error))))
 }
 
-/// Regions along a parameter.
 fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
     let border = |at: Option<usize>, side: &str| {
         let border = sweep.borders.get(at?)?;
@@ -155,7 +138,6 @@ fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
     (sweep.regions.iter().enumerate().map(region).collect(), sweep.notes)
 }
 
-/// Regions of two parameters.
 fn areas(sweep: MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
     let region = |(region, fill): (&MapRegion, Color)| {
         let mut borders: Vec<[String; 2]> = Vec::new();

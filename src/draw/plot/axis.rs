@@ -1,9 +1,8 @@
 //! Axes: what they span, and where their ticks are.
 
-use super::{Pixel, PlotPoint, PlotWindow};
+use super::{Pixel, PlotPoint};
 use std::f64::consts::PI;
 
-/// An axis of a panel.
 #[derive(Debug, Clone, Default)]
 pub struct PlotAxis {
     /// The quantity, with its unit.
@@ -21,7 +20,6 @@ pub struct PlotAxis {
 }
 
 impl PlotAxis {
-    /// An axis with this label that spans all that is drawn.
     pub fn new(label: impl Into<String>) -> Self {
         Self { label: label.into(), ..Self::default() }
     }
@@ -42,7 +40,6 @@ pub(super) struct Span {
     pub length: f64,
 }
 
-/// A tick of an axis.
 #[derive(Debug)]
 pub(super) struct Tick {
     /// Where it is, 0 at the beginning of the axis and 1 at its end.
@@ -66,16 +63,6 @@ impl PlotArea {
     pub fn place(&self, (x, y): PlotPoint) -> Option<Pixel> {
         let at = (self.x.length * self.x.share(x), self.y.length * (1.0 - self.y.share(y)));
         (at.0.is_finite() && at.1.is_finite()).then_some(at)
-    }
-
-    /// The inside of the axes, with its upper left corner there.
-    pub fn window(&self, corner: Pixel) -> PlotWindow {
-        PlotWindow { corner, size: self.size(), x: self.x.ends(), y: self.y.ends() }
-    }
-
-    /// Whether a pixel is inside of the axes.
-    pub fn holds(&self, (x, y): Pixel) -> bool {
-        (0.0..=self.x.length).contains(&x) && (0.0..=self.y.length).contains(&y)
     }
 }
 
@@ -147,8 +134,7 @@ impl Span {
         }
     }
 
-    /// The values at its beginning and at its end.
-    fn ends(&self) -> (f64, f64) {
+    pub fn ends(&self) -> (f64, f64) {
         let value = |shown: f64| match self.logarithmic {
             true => libm::pow(10.0, shown),
             false => shown * libm::pow(10.0, f64::from(self.power)),
@@ -186,7 +172,6 @@ impl Span {
         }
     }
 
-    /// The ticks, from its beginning to its end.
     pub fn ticks(&self) -> impl Iterator<Item = Tick> {
         let first = (self.low / self.step - ROUNDING).ceil() as i64;
         let last = (self.high / self.step + ROUNDING).floor() as i64;
@@ -196,7 +181,6 @@ impl Span {
         })
     }
 
-    /// The text at a tick.
     fn text(&self, at: f64) -> String {
         match (self.logarithmic, self.in_pi) {
             (true, _) => power_of_ten(at),
@@ -255,8 +239,8 @@ fn power_of_ten(exponent: f64) -> String {
 mod tests {
     use super::*;
 
-    fn span(range: (f64, f64), in_pi: bool) -> Span {
-        Span::new(&PlotAxis { range: Some(range), in_pi, ..PlotAxis::default() }, std::iter::empty(), 400.0)
+    fn span(range: (f64, f64)) -> Span {
+        Span::new(&PlotAxis { range: Some(range), ..PlotAxis::default() }, std::iter::empty(), 400.0)
     }
 
     #[test]
@@ -267,7 +251,7 @@ mod tests {
             ((0.4700, 0.4712), 0.0005, 0.47, "0.4700"),
             ((-300.0, 20.0), 100.0, -200.0, "−200"),
         ] {
-            let span = span(range, false);
+            let span = span(range);
             assert_eq!(span.step, step, "{range:?}");
             assert_eq!(span.text(at), text, "{range:?}");
             assert_eq!(span.label("a [m]"), "a [m]");
@@ -277,19 +261,11 @@ mod tests {
     #[test]
     fn powers_of_ten_move_into_the_label() {
         for (scale, power) in [(1e-7, "10⁻⁷"), (1e9, "10⁹"), (1e-310, "10⁻³¹⁰")] {
-            let span = span((0.0, 4.0 * scale), false);
+            let span = span((0.0, 4.0 * scale));
             assert_eq!([span.label("p [N s]"), span.label("p")], [format!("p [{power} N s]"), format!("p [{power}]")]);
             assert_eq!(span.step, 1.0);
             assert!((span.share(scale) - 0.25).abs() < 1e-9);
         }
-    }
-
-    #[test]
-    fn angles_are_multiples_of_pi() {
-        let span = span((-PI, PI), true);
-        assert_eq!((span.low, span.high, span.step), (-1.0, 1.0, 0.5));
-        let ticks = [-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0].map(|at| span.text(at));
-        assert_eq!(ticks, ["−π", "−π/2", "0", "π/2", "π", "3π/2", "2π"]);
     }
 
     #[test]

@@ -1,13 +1,9 @@
 //! Paths, circles and texts that have their place on the screen, and how SVG writes them.
 
 use super::color::Color;
-use super::font;
+use super::{Pixel, font};
 use std::fmt::{self, Display};
 
-/// A point or a distance on the screen: right and down \[px\].
-pub type Pixel = (f64, f64);
-
-/// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
     pub color: Color,
@@ -38,10 +34,8 @@ impl Stroke {
     }
 }
 
-/// A picture on the screen.
 #[derive(Debug)]
 pub(super) struct Canvas {
-    /// Width and height.
     pub size: Pixel,
     pub layer: PlotLayer,
 }
@@ -65,7 +59,6 @@ pub(super) enum Outline {
     Circle { center: Pixel, radius: f64 },
 }
 
-/// A line of text.
 #[derive(Debug)]
 pub(super) struct TextLine {
     /// On its baseline.
@@ -159,7 +152,6 @@ fn clip((width, height): Pixel) -> String {
     format!("clip{}x{}", Short(width), Short(height))
 }
 
-/// As SVG.
 impl Display for PlotLayer {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|element| match element {
@@ -184,7 +176,6 @@ impl Display for PlotLayer {
     }
 }
 
-/// As the beginning of an SVG element.
 impl Display for Outline {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,7 +1,6 @@
 //! Colors that people with any color vision tell apart, on a screen and in gray print.
 
-/// A color.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Color {
     Black,
     Green,
@@ -44,7 +43,6 @@ impl Color {
         }
     }
 
-    /// Red, green and blue.
     pub(super) fn rgb(self) -> [u8; 3] {
         [1, 3, 5].map(|at| u8::from_str_radix(&self.hex()[at..at + 2], 16).unwrap_or_default())
     }

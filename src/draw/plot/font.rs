@@ -1,4 +1,4 @@
-//! The one font of all pictures, embedded so that they are the same everywhere.
+//! The one font of all pictures, embedded so that they are the same everywhere, and the room that texts take.
 //!
 //! `DejaVuSans.ttf` is a subset of DejaVu Sans 2.37: Latin, Greek and Cyrillic letters and the signs in use, without
 //! hints and layout tables. Its license is in `DejaVuSans.license.txt`. fontTools 4 made it by
@@ -10,6 +10,7 @@
 //!                    U+21D2,U+2200-2265,U+FFFD
 //! ```
 
+use super::Pixel;
 use ttf_parser::{Face, GlyphId};
 
 const BYTES: &[u8] = include_bytes!("DejaVuSans.ttf");
@@ -60,16 +61,47 @@ pub(super) fn lines(text: &str, size: u32, room: f64) -> Vec<String> {
     lines
 }
 
+/// The rectangle that a text takes \[px\].
+#[derive(Debug, Clone, Copy)]
+pub struct TextBox {
+    pub middle: Pixel,
+    /// Half its width and height.
+    pub half: Pixel,
+}
+
+impl TextBox {
+    /// Half the width and height of a line of text in a font of this size, with a small margin.
+    pub fn half_of(text: &str, size: u32) -> Pixel {
+        (0.5 * width(text, size) + 3.0, 0.5 * CAPITAL * f64::from(size) + 3.0)
+    }
+
+    /// A square around a point.
+    pub(super) fn around(middle: Pixel, reach: f64) -> Self {
+        Self { middle, half: (reach, reach) }
+    }
+
+    /// Whether it lies within a panel of this size.
+    pub fn is_within(&self, (width, height): Pixel) -> bool {
+        let ((x, y), (across, up)) = (self.middle, self.half);
+        across <= x && x <= width - across && up <= y && y <= height - up
+    }
+
+    /// Whether it covers another one, or almost touches its side.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let (dx, dy) = ((self.middle.0 - other.middle.0).abs(), (self.middle.1 - other.middle.1).abs());
+        dx < self.half.0 + other.half.0 + 2.0 && dy < self.half.1 + other.half.1
+    }
+
+    /// The distance of a point from its edge; negative inside.
+    pub fn distance(&self, (x, y): Pixel) -> f64 {
+        let (across, up) = ((x - self.middle.0).abs() - self.half.0, (y - self.middle.1).abs() - self.half.1);
+        if across > 0.0 || up > 0.0 { libm::hypot(across.max(0.0), up.max(0.0)) } else { across.max(up) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn widths_add_up_and_grow_with_the_size() {
-        assert!(width("WW", 12) > width("ii", 12));
-        assert!((width("ab", 10) - width("a", 10) - width("b", 10)).abs() < 1e-4);
-        assert!((width("α", 20) - 2.0 * width("α", 10)).abs() < 1e-4);
-    }
 
     #[test]
     fn the_subset_has_every_sign_in_use() {

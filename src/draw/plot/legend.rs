@@ -65,12 +65,10 @@ impl<'p> Legend<'p> {
         Self { entries, lines, columns, key, scale }
     }
 
-    /// Its width and height.
     pub fn size(&self) -> Pixel {
         (total(&self.columns), self.rows().sum())
     }
 
-    /// The heights of its rows.
     fn rows(&self) -> impl Iterator<Item = f64> {
         let extra = |lines: &Vec<String>| LINE * lines.len().saturating_sub(1) as f64;
         self.lines.chunks(self.columns.len()).map(move |row| ROW + row.iter().map(extra).fold(0.0, f64::max))
@@ -94,7 +92,6 @@ impl<'p> Legend<'p> {
     }
 }
 
-/// The width of columns.
 fn total(columns: &[f64]) -> f64 {
     columns.iter().sum::<f64>() + NEXT * columns.len().saturating_sub(1) as f64
 }

@@ -5,8 +5,7 @@ use super::canvas::{Dash, PlotLayer, Stroke};
 use super::color::Color;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A mark at a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Mark {
     Circle,
     Ring,
@@ -67,7 +66,6 @@ impl Mark {
     }
 }
 
-/// Draws an arrow from pixel to pixel.
 pub(super) fn arrow(from: Pixel, to: Pixel, stroke: Stroke, out: &mut PlotLayer) {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = libm::hypot(dx, dy);

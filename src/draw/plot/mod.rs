@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!     Picture: rows of panels, a legend
-//!       Panel: axes, bands, shapes --axis--> PlotArea --panel, shape, mark, names, curve--┐
+//!       Panel: axes, bands, shapes --axis--> PlotArea --panel, shape, mark, curve--------┐
 //!       Legend --legend-------------------------------------------------------------------┴-> Canvas --> SVG
 //!                                                                                                 --png--> PNG
 //! ```
@@ -13,30 +13,31 @@
 mod color;
 mod font;
 mod canvas;
-mod text_box;
 mod png;
 mod axis;
 mod curve;
 mod mark;
-mod names;
 mod shape;
 mod panel;
 mod legend;
 
 pub use axis::{PlotAxis, range};
-pub use canvas::{Dash, Pixel, Stroke};
+pub use canvas::{Dash, Stroke};
 pub use color::Color;
+pub use font::TextBox;
 pub use legend::{LegendEntry, LegendKey};
 pub use mark::{MARK, Mark};
 pub use panel::{Band, Panel};
 pub use shape::PlotShape;
-pub use text_box::TextBox;
 
 use crate::Result;
 use canvas::{Anchor, Canvas, PlotLayer, TextLine};
 use legend::Legend;
 use panel::{PlacedPanel, Track};
 use serde::Serialize;
+
+/// A point or a distance on the screen: right and down \[px\].
+pub type Pixel = (f64, f64);
 
 /// A point in the coordinates of a panel's axes.
 pub type PlotPoint = (f64, f64);
@@ -55,7 +56,6 @@ pub struct Picture {
 /// A picture as SVG, and where its data are in it.
 #[derive(Debug, Clone)]
 pub struct Rendered {
-    /// The picture.
     pub svg: String,
     /// The inside of each panel that is drawn, row by row.
     pub windows: Vec<PlotWindow>,
@@ -124,7 +124,8 @@ impl Picture {
             for (panel, column) in row.iter().zip(&columns) {
                 let corner = (left + column.before, top + line.before);
                 panel.draw(corner, column.before, &mut layer);
-                windows.push(panel.area.window(corner));
+                let (size, x, y) = (panel.area.size(), panel.area.x.ends(), panel.area.y.ends());
+                windows.push(PlotWindow { corner, size, x, y });
                 left += column.whole() + GAP;
             }
             top += line.whole() + GAP;

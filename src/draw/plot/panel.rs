@@ -6,7 +6,6 @@ use super::color::Color;
 use super::shape::PlotShape;
 use super::{Pixel, PlotPoint, font};
 
-/// Shapes over two axes.
 #[derive(Debug, Clone)]
 pub struct Panel {
     /// Above it; lines after the first are smaller.
@@ -91,13 +90,6 @@ impl Panel {
         Self { title, x, y, size: (540.0, 420.0), framed: true, equal: false, bands, shapes }
     }
 
-    /// Whether anything in it has a place on its axes.
-    fn is_drawn(&self) -> bool {
-        let on = |value: f64, axis: &PlotAxis| value.is_finite() && (!axis.logarithmic || value > 0.0);
-        let mut points = self.shapes.iter().flat_map(PlotShape::extent);
-        points.any(|(x, y)| on(x, &self.x) && on(y, &self.y)) || !self.bands.is_empty()
-    }
-
     /// The title, broken where the panel ends, and which lines belong to its first one.
     fn title_lines(&self) -> Vec<(String, bool)> {
         let (first, rest) = self.title.split_once('\n').unwrap_or((&self.title, ""));
@@ -132,7 +124,9 @@ impl<'p> PlacedPanel<'p> {
             // No curve runs through the letters.
             placed.area.y.leave(MARGIN + stories as f64 * STORY);
         }
-        panel.is_drawn().then_some(placed)
+        let on = |value: f64, axis: &PlotAxis| value.is_finite() && (!axis.logarithmic || value > 0.0);
+        let is_drawn = points.iter().any(|&(x, y)| on(x, &panel.x) && on(y, &panel.y)) || !panel.bands.is_empty();
+        is_drawn.then_some(placed)
     }
 
     /// The room that it needs across and down.
@@ -180,12 +174,14 @@ impl<'p> PlacedPanel<'p> {
         }
     }
 
-    /// Lines at the ticks.
     fn grid(&self, out: &mut PlotLayer) {
         let Panel { x, y, framed, size: (width, height), .. } = self.panel;
         if *framed && !x.bare {
-            let lines = self.area.x.ticks().map(|tick| width * tick.share);
-            lines.for_each(|x| out.line(vec![(x, 0.0), (x, *height)], GRID));
+            self.area
+                .x
+                .ticks()
+                .map(|tick| width * tick.share)
+                .for_each(|x| out.line(vec![(x, 0.0), (x, *height)], GRID));
         }
         if *framed && !y.bare {
             let lines = self.area.y.ticks().map(|tick| height * (1.0 - tick.share));
@@ -230,12 +226,11 @@ impl<'p> PlacedPanel<'p> {
 
     fn band(&self, band: &Band, out: &mut PlotLayer) {
         let Some((from, to)) = self.sides(band) else { return };
-        let height = self.panel.size.1;
-        let edge = |x: f64| vec![(x, 0.0), (x, height)];
+        let edge = |x: f64| vec![(x, 0.0), (x, self.panel.size.1)];
         if to - from < EDGE.width {
             return out.line(edge(0.5 * (from + to)), EDGE);
         }
-        out.rectangle((from, 0.0), (to - from, height), Some(band.fill), None);
+        out.rectangle((from, 0.0), (to - from, self.panel.size.1), Some(band.fill), None);
         out.lines(vec![edge(from), edge(to)], EDGE);
     }
 
@@ -245,11 +240,8 @@ impl<'p> PlacedPanel<'p> {
         let mut ends = [f64::NEG_INFINITY; STORIES];
         let mut letters = Vec::new();
         for band in self.panel.bands.iter().filter(|band| !band.letter.is_empty()) {
-            let Some((from, to)) = self.sides(band) else { continue };
-            let (from, to) = (from.max(0.0), to.min(width));
-            if from > to {
-                continue;
-            }
+            let inside = self.sides(band).map(|(from, to)| (from.max(0.0), to.min(width)));
+            let Some((from, to)) = inside.filter(|(from, to)| from <= to) else { continue };
             let half = 0.5 * font::width(&band.letter, LETTER).max(ROOM);
             let middle = (0.5 * (from + to)).min(width - half).max(half);
             let story = ends.iter().position(|end| middle - half >= *end).unwrap_or(STORIES - 1);
@@ -260,7 +252,6 @@ impl<'p> PlacedPanel<'p> {
     }
 }
 
-/// The letter of a band.
 struct BandLetter<'a> {
     text: &'a str,
     /// The middle of its width \[px\].
@@ -269,19 +260,4 @@ struct BandLetter<'a> {
     story: usize,
     /// Whether it is wider than its band.
     is_wide: bool,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn equal_axes_have_units_of_one_length() {
-        let corners = PlotShape::Line { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke: AXIS };
-        let panel = Panel::new(PlotAxis::default(), PlotAxis::default());
-        let panel = Panel { equal: true, size: (300.0, 200.0), shapes: vec![corners], ..panel };
-        let area = PlacedPanel::new(&panel).unwrap().area;
-        let [origin, right, up] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|point| area.place(point).unwrap());
-        assert!(((right.0 - origin.0) - (origin.1 - up.1)).abs() < 1e-9);
-    }
 }

@@ -10,10 +10,6 @@ use ttf_parser::OutlineBuilder;
 /// How much larger it is than the SVG says.
 const SCALE: f32 = 2.0;
 
-/// The PNG of a picture.
-///
-/// # Errors
-/// [`Reason::Unsupported`] if the picture is too large, or cannot be written as PNG.
 pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>> {
     let refused = |what: &str| Error::new(Reason::Unsupported(format!("a picture {what}"))).hint("take an SVG");
     let [width, height] = [canvas.size.0, canvas.size.1].map(|side| (side * f64::from(SCALE)).ceil() as u32);

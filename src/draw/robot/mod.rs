@@ -2,28 +2,22 @@
 //! plane.
 //!
 //! ```text
-//!     Robot + Placement + feet             --> bodies: bones, shapes, CoG; joints      shape.rs
-//!     Impact (contacts, outcomes) + ground --> contacts, arrows per outcome, ground    extent.rs
+//!     Robot + Placement + feet             --> bodies: bones, shapes, CoG; joints
+//!     Impact (contacts, outcomes) + ground --> contacts, arrows per outcome, ground
 //!     Drawing --> a picture with a panel per outcome                                   picture.rs
 //!     Drawing --> the data of an interactive page                                      ../page
 //! ```
 //!
 //! Points are in the world's axes, `[x, z]` in meters; only shapes and CoGs are in the frames of their bodies.
 
-mod extent;
-mod shape;
 #[cfg(feature = "plot")]
 pub mod picture;
 
-pub use extent::Extent;
-pub use shape::DrawnShape;
-
 use crate::contact::{Contact, Feet, Placement};
-use crate::impact::Outcome;
 use crate::pipeline::Impact;
 use crate::planar::{Pair, Vector};
-use crate::robot::{Body, Robot};
-use crate::state::{NamedContact, State};
+use crate::robot::{Body, FootShape, Rim, Robot};
+use crate::state::{AppliedImpulse, Ground, NamedContact, State};
 use serde::Serialize;
 
 /// A robot in its configuration, its contacts and the outcomes of its impact.
@@ -35,7 +29,6 @@ pub struct Drawing {
     pub joints: Vec<Vector<f64>>,
     /// The ground's surface from left to right, as far as the drawing reaches; empty without a ground.
     pub ground: Vec<Vector<f64>>,
-    /// The closed contacts.
     pub contacts: Vec<DrawnContact>,
     /// Impulses that the state applies \[N s\].
     pub applied: Vec<Arrow>,
@@ -61,7 +54,6 @@ pub struct DrawnBody {
     pub mass: f64,
 }
 
-/// A closed contact.
 #[derive(Debug, Clone)]
 pub struct DrawnContact {
     pub name: String,
@@ -134,25 +126,17 @@ impl Drawing {
         let turned = |pairs: &[Pair<f64>]| -> Vec<Vector<f64>> {
             impact.contacts.iter().zip(pairs).map(|(contact, &pair)| contact.ground.apply(pair.into())).collect()
         };
-        let contacts = impact.contacts.iter().zip(turned(&impact.velocity_before));
-        let contact = |(contact, velocity_before): (&Contact, _)| DrawnContact {
-            name: contact.name.clone(),
-            point: contact.point,
-            normal: contact.normal(),
-            velocity_before,
+        let contact = |(contact, velocity_before): (&Contact, _)| {
+            let (name, point, normal) = (contact.name.clone(), contact.point, contact.normal());
+            DrawnContact { name, point, normal, velocity_before }
         };
-        drawing.contacts = contacts.map(contact).collect();
-        let outcome = |outcome: &Outcome| DrawnOutcome {
-            impulse: turned(&outcome.impulse),
-            velocity_after: turned(&outcome.velocity_after),
-        };
+        drawing.contacts = impact.contacts.iter().zip(turned(&impact.velocity_before)).map(contact).collect();
         let outcomes = impact.analysis.iter().flat_map(|analysis| &analysis.outcomes);
-        drawing.outcomes = outcomes.map(outcome).collect();
-        let applied = scene.impulses.iter();
-        drawing.applied = applied
-            .map(|applied| Arrow { point: in_world(applied.link, applied.offset), vector: applied.vector })
-            .collect();
-        drawing.ground = drawing.extent().surface(&scene.ground, drawing.size());
+        let effects = outcomes.map(|outcome| [&outcome.impulse, &outcome.velocity_after].map(|pairs| turned(pairs)));
+        drawing.outcomes = effects.map(|[impulse, velocity_after]| DrawnOutcome { impulse, velocity_after }).collect();
+        let arrow = |by: &AppliedImpulse| Arrow { point: in_world(by.link, by.offset), vector: by.vector };
+        drawing.applied = scene.impulses.iter().map(arrow).collect();
+        drawing.ground = drawing.extent().surface(&scene.ground, drawing.extent().scale());
         drawing
     }
 
@@ -161,11 +145,6 @@ impl Drawing {
         let bodies = self.bodies.iter().flat_map(|body| body.drawn().chain(body.com.map(|com| body.world(com))));
         let contacts = self.contacts.iter().map(|contact| contact.point);
         Extent::of(bodies.chain(contacts))
-    }
-
-    /// The diagonal of its extent \[m\]; a single point is drawn as if it were a meter long.
-    pub fn size(&self) -> f64 {
-        Some(self.extent().size()).filter(|&size| size > 0.0).unwrap_or(1.0)
     }
 
     /// The greatest impulse of all outcomes, and of those that the state applies \[N s\].
@@ -213,10 +192,117 @@ impl DrawnBody {
             let ends: Vec<Vector<f64>> = self.shapes.iter().map(|shape| self.world(shape.center())).collect();
             self.bones.extend(ends.into_iter().filter(is_long));
         }
-        let drawn = Extent::of(self.drawn()).widened(short);
+        let Extent { low, high } = Extent::of(self.drawn()).widened(short);
+        let holds = |at: Vector<f64>| (low.x..=high.x).contains(&at.x) && (low.z..=high.z).contains(&at.z);
         let com = self.com.map(|com| self.world(com));
-        self.bones.extend(com.filter(|&com| !drawn.holds(com)));
+        self.bones.extend(com.filter(|&com| !holds(com)));
     }
+}
+
+/// A collision shape in the frame of its body \[m\].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum DrawnShape {
+    /// A disc, or with radius 0 a point.
+    Disc { center: Vector<f64>, radius: f64 },
+    /// By its corners.
+    Polygon(Vec<Vector<f64>>),
+}
+
+/// Directions in which a round shape is touched to draw it.
+const DIRECTIONS: u32 = 48;
+
+impl DrawnShape {
+    fn new(shape: &FootShape) -> Self {
+        match (shape.corners(), shape.rim) {
+            (&[center], Rim::Circle { radius }) => Self::Disc { center, radius },
+            (corners, rim) if rim.bound() == 0.0 => Self::Polygon(corners.to_vec()),
+            (corners, rim) => Self::Polygon(swept(corners, rim)),
+        }
+    }
+
+    /// The middle of what it spans.
+    fn center(&self) -> Vector<f64> {
+        match self {
+            Self::Disc { center, .. } => *center,
+            Self::Polygon(corners) => {
+                let share = 1.0 / corners.len().max(1) as f64;
+                corners.iter().fold(Vector::zero(), |middle, corner| middle + *corner * share)
+            }
+        }
+    }
+}
+
+/// The corners with their rims as a polygon: its farthest point in each of many directions.
+fn swept(corners: &[Vector<f64>], rim: Rim) -> Vec<Vector<f64>> {
+    let farthest = |at: u32| {
+        let (sin, cos) = libm::sincos(f64::from(at) * std::f64::consts::TAU / f64::from(DIRECTIONS));
+        let direction = Vector::new(cos, sin);
+        let corner = corners.iter().max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)))?;
+        Some(*corner + rim.support(direction))
+    };
+    let mut polygon: Vec<Vector<f64>> = (0..DIRECTIONS).filter_map(farthest).collect();
+    polygon.dedup();
+    polygon
+}
+
+/// The smallest upright rectangle around some points \[m\].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Extent {
+    pub low: Vector<f64>,
+    pub high: Vector<f64>,
+}
+
+/// How far the ground reaches beyond the robot on either side, as a share of its size.
+const BEYOND: f64 = 2.0;
+
+impl Extent {
+    /// Around these points; without points the origin.
+    pub fn of(points: impl Iterator<Item = Vector<f64>>) -> Self {
+        let infinite = Vector::new(f64::INFINITY, f64::INFINITY);
+        let around = |(low, high): (Vector<f64>, Vector<f64>), point| (low.least(point), high.greatest(point));
+        let (low, high) = points.fold((infinite, -infinite), around);
+        if low.x <= high.x { Self { low, high } } else { Self::default() }
+    }
+
+    /// The diagonal \[m\].
+    pub fn size(self) -> f64 {
+        (self.high - self.low).length()
+    }
+
+    /// The diagonal \[m\]; a single point is drawn as if it were a meter long.
+    fn scale(self) -> f64 {
+        Some(self.size()).filter(|&size| size > 0.0).unwrap_or(1.0)
+    }
+
+    /// The same with `room` \[m\] on every side.
+    fn widened(self, room: f64) -> Self {
+        Self { low: self.low.map(|entry| entry - room), high: self.high.map(|entry| entry + room) }
+    }
+
+    /// The ground's surface below a robot of this size, and well to both sides.
+    fn surface(self, ground: &Ground, size: f64) -> Vec<Vector<f64>> {
+        let (left, right) = (self.low.x - BEYOND * size, self.high.x + BEYOND * size);
+        match ground {
+            Ground::Slope(slope) => [left, right].map(|x| Vector::new(x, libm::tan(*slope) * x)).to_vec(),
+            Ground::Profile(profile) => {
+                let mut surface: Vec<Vector<f64>> = Vec::new();
+                let pairs = profile.points().windows(2).map(|pair| [pair[0], pair[1]]);
+                for pair @ [from, to] in pairs.filter(|[from, to]| to.x >= left && from.x <= right) {
+                    if surface.is_empty() {
+                        surface.push(if from.x < left { between(pair, left) } else { from });
+                    }
+                    surface.push(if to.x > right { between(pair, right) } else { to });
+                }
+                surface
+            }
+        }
+    }
+}
+
+/// The point of a segment that is above this x.
+fn between([from, to]: [Vector<f64>; 2], x: f64) -> Vector<f64> {
+    Vector::new(x, from.z + (x - from.x) / (to.x - from.x) * (to.z - from.z))
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! A robot in its pose as a picture: one panel per outcome, or the robot alone with its names.
 
-use super::{Drawing, DrawnBody, DrawnContact, DrawnOutcome, DrawnShape, Extent};
+use super::{Drawing, DrawnBody, DrawnContact, DrawnOutcome, DrawnShape, Extent, between};
 use crate::contact::Placement;
-use crate::draw::caption;
 use crate::draw::plot::{
     Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke,
 };
@@ -13,6 +12,7 @@ use crate::robot::Robot;
 use crate::state::{NamedContact, State};
 use crate::write::table::number;
 use crate::write::words;
+use std::iter;
 
 const IMPULSE: Stroke = Stroke::solid(Color::Vermilion, 3.0);
 const APPLIED: Stroke = Stroke { dash: Dash::DOTTED, ..Stroke::solid(Color::Purple, 3.0) };
@@ -26,7 +26,6 @@ const NORMAL: Stroke = Stroke { dash: Dash::DOTTED, ..Stroke::solid(Color::Black
 const LAST: Color = Color::Tint(1);
 const INNER: Color = Color::Tint(0);
 
-/// Panels side by side.
 const COLUMNS: usize = 4;
 /// Shares of the robot's size: the room around all that is drawn, the normal of a contact, the axes of the root, the
 /// longest arrow, the longest arrow of the legend.
@@ -54,8 +53,8 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
         ..scene.view.panel(count)
     };
     let titles = analysis.outcomes.iter().enumerate().map(|outcome| caption(impact, count > 1, outcome));
-    let mut panels: Vec<Panel> =
-        titles.zip(&drawing.outcomes).map(|(title, outcome)| panel(title, Some(outcome))).collect();
+    let panels = titles.zip(&drawing.outcomes).map(|(title, outcome)| panel(title, Some(outcome)));
+    let mut panels: Vec<Panel> = panels.collect();
     if panels.is_empty() {
         panels.push(panel(String::new(), None));
     }
@@ -78,12 +77,10 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     let mut shapes = DrawnScene::new(&drawing).robot();
     let axes = Vector::axes().map(tip);
     shapes.extend(axes.map(|tip| PlotShape::Arrow { from: point(root), to: point(tip), stroke: AFTER }));
-    let mut names: Vec<(PlotPoint, String)> =
-        axes.into_iter().map(point).zip(["x".to_owned(), "z".to_owned()]).collect();
+    let mut names: Vec<(PlotPoint, String)> = axes.map(point).into_iter().zip(["x", "z"].map(str::to_owned)).collect();
     if robot.bodies.len() <= NAMED {
         // The root's name stands between its axes.
-        let places =
-            [tip(Vector::new(0.2, 0.2))].into_iter().chain(drawing.bodies.iter().skip(1).map(DrawnBody::middle));
+        let places = iter::once(tip(Vector::new(0.2, 0.2))).chain(drawing.bodies[1..].iter().map(DrawnBody::middle));
         names.extend(places.map(point).zip(robot.bodies.iter().map(|body| body.name.clone())));
     }
     shapes.push(PlotShape::Names { names, below: false });
@@ -114,19 +111,38 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     }
 }
 
-/// What happens, and then how sure that is.
 fn caption(impact: &Impact, several: bool, (at, outcome): (usize, &Outcome)) -> String {
-    let modes = caption::modes(impact.contacts.iter().map(|contact| contact.name.as_str()), outcome);
+    let words = modes(impact.contacts.iter().map(|contact| &contact.name), outcome);
     let grades = Some(words::grades(outcome.margin, outcome.index)).filter(|grades| !grades.is_empty());
-    let below: Vec<String> = grades.into_iter().chain(caption::remarks(outcome)).collect();
+    let below: Vec<String> = grades.into_iter().chain(remarks(outcome)).collect();
     let number = if several { format!("{}: ", at + 1) } else { String::new() };
-    format!("{number}{modes}\n{}", below.join(", "))
+    format!("{number}{words}\n{}", below.join(", "))
+}
+
+pub(in crate::draw) fn modes(contacts: impl IntoIterator<Item: AsRef<str>>, outcome: &Outcome) -> String {
+    if outcome.modes.is_empty() { "nothing changes".to_owned() } else { words::modes(contacts, &outcome.modes) }
+}
+
+/// How sure and how special it is.
+pub(in crate::draw) fn remarks(outcome: &Outcome) -> Vec<String> {
+    let border = outcome.border.as_ref().map(|border| {
+        let zeros: Vec<String> = border.at_zero.iter().map(|zero| zero.inequality.to_string()).collect();
+        format!("on a border: {}", zeros.join(", "))
+    });
+    let remarks = [
+        (outcome.family, "the end of a family"),
+        (!outcome.impulse_unique, "one of many impulses"),
+        (!outcome.decided, "not excluded"),
+        (outcome.decided && !outcome.proven, "not proven"),
+    ];
+    let remarks = remarks.into_iter().filter(|(applies, _)| *applies).map(|(_, remark)| remark.to_owned());
+    border.into_iter().chain(remarks).collect()
 }
 
 impl Extent {
     /// With room around all that is drawn, even around a single point.
     fn with_room(self) -> Self {
-        self.widened(ROOM * Some(self.size()).filter(|&size| size > 0.0).unwrap_or(1.0))
+        self.widened(ROOM * self.scale())
     }
 
     /// An empty panel of this extent, one of so many.
@@ -135,12 +151,8 @@ impl Extent {
         let Vector { x: across, z: up } = self.high - self.low;
         let width = [460.0, 460.0, 380.0, 320.0, 280.0][panels.min(COLUMNS)];
         let height = width * (up / across).clamp(0.4, 1.5);
-        Panel {
-            size: (width, height),
-            framed: false,
-            equal: true,
-            ..Panel::new(axis(self.low.x, self.high.x), axis(self.low.z, self.high.z))
-        }
+        let axes = Panel::new(axis(self.low.x, self.high.x), axis(self.low.z, self.high.z));
+        Panel { size: (width, height), framed: false, equal: true, ..axes }
     }
 }
 
@@ -154,36 +166,35 @@ impl DrawnBody {
     }
 }
 
-/// A drawing as shapes of a panel.
 struct DrawnScene<'d> {
     drawing: &'d Drawing,
     /// The robot's size \[m\].
     size: f64,
-    /// The length of an arrow of 1 N s, the same for all outcomes \[m\].
+    /// The lengths of arrows of 1 N s and of 1 m/s, the same for all outcomes \[m\].
     impulse_scale: f64,
-    /// The length of an arrow of 1 m/s, the same for all outcomes \[m\].
     velocity_scale: f64,
-    /// All that is drawn, with room around it.
+    /// All that is drawn and the ground if it is near, with room around it.
     view: Extent,
 }
 
 impl<'d> DrawnScene<'d> {
     fn new(drawing: &'d Drawing) -> Self {
-        let (size, view) = (drawing.size(), drawing.extent());
+        let view @ Extent { low, high } = drawing.extent();
+        let size = view.scale();
         let scale = |most: f64| if most > 0.0 { LONGEST * size / most } else { 0.0 };
         let (impulse_scale, velocity_scale) = (scale(drawing.greatest_impulse()), scale(drawing.greatest_velocity()));
         let mut scene = Self { drawing, size, impulse_scale, velocity_scale, view };
-        scene.view = scene.whole_view();
+        let middle = 0.5 * (low.x + high.x);
+        let mut pairs = drawing.ground.windows(2).map(|pair| [pair[0], pair[1]]);
+        let under = pairs.find(|[from, to]| (from.x..=to.x).contains(&middle) && from.x < to.x);
+        let near = under.map(|pair| between(pair, middle)).filter(|point| (low.z - size..low.z).contains(&point.z));
+        let tips = scene.all_arrows().map(|(from, reach, _)| from + reach);
+        scene.view = Extent::of([low, high].into_iter().chain(tips).chain(near)).with_room();
         scene
     }
 
-    /// All that is drawn, with every arrow and the ground if it is near.
-    fn whole_view(&self) -> Extent {
-        let Self { drawing, size, view: Extent { low, high }, .. } = *self;
-        let near = self.ground_at(0.5 * (low.x + high.x)).filter(|point| (low.z - size..low.z).contains(&point.z));
-        let outcomes = drawing.outcomes.iter().map(Some).chain([None]);
-        let tips = outcomes.flat_map(|outcome| self.arrows(outcome)).map(|(from, reach, _)| from + reach);
-        Extent::of([low, high].into_iter().chain(tips).chain(near)).with_room()
+    fn all_arrows(&self) -> impl Iterator<Item = (Vector<f64>, Vector<f64>, Stroke)> {
+        self.drawing.outcomes.iter().map(Some).chain([None]).flat_map(|outcome| self.arrows(outcome))
     }
 
     /// The arrows of an outcome, or of none: where each begins, how far it reaches and its shaft.
@@ -202,16 +213,6 @@ impl<'d> DrawnScene<'d> {
         applied.chain(effects).chain(before).collect()
     }
 
-    /// The ground's surface at this x; `None` beyond its ends.
-    fn ground_at(&self, x: f64) -> Option<Vector<f64>> {
-        self.drawing.ground.windows(2).find_map(|pair| match *pair {
-            [Vector { x: x0, z: z0 }, Vector { x: x1, z: z1 }] if (x0..=x1).contains(&x) && x0 < x1 => {
-                Some(Vector::new(x, z0 + (x - x0) / (x1 - x0) * (z1 - z0)))
-            }
-            _ => None,
-        })
-    }
-
     /// The ground, the robot's shapes, bones, joints and CoGs.
     fn robot(&self) -> Vec<PlotShape> {
         let Drawing { bodies, ground, joints, .. } = self.drawing;
@@ -226,19 +227,17 @@ impl<'d> DrawnScene<'d> {
         }
         for body in bodies {
             let fill = Some(if body.is_last { LAST } else { INNER });
+            let at = |local: &Vector<f64>| point(body.world(*local));
             shapes.extend(body.shapes.iter().map(|shape| match shape {
-                DrawnShape::Disc { center, radius: 0.0 } => PlotShape::Marks {
-                    points: vec![point(body.world(*center))],
-                    mark: Mark::Circle,
-                    color: BONE.color,
-                    size: BONE.width,
-                },
-                &DrawnShape::Disc { center, radius } => {
-                    PlotShape::Circle { center: point(body.world(center)), radius, fill, stroke: Some(EDGE) }
+                DrawnShape::Disc { center, radius: 0.0 } => {
+                    let points = vec![at(center)];
+                    PlotShape::Marks { points, mark: Mark::Circle, color: BONE.color, size: BONE.width }
+                }
+                DrawnShape::Disc { center, radius } => {
+                    PlotShape::Circle { center: at(center), radius: *radius, fill, stroke: Some(EDGE) }
                 }
                 DrawnShape::Polygon(corners) => {
-                    let corners = corners.iter().map(|&corner| point(body.world(corner))).collect();
-                    PlotShape::Area { loops: vec![corners], fill, stroke: Some(EDGE) }
+                    PlotShape::Area { loops: vec![corners.iter().map(at).collect()], fill, stroke: Some(EDGE) }
                 }
             }));
         }
@@ -267,11 +266,9 @@ impl<'d> DrawnScene<'d> {
         let mut shapes: Vec<PlotShape> = contacts.iter().map(normal).collect();
         let points = contacts.iter().map(|contact| point(contact.point)).collect();
         shapes.push(PlotShape::Marks { points, mark: Mark::Circle, color: Color::Black, size: 3.0 });
-        let arrows = self.arrows(outcome).into_iter();
-        shapes.extend(arrows.map(|(from, reach, stroke)| PlotShape::Arrow {
-            from: point(from),
-            to: point(from + reach),
-            stroke,
+        shapes.extend(self.arrows(outcome).into_iter().map(|(from, reach, stroke)| {
+            let (from, to) = (point(from), point(from + reach));
+            PlotShape::Arrow { from, to, stroke }
         }));
         let names = contacts.iter().map(|contact| (point(contact.point), contact.name.clone())).collect();
         shapes.push(PlotShape::Names { names, below: true });
@@ -280,25 +277,24 @@ impl<'d> DrawnScene<'d> {
 
     /// What the arrows are, with one of a round length for each kind.
     fn legend(&self) -> Vec<LegendEntry> {
-        let Drawing { contacts, applied, outcomes, .. } = self.drawing;
-        let has = |vectors: &[Vector<f64>]| vectors.iter().any(|vector| *vector != Vector::zero());
-        let struck = outcomes.iter().any(|outcome| has(&outcome.impulse));
-        let moving = outcomes.iter().any(|outcome| has(&outcome.velocity_after));
-        let moved = contacts.iter().any(|contact| contact.velocity_before != Vector::zero());
-        let arrows = [
-            (struck, IMPULSE, self.impulse_scale, "N s", "impulse of the ground"),
-            (!applied.is_empty(), APPLIED, self.impulse_scale, "N s", "applied impulse"),
-            (moving, AFTER, self.velocity_scale, "m/s", "velocity after"),
-            (moved, BEFORE, self.velocity_scale, "m/s", "velocity before"),
+        let arrows: Vec<_> = self.all_arrows().collect();
+        let is_drawn = |stroke: Stroke| {
+            arrows.iter().any(|(_, reach, own)| *own == stroke && (stroke == APPLIED || *reach != Vector::zero()))
+        };
+        let kinds = [
+            (IMPULSE, self.impulse_scale, "N s", "impulse of the ground"),
+            (APPLIED, self.impulse_scale, "N s", "applied impulse"),
+            (AFTER, self.velocity_scale, "m/s", "velocity after"),
+            (BEFORE, self.velocity_scale, "m/s", "velocity before"),
         ];
-        let arrows = arrows.into_iter().filter(|(is_drawn, ..)| *is_drawn);
-        let arrows = arrows.filter_map(|(_, stroke, scale, unit, what)| {
+        let drawn = kinds.into_iter().filter(|(stroke, ..)| is_drawn(*stroke));
+        let entries = drawn.filter_map(|(stroke, scale, unit, what)| {
             let round = round(KEY * self.size / scale)?;
             let key = LegendKey::Arrow { stroke, length: round * scale };
             Some(LegendEntry::new(format!("{what}: {round} {unit}"), key))
         });
         let contact = || LegendEntry::new("contact", LegendKey::Mark(Mark::Circle, Color::Black));
-        arrows.chain((!contacts.is_empty()).then(contact)).collect()
+        entries.chain((!self.drawing.contacts.is_empty()).then(contact)).collect()
     }
 }
 

@@ -71,13 +71,3 @@ fn arrows_on_a_slope_are_in_the_worlds_axes() {
     let [left, right] = drawing.ground[..] else { panic!("{drawing:?}") };
     assert!(((right.z - left.z) / (right.x - left.x) - libm::tan(slope)).abs() < 1e-4);
 }
-
-#[test]
-fn a_profile_is_cut_at_the_drawing() {
-    let state = r#"{"position": {"base": {"z": 0.5}}, "friction": 1,
-        "ground": {"profile": [[-900, 0], [0.5, 0], [0.6, -1]]}}"#;
-    let drawing = drawn(state);
-    let [left, edge, end] = drawing.ground[..] else { panic!("{drawing:?}") };
-    assert!(left.x > -9.0 && left.z == 0.0, "{left:?}");
-    assert_eq!((edge, end), (Vector::new(0.5, 0.0), Vector::new(0.6, -1.0)));
-}

@@ -1,13 +1,15 @@
 //! One parameter: panels below each other, for each contact its velocity after and its impulse.
 
-use super::style::{COMPONENTS, OutcomeStyles};
 use super::{KindLook, WIDTH, angles, different, fills_along, firsts, is_seen};
-use crate::draw::plot::{Band, Color, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke, range};
+use crate::draw::plot::{
+    Band, Color, Dash, LegendEntry, LegendKey, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke, range,
+};
 use crate::impact::Motion;
+use crate::law::Mode;
 use crate::sweep::{CurvePoint, Region, RegionCurves, Survey, letter};
 use crate::write::sweep::Happening;
+use crate::write::words;
 
-/// A quantity of a contact that is drawn.
 struct PlottedQuantity {
     name: &'static str,
     unit: &'static str,
@@ -42,14 +44,16 @@ pub fn picture(x: PlotAxis, survey: &Survey, courses: &[RegionCurves]) -> Pictur
         let nothing = PlotAxis { bare: true, ..PlotAxis::default() };
         panels.push(Panel { size: (WIDTH, STRIP), ..Panel::new(PlotAxis::default(), nothing) });
     }
-    for (index, panel) in panels.iter_mut().enumerate() {
-        let letter = |kind: &KindLook| if index == 0 { kind.letter.clone() } else { String::new() };
-        panel.bands = bands(survey, &kinds, |kind| (letter(kind), kind.color));
-    }
+    let bands = |look: fn(&KindLook) -> (String, Color)| -> Vec<Band> {
+        let looks = survey.regions.iter().map(|region| (region, look(&kinds[region.kind])));
+        looks.map(|(region, (letter, fill))| Band { from: region.from, to: region.to, letter, fill }).collect()
+    };
+    panels.iter_mut().for_each(|panel| panel.bands = bands(|kind| (String::new(), kind.color)));
+    panels[0].bands = bands(|kind| (kind.letter.clone(), kind.color));
     let mut explained = angles::panels(survey, courses);
     let angles = !explained.is_empty();
     // Their regions have names of their own.
-    explained.iter_mut().for_each(|panel| panel.bands = bands(survey, &kinds, |_| (String::new(), Color::White)));
+    explained.iter_mut().for_each(|panel| panel.bands = bands(|_| (String::new(), Color::White)));
     panels.extend(explained);
     let last = panels.len() - 1;
     for (index, panel) in panels.iter_mut().enumerate() {
@@ -59,16 +63,6 @@ pub fn picture(x: PlotAxis, survey: &Survey, courses: &[RegionCurves]) -> Pictur
     Picture { title: String::new(), rows: panels.into_iter().map(|panel| vec![panel]).collect(), legend }
 }
 
-/// The regions, each with a letter and a color.
-fn bands(survey: &Survey, kinds: &[KindLook], look: impl Fn(&KindLook) -> (String, Color)) -> Vec<Band> {
-    let band = |region: &Region| {
-        let (letter, fill) = look(&kinds[region.kind]);
-        Band { from: region.from, to: region.to, letter, fill }
-    };
-    survey.regions.iter().map(band).collect()
-}
-
-/// Every kind of region, in the order of letters.
 fn kinds<'s>(survey: &'s Survey) -> Vec<KindLook<'s>> {
     let look = |(region, color): (&'s Region, Color)| KindLook {
         letter: letter(region.kind),
@@ -78,7 +72,6 @@ fn kinds<'s>(survey: &'s Survey) -> Vec<KindLook<'s>> {
     firsts(survey).into_iter().zip(fills_along(survey)).map(look).collect()
 }
 
-/// Everything along the parameter.
 struct Curves<'a> {
     survey: &'a Survey,
     courses: &'a [RegionCurves],
@@ -119,17 +112,13 @@ impl<'a> Curves<'a> {
 
     /// A quantity of a contact in all regions.
     fn panel(&self, contact: &str, quantity: &PlottedQuantity) -> Panel {
-        let mut shapes = Vec::new();
-        let mut ranges = Vec::new();
+        let (mut shapes, mut ranges) = (Vec::new(), Vec::new());
         for (axis, (_, stroke)) in COMPONENTS.into_iter().enumerate() {
             for (region, course) in self.survey.regions.iter().zip(self.courses) {
                 let contacts = region.regime.contacts();
-                let (Some(index), Some(first)) =
-                    (contacts.iter().position(|name| name == contact), course.places.first())
-                else {
-                    continue;
-                };
-                for (branch, (modes, _)) in first.outcomes.iter().enumerate() {
+                let Some(index) = contacts.iter().position(|name| name == contact) else { continue };
+                let outcomes = course.places.first().map_or(&[][..], |first| &first.outcomes);
+                for (branch, (modes, _)) in outcomes.iter().enumerate() {
                     let point = |place: &CurvePoint| -> Option<PlotPoint> {
                         let (_, motion) = place.outcomes.get(branch)?;
                         Some((place.at, (quantity.of)(motion).get(index)?[axis]))
@@ -161,6 +150,90 @@ fn shown(points: &[PlotPoint]) -> Option<(f64, f64)> {
     let has_pole = largest(0.0, width) > POLE * largest(0.125 * width, 0.875 * width);
     let limit = if has_pole { NEAR_POLE * largest(0.25 * width, 0.75 * width) } else { f64::INFINITY };
     range(points.iter().map(|(_, value)| value.max(-limit).min(limit)))
+}
+
+/// The components and their lines: if both are equal, the wider one shows behind the other.
+const COMPONENTS: [(&str, Stroke); 2] =
+    [("tangential", Stroke::solid(Color::Blue, 2.8)), ("normal", Stroke::solid(Color::Vermilion, 1.6))];
+
+struct OutcomeStyles<'a>(Vec<OutcomeStyle<'a>>);
+
+struct OutcomeStyle<'a> {
+    contacts: &'a [String],
+    modes: &'a [Mode],
+    /// Its own dashes; `None` if its region identifies it.
+    dash: Option<Dash>,
+    /// Of the first region in which it is valid.
+    color: Color,
+    /// The letters of the regions in which it is valid.
+    letters: Vec<String>,
+    /// Whether another outcome is also valid somewhere.
+    ambiguous: bool,
+    /// Whether its lines are visible anywhere.
+    seen: bool,
+}
+
+impl<'a> OutcomeStyles<'a> {
+    /// If some region is ambiguous, each visible outcome has its own dashes wherever it is valid. If there are more
+    /// outcomes than dashes, only those of ambiguous regions have them.
+    fn of(survey: &'a Survey, kinds: &[KindLook]) -> Self {
+        let mut styles: Vec<OutcomeStyle> = Vec::new();
+        for region in &survey.regions {
+            let contacts = region.regime.contacts();
+            let KindLook { letter, color, .. } = &kinds[region.kind];
+            let outcomes = region.regime.outcomes().unwrap_or_default();
+            let seen = is_seen(region, survey);
+            for modes in outcomes.iter().filter(|modes| !modes.is_empty()) {
+                let known = styles.iter().position(|style| (style.contacts, style.modes) == (contacts, modes));
+                let at = known.unwrap_or(styles.len());
+                if known.is_none() {
+                    let (letters, ambiguous, seen) = (Vec::new(), false, false);
+                    styles.push(OutcomeStyle { contacts, modes, dash: None, color: *color, letters, ambiguous, seen });
+                }
+                let style = &mut styles[at];
+                style.ambiguous |= outcomes.len() > 1 && seen;
+                style.seen |= seen;
+                if !style.letters.contains(letter) {
+                    style.letters.push(letter.clone());
+                }
+            }
+        }
+        let seen = styles.iter().filter(|style| style.seen).count();
+        let all = seen <= Dash::ALL.len() && styles.iter().any(|style| style.ambiguous);
+        let dashed = styles.iter_mut().filter(|style| style.ambiguous || all && style.seen);
+        dashed.zip(Dash::ALL.into_iter().cycle()).for_each(|(style, dash)| style.dash = Some(dash));
+        Self(styles)
+    }
+
+    fn dash(&self, contacts: &[String], modes: &[Mode]) -> Dash {
+        let own = self.0.iter().find(|style| (style.contacts, style.modes) == (contacts, modes));
+        own.and_then(|style| style.dash).unwrap_or(Dash::SOLID)
+    }
+
+    /// Components, angles, outcomes with the letters of their regions, and regions without outcomes.
+    fn legend(&self, kinds: &[KindLook], angles: bool) -> Vec<LegendEntry> {
+        let mut entries = Vec::new();
+        if !self.0.is_empty() {
+            entries.extend(COMPONENTS.map(|(name, stroke)| LegendEntry::new(name, LegendKey::Line(stroke))));
+        }
+        if angles {
+            entries.extend(angles::legend());
+        }
+        entries.extend(self.0.iter().map(|OutcomeStyle { contacts, modes, dash, color, letters, .. }| {
+            let sentence = words::modes(*contacts, modes);
+            let line = |dash| LegendKey::Line(Stroke { dash, ..Stroke::solid(Color::Black, 1.6) });
+            let key = dash.map_or(LegendKey::Fill(*color), line);
+            LegendEntry::new(format!("{}: {sentence}", letters.join(", ")), key)
+        }));
+        for KindLook { letter, color, happening } in kinds {
+            let answered = happening.outcomes.unwrap_or_default().iter().any(|modes| !modes.is_empty());
+            let lines = if answered { happening.not_excluded() } else { happening.lines() };
+            if !lines.is_empty() {
+                entries.push(LegendEntry::new(format!("{letter}: {}", lines.join("\n")), LegendKey::Fill(*color)));
+            }
+        }
+        entries
+    }
 }
 
 #[cfg(test)]

@@ -44,7 +44,6 @@ pub fn panels(survey: &Survey, courses: &[RegionCurves]) -> Vec<Panel> {
     names.into_iter().map(|name| panel(name, &runs(name, survey, courses), (first.from, last.to), &borders)).collect()
 }
 
-/// The meanings of the lines of such panels.
 pub fn legend() -> [LegendEntry; 2] {
     [("γ", GAMMA), ("0, β and β ± π", BETA)].map(|(name, stroke)| LegendEntry::new(name, LegendKey::Line(stroke)))
 }
@@ -109,16 +108,13 @@ fn panel(name: &str, runs: &[Vec<Angles>], (from, to): (f64, f64), borders: &[f6
 
 /// The lower and the upper end of a region of gamma.
 fn strip(region: ImpulseRegion, beta: f64) -> [f64; 2] {
-    match (region, beta <= 0.0) {
-        (ImpulseRegion::A, true) => [0.0, PI + beta],
-        (ImpulseRegion::A, false) => [beta, PI],
-        (ImpulseRegion::B, true) => [PI + beta, PI],
-        (ImpulseRegion::B, false) => [0.0, beta],
-        (ImpulseRegion::C, true) => [-PI, beta],
-        (ImpulseRegion::C, false) => [beta - PI, 0.0],
-        (ImpulseRegion::E, true) => [beta, 0.0],
-        (ImpulseRegion::E, false) => [-PI, beta - PI],
-    }
+    use ImpulseRegion::{A, B, C, E};
+    let (regions, ends) = match beta <= 0.0 {
+        true => ([C, E, A, B], [-PI, beta, 0.0, PI + beta, PI]),
+        false => ([E, C, B, A], [-PI, beta - PI, 0.0, beta, PI]),
+    };
+    let at = regions.iter().position(|known| *known == region).unwrap_or_default();
+    [ends[at], ends[at + 1]]
 }
 
 /// gamma in pieces that neither wrap from pi to -pi nor jump.
@@ -177,20 +173,14 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_that_wraps_leaves_and_enters_at_the_edges() {
+    fn an_angle_wraps_at_the_edges_and_has_no_line_across_a_jump() {
         let pieces = unbroken(&run(&[3.0, PI - 0.05, 0.15 - PI, -2.8]));
-        assert_eq!(pieces.len(), 2);
-        let ends = [pieces[0][2], pieces[1][0]];
-        assert!((ends[0].0 - 1.25).abs() < 1e-12 && ends[0].0 == ends[1].0, "{ends:?}");
-        assert_eq!([ends[0].1, ends[1].1], [PI, -PI]);
+        let [(left, top), (entered, bottom)] = [pieces[0][2], pieces[1][0]];
+        assert!((left - 1.25).abs() < 1e-12 && left == entered && pieces.len() == 2, "{pieces:?}");
         let back = unbroken(&run(&[-3.1, 3.1]));
-        assert_eq!([back[0][1].1, back[1][0].1], [-PI, PI]);
-    }
-
-    #[test]
-    fn an_angle_that_jumps_has_no_line_across() {
-        let pieces = unbroken(&run(&[0.1, 0.2, 2.0, 2.1]));
-        assert_eq!(pieces, [[(0.0, 0.1), (1.0, 0.2)], [(2.0, 2.0), (3.0, 2.1)]]);
+        assert_eq!([top, bottom, back[0][1].1, back[1][0].1], [PI, -PI, -PI, PI]);
+        let jump = unbroken(&run(&[0.1, 0.2, 2.0, 2.1]));
+        assert_eq!(jump, [[(0.0, 0.1), (1.0, 0.2)], [(2.0, 2.0), (3.0, 2.1)]]);
     }
 
     #[test]

@@ -12,7 +12,6 @@ use crate::write::sweep::Happening;
 const SIZE: Pixel = (540.0, 420.0);
 /// Of letters \[px\].
 const LETTERS: u32 = 15;
-/// A border's line.
 const BORDER: Stroke = Stroke::solid(Color::Black, 1.0);
 /// From a letter to its small area.
 const LEADER: Stroke = Stroke::solid(Color::Black, 0.7);
@@ -22,7 +21,6 @@ const CLEAR: f64 = 1.0;
 const AWAY: [f64; 4] = [26.0, 38.0, 52.0, 70.0];
 const DIRECTIONS: usize = 24;
 
-/// The picture of a map's areas.
 pub fn picture([x, y]: [PlotAxis; 2], map: &Map) -> Picture {
     let points = |points: &Vec<[f64; 2]>| points.iter().map(|&[x, y]| (x, y)).collect();
     let (mut shapes, mut legend) = (Vec::new(), Vec::new());
@@ -30,16 +28,11 @@ pub fn picture([x, y]: [PlotAxis; 2], map: &Map) -> Picture {
         let happening = Happening::of(&area.regime, area.verdict, area.refused.as_ref());
         let name = format!("{}: {}", letter(index), happening.lines().join("\n"));
         // The seam between two fills lies under the border's line.
-        shapes.push(PlotShape::Area {
-            loops: area.loops.iter().map(points).collect(),
-            fill: Some(color),
-            stroke: None,
-        });
+        let loops = area.loops.iter().map(points).collect();
+        shapes.push(PlotShape::Area { loops, fill: Some(color), stroke: None });
         legend.push(LegendEntry::new(name, LegendKey::Fill(color)));
     }
-    for curve in &map.curves {
-        shapes.push(PlotShape::Line { points: points(&curve.points), stroke: BORDER });
-    }
+    shapes.extend(map.curves.iter().map(|curve| PlotShape::Line { points: points(&curve.points), stroke: BORDER }));
     shapes.extend(letters(&x, &y, map));
     let panel = Panel { shapes, size: SIZE, ..Panel::new(x, y) };
     Picture { title: String::new(), rows: vec![vec![panel]], legend }
@@ -71,7 +64,10 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
         }
     }
     for (index, area) in small {
-        let Some(from) = deepest(area).map(pixel) else { continue };
+        // An area between the lines of the grid has no middle: then a point on its edge.
+        let deepest = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| middle);
+        let Some(from) = deepest.or_else(|| area.loops.first()?.first()) else { continue };
+        let from = pixel(*from);
         let places = AWAY.into_iter().flat_map(|distance| around(from, distance, DIRECTIONS));
         let free = places.map(|at| text(index, at)).find(|text| fits(text, &taken, CLEAR + 2.0));
         if let Some(text) = free {
@@ -84,13 +80,6 @@ fn letters(x: &PlotAxis, y: &PlotAxis, map: &Map) -> Vec<PlotShape> {
         }
     }
     shapes
-}
-
-/// The point of an area that is farthest from its edges.
-fn deepest(area: &Area) -> Option<[f64; 2]> {
-    let middle = area.middles.iter().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(middle, _)| *middle);
-    // An area between the lines of the grid has no middle: then a point on its edge.
-    middle.or_else(|| area.loops.first()?.first().copied())
 }
 
 fn outline(TextBox { middle: (x, y), half: (across, up) }: &TextBox) -> Vec<Pixel> {

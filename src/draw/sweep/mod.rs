@@ -1,20 +1,20 @@
 //! Studies as pictures.
 //!
 //! ```text
-//!     Survey --> Courses --[along, style]--> velocities after and impulses of each contact, regions shaded
+//!     Survey --> Courses --[along]---------> velocities after and impulses of each contact, regions shaded
 //!                        --[angles, place]-> beta and gamma, and the regions between them
 //!     Map    --[map, place]----------------> areas with letters in the plane of two parameters
 //! ```
 
 mod place;
 mod angles;
-mod style;
 mod along;
 mod map;
 
 use crate::draw::plot::{Color, Picture, PlotAxis};
 use crate::sweep::{Findings, Map, Regime, Region, RegionCurves, RobotStudy, Survey, Workers};
 use crate::write::sweep::Happening;
+use crate::write::words::grouped;
 
 /// The width of panels along a parameter, inside of their axes \[px\].
 const WIDTH: f64 = 540.0;
@@ -35,7 +35,6 @@ pub fn work(model: &RobotStudy, findings: &Findings) -> usize {
     }
 }
 
-/// The axis of a parameter.
 fn axis(model: &RobotStudy, parameter: usize) -> PlotAxis {
     let Some(known) = model.study.parameters().get(parameter) else { return PlotAxis::default() };
     let name = with_greek_letters(&known.name);
@@ -63,13 +62,7 @@ struct KindLook<'a> {
 
 /// Each name once, in the order of the first of each.
 fn different<'n>(names: impl Iterator<Item = &'n String>) -> Vec<&'n str> {
-    let mut known: Vec<&str> = Vec::new();
-    for name in names {
-        if !known.contains(&name.as_str()) {
-            known.push(name);
-        }
-    }
-    known
+    grouped(names.map(|name| (name.as_str(), ()))).into_iter().map(|(name, _)| name).collect()
 }
 
 /// Whether a region is wide enough for lines in it.
@@ -80,13 +73,7 @@ fn is_seen(region: &Region, survey: &Survey) -> bool {
 
 /// The first region of every kind along a parameter, in the order of letters.
 fn firsts(survey: &Survey) -> Vec<&Region> {
-    let mut firsts: Vec<&Region> = Vec::new();
-    for region in &survey.regions {
-        if region.kind == firsts.len() {
-            firsts.push(region);
-        }
-    }
-    firsts
+    grouped(survey.regions.iter().map(|region| (region.kind, region))).into_iter().map(|(_, alike)| alike[0]).collect()
 }
 
 /// The color of every kind of region along a parameter, in the order of letters.

@@ -5,10 +5,10 @@ use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
 use crate::accuracy::{CaseStudy, Factorization, Method, MethodErrors, Spread, Work};
 use crate::write::Palette;
 use crate::write::table::{Table, number};
+use crate::write::words::grouped;
 use std::fmt::Write;
 
 impl Accuracy {
-    /// As text for people.
     pub fn text(&self, palette: &Palette) -> String {
         let mut out = String::new();
         match self.studies.as_slice() {
@@ -70,9 +70,8 @@ fn many(out: &mut String, studies: &[CaseStudy], Palette { strong, plain, .. }: 
         .text("G", studies.iter().map(|study| power(study.condition.delassus)));
     for (number, factorization, head) in columns {
         let cell = |study: &CaseStudy| {
-            let mut methods = study.methods.iter();
-            let method = methods.find(|m| m.number == number && m.factorization == Some(factorization));
-            method.and_then(|method| method.error?.delassus).map_or("-".into(), digits)
+            let is_asked = |m: &&Method| m.number == number && m.factorization == Some(factorization);
+            study.methods.iter().find(is_asked).and_then(|m| m.error?.delassus).map_or("-".into(), digits)
         };
         table = table.text(head, studies.iter().map(cell));
     }
@@ -81,30 +80,27 @@ fn many(out: &mut String, studies: &[CaseStudy], Palette { strong, plain, .. }: 
         let _ = writeln!(out, "  {}: {error}", study.name);
     }
     let _ = writeln!(out, "\n{strong}By method{plain}, over all cases:\n");
+    let every = || studies.iter().flat_map(|study| &study.methods);
     let mut methods: Vec<&Method> = Vec::new();
-    for method in studies.iter().flat_map(|study| &study.methods).filter(|method| method.time.is_some()) {
+    for method in every().filter(|method| method.time.is_some()) {
         if !methods.iter().any(|known| name_of(known) == name_of(method) && known.work == method.work) {
             methods.push(method);
         }
     }
-    let all = |method: &Method| {
-        let (name, work) = (name_of(method), method.work);
-        let every = studies.iter().flat_map(|study| &study.methods);
-        every.filter(move |other| other.work == work && name_of(other) == name).collect::<Vec<_>>()
+    let sorted = |of: &Method, pick: fn(&Method) -> Option<f64>| {
+        let alike = every().filter(|other| other.work == of.work && name_of(other) == name_of(of));
+        let mut values: Vec<f64> = alike.filter_map(pick).filter(|value| !value.is_nan()).collect();
+        values.sort_by(f64::total_cmp);
+        values
     };
     let times = |method: &&Method| {
-        let mut medians: Vec<f64> =
-            all(method).iter().filter_map(|method| method.time).map(|time| time.median).collect();
-        medians.sort_by(f64::total_cmp);
+        let medians = sorted(method, |method| Some(method.time?.median));
         let at = |part: usize| medians[(medians.len() - 1) * part / 4];
-        let times = Spread { lower_quartile: at(1), median: at(2), upper_quartile: at(3), samples: medians.len() };
-        span(times)
+        span(Spread { lower_quartile: at(1), median: at(2), upper_quartile: at(3), samples: medians.len() })
     };
     let errors = |method: &&Method, part: usize| {
-        let mut errors: Vec<f64> =
-            all(method).iter().filter_map(|method| method.error?.delassus).filter(|error| !error.is_nan()).collect();
-        errors.sort_by(f64::total_cmp);
-        if errors.is_empty() { "-".into() } else { digits(errors[(errors.len() - 1) * part / 2]) }
+        let errors = sorted(method, |method| method.error?.delassus);
+        errors.get(errors.len().saturating_sub(1) * part / 2).map_or("-".into(), |&error| digits(error))
     };
     Table::default()
         .text("method", methods.iter().map(|method| name_of(method)))
@@ -117,18 +113,12 @@ fn many(out: &mut String, studies: &[CaseStudy], Palette { strong, plain, .. }: 
     list_left_out(out, studies);
 }
 
-/// Methods that were not tried, and why.
 fn list_left_out(out: &mut String, studies: &[CaseStudy]) {
-    let every = || studies.iter().flat_map(|study| &study.methods);
-    let mut listed: Vec<String> = Vec::new();
-    for (method, why) in every().filter_map(|method| Some((method, method.left_out?))) {
-        let name = name_of(method);
-        if !listed.contains(&name) {
-            let cases = every().filter(|other| other.left_out == Some(why) && name_of(other) == name).count();
-            let of = if studies.len() > 1 { format!(" of {cases} of these cases") } else { String::new() };
-            let _ = writeln!(out, "  {name} is left out{of}: {why}");
-            listed.push(name);
-        }
+    let methods = studies.iter().flat_map(|study| &study.methods);
+    for (name, reasons) in grouped(methods.filter_map(|method| Some((name_of(method), method.left_out?)))) {
+        let cases = reasons.iter().filter(|reason| **reason == reasons[0]).count();
+        let of = if studies.len() > 1 { format!(" of {cases} of these cases") } else { String::new() };
+        let _ = writeln!(out, "  {name} is left out{of}: {}", reasons[0]);
     }
 }
 
@@ -153,12 +143,9 @@ fn brief_ending(study: &CaseStudy) -> String {
 }
 
 fn conditions(study: &CaseStudy) -> String {
-    let of = |what: &str, condition: Option<f64>| condition.map(|value| format!("{what} {}", number(value)));
-    let known: Vec<String> =
-        [of("mass matrix", study.condition.mass_matrix), of("Delassus matrix", study.condition.delassus)]
-            .into_iter()
-            .flatten()
-            .collect();
+    let matrices =
+        [("mass matrix", study.condition.mass_matrix), ("Delassus matrix", study.condition.delassus)].into_iter();
+    let known: Vec<String> = matrices.filter_map(|(of, value)| Some(format!("{of} {}", number(value?)))).collect();
     if known.is_empty() { "not known".into() } else { known.join(", ") }
 }
 
@@ -169,14 +156,11 @@ fn power(condition: Option<f64>) -> String {
 /// Less than the error of any number except the reference: what is left is the reference's own uncertainty.
 const NO_ERROR: f64 = 1e-40;
 
-/// Digits that an error leaves.
 fn digits(error: f64) -> String {
-    if error.is_nan() {
-        "none".to_owned()
-    } else if error < NO_ERROR {
-        "all".to_owned()
-    } else {
-        format!("{:.1}", (-libm::log10(error)).max(0.0))
+    match error {
+        error if error.is_nan() => "none".to_owned(),
+        error if error < NO_ERROR => "all".to_owned(),
+        error => format!("{:.1}", (-libm::log10(error)).max(0.0)),
     }
 }
 
@@ -200,30 +184,24 @@ fn compare(out: &mut String, compliant: &Compliant, Palette { strong, plain, .. 
     for (at, outcome) in comparison.outcomes.iter().enumerate() {
         let modes: Vec<String> = outcome.modes.iter().map(ToString::to_string).collect();
         let index = outcome.index.map_or("none".into(), |index| format!("{index:+}"));
-        let _ = writeln!(
-            out,
-            "  {}  {} (index {index}): nearest of {} runs, within {} % of {}",
-            at + 1,
-            modes.join(", "),
-            outcome.nearest,
-            100.0 * NEAR,
-            outcome.near
-        );
+        let (modes, nearest, near) = (modes.join(", "), outcome.nearest, outcome.near);
+        let _ = write!(out, "  {}  {modes} (index {index}): nearest of {nearest} runs, ", at + 1);
+        let _ = writeln!(out, "within {} % of {near}", 100.0 * NEAR);
     }
     if comparison.unsettled > 0 {
         let _ = writeln!(out, "  {} runs did not come to an end and count nowhere", comparison.unsettled);
     }
     out.push('\n');
     let groups = &comparison.groups;
-    let three = |part: usize| groups.iter().map(move |group| share(group.distance[part]));
+    let distance = |part: usize| groups.iter().map(move |group| share(group.distance[part]));
     let value = |value: Option<f64>| value.map_or("infinite".into(), number);
     Table::default()
         .text("parameter", groups.iter().map(|group| group.parameter.unwrap_or("all runs")))
         .text("value", groups.iter().map(|group| group.parameter.map_or(String::new(), |_| value(group.value))))
         .text("runs", groups.iter().map(|group| group.runs.to_string()))
-        .text("distance: least", three(0))
-        .text("median", three(1))
-        .text("greatest", three(2))
+        .text("distance: least", distance(0))
+        .text("median", distance(1))
+        .text("greatest", distance(2))
         .text("near none", groups.iter().map(|group| share(group.near_none)))
         .write(out);
     out.push('\n');
@@ -254,13 +232,10 @@ fn compare(out: &mut String, compliant: &Compliant, Palette { strong, plain, .. 
 }
 
 fn share(part: f64) -> String {
-    if part.is_nan() {
-        "-".to_owned()
-    } else if part < 1e-9 {
-        "0".to_owned()
-    } else if part < 1e-3 {
-        format!("{part:.1e}")
-    } else {
-        format!("{part:.3}")
+    match part {
+        part if part.is_nan() => "-".to_owned(),
+        part if part < 1e-9 => "0".to_owned(),
+        part if part < 1e-3 => format!("{part:.1e}"),
+        part => format!("{part:.3}"),
     }
 }

@@ -1,13 +1,12 @@
 //! What was read of a robot, as text that fits a screen: first what a user needs to trust the model, long lists cut
 //! short.
 
-use super::{Inspection, Joint};
+use super::{Inspection, JointRecord, MimicRecord};
 use crate::planar::Vector;
 use crate::robot::FreezeReason;
-use crate::write::Palette;
-use crate::write::list::list;
 use crate::write::table::{Table, number, scale};
-use std::collections::{HashMap, HashSet};
+use crate::write::{Palette, words, written};
+use std::collections::HashSet;
 use std::fmt::Write;
 
 /// The longest line of the head, in characters.
@@ -21,15 +20,12 @@ const FEET: usize = 600;
 /// The room for the links of a body, in characters.
 const LINKS: usize = 50;
 
-/// The whole text, with a line break at its end.
-pub(super) fn text(inspection: &Inspection, palette: &Palette) -> String {
-    let mut out = String::new();
-    // Writing into a string cannot fail.
-    let _ = inspection.write(palette, &mut out);
-    out
-}
-
 impl Inspection<'_> {
+    /// The same as text, with a line break at its end.
+    pub fn text(&self, palette: &Palette) -> String {
+        written(|out| self.write(palette, out))
+    }
+
     fn write(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
         let Palette { strong, plain, .. } = *palette;
         writeln!(out, "{strong}{}{plain}", self.name)?;
@@ -59,65 +55,59 @@ impl Inspection<'_> {
         Table::default()
             .text("body", bodies.iter().map(|body| body.name))
             .numbers("mass [kg]", self.mass, bodies.iter().map(|body| body.mass))
-            .numbers("CoG x [m]", lengths, bodies.iter().map(|body| body.com.x))
-            .numbers("z [m]", lengths, bodies.iter().map(|body| body.com.z))
+            .pairs(["CoG x [m]", "z [m]"], lengths, bodies.iter().map(|body| body.com.components()))
             .numbers("moment [kg m^2]", moments, bodies.iter().map(|body| body.moment))
-            .text("links", bodies.iter().map(|body| list(&body.links, LINKS)))
+            .text("links", bodies.iter().map(|body| words::list(&body.links, LINKS)))
             .write(out);
 
         if hinges().next().is_some() {
             writeln!(out, "\n{strong}joints{plain}")?;
-            let led = self.followers.iter().map(|follower| {
-                let super::Follower { leader, multiplier, offset, .. } = follower;
-                let offset = if *offset == 0.0 { String::new() } else { format!(" + {}", number(*offset)) };
-                format!(" as {} {leader}{offset}", number(*multiplier))
-            });
-            let led = joints.iter().map(|_| String::new()).chain(led);
+            let law = |&MimicRecord { mimicked, multiplier, offset, .. }: &MimicRecord| {
+                let offset = if offset == 0.0 { String::new() } else { format!(" + {}", number(offset)) };
+                format!(" as {} {mimicked}{offset}", number(multiplier))
+            };
+            let laws = joints.iter().map(|_| String::new()).chain(self.followers.iter().map(law));
             Table::default()
                 .text("joint", hinges().map(|joint| joint.name))
-                .text("motion", hinges().zip(led).map(|(joint, led)| joint.in_words(self.normal()) + &led))
+                .text("motion", hinges().zip(laws).map(|(joint, law)| self.motion(joint) + &law))
                 .text("from", hinges().map(|joint| joint.parent))
                 .text("to", hinges().map(|joint| joint.child))
-                .numbers("origin x [m]", lengths, hinges().map(|joint| joint.origin.x))
-                .numbers("z [m]", lengths, hinges().map(|joint| joint.origin.z))
+                .pairs(["origin x [m]", "z [m]"], lengths, hinges().map(|joint| joint.origin.components()))
                 .write(out);
         }
 
         let massless: Vec<&str> = self.links.iter().filter(|link| !link.has_inertial).map(|link| link.name).collect();
         if !massless.is_empty() {
-            writeln!(out, "\nWithout inertial, so massless: {}", list(&massless, NAMES))?;
+            writeln!(out, "\nWithout inertial, so massless: {}", words::list(&massless, NAMES))?;
         }
         let left_out = self.left_out_by_reason();
         if !left_out.is_empty() {
             writeln!(out, "\n{strong}left out{plain}")?;
             for (why, what) in left_out {
-                entry_below(&format!("{why}: {}", list(&what, NAMES)), out)?;
+                wrapped("  ", 6, &format!("{why}: {}", words::list(&what, NAMES)), out)?;
             }
         }
         Ok(())
     }
 
-    fn plane_in_words(&self) -> &'static str {
-        match self.plane {
-            "yz" => "y-z: y forward, z up, pitch about -x (nose down)",
-            "xy" => "x-y: x forward, y up, pitch about -z (nose down)",
-            _ => "x-z: x forward, z up, pitch about +y (nose down)",
-        }
+    fn plane_in_words(&self) -> String {
+        let (forward, up) = self.plane.split_at(1);
+        format!("{forward}-{up}: {forward} forward, {up} up, pitch about {} (nose down)", self.normal)
     }
 
-    /// The plane's normal among the root link's axes: its letter, and whether it points along that axis.
-    fn normal(&self) -> (char, bool) {
-        match self.plane {
-            "yz" => ('x', false),
-            "xy" => ('z', false),
-            _ => ('y', true),
-        }
+    /// The motion of a joint; a turn about the axis of the file's root link.
+    fn motion(&self, joint: &JointRecord) -> String {
+        let Some(sign) = joint.sign else {
+            let Vector { x, z } = joint.direction.unwrap_or_default();
+            return format!("slides along ({}, {})", number(x), number(z));
+        };
+        let (along, letter) = self.normal.split_at(1);
+        format!("turns about {}{letter}", if (sign < 0.0) == (along == "+") { '-' } else { '+' })
     }
 
     fn joints_in_words(&self) -> String {
-        let still = |is: fn(&FreezeReason) -> bool| self.held.iter().filter(|held| is(held.still)).count();
-        let fixed = still(|still| *still == FreezeReason::Fixed);
-        let base = still(|still| *still == FreezeReason::Base);
+        let frozen = |because: FreezeReason| self.held.iter().filter(|held| *held.reason == because).count();
+        let (fixed, base) = (frozen(FreezeReason::Fixed), frozen(FreezeReason::Base));
         let parts = [
             (self.joints.len(), "kept"),
             (self.followers.len(), "kept as followers"),
@@ -135,7 +125,8 @@ impl Inspection<'_> {
             return "none: name them by `feet`, or in each state by \"contacts\"".to_owned();
         }
         let feet = self.feet.iter().map(|foot| (foot.in_words(), foot.link));
-        let groups = grouped(feet).into_iter().map(|(shape, links)| format!("{} ({shape})", list(&links, FEET)));
+        let groups =
+            words::grouped(feet).into_iter().map(|(shape, links)| format!("{} ({shape})", words::list(&links, FEET)));
         groups.collect::<Vec<_>>().join(", ")
     }
 
@@ -148,22 +139,8 @@ impl Inspection<'_> {
             name.is_some_and(|name| names.contains(name))
         };
         let rest = self.left_out.iter().filter(|left| !is_held(&left.what));
-        grouped(held.chain(rest.map(|left| (left.why.to_string(), left.what.to_string()))))
+        words::grouped(held.chain(rest.map(|left| (left.why.to_string(), left.what.to_string()))))
     }
-}
-
-/// Things by their key, in the order of the first of each.
-fn grouped<T>(pairs: impl Iterator<Item = (String, T)>) -> Vec<(String, Vec<T>)> {
-    let mut groups: Vec<(String, Vec<T>)> = Vec::new();
-    let mut places: HashMap<String, usize> = HashMap::new();
-    for (key, thing) in pairs {
-        let place = *places.entry(key.clone()).or_insert(groups.len());
-        match groups.get_mut(place) {
-            Some((_, things)) => things.push(thing),
-            None => groups.push((key, vec![thing])),
-        }
-    }
-    groups
 }
 
 /// A line of the head, broken between words.
@@ -171,38 +148,16 @@ fn entry(label: &str, text: &str, out: &mut String) -> std::fmt::Result {
     wrapped(&format!("  {label:<12} "), INDENT, text, out)
 }
 
-/// A line of a list, broken between words.
-fn entry_below(text: &str, out: &mut String) -> std::fmt::Result {
-    wrapped("  ", 6, text, out)
-}
-
 fn wrapped(begin: &str, indent: usize, text: &str, out: &mut String) -> std::fmt::Result {
-    let mut line = begin.to_owned();
-    let mut empty = true;
-    for word in text.split(' ') {
-        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+    let mut words = text.split(' ');
+    let mut line = begin.to_owned() + words.next().unwrap_or_default();
+    for word in words {
+        if line.chars().count() + 1 + word.chars().count() > WIDTH {
             writeln!(out, "{}", line.trim_end())?;
-            line = " ".repeat(indent);
-            empty = true;
+            line = " ".repeat(indent) + word;
+        } else {
+            line.extend([" ", word]);
         }
-        if !empty {
-            line.push(' ');
-        }
-        line.push_str(word);
-        empty = false;
     }
     writeln!(out, "{}", line.trim_end())
-}
-
-impl Joint<'_> {
-    /// The motion, a turn about the axis of the file's root link.
-    fn in_words(&self, (letter, along): (char, bool)) -> String {
-        match (self.sign, self.direction) {
-            (Some(sign), _) => format!("turns about {}{letter}", if (sign < 0.0) == along { '-' } else { '+' }),
-            (_, direction) => {
-                let Vector { x, z } = direction.unwrap_or_default();
-                format!("slides along ({}, {})", number(x), number(z))
-            }
-        }
-    }
 }

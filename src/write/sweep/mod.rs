@@ -3,23 +3,22 @@
 //! ```text
 //!     Survey --> Sweep {parameter, regions, borders, notes} --> head of the JSON, text
 //!     each sample --> Report --> "samples", rows of CSV
-//!     Findings --> Picture  picture
 //! ```
 
-mod map;
 mod samples;
 mod text;
 
-pub use map::{MapRegion, MapSweep};
 #[cfg(feature = "schema")]
 pub(super) use samples::RefusedSample;
 pub use samples::{Sample, columns};
 
-use super::{ErrorObject, Palette};
+use super::ErrorObject;
 use crate::Error;
 use crate::impact::Verdict;
 use crate::law::Mode;
-use crate::sweep::{Findings, Parameter, Regime, Region, RegionBorder, Survey, WATCHED_CONTACTS, letter};
+use crate::sweep::{
+    Area, BorderCurve, CELLS, Findings, Map, Parameter, Regime, Region, RegionBorder, Survey, WATCHED_CONTACTS, letter,
+};
 use serde::Serialize;
 
 /// The record of a study of one parameter, without its samples.
@@ -94,14 +93,6 @@ impl<'a> Regions<'a> {
             Findings::Map(map) => Self::Map(MapSweep::new(parameters, map)),
         }
     }
-
-    /// All regions and borders of `robot`'s study for people, with a line break at its end.
-    pub fn text(&self, robot: &str, palette: &Palette) -> String {
-        match self {
-            Self::Along(sweep) => sweep.text(robot, palette),
-            Self::Map(map) => map.text(robot, palette),
-        }
-    }
 }
 
 impl<'a> Sweep<'a> {
@@ -122,6 +113,73 @@ impl<'a> Sweep<'a> {
             steps: parameter.steps,
         }
     }
+}
+
+/// The record of a study of two parameters, without its samples.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MapSweep<'a> {
+    /// The parameters.
+    pub parameters: Vec<&'a str>,
+    /// The regions.
+    pub regions: Vec<MapRegion<'a>>,
+    /// The borders between them.
+    pub borders: &'a [BorderCurve],
+    /// Limits of the search, as sentences.
+    pub notes: Vec<String>,
+    /// How many samples there are.
+    #[serde(skip)]
+    samples: usize,
+}
+
+/// Where one set of outcomes is valid.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MapRegion<'a> {
+    /// Its letter.
+    pub letter: String,
+    /// Its outcomes.
+    #[serde(flatten)]
+    pub happening: Happening<'a>,
+    /// The part of the ranges that it covers.
+    pub share: f64,
+    /// Closed loops of points, in the order of the parameters, with the region on their left (the second parameter up);
+    /// holes run the other way.
+    pub loops: &'a [Vec<[f64; 2]>],
+}
+
+impl<'a> MapSweep<'a> {
+    /// The record of the `map` of these parameters.
+    pub fn new(parameters: &'a [Parameter], map: &'a Map) -> Self {
+        let whole: f64 = parameters.iter().map(Parameter::range).product();
+        let region = |(kind, area): (usize, &'a Area)| MapRegion {
+            letter: letter(kind),
+            happening: Happening::of(&area.regime, area.verdict, area.refused.as_ref()),
+            share: area.loops.iter().map(|points| surface(points)).sum::<f64>() / whole,
+            loops: &area.loops,
+        };
+        let contacts = map.areas.iter().map(|area| area.regime.contacts().len()).max().unwrap_or(0);
+        let mut notes = not_guaranteed(contacts, map.dependent);
+        if contacts > 0 {
+            notes.push(format!(
+                "curves are traced along the lines of a grid of at least {CELLS} by {CELLS} cells: an area that lies within one of its \
+             cells is not found"
+            ));
+        }
+        Self {
+            parameters: parameters.iter().map(|parameter| parameter.name.as_str()).collect(),
+            regions: map.areas.iter().enumerate().map(region).collect(),
+            borders: &map.curves,
+            notes,
+            samples: parameters.iter().map(|parameter| parameter.steps).product(),
+        }
+    }
+}
+
+/// The area of a loop; negative if it runs clockwise.
+fn surface(points: &[[f64; 2]]) -> f64 {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
 }
 
 impl<'a> Happening<'a> {

@@ -1,23 +1,18 @@
 //! The samples of a study, each as an object or as rows of a table.
 
-use super::super::Columns;
-use super::super::{Detail, ErrorObject, Report, append_line};
-use crate::pipeline::Pipeline;
+use crate::Result;
+use crate::pipeline::Impact;
 use crate::read::table::Carried;
 use crate::state::NamedContact;
-use crate::state::State;
 use crate::sweep::{Regime, RobotStudy, Solver};
-use crate::{Result, Robot};
+use crate::write::{Columns, Detail, ErrorObject, Report, append_line};
 use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
-use serde_json::value::RawValue;
+use serde_json::json;
 
 /// A sample: the parameters' values and the result there.
 #[derive(Debug, Clone)]
 pub struct Sample<'a> {
-    /// The parameters' names.
     pub names: Vec<&'a str>,
-    /// Their values.
     pub point: Vec<f64>,
     /// Its number, from 0.
     pub index: usize,
@@ -44,7 +39,6 @@ impl<'a> Sample<'a> {
         Self { names: parameters.iter().map(|parameter| parameter.name.as_str()).collect(), point, index }
     }
 
-    /// How many samples a study has.
     pub fn count(model: &RobotStudy) -> usize {
         model.study.parameters().iter().map(|parameter| parameter.steps).product()
     }
@@ -52,19 +46,21 @@ impl<'a> Sample<'a> {
     /// Appends `{"alpha": ..., "result": {...}}` without a line break; returns whether it was answered.
     pub fn append_json(&self, solver: &mut Solver, detail: Detail, out: &mut Vec<u8>) -> bool {
         let mut result = Vec::new();
-        let answered = solver.at(&self.point, |robot, state, pipeline| {
-            answer(robot, &state, pipeline, detail, |report| report.append_json(detail, &mut result))
+        let answered = solver.at(&self.point, |robot, state, pipeline| -> Result<()> {
+            let impact = pipeline.impact(&state)?;
+            Report::of_state(robot, &state, &impact, detail)?.append_json(detail, &mut result);
+            impact.analysed().map(drop)
         });
-        if let Err(error) = &answered
-            && result.is_empty()
-        {
+        let refused = answered.err();
+        if let Some(error) = refused.as_ref().filter(|_| result.is_empty()) {
             append_line(&mut result, &RefusedSample { error: ErrorObject::new(error) });
         }
-        let result = String::from_utf8(result).ok().and_then(|text| RawValue::from_string(text.trim_end().into()).ok());
-        append_line(out, &SampleRecord { sample: self, result: result.as_deref() });
-        // The line break is the list's.
-        out.pop();
-        answered.is_ok()
+        out.push(b'{');
+        for (name, value) in self.names.iter().zip(&self.point) {
+            out.extend(format!("{}:{},", json!(name), json!(value)).bytes());
+        }
+        out.extend(b"\"result\":".iter().chain(result.trim_ascii_end()).chain(b"}"));
+        refused.is_none()
     }
 
     /// Appends the rows of the sample, with the letter that `letter` gives to its regime; returns whether it was
@@ -77,35 +73,18 @@ impl<'a> Sample<'a> {
         out: &mut Vec<u8>,
     ) -> bool {
         let values = || self.point.iter().map(|value| format!("{value:?}"));
+        let carried = |impact: &Result<Impact>| Carried::new(values().chain([letter(&Regime::of(impact))]));
         let answered = solver.at(&self.point, |robot, state, pipeline| {
             let impact = pipeline.impact(&state);
-            let carried = Carried::new(values().chain([letter(&Regime::of(&impact))]));
+            let carried = carried(&impact);
             let impact = impact?;
             columns.append_result(&Report::of_state(robot, &state, &impact, Detail::default())?, Some(&carried), out)
         });
-        match answered {
-            Ok(()) => true,
-            Err(error) => {
-                let regime = Regime::of(&Err(error.clone()));
-                let carried = Carried::new(values().chain([letter(&regime)]));
-                columns.append_error(None, "", &ErrorObject::new(&error), Some(&carried), out);
-                false
-            }
-        }
+        let Err(error) = answered else { return true };
+        let sentence = ErrorObject::new(&error).to_string();
+        columns.append_error(None, &sentence, Some(&carried(&Err(error))), out);
+        false
     }
-}
-
-/// Reports a state.
-fn answer(
-    robot: &Robot,
-    state: &State,
-    pipeline: &mut Pipeline<'_>,
-    detail: Detail,
-    write: impl FnOnce(&Report),
-) -> Result<()> {
-    let impact = pipeline.impact(state)?;
-    write(&Report::of_state(robot, state, &impact, detail)?);
-    impact.analysed().map(drop)
 }
 
 /// The columns of a table of samples: those of a batch, then the parameters and the region's letter; `contacts` are
@@ -113,21 +92,4 @@ fn answer(
 pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
     Columns::with(model.robot, feet, contacts, parameters.chain(["region"]), false)
-}
-
-/// A sample with its result.
-struct SampleRecord<'a> {
-    sample: &'a Sample<'a>,
-    result: Option<&'a RawValue>,
-}
-
-impl Serialize for SampleRecord<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for (name, value) in self.sample.names.iter().zip(&self.sample.point) {
-            map.serialize_entry(name, value)?;
-        }
-        map.serialize_entry("result", &self.result)?;
-        map.end()
-    }
 }

@@ -1,43 +1,72 @@
 //! The regions of a study for people.
 
-use super::super::Palette;
-use super::super::words;
-use super::{Happening, Sweep};
+use super::{Happening, MapSweep, Regions, Sweep};
 use crate::impact::Verdict;
-use crate::sweep::{EndedOutcome, Side, Transition};
+use crate::law::Mode;
+use crate::sweep::{BorderCurve, EndedOutcome, Side, Transition, letter};
+use crate::write::{Palette, words, written};
 use std::fmt::Write;
 
-impl Sweep<'_> {
-    /// All regions and borders of `robot`'s study, with a line break at its end.
+impl Regions<'_> {
+    /// All regions and borders of `robot`'s study for people, with a line break at its end.
     pub fn text(&self, robot: &str, palette: &Palette) -> String {
-        let mut out = String::new();
-        // Writing into a string cannot fail.
-        let _ = self.write(robot, palette, &mut out);
-        out
+        written(|out| self.write(robot, palette, out))
     }
 
-    fn write(&self, robot: &str, Palette { strong, faint, plain }: &Palette, out: &mut String) -> std::fmt::Result {
-        let (count, name) = (self.regions.len(), self.parameter);
-        let regions = if count == 1 { "one region".to_owned() } else { format!("{count} regions") };
-        writeln!(out, "{strong}{robot}{plain} against {name}: {regions}, {} samples.\n", self.steps)?;
+    fn write(&self, robot: &str, palette: &Palette, out: &mut String) -> std::fmt::Result {
+        let (names, regions, samples, notes) = match self {
+            Self::Along(sweep) => (sweep.parameter.to_owned(), sweep.regions.len(), sweep.steps, &sweep.notes),
+            Self::Map(map) => (map.parameters.join(" and "), map.regions.len(), map.samples, &map.notes),
+        };
+        let Palette { strong, plain, .. } = palette;
+        let regions = if regions == 1 { "one region".to_owned() } else { format!("{regions} regions") };
+        writeln!(out, "{strong}{robot}{plain} against {names}: {regions}, {samples} samples.\n")?;
+        match self {
+            Self::Along(sweep) => sweep.write(palette, out)?,
+            Self::Map(map) => map.write(palette, out)?,
+        }
+        notes.iter().try_for_each(|note| writeln!(out, "\nNote: {note}."))
+    }
+}
+
+impl Sweep<'_> {
+    fn write(&self, Palette { strong, faint, plain }: &Palette, out: &mut String) -> std::fmt::Result {
         let places: Vec<String> =
             self.regions.iter().map(|region| format!("{} .. {}", brief(region.from), brief(region.to))).collect();
         let width = places.iter().map(String::len).max().unwrap_or(0);
         let letters = self.regions.iter().map(|region| region.letter.len()).max().unwrap_or(1);
-        for (index, (region, place)) in self.regions.iter().zip(places).enumerate() {
-            let whole: Vec<String> = region.happening.lines();
-            for (line, words) in whole.iter().enumerate() {
-                let (letter, place) = if line == 0 { (region.letter.as_str(), place.as_str()) } else { ("", "") };
+        for (index, (region, place)) in self.regions.iter().zip(&places).enumerate() {
+            for (line, words) in region.happening.lines().iter().enumerate() {
+                let (letter, place) = if line == 0 { (&*region.letter, &**place) } else { ("", "") };
                 writeln!(out, "{strong}{letter:letters$}{plain}  {place:width$}  {words}")?;
             }
             if let Some(border) = self.borders.get(index) {
-                let sides = [&region.letter, &self.regions[index + 1].letter];
-                let transition = border.transition.in_words(sides);
+                let transition = border.transition.in_words([&region.letter, &self.regions[index + 1].letter]);
                 writeln!(out, "{:letters$}  {faint}at {:?}: {transition}{plain}", "", border.at)?;
             }
         }
-        for note in &self.notes {
-            writeln!(out, "\nNote: {note}.")?;
+        Ok(())
+    }
+}
+
+impl MapSweep<'_> {
+    fn write(&self, Palette { strong, faint, plain }: &Palette, out: &mut String) -> std::fmt::Result {
+        for region in &self.regions {
+            for (line, words) in region.happening.lines().iter().enumerate() {
+                let share = if line == 0 { format!("{:.2} %", 100.0 * region.share) } else { String::new() };
+                let letter = if line == 0 { &region.letter } else { "" };
+                writeln!(out, "{strong}{letter:2}{plain}  {share:>8}  {words}")?;
+            }
+        }
+        writeln!(out)?;
+        let mut written: Vec<String> = Vec::new();
+        for BorderCurve { sides, transition, .. } in self.borders {
+            let [left, right] = sides.map(letter);
+            let line = format!("between {left} and {right}: {}", transition.in_words([&left, &right]));
+            if !written.contains(&line) {
+                writeln!(out, "{faint}{line}{plain}")?;
+                written.push(line);
+            }
         }
         Ok(())
     }
@@ -50,28 +79,27 @@ impl Happening<'_> {
             return vec![format!("refused: {}", error.message)];
         }
         let Some(outcomes) = self.outcomes else { return vec!["refused".to_owned()] };
-        let contacts = self.contacts.unwrap_or_default();
-        let words = |modes: &Vec<_>| words::modes(contacts.iter().map(String::as_str), modes);
         let mut lines: Vec<String> = match outcomes {
             [] => vec!["no outcome".to_owned()],
             [only] if only.is_empty() => vec!["nothing touches the ground".to_owned()],
-            outcomes => outcomes.iter().map(words).collect(),
+            outcomes => outcomes.iter().map(|modes| self.in_words(modes)).collect(),
         };
         if let (Some(Verdict::NoImpact), [only]) = (self.verdict, &mut lines[..]) {
             only.push_str(" (no impact)");
         }
-        for more in lines.iter_mut().skip(1) {
-            more.insert_str(0, "or ");
-        }
+        lines.iter_mut().skip(1).for_each(|more| more.insert_str(0, "or "));
         lines.extend(self.not_excluded());
         lines
     }
 
     /// The combinations that no precision excludes, one a line.
     pub fn not_excluded(&self) -> Vec<String> {
-        let contacts = self.contacts.unwrap_or_default();
-        let sentence = |modes: &Vec<_>| words::modes(contacts.iter().map(String::as_str), modes);
-        self.undecided.unwrap_or_default().iter().map(|modes| format!("not excluded: {}", sentence(modes))).collect()
+        let undecided = self.undecided.unwrap_or_default().iter();
+        undecided.map(|modes| format!("not excluded: {}", self.in_words(modes))).collect()
+    }
+
+    fn in_words(&self, modes: &[Mode]) -> String {
+        words::modes(self.contacts.unwrap_or_default(), modes)
     }
 }
 
@@ -86,10 +114,7 @@ impl Transition {
         }
         let ends = |EndedOutcome { contact, inequality, modes, side }: &EndedOutcome| {
             let modes: Vec<String> = modes.iter().map(ToString::to_string).collect();
-            let side = match side {
-                Side::Below => below,
-                Side::Above => above,
-            };
+            let side = if *side == Side::Below { below } else { above };
             format!("{contact} has {inequality} where {} of {side} ends", modes.join("/"))
         };
         let alone = |contact: &String, side: &str| format!("{contact} touches the ground in {side} only");

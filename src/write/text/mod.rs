@@ -4,9 +4,8 @@ mod outcome;
 mod reasons;
 
 use self::outcome::graded;
-use super::holds::HoldsRecord;
-use super::list::list;
 use super::result::{ContactRecord, Report};
+use super::state::HoldsRecord;
 use super::table::{Table, is_residue, number, scale};
 use super::{Detail, Palette, words};
 use crate::Robot;
@@ -15,7 +14,7 @@ use crate::law::{Friction, Mode};
 use crate::pipeline::Impact;
 use crate::planar::Vector;
 use crate::read::Problem;
-use crate::robot::{Axis, Base};
+use crate::robot::Axis;
 use crate::state::State;
 use std::fmt::Write;
 
@@ -35,12 +34,8 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// A robot's state.
     pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
-        let base = match robot.base {
-            Base::Floating => ["m/s", "m/s", "rad/s"].as_slice(),
-            Base::Fixed => &[],
-        };
+        let base = ["m/s", "m/s", "rad/s"].into_iter().take(robot.base_dofs());
         let joints = robot.joints.iter().map(|joint| match joint.axis {
             Axis::Revolute { .. } => "rad/s",
             Axis::Prismatic { .. } => "m/s",
@@ -48,12 +43,11 @@ impl<'a> Subject<'a> {
         Self {
             title: words::titled(&robot.name, &state.id),
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
-            units: base.iter().copied().chain(joints).collect(),
+            units: base.chain(joints).collect(),
             analysis: impact.analysis.as_ref(),
         }
     }
 
-    /// A contact problem without a robot.
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
         Self {
             title: words::titled("contact problem", &problem.id),
@@ -120,42 +114,34 @@ impl<'w> Writer<'w> {
     /// The fastest contact velocity before or after.
     fn speeds(&self) -> f64 {
         let before = self.report.contacts.iter().map(|contact| contact.velocity_before);
-        let after = self
-            .report
-            .outcomes
-            .as_deref()
-            .into_iter()
-            .flatten()
-            .flat_map(|outcome| outcome.velocity_after.iter().copied());
-        scale(before.chain(after).flatten())
+        let outcomes = self.report.outcomes.as_deref().unwrap_or_default().iter();
+        scale(before.chain(outcomes.flat_map(|outcome| outcome.velocity_after.iter().copied())).flatten())
     }
 
-    /// Where the contacts are and how they move.
     fn contacts(&mut self) {
         let contacts = &self.report.contacts;
         let mut table = Table::default().text("contact", self.names());
-        let lengths = scale(contacts.iter().filter_map(|contact| contact.point).flat_map(Vector::components));
-        if contacts.iter().all(|contact| contact.point.is_some()) {
-            let point =
-                |axis: usize| contacts.iter().map(move |contact| contact.point.map(|point| point.components()[axis]));
-            table = table.numbers("x [m]", lengths, point(0)).numbers("z [m]", lengths, point(1));
+        let points = || contacts.iter().map(|contact| contact.point.map(Vector::components));
+        let lengths = scale(points().flatten().flatten());
+        if points().all(|point| point.is_some()) {
+            table = table.pairs(["x [m]", "z [m]"], lengths, points());
         }
-        let gaps = contacts.iter().map(|contact| contact.gap);
-        if gaps.clone().flatten().any(|gap| gap != 0.0 && !is_residue(gap, lengths)) {
-            table = table.numbers("gap [m]", lengths, gaps);
+        let gaps = || contacts.iter().map(|contact| contact.gap);
+        if gaps().flatten().any(|gap| gap != 0.0 && !is_residue(gap, lengths)) {
+            table = table.numbers("gap [m]", lengths, gaps());
         }
         // On a profile each contact may have axes of its own.
-        let normals = contacts.iter().map(|contact| contact.normal);
-        if normals.clone().any(|normal| normal != contacts[0].normal) {
-            let entry = |axis: usize| normals.clone().map(move |normal| normal.map(|normal| normal.components()[axis]));
-            table = table.numbers("n: x", 1.0, entry(0)).numbers("z", 1.0, entry(1));
+        let normals = || contacts.iter().map(|contact| contact.normal.map(Vector::components));
+        if normals().any(|normal| Some(normal) != normals().next()) {
+            table = table.pairs(["n: x", "z"], 1.0, normals());
         }
-        let speeds = self.speeds();
-        let before = |axis: usize| contacts.iter().map(move |contact| contact.velocity_before[axis]);
         let friction = self.subject.friction.iter().map(|friction| friction.map_or("-".into(), |mu| mu.to_string()));
         table
-            .numbers("before: t [m/s]", speeds, before(0))
-            .numbers("n [m/s]", speeds, before(1))
+            .pairs(
+                ["before: t [m/s]", "n [m/s]"],
+                self.speeds(),
+                contacts.iter().map(|contact| contact.velocity_before),
+            )
             .text("friction", friction.collect::<Vec<String>>())
             .write(&mut self.out);
         let Palette { faint, plain, .. } = *self.palette;
@@ -175,37 +161,32 @@ impl<'w> Writer<'w> {
         self.holds()
     }
 
-    /// Whether the verdict holds while the state's numbers vary.
     fn holds(&mut self) -> std::fmt::Result {
-        let Some(holds) = self.report.holds else { return Ok(()) };
-        self.out.push_str("Holds on the whole box of the uncertainty: ");
-        match (holds, &self.report.counterexample) {
-            (HoldsRecord::Yes, _) => self.out.push_str("yes.\n"),
-            (HoldsRecord::No, Some(other)) => {
+        let Some(HoldsRecord(holds)) = self.report.holds else { return Ok(()) };
+        let answer = match (holds, &self.report.counterexample) {
+            (Some(true), _) => "yes".to_owned(),
+            (Some(false), Some(other)) => {
                 let outcomes: Vec<String> = other.outcomes.iter().map(|modes| self.in_words(modes)).collect();
-                writeln!(self.out, "no; a state in it (`format: json`) has: {}.", outcomes.join("; or "))?;
+                format!("no; a state in it (`format: json`) has: {}", outcomes.join("; or "))
             }
-            (HoldsRecord::No, None) => self.out.push_str("no.\n"),
-            (HoldsRecord::Unknown, _) => self.out.push_str("unknown.\n"),
-        }
-        Ok(())
+            (Some(false), None) => "no".to_owned(),
+            (None, _) => "unknown".to_owned(),
+        };
+        writeln!(self.out, "Holds on the whole box of the uncertainty: {answer}.")
     }
 
     /// The paper's section 4 for each contact.
     fn regions(&mut self) {
-        match &self.report.explain {
-            None => {}
-            Some(None) if self.report.contacts.is_empty() => {}
-            Some(None) => self.out.push_str("\nNo beta, gamma and region: the contacts depend on each other.\n"),
-            Some(Some(explained)) => {
-                self.out.push_str("\nWith infinite friction, while all other contacts stick:\n");
-                Table::default()
-                    .text("contact", self.names())
-                    .numbers("beta [rad]", 1.0, explained.beta.iter().copied())
-                    .numbers("gamma [rad]", 1.0, explained.gamma.iter().copied())
-                    .text("region", explained.region.iter().map(|region| described(*region)))
-                    .write(&mut self.out);
-            }
+        if let Some(Some(explained)) = &self.report.explain {
+            self.out.push_str("\nWith infinite friction, while all other contacts stick:\n");
+            Table::default()
+                .text("contact", self.names())
+                .numbers("beta [rad]", 1.0, explained.beta.iter().copied())
+                .numbers("gamma [rad]", 1.0, explained.gamma.iter().copied())
+                .text("region", explained.region.iter().map(|region| described(*region)))
+                .write(&mut self.out);
+        } else if self.report.explain.is_some() && !self.report.contacts.is_empty() {
+            self.out.push_str("\nNo beta, gamma and region: the contacts depend on each other.\n");
         }
     }
 
@@ -221,15 +202,14 @@ impl<'w> Writer<'w> {
         for (name, matrix) in matrices {
             let Some(rows) = matrix.as_deref().filter(|rows| !rows.is_empty()) else { continue };
             writeln!(self.out, "\n{name}")?;
-            Table::matrix(rows).write_body(&mut self.out);
+            Table::matrix(rows).write(&mut self.out);
         }
         Ok(())
     }
 
     /// What else a reader should know before trusting the answer.
     fn closing(&mut self) -> std::fmt::Result {
-        let follows_tables = self.report.explain.is_some() || self.report.delassus.is_some();
-        if follows_tables && self.report.verdict.is_some() {
+        if (self.report.explain.is_some() || self.report.delassus.is_some()) && self.report.verdict.is_some() {
             self.out.push('\n');
         }
         let struck = !self.report.contacts.is_empty();
@@ -242,44 +222,38 @@ impl<'w> Writer<'w> {
             });
         }
         if let (true, Some(rank)) = (struck, self.report.rank) {
-            match self.report.condition.flatten() {
-                Some(condition) => write!(self.out, "Contacts: rank {rank}, condition {}", number(condition))?,
-                None => write!(self.out, "Contacts: rank {rank} of {}, redundant", 2 * self.report.contacts.len())?,
-            }
-            let sum = self.report.index_sum.flatten();
+            let condition = match self.report.condition.flatten() {
+                Some(condition) => format!(", condition {}", number(condition)),
+                None => format!(" of {}, redundant", 2 * self.report.contacts.len()),
+            };
             let hidden = if self.report.verdict == Some(Verdict::Undecided) { "unknown" } else { "hidden by a border" };
-            let sum = sum.map_or(hidden.to_owned(), |sum| sum.to_string());
+            let sum = self.report.index_sum.flatten().map_or(hidden.to_owned(), |sum| sum.to_string());
             let proven = if self.report.proven == Some(true) { "proven" } else { "not proven" };
-            writeln!(self.out, "; sum of indices {sum}; {proven}.")?;
+            writeln!(self.out, "Contacts: rank {rank}{condition}; sum of indices {sum}; {proven}.")?;
         }
         if !struck && !self.report.notes.is_empty() {
             self.out.push('\n');
         }
-        for note in self.report.notes.iter() {
-            writeln!(self.out, "Note: {note}")?;
-        }
+        self.report.notes.iter().try_for_each(|note| writeln!(self.out, "Note: {note}"))?;
         if let Some(left_out) = self.report.left_out.as_ref().filter(|left_out| !left_out.is_empty()) {
             let Palette { faint, plain, .. } = *self.palette;
             let what: Vec<&str> = left_out.iter().map(|left| &*left.what).collect();
-            writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {}.{plain}", list(&what, LEFT_OUT))?;
+            writeln!(self.out, "{faint}Left out (see `heelstrike inspect`): {}.{plain}", words::list(&what, LEFT_OUT))?;
         }
         Ok(())
     }
 
-    /// `left_foot lifts off, right_foot sticks`.
     fn in_words(&self, modes: &[Mode]) -> String {
         words::modes(self.names(), modes)
     }
 }
 
 fn touching(contacts: &[ContactRecord]) -> String {
-    match contacts {
+    let names: Vec<&str> = contacts.iter().map(|contact| &*contact.name).collect();
+    match &names[..] {
         [] => "nothing touches the ground.".to_owned(),
-        [contact] => format!("{} touches the ground.", contact.name),
-        [.., last] => {
-            let names: Vec<&str> = contacts[..contacts.len() - 1].iter().map(|contact| &*contact.name).collect();
-            format!("{} and {} touch the ground.", names.join(", "), last.name)
-        }
+        [name] => format!("{name} touches the ground."),
+        [names @ .., last] => format!("{} and {last} touch the ground.", names.join(", ")),
     }
 }
 

@@ -16,18 +16,15 @@ impl Writer<'_> {
         }
         let Palette { strong, plain, .. } = *self.palette;
         let words = self.in_words(&outcome.modes);
-        let decided = self.subject.analysis.and_then(|analysis| analysis.outcomes.get(count - 1));
-        let open = if decided.is_some_and(|outcome| !outcome.decided) { ", not excluded" } else { "" };
+        let open = if outcome.decided { "" } else { ", not excluded" };
         writeln!(self.out, "\n{strong}{count}  {words}{open}{plain}{}", graded(outcome))?;
 
         let (impulses, speeds) = (scale(outcome.impulse.iter().copied().flatten()), self.speeds());
         let mut table = Table::default()
             .text("contact", self.names())
             .text("mode", outcome.modes.iter().map(Mode::to_string))
-            .numbers("impulse: t [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[0]))
-            .numbers("n [N s]", impulses, outcome.impulse.iter().map(|impulse| impulse[1]))
-            .numbers("after: t [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[0]))
-            .numbers("n [m/s]", speeds, outcome.velocity_after.iter().map(|velocity| velocity[1]));
+            .pairs(["impulse: t [N s]", "n [N s]"], impulses, outcome.impulse.iter().copied())
+            .pairs(["after: t [m/s]", "n [m/s]"], speeds, outcome.velocity_after.iter().copied());
         if outcome.friction_needed.iter().any(Option::is_some) {
             table = table.numbers("friction needed", 1.0, outcome.friction_needed.iter().copied());
         }
@@ -49,15 +46,10 @@ impl Writer<'_> {
         let zeros = border.at_zero.iter().map(|zero| format!("{} has {}", zero.contact, zero.inequality));
         write!(self.out, "  exactly on a border: {}", zeros.collect::<Vec<_>>().join(", "))?;
         let beyond: Vec<String> = border.neighbours.iter().map(|modes| self.in_words(modes)).collect();
-        match &beyond[..] {
-            [] => self.out.push('\n'),
-            [only] => writeln!(self.out, "; beyond it {only}")?,
-            several => writeln!(self.out, "; beyond it {}", several.join("; or "))?,
-        }
-        Ok(())
+        let beyond = if beyond.is_empty() { String::new() } else { format!("; beyond it {}", beyond.join("; or ")) };
+        writeln!(self.out, "{beyond}")
     }
 
-    /// What every loop gives to its point a.
     fn loops(&mut self, outcome: &Outcome) {
         let impulses = outcome.loop_impulse.as_deref().unwrap_or_default();
         if impulses.is_empty() {
@@ -66,8 +58,7 @@ impl Writer<'_> {
         let size = scale(impulses.iter().copied().flat_map(Vector::components));
         Table::default()
             .text("loop", (0..impulses.len()).map(|index| format!("loops[{index}]")))
-            .numbers("impulse on a: x [N s]", size, impulses.iter().map(|impulse| impulse.x))
-            .numbers("z [N s]", size, impulses.iter().map(|impulse| impulse.z))
+            .pairs(["impulse on a: x [N s]", "z [N s]"], size, impulses.iter().map(|impulse| impulse.components()))
             .write(&mut self.out);
     }
 
@@ -77,27 +68,19 @@ impl Writer<'_> {
             return writeln!(self.out, "  no energy is lost");
         }
         let verb = if loss < 0.0 { "gives" } else { "takes" };
-        write!(self.out, "  the ground {verb} {} J", number(loss.abs()))?;
-        if let Some(energy) = self.report.kinetic_energy.filter(|&energy| energy > 0.0 && loss > 0.0) {
-            write!(self.out, ", {:.1} % of the kinetic energy", 100.0 * loss / energy)?;
-        }
-        self.out.push('\n');
-        Ok(())
+        let energy = self.report.kinetic_energy.filter(|&energy| energy > 0.0 && loss > 0.0);
+        let share = energy.map(|energy| format!(", {:.1} % of the kinetic energy", 100.0 * loss / energy));
+        writeln!(self.out, "  the ground {verb} {} J{}", number(loss.abs()), share.unwrap_or_default())
     }
 
     /// v after the impact, one column per outcome.
     pub(super) fn velocities(&mut self, outcomes: &[Outcome]) {
-        let Some(first) = outcomes.first().map(named_velocities).filter(|named| !named.is_empty()) else {
-            return;
-        };
-        let mut table = Table::default()
-            .text("velocity after", first.iter().map(|(name, _)| *name))
-            .text("", self.subject.units.iter().copied());
-        let velocities = scale(outcomes.iter().flat_map(named_velocities).map(|(_, velocity)| velocity));
+        let Some(first) = outcomes.first().map(coordinates).filter(|names| !names.is_empty()) else { return };
+        let mut table = Table::default().text("velocity after", first).text("", self.subject.units.iter().copied());
+        let velocities = scale(outcomes.iter().flat_map(Outcome::velocity));
         for (at, outcome) in outcomes.iter().enumerate() {
             let head = if outcomes.len() == 1 { String::new() } else { format!("{}", at + 1) };
-            table =
-                table.numbers(&head, velocities, named_velocities(outcome).into_iter().map(|(_, velocity)| velocity));
+            table = table.numbers(&head, velocities, outcome.velocity());
         }
         self.out.push('\n');
         table.write(&mut self.out);
@@ -110,8 +93,8 @@ pub(super) fn graded(outcome: &Outcome) -> String {
     if grades.is_empty() { grades } else { format!("   ({grades})") }
 }
 
-/// v after an outcome, base and joints.
-fn named_velocities(outcome: &Outcome) -> Vec<(&str, f64)> {
+/// The names of the entries of v, base and joints.
+fn coordinates(outcome: &Outcome) -> Vec<&str> {
     let parts = [&outcome.base_velocity_after, &outcome.joint_velocity_after];
-    parts.into_iter().flatten().flat_map(|part| part.iter().map(|(name, &velocity)| (name, velocity))).collect()
+    parts.into_iter().flatten().flat_map(|part| part.iter()).map(|(name, _)| name).collect()
 }

@@ -3,7 +3,9 @@
 use super::Writer;
 use crate::impact::RejectionReason;
 use crate::law::Mode;
+use crate::planar::Pair;
 use crate::write::table::{Table, scale};
+use crate::write::words;
 use std::fmt::Write;
 
 impl Writer<'_> {
@@ -23,38 +25,25 @@ impl Writer<'_> {
             (_, 0) => write!(self.out, "\nAll {others} {fail}")?,
             _ => write!(self.out, "\n{nothing}the other {others} {fail}")?,
         }
-        let reasons = self.counted_reasons();
-        let listed: Vec<String> = match &reasons[..] {
-            [(_, reason)] => vec![format!("because {reason}")],
-            reasons => reasons.iter().map(|(count, reason)| format!("{count} because {reason}")).collect(),
-        };
-        let joint = match reasons.len() {
-            0 => "",
-            1 => " ",
-            _ => ": ",
-        };
-        writeln!(self.out, "{joint}{}.", listed.join(", "))
-    }
-
-    /// What is wrong with the rejected combinations, the most frequent first.
-    pub(super) fn counted_reasons(&self) -> Vec<(usize, &'static str)> {
-        let mut reasons: Vec<(usize, &str)> = Vec::new();
-        for rejection in self.subject.analysis.map_or(&[][..], |analysis| &analysis.rejected) {
-            let reason = in_general(rejection.because);
-            match reasons.iter_mut().find(|(_, known)| *known == reason) {
-                Some((count, _)) => *count += 1,
-                None => reasons.push((1, reason)),
+        let rejected = self.subject.analysis.map_or(&[][..], |analysis| &analysis.rejected).iter();
+        let mut reasons = words::grouped(rejected.map(|rejection| (in_general(rejection.because), ())));
+        // The most frequent first.
+        reasons.sort_by_key(|(_, all)| std::cmp::Reverse(all.len()));
+        match &reasons[..] {
+            [] => writeln!(self.out, "."),
+            [(reason, _)] => writeln!(self.out, " because {reason}."),
+            reasons => {
+                let listed = reasons.iter().map(|(reason, all)| format!("{} because {reason}", all.len()));
+                writeln!(self.out, ": {}.", listed.collect::<Vec<_>>().join(", "))
             }
         }
-        reasons.sort_by_key(|&(count, _)| std::cmp::Reverse(count));
-        reasons
     }
 
-    /// Every rejected combination with what it would have been.
     pub(super) fn rejected(&mut self) {
-        let Some(rejected) = self.report.rejected.as_ref().filter(|rejected| !rejected.is_empty()) else {
+        let rejected = self.report.rejected.as_deref().unwrap_or_default();
+        if rejected.is_empty() {
             return;
-        };
+        }
         let mut table = Table::default();
         for (contact, name) in self.names().enumerate() {
             table = table.text(name, rejected.iter().map(|rejection| rejection.modes[contact].to_string()));
@@ -66,23 +55,18 @@ impl Writer<'_> {
         table.write(&mut self.out);
 
         self.out.push_str("\n  what each would have been\n");
-        let impulses =
-            scale(rejected.iter().filter_map(|rejection| rejection.impulse.as_deref()).flatten().copied().flatten());
-        let after =
-            rejected.iter().filter_map(|rejection| rejection.velocity_after.as_deref()).flatten().copied().flatten();
-        let speeds = scale(after).max(self.speeds());
+        let impulses = || rejected.iter().map(|rejection| rejection.impulse.as_deref());
+        let after = || rejected.iter().map(|rejection| rejection.velocity_after.as_deref());
+        let largest = scale(impulses().flatten().flatten().copied().flatten());
+        let speeds = scale(after().flatten().flatten().copied().flatten()).max(self.speeds());
         for (contact, name) in self.names().enumerate() {
-            let impulse =
-                |axis: usize| rejected.iter().map(move |r| r.impulse.as_deref().map(|list| list[contact][axis]));
-            let after =
-                |axis: usize| rejected.iter().map(move |r| r.velocity_after.as_deref().map(|list| list[contact][axis]));
+            let of_contact = |list: Option<&[Pair<f64>]>| list.map(|list| list[contact]);
+            let modes = |modes: &[Mode]| modes.iter().map(Mode::to_string).collect::<Vec<_>>().join(", ");
             self.out.push('\n');
             Table::default()
-                .text(name, rejected.iter().map(|rejection| modes_listed(&rejection.modes)))
-                .numbers("impulse: t [N s]", impulses, impulse(0))
-                .numbers("n [N s]", impulses, impulse(1))
-                .numbers("after: t [m/s]", speeds, after(0))
-                .numbers("n [m/s]", speeds, after(1))
+                .text(name, rejected.iter().map(|rejection| modes(&rejection.modes)))
+                .pairs(["impulse: t [N s]", "n [N s]"], largest, impulses().map(of_contact))
+                .pairs(["after: t [m/s]", "n [m/s]"], speeds, after().map(of_contact))
                 .write(&mut self.out);
         }
     }
@@ -97,8 +81,4 @@ fn in_general(because: RejectionReason) -> &'static str {
         RejectionReason::RedundantTwin => "a redundant twin already has that velocity",
         RejectionReason::OnBorder => "its velocity is that of other modes, on their border",
     }
-}
-
-fn modes_listed(modes: &[Mode]) -> String {
-    modes.iter().map(Mode::to_string).collect::<Vec<_>>().join(", ")
 }

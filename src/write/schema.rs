@@ -1,64 +1,62 @@
 //! JSON Schema (draft 2020-12) of what is read and written.
 //!
 //! A result's schema is derived from the very structs that are written; those of states, problems and studies are parts
-//! of `format.json`, from which their readers know their fields.
+//! of `format.json`, from which their readers know their fields, in a study with expressions in place of numbers:
+//!
+//! ```text
+//!     {"type": "number", ...} --> {"anyOf": [{"type": "number", ...}, {"$ref": "#/$defs/Expression"}]}
+//! ```
 //!
 //! The schemas are closed: as for the strict readers, a field that they do not name does not exist.
 
-mod inputs;
+#![expect(dead_code, reason = "of these types the schema is all that is wanted")]
 
-use super::holds::HoldsRecord;
 use super::result::{Brief, Refused, Report};
+use super::state::HoldsRecord;
 use super::sweep::{MapSweep, RefusedSample, Sweep};
-use super::touchdown::CarriedFields;
+use crate::read::json::FORMAT;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 /// Marks a property that may be null although it may also be absent.
 const MAY_BE_NULL: &str = "x-may-be-null";
 
-/// The schema of a state.
 pub fn state() -> Value {
-    inputs::schema("State")
+    input("State")
 }
 
-/// The schema of a contact problem that is given as matrices.
 pub fn problem() -> Value {
-    inputs::schema("Problem")
+    input("Problem")
 }
 
 /// The schema of a study; every number of it but an id may be an expression.
 pub fn study() -> Value {
-    let mut schema = inputs::schema("Study");
-    inputs::allow_expressions(&mut schema);
+    let mut schema = input("Study");
+    allow_expressions(&mut schema);
     schema
 }
 
-/// The schema of what `sweep` writes.
 pub fn sweep() -> Value {
-    schema_of::<SweepWhole>(SchemaSettings::draft2020_12().for_serialize())
+    schema_of::<SweepWhole>()
 }
 
 /// The schema of a line of results: a result, one in brief, or a refusal.
 pub fn result() -> Value {
-    schema_of::<ResultLine>(SchemaSettings::draft2020_12().for_serialize())
+    schema_of::<ResultLine>()
 }
 
-/// The schema of what `accuracy` writes.
 #[cfg(feature = "accuracy")]
 pub fn accuracy() -> Value {
-    schema_of::<super::Accuracy>(SchemaSettings::draft2020_12().for_serialize())
+    schema_of::<super::Accuracy>()
 }
 
 /// One line of results.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[schemars(title = "Result")]
-#[expect(dead_code, reason = "the schema is all that is wanted of it")]
 enum ResultLine<'a> {
     Whole(Box<Report<'a>>),
     Brief(Brief<'a>),
@@ -69,7 +67,6 @@ enum ResultLine<'a> {
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[schemars(title = "Sweep")]
-#[expect(dead_code, reason = "the schema is all that is wanted of it")]
 enum SweepWhole<'a> {
     Along(WithSamples<'a, Sweep<'a>>),
     Map(WithSamples<'a, MapSweep<'a>>),
@@ -78,7 +75,6 @@ enum SweepWhole<'a> {
 /// Regions, and the samples behind them.
 #[derive(JsonSchema)]
 #[schemars(inline)]
-#[expect(dead_code, reason = "the schema is all that is wanted of it")]
 struct WithSamples<'a, T> {
     #[serde(flatten)]
     regions: T,
@@ -89,7 +85,6 @@ struct WithSamples<'a, T> {
 /// The parameters' values under their names, and the result there.
 #[derive(JsonSchema)]
 #[schemars(rename = "Sample", extend("additionalProperties" = {"type": "number"}))]
-#[expect(dead_code, reason = "the schema is all that is wanted of it")]
 struct SampleWhole<'a> {
     /// As of `impact`, or why there is none.
     result: SampleResult<'a>,
@@ -98,23 +93,10 @@ struct SampleWhole<'a> {
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[schemars(inline)]
-#[expect(dead_code, reason = "the schema is all that is wanted of it")]
 enum SampleResult<'a> {
     Whole(Box<Report<'a>>),
     Brief(Brief<'a>),
     Refused(RefusedSample),
-}
-
-impl JsonSchema for CarriedFields<'_> {
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> Cow<'static, str> {
-        "CarriedFields".into()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        BTreeMap::<String, String>::json_schema(generator)
-    }
 }
 
 impl JsonSchema for HoldsRecord {
@@ -129,8 +111,8 @@ impl JsonSchema for HoldsRecord {
     }
 }
 
-fn schema_of<T: JsonSchema>(settings: SchemaSettings) -> Value {
-    let settings = settings.with_transform(RecursiveTransform(strict));
+fn schema_of<T: JsonSchema>() -> Value {
+    let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(strict));
     settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
@@ -143,7 +125,7 @@ fn strict(schema: &mut Schema) {
     if schema.get("properties").is_none() {
         return;
     }
-    let required: Vec<Value> = schema.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
+    let required = schema.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
     if let Some(Value::Object(properties)) = schema.get_mut("properties") {
         for (name, property) in properties {
             // What is read in place of an absent field is no part of what is written.
@@ -171,8 +153,8 @@ fn without_null(property: &mut Value) {
     }
     if let Some(Value::Array(types)) = property.get_mut("type") {
         types.retain(|kind| kind != "null");
-        if let [only] = types.as_slice() {
-            let only = only.clone();
+        if let [only] = types.as_mut_slice() {
+            let only = only.take();
             property.insert("type".into(), only);
         }
     }
@@ -186,4 +168,72 @@ fn without_null(property: &mut Value) {
             }
         }
     }
+}
+
+/// The schema of one document, with the definitions that it refers to.
+fn input(document: &str) -> Value {
+    let mut all: Value = serde_json::from_str(FORMAT).unwrap_or_default();
+    let mut definitions = Map::new();
+    let mut schema = all["$defs"][document].take();
+    refer(&schema, &all["$defs"], &mut definitions);
+    schema["$schema"] = all["$schema"].take();
+    schema["title"] = document.into();
+    schema["$defs"] = definitions.into();
+    schema
+}
+
+/// Takes over every definition that a schema refers to.
+fn refer(schema: &Value, all: &Value, definitions: &mut Map<String, Value>) {
+    match schema {
+        Value::Array(entries) => entries.iter().for_each(|entry| refer(entry, all, definitions)),
+        Value::Object(object) => {
+            let name = object.get("$ref").and_then(Value::as_str).and_then(|path| path.strip_prefix("#/$defs/"));
+            if let Some(name) = name.filter(|name| !definitions.contains_key(*name)) {
+                definitions.insert(name.to_owned(), all[name].clone());
+                refer(&all[name], all, definitions);
+            }
+            object.values().for_each(|value| refer(value, all, definitions));
+        }
+        _ => {}
+    }
+}
+
+/// Lets expressions stand for all numbers of a whole schema.
+fn allow_expressions(schema: &mut Value) {
+    within(schema);
+    let expression = json!({
+        "type": "string",
+        "description":
+            "An expression of parameters, constants, pi, e and functions such as sin, as \"-(alpha + pi/2)^2\".",
+    });
+    schema["$defs"]["Expression"] = expression;
+}
+
+fn within(schema: &mut Value) {
+    match schema {
+        Value::Array(entries) => entries.iter_mut().for_each(within),
+        Value::Object(object) if is_number(object) => {
+            let mut number = std::mem::take(object);
+            let kept: Vec<(String, Value)> =
+                ["title", "description"].into_iter().filter_map(|key| number.remove_entry(key)).collect();
+            object.extend(kept);
+            object.insert("anyOf".into(), json!([number, {"$ref": "#/$defs/Expression"}]));
+        }
+        // An id is never an expression, and neither are values that stand for themselves.
+        Value::Object(object) => {
+            for (key, field) in object.iter_mut().filter(|(key, _)| !matches!(key.as_str(), "enum" | "const")) {
+                match (key.as_str(), field) {
+                    ("properties" | "$defs", Value::Object(named)) => {
+                        named.iter_mut().filter(|(name, _)| *name != "id").for_each(|(_, schema)| within(schema));
+                    }
+                    (_, field) => within(field),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn is_number(schema: &Map<String, Value>) -> bool {
+    matches!(schema.get("type").and_then(Value::as_str), Some("number" | "integer"))
 }
