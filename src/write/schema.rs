@@ -140,9 +140,10 @@ fn strict(schema: &mut Schema) {
     }
 }
 
-/// A description as rustdoc's markup has it, without the marks that only rustdoc needs.
+/// A description as rustdoc's markup has it, without its example and the marks that only rustdoc needs.
 fn plain_text(description: &str) -> String {
-    description.replace("[`", "`").replace("`]", "`").replace("\\[", "[").replace("\\]", "]").replace('\n', " ")
+    let text = description.split("```").next().unwrap_or_default().trim_end();
+    text.replace("[`", "`").replace("`]", "`").replace("\\[", "[").replace("\\]", "]").replace('\n', " ")
 }
 
 /// Takes null out of what an optional property may be, unless it is marked.
