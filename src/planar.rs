@@ -189,6 +189,11 @@ pub struct Inertia<T> {
 }
 
 impl<T: Real> Inertia<T> {
+    /// The inertia in the axes that the body is turned from.
+    pub fn turned(self, turn: Rotation<T>) -> Self {
+        Self { first: turn.apply(self.first), ..self }
+    }
+
     /// The same body about a point from which the old one is seen at `arm`.
     pub fn seen_from(self, arm: Vector<T>) -> Self {
         let shifted = self.first + arm * self.mass;

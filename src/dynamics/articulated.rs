@@ -11,19 +11,12 @@
 //! only quick one for long chains. It does not handle mimic joints: a column here moves one joint. Source: Featherstone
 //! 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
-use super::articulated_inertia::ArticulatedInertia;
+use super::articulated_inertia::{ArticulatedInertia, Wrench};
 use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan, PlanBody};
-use crate::planar::{Inertia, Vector};
+use crate::planar::Vector;
 use crate::scalar::Real;
-
-/// A moment about a body's origin and a force, in world axes \[N m, N\]; of impulses \[N m s, N s\].
-#[derive(Clone, Copy)]
-struct Force<T> {
-    moment: T,
-    linear: Vector<T>,
-}
 
 /// Computes every body's articulated inertia and the pivots D (nv, columns of the plan) from the kinematics.
 ///
@@ -31,9 +24,8 @@ struct Force<T> {
 pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, articulated, pivots, .. } = workspace;
     articulated.clear();
-    articulated.extend(plan.bodies.iter().zip(rotation.iter()).map(|(body, turn)| {
-        ArticulatedInertia::rigid(Inertia { first: turn.apply(body.inertia.first), ..body.inertia })
-    }));
+    let rigid = |(body, &turn): (&PlanBody<T>, _)| ArticulatedInertia::rigid(body.inertia.turned(turn));
+    articulated.extend(plan.bodies.iter().zip(&*rotation).map(rigid));
     pivots.clear();
     pivots.resize(plan.columns(), T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
@@ -77,7 +69,7 @@ pub fn articulated_delassus<T: Real>(plan: &Plan<T>, contacts: &[ContactPoint<T>
         let arm = contact.arm(workspace);
         for (row, axis) in contact.axes().into_iter().enumerate() {
             let start = (2 * index + row) * nv;
-            to_root(plan, workspace, contact.body, Force::at(arm, axis), |column, y, by_d| {
+            to_root(plan, workspace, contact.body, Wrench::at(arm, axis), |column, y, by_d| {
                 half[start + column] = y;
                 half_by_d[start + column] = by_d;
             });
@@ -121,7 +113,7 @@ pub fn add_articulated_impulse<T: Real>(
 ) {
     rates.clear();
     rates.resize(plan.columns(), T::zero());
-    to_root(plan, workspace, body, Force::at(arm, impulse), |column, _, by_d| rates[column] = by_d);
+    to_root(plan, workspace, body, Wrench::at(arm, impulse), |column, _, by_d| rates[column] = by_d);
     motions.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
         let own = &workspace.articulated[index];
@@ -171,7 +163,7 @@ fn to_root<T: Real>(
     plan: &Plan<T>,
     workspace: &Workspace<T>,
     body: usize,
-    mut force: Force<T>,
+    mut force: Wrench<T>,
     mut visit: impl FnMut(usize, T, T),
 ) {
     for (at, &PlanBody { motion, column, parent, rotor, .. }) in plan.way_to_root(body) {
@@ -205,7 +197,7 @@ fn to_root<T: Real>(
             }
         }
         if parent.is_some() {
-            force.moment = force.moment + workspace.arm[at].perpendicular().dot(force.linear);
+            force = force.seen_from(workspace.arm[at]);
         }
     }
 }
@@ -220,10 +212,4 @@ fn shared_columns<T: Real>(plan: &Plan<T>, a: usize, b: usize) -> impl Iterator<
     }
     let outermost = plan.way_to_root(a).find_map(|(_, body)| body.column);
     std::iter::successors(outermost, |&column| plan.parents[column])
-}
-
-impl<T: Real> Force<T> {
-    fn at(arm: Vector<T>, linear: Vector<T>) -> Self {
-        Self { moment: arm.perpendicular().dot(linear), linear }
-    }
 }

@@ -86,3 +86,21 @@ impl<T: Real> ArticulatedInertia<T> {
         }
     }
 }
+
+/// A force and its moment about a body's origin, in world axes \[N, N m\]; an impulse or a momentum \[N s, N m s\].
+#[derive(Clone, Copy)]
+pub(super) struct Wrench<T> {
+    pub moment: T,
+    pub linear: Vector<T>,
+}
+
+impl<T: Real> Wrench<T> {
+    pub fn at(arm: Vector<T>, linear: Vector<T>) -> Self {
+        Self { moment: arm.perpendicular().dot(linear), linear }
+    }
+
+    /// The same about a point from which the old one is seen at `arm`.
+    pub fn seen_from(self, arm: Vector<T>) -> Self {
+        Self { moment: self.moment + arm.perpendicular().dot(self.linear), linear: self.linear }
+    }
+}

@@ -8,9 +8,10 @@
 //! one to the parent is a shift without a turn. S is the motion for a unit rate of the column, and where a column moves
 //! several joints their entries add up (see [`plan`](crate::dynamics::plan)). Cost: O(nb depth).
 
+use super::articulated_inertia::Wrench;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Motion, Plan};
-use crate::planar::{Inertia, Vector};
+use crate::planar::Vector;
 use crate::scalar::Real;
 
 /// Computes M (nv x nv, columns of the plan; kg, kg m, kg m^2) from the kinematics.
@@ -18,12 +19,7 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let nv = plan.columns();
     let Workspace { rotation, arm, direction, composite, mass_matrix, .. } = workspace;
     composite.clear();
-    composite.extend(
-        plan.bodies
-            .iter()
-            .zip(rotation.iter())
-            .map(|(body, turn)| Inertia { first: turn.apply(body.inertia.first), ..body.inertia }),
-    );
+    composite.extend(plan.bodies.iter().zip(&*rotation).map(|(body, &turn)| body.inertia.turned(turn)));
     mass_matrix.clear();
     mass_matrix.resize(nv * nv, T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
@@ -34,34 +30,33 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
         let Some(column) = body.column else { continue };
         let momentum = match body.motion {
             Motion::Root => {
-                let [x, z] = Vector::axes();
-                let pitch = Momentum { linear: own.first.perpendicular(), angular: own.second };
+                let linear = own.first.perpendicular();
                 mass_matrix[0] = own.mass;
                 mass_matrix[nv + 1] = own.mass;
-                mass_matrix[column * nv] = x.dot(pitch.linear);
-                mass_matrix[column * nv + 1] = z.dot(pitch.linear);
-                mass_matrix[column * nv + column] = pitch.angular;
+                for (row, axis) in Vector::axes().into_iter().enumerate() {
+                    mass_matrix[column * nv + row] = axis.dot(linear);
+                }
+                mass_matrix[column * nv + column] = own.second;
                 continue;
             }
             Motion::Revolute { rate, .. } => {
-                Momentum { linear: own.first.perpendicular() * rate, angular: rate * own.second }
+                Wrench { linear: own.first.perpendicular() * rate, moment: rate * own.second }
             }
-            Motion::Prismatic { .. } => Momentum {
-                linear: direction[index] * own.mass,
-                angular: own.first.perpendicular().dot(direction[index]),
-            },
+            Motion::Prismatic { .. } => {
+                Wrench { linear: direction[index] * own.mass, moment: own.first.perpendicular().dot(direction[index]) }
+            }
             Motion::Fixed => continue,
         };
         // `momentum` is that of a unit rate of this joint; the walk to the root projects it on every joint below.
-        let along = |at: usize, momentum: Momentum<T>| match plan.bodies[at].motion {
-            Motion::Root | Motion::Fixed => momentum.angular,
-            Motion::Revolute { rate, .. } => rate * momentum.angular,
+        let along = |at: usize, momentum: Wrench<T>| match plan.bodies[at].motion {
+            Motion::Root | Motion::Fixed => momentum.moment,
+            Motion::Revolute { rate, .. } => rate * momentum.moment,
             Motion::Prismatic { .. } => direction[at].dot(momentum.linear),
         };
         plan.bring(&mut mass_matrix[column * nv + column], along(index, momentum) + body.rotor);
         let (mut at, mut momentum) = (index, momentum);
         while let Some(parent) = plan.bodies[at].parent {
-            momentum.angular = momentum.angular + arm[at].perpendicular().dot(momentum.linear);
+            momentum = momentum.seen_from(arm[at]);
             at = parent;
             if let Some(other) = plan.bodies[at].column {
                 let part = along(at, momentum);
@@ -82,11 +77,4 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
 /// Factorizes the mass matrix. Callers check for a vanishing pivot.
 pub fn factorize<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     workspace.factor.factorize(plan, &workspace.mass_matrix);
-}
-
-/// Linear momentum and angular momentum about a body's origin, of a unit rate of one joint.
-#[derive(Clone, Copy)]
-struct Momentum<T> {
-    linear: Vector<T>,
-    angular: T,
 }

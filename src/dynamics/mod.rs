@@ -77,16 +77,12 @@ mod tests {
         (parts, prop::bool::weighted(0.2)).prop_map(move |(mut parts, bolted)| {
             parts.iter_mut().enumerate().filter(|(at, _)| *at == 0 || !mimics).for_each(|(_, part)| part.1 = None);
             let moving = parts.iter().filter(|(_, ratio)| ratio.is_none()).count();
+            let com = Vector::new(0.1, -0.2);
+            let root = Body { name: String::new(), joint: None, mass: 1.0, com, moment: 0.05 };
             let mut robot = Robot {
                 name: "tree".into(),
                 base: if bolted { Base::Fixed } else { Base::Floating },
-                bodies: vec![Body {
-                    name: String::new(),
-                    joint: None,
-                    mass: 1.0,
-                    com: Vector::new(0.1, -0.2),
-                    moment: 0.05,
-                }],
+                bodies: vec![root],
                 joints: Vec::new(),
                 links: Vec::new(),
                 mimic_joints: Vec::new(),

@@ -84,7 +84,7 @@ impl Impact {
     /// Every outcome and the verdict.
     ///
     /// # Errors
-    /// [`Reason::TooManyContacts`](crate::Reason) for more contacts than are enumerated.
+    /// [`TooManyContacts`](crate::Reason::TooManyContacts) for more contacts than are enumerated.
     pub fn analysed(&self) -> Result<&Analysis> {
         self.analysis.as_ref().map_or_else(|| Err(too_many_contacts(self.contacts.len())), Ok)
     }
@@ -173,12 +173,10 @@ impl<'r> Pipeline<'r> {
     /// Every outcome of one state.
     ///
     /// # Errors
-    /// [`Reason::Singular`](crate::Reason::Singular) for a coordinate without inertia,
-    /// [`Reason::Penetration`](crate::Reason::Penetration) for a foot deep in the ground,
-    /// [`Reason::Inconsistent`](crate::Reason::Inconsistent) for a loop that the pose or the velocity leaves open,
-    /// [`Reason::Missing`](crate::Reason::Missing) for a contact without friction or a stance without a foot,
-    /// [`Reason::MatricesTooLarge`](crate::Reason::MatricesTooLarge) for hundreds of contacts,
-    /// [`Reason::NotFinite`](crate::Reason::NotFinite) for numbers whose products leave the range of f64.
+    /// Of the [`Reason`](crate::Reason)s `Singular` for a coordinate without inertia, `Penetration` for a foot deep in the
+    /// ground, `Inconsistent` for a loop that the pose or the velocity leaves open, `Missing` for a contact without
+    /// friction or a stance without a foot, `MatricesTooLarge` for hundreds of contacts, and `NotFinite` for numbers whose
+    /// products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
         let mut answer = self.answer(state, None)?;
         if let Some(uncertainty) = &state.uncertainty {
@@ -244,7 +242,7 @@ impl<'r> Pipeline<'r> {
     /// friction per contact.
     ///
     /// # Errors
-    /// [`Reason::Singular`](crate::Reason::Singular) for a coordinate without inertia, and lengths that do not fit.
+    /// `Singular` for a coordinate without inertia, and lengths that do not fit.
     pub fn contact_problem(
         &mut self,
         configuration: &Configuration,

@@ -15,7 +15,7 @@ use crate::dynamics::{Arm, Constraints, Workspace, kinetic_energy};
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
-use crate::planar::Vector;
+use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::state::{Ground, Scene, State};
 
@@ -287,23 +287,20 @@ impl Pipeline<'_> {
     /// Takes contacts below the resting speed as exactly at rest; gives which.
     fn snap(&mut self, contacts: &[Contact], notes: &mut Vec<String>) -> Vec<bool> {
         let limit = self.options.resting_speed;
-        let speeds = self.assembly.workspace.contact_velocity.iter_mut().zip(contacts);
-        speeds
-            .map(|(speed, contact)| {
-                let slow = libm::hypot(speed[0], speed[1]);
-                // A speed that is zero to rounding is one of them.
-                let snapped = limit > 0.0 && slow < limit;
-                if snapped && slow > 0.0 {
-                    *speed = [0.0; 2];
-                    notes.push(format!(
-                        "{} moves at {slow:.1e} m/s and is taken as exactly at rest (resting speed {limit} m/s); the \
-                         velocities of base and joints are not changed for it",
-                        contact.name
-                    ));
-                }
-                snapped
-            })
-            .collect()
+        let snapped = |(speed, Contact { name, .. }): (&mut Pair<f64>, &Contact)| {
+            let slow = libm::hypot(speed[0], speed[1]);
+            // A speed that is zero to rounding is one of them.
+            let snapped = limit > 0.0 && slow < limit;
+            if snapped && slow > 0.0 {
+                *speed = [0.0; 2];
+                notes.push(format!(
+                    "{name} moves at {slow:.1e} m/s and is taken as exactly at rest (resting speed {limit} m/s); the \
+                     velocities of base and joints are not changed for it"
+                ));
+            }
+            snapped
+        };
+        self.assembly.workspace.contact_velocity.iter_mut().zip(contacts).map(snapped).collect()
     }
 
     /// Bounds the rounding of G and c; without proofs that of G is taken for what was measured.
@@ -322,29 +319,27 @@ impl Pipeline<'_> {
     /// Notes speeds that are no more than rounding.
     fn note_slow(&self, contacts: &[Contact], notes: &mut Vec<String>) {
         let speeds = self.assembly.workspace.contact_velocity.iter().zip(&self.bounds.velocity);
-        for (contact, (speed, noise)) in contacts.iter().zip(speeds) {
-            let slow = libm::hypot(speed[0], speed[1]);
-            let bound = libm::hypot(noise[0], noise[1]);
+        for (Contact { name, .. }, (speed, noise)) in contacts.iter().zip(speeds) {
+            let [slow, bound] = [speed, noise].map(|pair| libm::hypot(pair[0], pair[1]));
             if bound > 0.0 && slow <= bound {
                 notes.push(format!(
-                    "{} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, say so by \
-                     `stance` or `resting_speed`",
-                    contact.name
+                    "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, say so \
+                     by `stance` or `resting_speed`"
                 ));
             }
         }
     }
 
     fn problem(&self, scene: &Scene, contacts: &[Contact], change: &[f64]) -> Result<ContactProblem> {
-        let mut friction = Vec::with_capacity(contacts.len());
-        for contact in contacts {
-            friction.push(scene.friction.of(contact.link).ok_or_else(|| {
+        let friction = contacts.iter().map(|contact| {
+            scene.friction.of(contact.link).ok_or_else(|| {
                 let name = &self.robot.links[contact.link].name;
                 Error::new(Reason::Missing(format!("the friction of link \"{name}\", which touches the ground,")))
                     .at("friction")
                     .hint("add \"friction\": 0.8 (or \"infinite\") to the state, or set `friction: 0.8` for all states")
-            })?);
-        }
+            })
+        });
+        let friction = friction.collect::<Result<Vec<_>>>()?;
         let restitution = contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect();
         let before = self.assembly.workspace.contact_velocity.clone();
         let free = if scene.impulses.is_empty() { before.clone() } else { self.assembly.free(&before, change) };

@@ -40,15 +40,6 @@ struct Scope {
     bits: usize,
 }
 
-impl Scope {
-    fn enter(bits: usize) -> Self {
-        STORE.with_borrow_mut(|store| {
-            let outer = std::mem::replace(&mut store.bits, bits.max(2));
-            Self { length: store.values.len(), bits: outer }
-        })
-    }
-}
-
 impl Drop for Scope {
     fn drop(&mut self) {
         STORE.with_borrow_mut(|store| {
@@ -61,12 +52,15 @@ impl Drop for Scope {
 impl Interval {
     /// Runs `work` on numbers of `bits` bits and frees the numbers that it made.
     pub fn scope<R>(bits: usize, work: impl FnOnce() -> R) -> R {
-        let _scope = Scope::enter(bits);
+        let _scope = STORE.with_borrow_mut(|store| {
+            let outer = std::mem::replace(&mut store.bits, bits.max(2));
+            Scope { length: store.values.len(), bits: outer }
+        });
         work()
     }
 
     fn value(self) -> Option<Enclosed> {
-        STORE.with_borrow(|store| store.values.get(self.0?).cloned())
+        STORE.with_borrow(|store| store.get(self).cloned())
     }
 
     fn keep(value: Option<Enclosed>) -> Self {
@@ -76,19 +70,18 @@ impl Interval {
     #[inline]
     fn combine(self, other: Self, operation: impl FnOnce(&Enclosed, &Enclosed, usize) -> Option<Enclosed>) -> Self {
         STORE.with_borrow_mut(|store| {
-            let value = match (self.0, other.0) {
-                (Some(a), Some(b)) => match (store.values.get(a), store.values.get(b)) {
-                    (Some(a), Some(b)) => operation(a, b, store.bits),
-                    _ => None,
-                },
-                _ => None,
-            };
+            let result = |store: &Store| operation(store.get(self)?, store.get(other)?, store.bits);
+            let value = result(store);
             Self(store.push(value))
         })
     }
 }
 
 impl Store {
+    fn get(&self, number: Interval) -> Option<&Enclosed> {
+        self.values.get(number.0?)
+    }
+
     fn push(&mut self, value: Option<Enclosed>) -> Option<usize> {
         self.values.push(value.filter(Enclosed::is_sensible)?);
         Some(self.values.len() - 1)
@@ -199,8 +192,7 @@ impl Real for Interval {
 
 impl Ordered for Interval {
     fn sign(self) -> Sign {
-        let sign = || STORE.with_borrow(|store| Some(store.values.get(self.0?)?.sign()));
-        sign().unwrap_or(Sign::Undecided)
+        STORE.with_borrow(|store| store.get(self).map_or(Sign::Undecided, Enclosed::sign))
     }
 
     fn to_f64(self) -> f64 {
