@@ -14,6 +14,9 @@ use crate::scalar::{Ordered, Sign};
 /// Beyond this growth of rounding, f64 has lost the digits that an answer is expected to have.
 const F64_SERVES: f64 = 1e4;
 
+/// Combinations that are tried with many digits: more of many contacts take too long, and what is left is undecided.
+const PRECISE_COMBINATIONS: usize = 2_000;
+
 /// What an answer's numbers may be off by, in the scale of margins.
 const DIGITS: f64 = 1e-12;
 
@@ -78,7 +81,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let Self { undecided, coarse, collected } = self;
         // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
         let kernel = T::freeing(|| Kernel::of(exact)).unwrap_or_default();
-        let mut left = precision.combinations();
+        let mut left = if precision == Precision::Interval { PRECISE_COMBINATIONS } else { usize::MAX };
         undecided.retain(|pending| {
             if let Some(because) = kernel.excludes(&pending.modes) {
                 collected.reject(pending.number, &pending.modes, || Rejection::of(&pending.modes, because));
@@ -99,7 +102,12 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             collected.add(pending, solved);
             false
         });
-        precision.count(&mut collected.effort, before - undecided.len());
+        let effort = match precision {
+            Precision::Ball => &mut collected.effort.ball,
+            Precision::DoubleDouble => &mut collected.effort.double_double,
+            Precision::Interval => &mut collected.effort.precise,
+        };
+        *effort += before - undecided.len();
         undecided.is_empty()
     }
 }

@@ -1,7 +1,6 @@
 //! Parts of one scene that do not enter its analysis; those of the robot's file are in [`Robot`](crate::Robot).
 
 use super::Pipeline;
-use crate::contact::Contact;
 use crate::law::{Friction, Law};
 use crate::state::Scene;
 
@@ -22,13 +21,7 @@ pub enum LeftOut {
 
 impl Pipeline<'_> {
     /// Lists what a scene leaves out; `out_of_reach` is how many shapes are too far from the ground.
-    pub(super) fn left_out(
-        &self,
-        scene: &Scene,
-        contacts: &[Contact],
-        laws: &[Law],
-        out_of_reach: usize,
-    ) -> Vec<LeftOut> {
+    pub(super) fn left_out(&self, scene: &Scene, laws: &[Law], out_of_reach: usize) -> Vec<LeftOut> {
         let mut all = Vec::new();
         if self.options.reductions.held {
             all.extend(scene.held.iter().map(|&joint| LeftOut::Column(joint)));
@@ -39,7 +32,7 @@ impl Pipeline<'_> {
             None if out_of_reach > 0 => all.push(LeftOut::OutOfReach(out_of_reach)),
             _ => {}
         }
-        let with = |wanted: Law| (0..contacts.len()).filter(|&at| laws[at] == wanted).collect::<Vec<_>>();
+        let with = |wanted: Law| (0..laws.len()).filter(|&at| laws[at] == wanted).collect::<Vec<_>>();
         let [none, infinite] = [Friction::ZERO, Friction::Infinite].map(|friction| with(friction.into()));
         if self.options.reductions.frictionless && !none.is_empty() {
             all.push(LeftOut::Tangential(none));

@@ -223,7 +223,7 @@ impl<'r> Pipeline<'r> {
         notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
         let impact = Impact {
             velocity_before: prepared.problem.velocity_before().to_vec(),
-            left_out: self.left_out(scene, &prepared.contacts, prepared.problem.laws(), prepared.out_of_reach),
+            left_out: self.left_out(scene, prepared.problem.laws(), prepared.out_of_reach),
             matrices: self.options.matrices.then(|| self.matrices()),
             placement: prepared.placement,
             contacts: prepared.contacts,

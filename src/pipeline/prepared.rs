@@ -113,7 +113,7 @@ impl Pipeline<'_> {
         let (base, mut velocity, foot) = self.stand(state, &surface)?;
         self.close_loops(&scene.loops, foot.as_ref(), &mut velocity, &mut notes)?;
         let placement = Placement::new(&self.assembly.plan, &self.assembly.workspace, base);
-        let (contacts, out_of_reach) = self.contacts(scene, &placement, &surface, &mut notes)?;
+        let (contacts, out_of_reach) = self.contacts(scene, &self.footing(scene, &placement, &surface), &mut notes)?;
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
         self.assembly.points.clear();
@@ -249,14 +249,8 @@ impl Pipeline<'_> {
     }
 
     /// The closed contacts, and how many shapes were too far from the ground to be asked.
-    fn contacts(
-        &self,
-        scene: &Scene,
-        placement: &Placement,
-        surface: &Surface,
-        notes: &mut Vec<String>,
-    ) -> Result<(Vec<Contact>, usize)> {
-        let (footing, tolerance) = (self.footing(scene, placement, surface), self.tolerance());
+    fn contacts(&self, scene: &Scene, footing: &Footing, notes: &mut Vec<String>) -> Result<(Vec<Contact>, usize)> {
+        let tolerance = self.tolerance();
         let contacts = footing.contacts(tolerance)?;
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;

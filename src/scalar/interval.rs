@@ -30,7 +30,7 @@ struct Enclosed {
 /// A real number enclosed with as many bits as its scope has; unknown after a division by what may be zero.
 ///
 /// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; a handle must not leave its
-/// scope. So it is a [`Real`] like the others, and the hot path over `f64` passes values, not references.
+/// scope.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Interval(Option<usize>);
 

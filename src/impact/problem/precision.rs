@@ -9,14 +9,10 @@
 //! zero shows its sign once it has enough digits.
 
 use super::{ContactProblem, Source};
-use crate::impact::outcome::Effort;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered};
 
 /// Digits of the last numbers \[bit\].
 const BITS: [usize; 3] = [256, 1024, 4096];
-
-/// Combinations that are tried in each of them.
-const PRECISE_COMBINATIONS: usize = 2_000;
 
 /// A question about a problem that more digits may answer.
 pub trait PrecisionTask {
@@ -30,24 +26,6 @@ pub enum Precision {
     Ball,
     DoubleDouble,
     Interval,
-}
-
-impl Precision {
-    /// How many combinations are tried: many digits of many contacts take too long, and what is left is undecided.
-    pub fn combinations(self) -> usize {
-        match self {
-            Self::Ball | Self::DoubleDouble => usize::MAX,
-            Self::Interval => PRECISE_COMBINATIONS,
-        }
-    }
-
-    pub fn count(self, effort: &mut Effort, combinations: usize) {
-        match self {
-            Self::Ball => effort.ball += combinations,
-            Self::DoubleDouble => effort.double_double += combinations,
-            Self::Interval => effort.precise += combinations,
-        }
-    }
 }
 
 /// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open.
