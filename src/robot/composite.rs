@@ -35,14 +35,14 @@ pub(super) fn is_physical(inertia: &Matrix) -> bool {
 
 /// The inertia that a link brings to its body, in the body's frame.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Part {
+pub(super) struct LinkInertia {
     mass: f64,
     com: Vector<f64>,
     /// About the normal through the CoG \[kg m^2\].
     moment: f64,
 }
 
-impl Part {
+impl LinkInertia {
     /// A point mass.
     pub(super) fn point(mass: f64, com: Vector<f64>) -> Self {
         Self { mass, com, moment: 0.0 }
@@ -75,7 +75,7 @@ impl Part {
 }
 
 /// Mass, CoG and moment about the CoG of all `parts` as one; a single one with mass keeps its digits.
-pub(super) fn composite(parts: &[Part]) -> (f64, Vector<f64>, f64) {
+pub(super) fn composite(parts: &[LinkInertia]) -> (f64, Vector<f64>, f64) {
     let mass = parts.iter().map(|part| part.mass).sum();
     let mut massive = parts.iter().filter(|part| part.mass > 0.0);
     let com = match (massive.next(), massive.next()) {
@@ -102,7 +102,7 @@ mod tests {
 
     fn projected(inertia: Matrix, rpy: [f64; 3]) -> Result<f64, Reason> {
         let rotation = Pose { xyz: [0.0; 3], rpy }.rotation();
-        Part::projected(1.0, Vector::zero(), Some(&inertia), &rotation).map(|part| part.moment)
+        LinkInertia::projected(1.0, Vector::zero(), Some(&inertia), &rotation).map(|part| part.moment)
     }
 
     const INERTIA: Matrix = [[0.3, 0.01, -0.02], [0.01, 0.1, 0.03], [-0.02, 0.03, 0.25]];
@@ -131,7 +131,7 @@ mod tests {
         let third = 1.0 / 3.0;
         let rod = [[2.0 * third, -third, -third], [-third, 2.0 * third, -third], [-third, -third, 2.0 * third]];
         let rotation = [[0.0; 3], [3.0_f64.sqrt().recip(); 3], [0.0; 3]];
-        let part = Part::projected(1.0, Vector::zero(), Some(&rod), &rotation).expect("no error");
+        let part = LinkInertia::projected(1.0, Vector::zero(), Some(&rod), &rotation).expect("no error");
         assert!((0.0..1e-15).contains(&part.moment));
     }
 
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn masses_add_by_steiner() {
-        let part = |mass, com: [f64; 2], moment| Part { mass, com: com.into(), moment };
+        let part = |mass, com: [f64; 2], moment| LinkInertia { mass, com: com.into(), moment };
         // 1 kg at x = 0 and 3 kg at x = 4: CoG at 3, distances 3 and 1.
         let whole = composite(&[part(1.0, [0.0, 2.0], 0.5), part(3.0, [4.0, 2.0], 0.25)]);
         assert_eq!(whole, (4.0, Vector::new(3.0, 2.0), 0.5 + 9.0 + 0.25 + 3.0));

@@ -1,7 +1,7 @@
 //! Description -> robot: the tree placed at zero coordinates, projected into its plane, and welded at joints that leave
 //! it.
 
-use super::composite::{Part, composite};
+use super::composite::{LinkInertia, composite};
 use super::outline::outline;
 use super::plane::{PARALLEL, Plane};
 use super::posture::Posture;
@@ -86,7 +86,7 @@ impl Robot {
             if let Some(inertial) = &link.inertial {
                 let Inertial { origin, mass, inertia } = inertial;
                 let frame = place.frame(origin);
-                let part = Part::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
+                let part = LinkInertia::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
                 parts[place.body].push(part.map_err(|reason| link.refuse(reason))?);
             }
             robot.left_out.extend(left_out::doubtful_inertia(link));

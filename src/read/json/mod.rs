@@ -22,9 +22,9 @@ use std::collections::HashSet;
 /// compares schemas and readers value by value.
 pub(crate) const FORMAT: &str = include_str!("../format.json");
 
-/// The step from a parent to a node.
+/// The way from a parent to a node.
 #[derive(Debug, Clone, Copy)]
-enum Step<'n> {
+enum Way<'n> {
     Root { text: &'n str, names: Option<&'n Names> },
     Field { parent: &'n Node<'n>, key: &'n str },
     Entry { parent: &'n Node<'n>, index: usize },
@@ -34,19 +34,19 @@ enum Step<'n> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node<'n> {
     value: &'n Value<'n>,
-    step: Step<'n>,
+    way: Way<'n>,
 }
 
 impl<'n> Node<'n> {
     /// The root of the tree that was read from `text`; with `names` any number may be an expression of them.
     pub(crate) fn root(value: &'n Value<'n>, text: &'n str, names: Option<&'n Names>) -> Self {
-        Self { value, step: Step::Root { text, names } }
+        Self { value, way: Way::Root { text, names } }
     }
 
     /// The key under which the value stands; empty for the root and for entries of lists.
     pub(crate) fn key(&self) -> &'n str {
-        match self.step {
-            Step::Field { key, .. } => key,
+        match self.way {
+            Way::Field { key, .. } => key,
             _ => "",
         }
     }
@@ -56,7 +56,7 @@ impl<'n> Node<'n> {
         let Value::Object(fields) = self.value else {
             return Err(self.expected("an object"));
         };
-        let field = |key, value| Node { value, step: Step::Field { parent: self, key } };
+        let field = |key, value| Node { value, way: Way::Field { parent: self, key } };
         if let Some(second) = second_of_its_name(fields) {
             let name = second.to_owned();
             return Err(field(second, self.value).refuse_name(second, Reason::Duplicate { what, name }));
@@ -87,7 +87,7 @@ impl<'n> Node<'n> {
             return Err(self.expected("a list"));
         };
         let entries = entries.iter().enumerate();
-        Ok(entries.map(move |(index, value)| Node { value, step: Step::Entry { parent: self, index } }))
+        Ok(entries.map(move |(index, value)| Node { value, way: Way::Entry { parent: self, index } }))
     }
 
     /// The list of exactly `N` numbers, described by `expected`.
@@ -146,9 +146,9 @@ impl<'n> Node<'n> {
 
     /// What expressions are made of, where a string may be one.
     pub(crate) fn names(&self) -> Option<&'n Names> {
-        match self.step {
-            Step::Root { names, .. } => names,
-            Step::Field { parent, .. } | Step::Entry { parent, .. } => parent.names(),
+        match self.way {
+            Way::Root { names, .. } => names,
+            Way::Field { parent, .. } | Way::Entry { parent, .. } => parent.names(),
         }
     }
 
@@ -245,10 +245,10 @@ impl<'n> Node<'n> {
 
     /// The keys and indices from the root on, as in `contacts[0].offset`.
     fn place(&self) -> String {
-        match self.step {
-            Step::Root { .. } => String::new(),
-            Step::Entry { parent, index } => format!("{}[{index}]", parent.place()),
-            Step::Field { parent, key } => match parent.place() {
+        match self.way {
+            Way::Root { .. } => String::new(),
+            Way::Entry { parent, index } => format!("{}[{index}]", parent.place()),
+            Way::Field { parent, key } => match parent.place() {
                 outer if outer.is_empty() => key.to_owned(),
                 outer => format!("{outer}.{key}"),
             },
@@ -257,15 +257,15 @@ impl<'n> Node<'n> {
 
     /// Line and column of `name`, else of the nearest key on the way to the root, if it stands in the text as it is.
     fn location(&self, name: &str) -> (usize, usize) {
-        let (mut key, mut step) = (None, self.step);
+        let (mut key, mut way) = (None, self.way);
         let text = loop {
-            step = match step {
-                Step::Root { text, .. } => break text,
-                Step::Field { parent, key: nearer } => {
+            way = match way {
+                Way::Root { text, .. } => break text,
+                Way::Field { parent, key: nearer } => {
                     key = key.or(Some(nearer));
-                    parent.step
+                    parent.way
                 }
-                Step::Entry { parent, .. } => parent.step,
+                Way::Entry { parent, .. } => parent.way,
             };
         };
         let offset = [Some(name), key].into_iter().flatten().find_map(|anchor| offset_in(text, anchor));

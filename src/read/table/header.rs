@@ -33,9 +33,6 @@ pub enum Rates {
 pub struct Header {
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<Column>,
-    /// The columns that are copied to the results.
-    pub(crate) carried: Vec<usize>,
-    pub(crate) id: Option<usize>,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
 }
@@ -88,10 +85,8 @@ impl Header {
             };
             columns.push(column.map_err(|error| in_column(error, record, at))?);
         }
-        let carried = (0..columns.len()).filter(|&at| columns[at] == Column::Carried).collect();
         let time = names.iter().position(|name| name == "time");
-        let mut header = Self { names, columns, carried, id: None, time, spatial: None };
-        header.id = header.place(Column::Id);
+        let mut header = Self { names, columns, time, spatial: None };
         header.spatial = header.spatial(record, robot)?;
         header.check(record, robot, rates)?;
         Ok(header)
@@ -111,18 +106,22 @@ impl Header {
     /// Names of the columns that are not read, because their joints have no coordinate: they are frozen, fixed or mimic
     /// joints.
     pub fn ignored(&self) -> impl Iterator<Item = &str> {
-        let ignored = self.columns.iter().zip(&self.names).filter(|(column, _)| **column == Column::Ignored);
-        ignored.map(|(_, name)| name.as_str())
+        self.places(Column::Ignored).map(|at| self.names[at].as_str())
     }
 
     /// Names of the columns that are copied to the results.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
-        self.carried.iter().map(|&at| self.names[at].as_str())
+        self.places(Column::Carried).map(|at| self.names[at].as_str())
     }
 
-    /// The first column of a kind.
+    /// The columns of a kind.
+    pub(super) fn places(&self, wanted: Column) -> impl Iterator<Item = usize> {
+        (0..self.columns.len()).filter(move |&at| self.columns[at] == wanted)
+    }
+
+    /// The first one.
     pub(super) fn place(&self, wanted: Column) -> Option<usize> {
-        self.columns.iter().position(|column| *column == wanted)
+        self.places(wanted).next()
     }
 
     /// The columns of a base in three dimensions, if it is given so.

@@ -99,7 +99,7 @@ impl Row<'_> {
 
     /// Its id, if it can be read.
     pub fn id(&self) -> Option<Value> {
-        let text = std::str::from_utf8(self.record.get(self.header.id?)?).ok()?;
+        let text = std::str::from_utf8(self.record.get(self.header.place(Column::Id)?)?).ok()?;
         (!text.is_empty()).then(|| Value::String(text.to_owned()))
     }
 
@@ -108,7 +108,7 @@ impl Row<'_> {
         if self.record.len() != self.header.columns.len() {
             return Carried::default();
         }
-        Carried(self.header.carried.iter().filter_map(|&at| self.record.get(at)).collect())
+        Carried(self.header.places(Column::Carried).filter_map(|at| self.record.get(at)).collect())
     }
 
     /// The time \[s\].
