@@ -218,12 +218,4 @@ mod tests {
         assert_eq!(quarter.apply(Vector::new(1.0, 0.0)), Vector::new(0.0, -1.0));
         assert_eq!(Vector::new(0.0, 1.0).perpendicular(), Vector::new(1.0, 0.0));
     }
-
-    #[test]
-    fn inertia_moves_by_steiner() {
-        let at_cog = Inertia { mass: 2.0, first: Vector::new(0.0, 0.0), second: 0.5 };
-        let moved = at_cog.seen_from(Vector::new(3.0, 4.0));
-        assert_eq!(moved, Inertia { mass: 2.0, first: Vector::new(6.0, 8.0), second: 50.5 });
-        assert_eq!(moved.seen_from(Vector::new(-3.0, -4.0)), at_cog);
-    }
 }

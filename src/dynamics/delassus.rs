@@ -18,8 +18,7 @@ use crate::scalar::{Real, dot};
 pub fn delassus<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let nv = plan.columns();
     let Workspace { factor, contact_jacobian, contact_velocity, half, half_by_d, delassus, .. } = workspace;
-    half.clear();
-    half.extend_from_slice(contact_jacobian);
+    half.clone_from(contact_jacobian);
     for y in half.chunks_exact_mut(nv.max(1)) {
         factor.half_solve(plan, y);
     }

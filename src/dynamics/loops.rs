@@ -157,11 +157,11 @@ pub fn orthogonalize<T: Real>(
     let LoopRows { kept: coordinates, rows: order, basis, basis_by_d, squares, coupling } = &mut constraints;
     let Constraints { kept, rows } = kept;
     let nv = plan.columns();
-    coordinates.clear();
-    coordinates.extend_from_slice(kept);
-    order.clear();
-    order.extend_from_slice(rows);
-    let mut all: Vec<Vec<T>> = kept.iter().map(|&coordinate| unit_row(plan, coordinate)).collect();
+    kept.clone_into(coordinates);
+    rows.clone_into(order);
+    let one_at = |coordinate| move |&own: &usize| if own == coordinate { T::one() } else { T::zero() };
+    let unit_row = |&coordinate: &usize| plan.coordinates.iter().map(one_at(coordinate)).collect();
+    let mut all: Vec<Vec<T>> = kept.iter().map(unit_row).collect();
     all.extend(rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], workspace)));
     all.extend(foot.into_iter().flat_map(|foot| {
         let (arm, still, workspace) = (foot.arm(workspace), still(plan), &*workspace);
@@ -270,12 +270,6 @@ pub fn loop_impulse<T: Real>(loops: usize, amplitudes: &[T], workspace: &Workspa
 pub fn spent_energy(amplitudes: &[f64], workspace: &Workspace) -> f64 {
     let terms = amplitudes.iter().zip(&workspace.loops.squares);
     0.5 * terms.map(|(amplitude, square)| amplitude * amplitude * square).sum::<f64>()
-}
-
-/// The row of a coordinate that keeps its rate (nv).
-fn unit_row<T: Real>(plan: &Plan<T>, coordinate: usize) -> Vec<T> {
-    let entry = |&own: &usize| if own == coordinate { T::one() } else { T::zero() };
-    plan.coordinates.iter().map(entry).collect()
 }
 
 /// No velocity, for walks that need the motions only.

@@ -19,8 +19,7 @@ impl<T: Real> LtlFactor<T> {
         let nv = plan.columns();
         self.columns = nv;
         let h = &mut self.entries;
-        h.clear();
-        h.extend_from_slice(mass_matrix);
+        mass_matrix.clone_into(h);
         for k in (0..nv).rev() {
             for i in plan.ancestors(k) {
                 // u (u / D), never u u (1 / D): the latter underflows for small masses.

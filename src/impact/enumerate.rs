@@ -65,8 +65,7 @@ impl<T: Real> Tableau<T> {
         let n = problem.contacts();
         let width = 2 * n + 1;
         self.contacts = n;
-        self.laws.clear();
-        self.laws.extend_from_slice(problem.laws());
+        problem.laws().clone_into(&mut self.laws);
         self.depths.resize_with(n + 1, Vec::new);
         for depth in &mut self.depths {
             depth.resize(2 * n * width, T::zero());
@@ -244,8 +243,7 @@ pub struct Labels {
 impl Labels {
     /// Visits every list of a leaf's `modes`; `shares` is whether modes with the same impulses are visited as one.
     pub fn visit(&mut self, modes: &[Mode], laws: &[Law], shares: bool, mut visit: impl FnMut(&[Mode])) {
-        self.modes.clear();
-        self.modes.extend_from_slice(modes);
+        modes.clone_into(&mut self.modes);
         self.open.clear();
         let group = |(contact, (mode, law)): (usize, (&Mode, &Law))| {
             let group = law.modes().iter().find(|group| group[0] == *mode)?;

@@ -189,17 +189,9 @@ impl Rejection {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RejectionReason {
     /// The inequality that is violated most clearly.
-    Violated {
-        /// The contact.
-        contact: usize,
-        /// Its inequality.
-        inequality: Inequality,
-    },
+    Violated { contact: usize, inequality: Inequality },
     /// A frictionless contact that would stick although it moves along the ground.
-    NothingHolds {
-        /// The contact.
-        contact: usize,
-    },
+    NothingHolds { contact: usize },
     /// The equations of the modes contradict each other (det A = 0).
     NoSolution,
     /// The velocity belongs to another list of modes, because contacts depend on each other (det A = 0).
@@ -223,8 +215,7 @@ impl RejectionReason {
 
 /// The paper's section 4 for each contact: the body as seen from it while all other contacts stick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(rename = "Explained"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Explained"))]
 pub struct Explanation {
     /// Angle of the impulse that a purely tangential velocity change needs, atan(M_nt / M_tt) \[rad\].
     pub beta: Vec<f64>,
@@ -236,8 +227,7 @@ pub struct Explanation {
 
 /// The paper's regions of the plane of gamma and beta, for infinite friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(rename = "Region"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Region"))]
 pub enum ImpulseRegion {
     /// Lift-off.
     A,

@@ -101,9 +101,7 @@ impl Impact {
 /// The answer for one state, and what of its contacts was taken as given.
 struct Answer {
     impact: Impact,
-    /// The foot of the stance.
     foot: Option<Contact>,
-    /// Contacts that were taken as exactly at rest.
     resting: Vec<bool>,
     /// The rows of the loops that count.
     rows: Vec<usize>,

@@ -23,22 +23,10 @@ impl Midpoint for f64 {
         [self, 0.0]
     }
 
-    fn magnitude(self) -> f64 {
-        self.abs()
-    }
-
-    fn least_magnitude(self) -> f64 {
-        self.abs()
-    }
-
     #[inline]
     fn sum(self, other: Self) -> (Self, f64) {
         let (sum, error) = two_sum(self, other);
         (sum, error.abs())
-    }
-
-    fn sign_within(self, radius: f64) -> Sign {
-        Sign::within(self, radius)
     }
 }
 

@@ -156,16 +156,22 @@ pub trait Midpoint: Real {
     fn parts(self) -> [f64; 2];
 
     /// At least the absolute value.
-    fn magnitude(self) -> f64;
+    fn magnitude(self) -> f64 {
+        self.parts()[0].abs()
+    }
 
     /// At most the absolute value.
-    fn least_magnitude(self) -> f64;
+    fn least_magnitude(self) -> f64 {
+        self.parts()[0].abs()
+    }
 
     /// The sum and a bound of its error up to a relative 2^-52, which is zero if the sum is exact.
     fn sum(self, other: Self) -> (Self, f64);
 
     /// The sign of a number at most `radius` away.
-    fn sign_within(self, radius: f64) -> Sign;
+    fn sign_within(self, radius: f64) -> Sign {
+        Sign::within(self.parts()[0], radius)
+    }
 
     /// The greatest error of a product that was rounded to this number; its last part covers underflow.
     fn rounding(self) -> f64 {

@@ -8,14 +8,13 @@
 
 mod checks;
 mod source;
-mod precision;
 mod dense;
 mod repair;
 
 pub use checks::MATRIX_LIMIT;
 pub(crate) use checks::check_matrix_size;
-pub(super) use precision::{Precision, PrecisionTask, escalate};
 pub use source::{Errors, Source};
+pub(super) use source::{Precision, PrecisionTask, escalate};
 
 use self::dense::Dynamics;
 use self::repair::{Rows, is_semidefinite};

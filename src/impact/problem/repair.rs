@@ -2,7 +2,7 @@
 //! another.
 
 use super::ContactProblem;
-use super::precision::{Precision, PrecisionTask, escalate};
+use super::source::{Precision, PrecisionTask, escalate};
 use crate::impact::linear::{Unsettled, settled};
 use crate::scalar::{Ordered, Real, dot};
 
