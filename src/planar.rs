@@ -2,8 +2,7 @@
 //!
 //! The plane has axes *forward* (x) and *up* (z) and the normal n = up x forward. An angle is right-handed about n, so
 //! a positive one turns up toward forward: **clockwise** seen with forward to the right and up upward, the nose of a
-//! robot dips. A rotation is the pair (cos, sin) of such an angle; nothing here computes a cosine, so any [`Real`]
-//! works.
+//! robot dips. A rotation is the pair (cos, sin) of such an angle; any [`Real`] works.
 
 use crate::scalar::{Real, Trigonometry};
 use serde::{Deserialize, Serialize, Serializer};
@@ -51,8 +50,7 @@ impl<T: Real> Vector<T> {
         self.x * other.x + self.z * other.z
     }
 
-    /// The vector turned by a right angle about the normal: the velocity of a point at this arm from an axis that turns
-    /// at 1 rad/s.
+    /// The vector turned by a right angle about the normal: the velocity of a point at this arm by a turn at 1 rad/s.
     pub fn perpendicular(self) -> Self {
         Self { x: self.z, z: -self.x }
     }

@@ -79,9 +79,9 @@ impl Footing<'_> {
         Ok(Stance { base: place - foot.point, foot })
     }
 
-    /// All closed contacts: the named ones whatever their height, else every point of a foot within `tolerance` \[m\] of
-    /// the ground, in the order of the links and within a link along t of a plane, along x of a profile. A contact is
-    /// named after its link, and numbered where the link has several.
+    /// All closed contacts: the named ones whatever their height, else every point of a foot within `tolerance` \[m\]
+    /// of the ground, in the order of the links and within a link along t of a plane, along x of a profile. A contact
+    /// is named after its link, and numbered where the link has several.
     ///
     /// # Errors
     /// [`Reason::Penetration`] for the deepest of the feet that are deeper than the tolerance.
@@ -152,8 +152,7 @@ impl Footing<'_> {
         Some((self.name(link), distance))
     }
 
-    /// The links of feet that reach beyond an end of the ground no higher than `tolerance` \[m\] above it, and the end's x
-    /// \[m\].
+    /// The links of feet that reach beyond an end of the ground, at most `tolerance` above it, and the end's x \[m\].
     pub fn left_behind(&self, tolerance: f64) -> Vec<(&str, f64)> {
         let mut found: Vec<(usize, f64)> = Vec::new();
         for foot in self.feet.iter() {

@@ -113,8 +113,7 @@ impl<'p> Outline<'p> {
         [low.map(|entry| entry - margin), high.map(|entry| entry + margin)]
     }
 
-    /// The direction out of a corner's rim toward a point, and how far the point lies beyond the rim \[m\]; `None` from
-    /// the rim's center.
+    /// The direction out of a corner's rim toward a point, and how far it lies beyond \[m\]; `None` from the center.
     ///
     /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the centre,
     /// which is the nearest one where the distance is nothing; and the distance that to the tangent there.

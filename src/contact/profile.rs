@@ -9,8 +9,7 @@
 //!
 //! Each corner of one boundary belongs to the side of the other that it is above, or to the corner whose sides it is
 //! past, so that a spot touches once. What is within the tolerance touches; so a sole that lies flat on a tread touches
-//! with its corner and at the edge that it overhangs. A side may go behind another by twice the tolerance, and only at
-//! a small angle.
+//! with its corner and at the edge that it overhangs. At a small angle a side may go behind another by twice it.
 
 use super::face::{Face, PARALLEL, distance, unit, upright};
 use super::feet::Foot;

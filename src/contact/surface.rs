@@ -71,8 +71,8 @@ impl Surface {
         }
     }
 
-    /// Where a foot is within `tolerance` of the ground, given `rounding` \[m\]. The outer error is for shapes that parry
-    /// does not serve, the inner one for a foot deeper than the tolerance.
+    /// Where a foot is within `tolerance` of the ground, given `rounding` \[m\]. The outer error is for shapes that
+    /// parry does not serve, the inner one for a foot deeper than the tolerance.
     pub(super) fn touching(
         &self,
         foot: &Foot,

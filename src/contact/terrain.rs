@@ -6,8 +6,7 @@
 //!
 //! The solid below the profile ends in upright walls below its ends. They bound the directions that the end points may
 //! push in, but are no ground themselves. A corner is convex where the ground falls away behind it, and concave in a
-//! notch. parry's polyline finds the segments near a foot and the nearest point; which side is inside, it does not
-//! know.
+//! notch. parry's polyline finds the segments near a foot and the nearest point, but not which side is inside.
 
 use super::face::{Face, distance, unit, upright};
 use super::point::{Circle, Touch};

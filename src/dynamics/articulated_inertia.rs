@@ -40,10 +40,8 @@ impl<T: Real> ArticulatedInertia<T> {
         }
     }
 
-    /// What a prismatic joint along `along` of pivot D leaves to the parent.
-    ///
-    /// Components along and across the joint are kept apart, so that what the joint does not pass on cancels before
-    /// rounding.
+    /// What a prismatic joint along `along` of pivot D leaves to the parent. Components along and across the joint are
+    /// kept apart, so that what the joint does not pass on cancels before rounding.
     pub(super) fn without_slide(&self, along: Vector<T>, rotor: T, pivot: T) -> Self {
         let across = along.perpendicular();
         let (pulled, pushed) = (self.stretch(along), self.stretch(across));

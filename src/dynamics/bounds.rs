@@ -115,8 +115,7 @@ impl Bounds {
         ENTRY * terms as f64 * UNIT_ROUNDOFF
     }
 
-    /// Bounds c = J v. With the foot of a `stance` the base's velocity is computed from the others'; `rests` says which
-    /// contacts are exactly at rest.
+    /// Bounds c = J v. The foot of a `stance` gives the base's velocity; the contacts that `rests` names are at rest.
     pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let mut bounds = std::mem::take(&mut self.velocity);
         let eta = self.entry_error(plan);

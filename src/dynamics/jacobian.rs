@@ -35,8 +35,7 @@ impl<T: Real> ContactPoint<T> {
     }
 }
 
-/// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity` (dq/dt by
-/// coordinate).
+/// Computes J (2n x nv, rows tangential and normal per contact) and c (n, \[m/s\]) for `velocity`, dq/dt.
 ///
 /// With a `stance` (an index into `contacts`) that contact is exactly at rest, and so are further contacts of a body
 /// that does not turn: base velocities are taken as the ones that make it so.
@@ -133,8 +132,7 @@ fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     })
 }
 
-/// Kinetic energy \[J\] for `velocity` (dq/dt by coordinate, braked joints included), after `kinematics`: body by body,
-/// independent of the mass matrix.
+/// Kinetic energy \[J\] for `velocity` (dq/dt, braked joints included): body by body, independent of the mass matrix.
 ///
 /// ```text
 ///     T = sum of 1/2 (m u.u + 2 omega u.turned(h) + I omega^2) + 1/2 rotor rate^2

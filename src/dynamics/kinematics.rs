@@ -7,10 +7,7 @@ use crate::dynamics::plan::{Configuration, Motion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
-/// Computes every body's rotation and arm for a configuration (cos, sin and displacement per coordinate and mimic
-/// joint).
-///
-/// Only differences of position enter the dynamics, so the base's x and z are not read.
+/// Computes every body's rotation and arm. Only differences of position enter, so the base's x and z are not read.
 pub fn kinematics<T: Real>(plan: &Plan<T>, configuration: &Configuration<T>, workspace: &mut Workspace<T>) {
     let Workspace { rotation, arm, direction, .. } = workspace;
     rotation.clear();

@@ -1,5 +1,4 @@
-//! Loops: pairs of points that stay together, eliminated before the contact problem; and braked joints that have a
-//! column.
+//! Loops, pairs of points that stay together, eliminated before the contact problem; and braked joints with a column.
 //!
 //! ```text
 //!     K v = 0,   K = J_a - J_b            M (v+ - v-) = J^T L + K^T l            W = K M^-1 K^T
@@ -96,9 +95,8 @@ impl<T: Real> Loop<T> {
 /// Chooses the rows of K that do not follow from others, the most independent first: of each more than `tolerance` is
 /// left, as a part of the squared motions of its two points, after its part along those before it is taken away.
 ///
-/// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column counts
-/// by the greatest motion that it gives to an end of a loop, which makes the choice free of units; one that is `kept`
-/// counts nothing.
+/// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column but a
+/// `kept` one counts by the greatest motion that it gives to an end of a loop, which makes the choice free of units.
 pub fn independent_rows(
     plan: &Plan,
     loops: &[Loop],

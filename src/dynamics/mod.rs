@@ -216,8 +216,10 @@ mod tests {
         ) {
             // A link between revolute joints may weigh nothing.
             let massless = massless.index(case.robot.bodies.len());
-            let mut beside = case.robot.joints.iter().filter(|joint| joint.parent == massless || joint.child == massless);
-            if beside.clone().count() > 1 && massless > 0 && beside.all(|joint| matches!(joint.axis, Axis::Revolute { .. })) {
+            let beside = |joint: &&Joint| joint.parent == massless || joint.child == massless;
+            let mut beside = case.robot.joints.iter().filter(beside);
+            let revolute = |joint: &Joint| matches!(joint.axis, Axis::Revolute { .. });
+            if massless > 0 && beside.clone().count() > 1 && beside.all(revolute) {
                 let body = &mut case.robot.bodies[massless];
                 (body.mass, body.moment) = (0.0, 0.0);
             }
@@ -263,7 +265,8 @@ mod tests {
             bounds.delassus(&plan, &workspace);
             prop_assume!(bounds.delassus.is_finite());
 
-            let exact = case.computed::<Exact>(&Plan::new(&case.robot, &[], &[]), &case.points(0.0, Rotation::identity()));
+            let points = case.points(0.0, Rotation::identity());
+            let exact = case.computed::<Exact>(&Plan::new(&case.robot, &[], &[]), &points);
             let rows = 2 * contacts.len();
             // How far the f64 may be from the exact number, and at least is.
             let off = |found: f64, exact: Exact| ((exact - Exact::from_f64(found)).to_f64()).abs() - exact.error();

@@ -15,8 +15,7 @@
 //! ```
 //!
 //! T is never formed: what several bodies bring to one entry is added up. A column then belongs to more than one
-//! branch, and its parent is that of the elimination tree, so that the factorization fills in nothing beyond its
-//! ancestors.
+//! branch, and its parent is that of the elimination tree: the factorization fills in nothing beyond its ancestors.
 
 use crate::planar::{Inertia, Rotation, Vector};
 use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
@@ -58,8 +57,7 @@ pub(crate) struct PlanBody<T> {
     pub rotor: T,
 }
 
-/// The joint's motion in numbers of the plan; `rate` is its motion for a unit rate of its coordinate. A body on a fixed
-/// joint is rigid on its parent.
+/// The joint's motion in numbers of the plan; `rate` is its motion for a unit rate of its coordinate.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Motion<T> {
     Root,

@@ -3,8 +3,7 @@
 //! In the scale of [`Scale`] (velocities c_i / (S sqrt(G_ii)), impulses L_i sqrt(G_ii) / S) a tableau has two classes
 //! of rows, velocities and impulses, and each row coefficients of the impulses still open and a constant. For each of
 //! the four one [`Class`] holds how large its f64 entries are and how far they may be from the true ones. Every step of
-//! the elimination is a sum of products and a quotient, so the bounds of the next tableau follow from those of the
-//! last:
+//! the elimination is a sum of products and a quotient, so the bounds of a tableau follow from those of the last:
 //!
 //! ```text
 //!     x y:    |x| e_y + |y| e_x + e_x e_y + rounding      x / p:   (e_x + |x / p| e_p) / (|p| - e_p) + rounding
@@ -150,8 +149,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Begins with a problem whose G is off by `delassus` (relative to sqrt(G_ii G_jj)) and whose scaled velocities are
-    /// off by `noise`.
+    /// Begins with a G off by `delassus` (relative to sqrt(G_ii G_jj)) and scaled velocities off by `noise`.
     pub fn load(&mut self, tableau: &Tableau<f64>, scale: &Scale, delassus: f64, noise: f64) {
         self.inverse.clear();
         self.inverse.extend(scale.mobility.iter().map(|mobility| 1.0 / mobility));

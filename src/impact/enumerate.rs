@@ -49,8 +49,7 @@ pub struct Leaf<'a, T> {
 pub trait Visitor<T> {
     fn leaf(&mut self, leaf: &Leaf<'_, T>);
 
-    /// The impulses of `contact` were eliminated from the tableau of depth `source`; that of depth `contact` + 1 is
-    /// new.
+    /// The impulses of `contact` were eliminated from the tableau of depth `source` to that of depth `contact` + 1.
     fn eliminated(&mut self, _tableau: &Tableau<T>, _contact: usize, _source: usize) {}
 }
 

@@ -11,8 +11,7 @@ use crate::planar::Pair;
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
-/// The sign of det B, or if it is zero that of the lowest coefficient of det(B + s I) that is not; `None` if all are
-/// zero.
+/// The sign of det B, or if it is zero that of the lowest coefficient of det(B + s I) that is not, if any.
 pub fn index<T: Ordered>(problem: &ContactProblem<T>, modes: &[Mode]) -> Result<Option<i8>, Unsettled> {
     let mut stuck: Vec<usize> = Vec::new();
     let mut sliding: Vec<(usize, Pair<T>)> = Vec::new();

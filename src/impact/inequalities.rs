@@ -4,8 +4,7 @@
 //!     slack s = N / det A      N and det A are as smooth as the problem is; s changes its sign at N = 0 and det A = 0
 //! ```
 //!
-//! A set of outcomes changes only if some N passes zero. Numbers are f64 without error bounds: they say where to look,
-//! and never what is true there.
+//! A set of outcomes changes only if some N passes zero. Numbers are f64 without error bounds: they say where to look.
 //!
 //! Cost: as the enumeration's, 4^n combinations of n contacts.
 

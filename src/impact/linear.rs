@@ -103,8 +103,7 @@ impl<T: Ordered> Solutions<T> {
     }
 }
 
-/// The solutions x of `equations`, each its coefficients of the `unknowns` followed by the right-hand side; `None` if
-/// they contradict each other.
+/// The solutions of `equations`, each its coefficients of the `unknowns`, then the right-hand side; `None` without any.
 pub fn solve<T: Ordered>(unknowns: usize, mut equations: Vec<Vec<T>>) -> Result<Option<Solutions<T>>, Unsettled> {
     let mut pivots = Vec::new();
     for column in 0..unknowns {
@@ -201,8 +200,7 @@ struct Dictionary<T> {
 }
 
 impl<T: Ordered> Dictionary<T> {
-    /// The variable of the lowest label that improves the objective, and whether it must rise. Entries of y come first,
-    /// and never leave the basis again.
+    /// The variable of the lowest label that improves the objective, and whether it must rise. Entries of y come first.
     fn entering(&self) -> Result<Option<(usize, bool)>, Unsettled> {
         let mut order: Vec<usize> = (0..self.nonbasic.len()).collect();
         order.sort_by_key(|&column| self.nonbasic[column]);
@@ -261,8 +259,7 @@ impl<T: Ordered> Dictionary<T> {
     }
 }
 
-/// The y whose smallest function is greatest, and that value, at most `cap` (without a cap an unbounded set would have
-/// no answer).
+/// The y whose smallest function is greatest, and that value, at most `cap`: an unbounded set needs one.
 pub fn widest<T: Ordered>(functions: &[Affine<T>], dimension: usize, cap: T) -> Result<(Vec<T>, T), Unsettled> {
     let mut least = cap;
     for function in functions {

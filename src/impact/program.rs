@@ -115,8 +115,7 @@ mod tests {
 
     #[test]
     fn a_function_that_binds_on_the_way_is_let_go_again() {
-        // L = (y1, y2) + (-2, -1) is shortest at (2, 1). y2 >= y1 - 1/2 binds on the way, and y1 <= 5/4 at the end
-        // alone.
+        // L = (y1, y2) + (-2, -1) is shortest at (2, 1). y2 >= y1 - 1/2 binds on the way, only y1 <= 5/4 at the end.
         let functions = [affine(0.5, &[-1.0, 1.0]), affine(1.25, &[-1.0, 0.0])];
         assert_eq!(least(&[-2.0, -1.0], &[&[1.0, 0.0], &[0.0, 1.0]], &functions), [1.25, 1.0]);
     }

@@ -8,8 +8,7 @@
 //! form a convex set; the combination is an outcome exactly when that set is not empty, which a linear program answers,
 //! and the impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a
 //! flat foot whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin.
-//! If even the velocity depends on y it is a family, given by its two ends. Nothing here has a tolerance: see
-//! [`super::linear`].
+//! If even the velocity depends on y it is a family, given by its ends. No tolerance decides: see [`super::linear`].
 
 use super::generators::Generators;
 use super::index::index;
@@ -237,8 +236,7 @@ impl<T: Ordered> Equations<'_, T> {
         Ok(modes)
     }
 
-    /// The only velocity of `space`, with its impulses; at `inside` no inequality is negative, and the smallest is
-    /// `least`.
+    /// The only velocity of `space`, with its impulses; at `inside` the smallest inequality is `least`, not negative.
     fn outcome(
         &self,
         space: &Solutions<T>,

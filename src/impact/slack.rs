@@ -84,8 +84,7 @@ impl Scale {
         condition.scale([self.mobility[2 * contact], self.mobility[2 * contact + 1]])
     }
 
-    /// How far velocities and impulses, by row, may be off: the largest error in the scale, relative to the largest of
-    /// them if that exceeds one.
+    /// The largest error of velocities and impulses, by row, in the scale, relative to the largest of them beyond one.
     pub fn error<T: Ordered>(&self, velocity: impl Iterator<Item = T>, impulse: impl Iterator<Item = T>) -> f64 {
         let velocity = velocity.zip(&self.mobility).map(|(number, mobility)| (number, 1.0 / mobility));
         let impulse = impulse.zip(&self.mobility).map(|(number, mobility)| (number, *mobility));

@@ -6,8 +6,7 @@
 //! ```
 //!
 //! Each step reads what the steps before it left in the workspace. The f64 pipeline finds contacts and bounds its
-//! rounding between the steps; [`super::exact`] takes them for every other number, and `accuracy` times them one by
-//! one.
+//! rounding between the steps; [`super::exact`] takes them for every other number, and `accuracy` times each.
 
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
@@ -26,8 +25,7 @@ pub enum Elimination {
     /// M = L^T D L along the tree's branches.
     #[default]
     Ltl,
-    /// Articulated bodies, without M: quicker for long chains and with narrower enclosures. They know neither mimic
-    /// joints nor constraints.
+    /// Articulated bodies, without M, mimic joints and constraints: quicker for long chains, with narrower enclosures.
     ArticulatedBodies,
 }
 
@@ -106,8 +104,7 @@ impl<T: Real> Assembly<T> {
         close(&self.plan, &self.loops, Closed::Velocity, velocity, &self.workspace)
     }
 
-    /// Adds to a `change` of velocity by impulses what the constraints answer; gives the loops' impulses on their
-    /// points a.
+    /// Adds to a `change` of velocity what the constraints answer; gives the loops' impulses on their points a.
     pub fn answer(&self, change: &mut [T]) -> Vec<Vector<T>> {
         if !self.is_constrained() {
             return Vec::new();
@@ -155,8 +152,7 @@ impl<T: Real> Assembly<T> {
         change
     }
 
-    /// c with a `change` of velocity. Only the change goes through J, so that a contact at rest before stays exactly so
-    /// without an impulse.
+    /// c with a `change` of velocity. Only the change goes through J: without an impulse a contact at rest stays so.
     pub fn free(&self, before: &[Pair<T>], change: &[T]) -> Vec<Pair<T>> {
         let free = before.iter().zip(&self.points).map(|(&[tangential, normal], point)| {
             let (more, axes) = (self.velocity_of(point, change), point.axes());

@@ -39,8 +39,8 @@ impl NamedLoop {
 }
 
 impl Pipeline<'_> {
-    /// Finds which rows of the loops count, and closes them in `velocity`; a `foot` that rests keeps resting. A loop that
-    /// the pose or the velocity leaves open is refused, with the gap.
+    /// Finds which rows of the loops count, and closes them in `velocity`; a `foot` that rests keeps resting. A loop
+    /// that the pose or the velocity leaves open is refused, with the gap.
     pub(super) fn close_loops(
         &mut self,
         named: &[NamedLoop],

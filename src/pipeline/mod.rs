@@ -171,10 +171,10 @@ impl<'r> Pipeline<'r> {
     /// Every outcome of one state.
     ///
     /// # Errors
-    /// Of the [`Reason`](crate::Reason)s `Singular` for a coordinate without inertia, `Penetration` for a foot deep in the
-    /// ground, `Inconsistent` for a loop that the pose or the velocity leaves open, `Missing` for a contact without
-    /// friction or a stance without a foot, `MatricesTooLarge` for hundreds of contacts, and `NotFinite` for numbers whose
-    /// products leave the range of f64.
+    /// The [`Reason`](crate::Reason)s are `Singular` for a coordinate without inertia, `Penetration` for a foot deep in
+    /// the ground, `Inconsistent` for a loop that the pose or the velocity leaves open, `Missing` for a contact without
+    /// friction or a stance without a foot, `MatricesTooLarge` for hundreds of contacts, and `NotFinite` for numbers
+    /// whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
         let mut answer = self.answer(state, None)?;
         if let Some(uncertainty) = &state.uncertainty {
@@ -192,8 +192,7 @@ impl<'r> Pipeline<'r> {
         self.answer(state, Some(chosen)).map(|answer| answer.impact)
     }
 
-    /// As [`Pipeline::impact`], whatever the state's uncertainty is; with `chosen` modes of rejected combinations, if
-    /// they are.
+    /// As [`Pipeline::impact_explaining`], if any modes are `chosen`.
     fn answer(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let prepared = self.prepare(state)?;
@@ -273,9 +272,8 @@ impl<'r> Pipeline<'r> {
         ContactProblem::new(self.assembly.workspace.delassus.clone(), before, friction, restitution)
     }
 
-    /// Completes an outcome by the robot's velocity after it, and by the impulses of the loops. `applied` is what the
-    /// applied impulses change in the `velocity` before by themselves, `free` the velocity after them without contact
-    /// impulses.
+    /// Completes an outcome by the robot's velocity after it and the impulses of the loops. `applied` is what applied
+    /// impulses alone change in the `velocity` before, `free` the velocity after them without contact impulses.
     fn set_velocity(&mut self, outcome: &mut Outcome, velocity: &[f64], applied: &[f64], free: &[f64]) {
         let constrained = self.assembly.is_constrained();
         let mut after = self.struck(if constrained { applied } else { free }, &outcome.impulse);

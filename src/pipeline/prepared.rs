@@ -190,12 +190,12 @@ impl Pipeline<'_> {
                 return Err(Error::new(Reason::Singular(what)).hint(match (is_joint, has_loops) {
                     (true, false) => "name the joint in `held`, or give it a `rotor_inertia`",
                     (true, true) => {
-                        "it needs inertia of its own, whatever the loops hold: give its links a mass or it a `rotor_inertia`, \
-                         however small, or name it in `held`"
+                        "it needs inertia of its own, whatever the loops hold: give its links a mass or it a \
+                         `rotor_inertia`, however small, or name it in `held`"
                     }
                     (false, _) => {
-                        "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of them, or \
-                         give it a `rotor_inertia`"
+                        "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of \
+                         them, or give it a `rotor_inertia`"
                     }
                 }));
             }
@@ -226,8 +226,7 @@ impl Pipeline<'_> {
         self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
     }
 
-    /// The root's origin and the velocity by coordinate; with a stance both are such that its foot stands, and the
-    /// foot.
+    /// The root's origin and the velocity by coordinate, with a stance such that its foot stands, and that foot.
     fn stand(&self, state: &State, surface: &Surface) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
         let mut velocity = state.velocity.clone();
         if !self.assembly.plan.floating {
@@ -317,8 +316,8 @@ impl Pipeline<'_> {
             let [slow, bound] = [speed, noise].map(|pair| libm::hypot(pair[0], pair[1]));
             if bound > 0.0 && slow <= bound {
                 notes.push(format!(
-                    "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, say so \
-                     by `stance` or `resting_speed`"
+                    "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
+                     say so by `stance` or `resting_speed`"
                 ));
             }
         }

@@ -9,8 +9,7 @@ use super::{Ordered, Real, Sign, Trigonometry};
 /// Numbers share their e_i, so that effects of a common cause cancel, which they do not between [`Ball`](super::Ball)s:
 /// an enclosure over intervals of half-width r is too wide by O(r^2) only (affine arithmetic: de Figueiredo and Stolfi,
 /// Numerical Algorithms 2004). Every operation encloses its exact result; all that is not linear, and all rounding,
-/// goes into `error`. As with the ball, exact zeros stay exact, and after a division by what may be zero nothing is
-/// known.
+/// goes into `error`. As with the ball, exact zeros stay exact, and a quotient by what may be zero is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine<const N: usize> {
     center: f64,
@@ -182,8 +181,7 @@ impl<const N: usize> Affine<N> {
         if self.is_exact_zero() {
             return self;
         }
-        // x / y = q + w / y with w = x - q y, of which little is left at the center; w / y = w / c - (w / c) (y - c) /
-        // y.
+        // x / y = q + w / y with w = x - q y, little of it at the center; w / y = w / c - (w / c) (y - c) / y.
         let quotient = self.center / divisor;
         let rest: [f64; N] = std::array::from_fn(|i| self.slopes[i] - quotient * other.slopes[i]);
         let reach: f64 = rest.iter().map(|slope| slope.abs()).sum();

@@ -29,8 +29,7 @@ struct Enclosed {
 
 /// A real number enclosed with as many bits as its scope has; unknown after a division by what may be zero.
 ///
-/// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; a handle must not leave its
-/// scope.
+/// It is a `Copy` handle into storage of its thread, which [`Interval::scope`] frees; it must not leave its scope.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Interval(Option<usize>);
 
@@ -88,8 +87,7 @@ impl Store {
     }
 }
 
-/// A rounded result and the greatest error of its rounding: a unit in the last place, twice what rounding to nearest
-/// needs.
+/// A rounded result and the greatest error of its rounding: a unit in the last place, twice what it needs.
 fn rounded(result: Result<dashu_float::round::Rounded<FBig<HalfEven, 2>>, FpError>, bits: usize) -> Option<Enclosed> {
     let result = result.ok()?;
     let exact = matches!(result, dashu_float::round::Rounded::Exact(_));

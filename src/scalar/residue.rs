@@ -211,8 +211,7 @@ impl Real for Residue {
 }
 
 impl Trigonometry for Residue {
-    /// The point of an angle: a homomorphism from the f64 angles to the circle, so that all relations between angles
-    /// hold.
+    /// The point of an angle: a homomorphism from f64 angles to the circle keeps all relations between angles.
     fn cos_sin(angle: f64) -> [Self; 2] {
         if !angle.is_finite() {
             return [Self::UNDEFINED; 2];

@@ -4,8 +4,7 @@
 
 use super::Enclosure;
 
-/// How often an angle is halved before the series: until it is below 2^-r, where r doublings and the terms of the
-/// series cost about the same.
+/// How often an angle is halved before the series: until r doublings cost about as much as its terms below 2^-r.
 pub(super) fn halvings(angle: f64, bits: u32) -> u32 {
     // No halving may underflow.
     let below = (bits.isqrt() / 2).min(900) as i32;
@@ -15,8 +14,7 @@ pub(super) fn halvings(angle: f64, bits: u32) -> u32 {
 
 /// Cosine and sine of `angle` \[rad\], of which the series gives `bits` before each doubling loses up to two.
 ///
-/// The halved angle is exact and at most 1, so that the series alternate with falling terms, and the first term left
-/// out bounds the rest.
+/// The halved angle is exact and at most 1: the series alternate with falling terms, and the first left out bounds all.
 pub(super) fn cos_sin<N: Enclosure>(angle: f64, halvings: u32, bits: u32) -> [N; 2] {
     if angle == 0.0 {
         return [N::one(), N::zero()];

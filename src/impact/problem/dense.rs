@@ -19,8 +19,7 @@ pub(super) struct Dynamics {
 }
 
 impl Dynamics {
-    /// G = J M^-1 J^T by rows and c = J v, in numbers of any kind. M is eliminated without pivoting: it is positive
-    /// definite.
+    /// G = J M^-1 J^T by rows and c = J v in numbers of any kind, without pivoting: M is positive definite.
     pub fn numbers<T: Real>(&self) -> (Vec<T>, Vec<Pair<T>>) {
         let dofs = self.velocity.len();
         let lower = |i: usize, j: usize| T::from_f64(self.mass_matrix[i.max(j)][i.min(j)]);

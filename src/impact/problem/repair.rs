@@ -1,5 +1,4 @@
-//! A Delassus matrix that rounding made indefinite is replaced by the nearest that is semidefinite: no impact has
-//! another.
+//! A Delassus matrix that rounding made indefinite is replaced by the nearest that is semidefinite, as all are.
 
 use super::ContactProblem;
 use super::source::{Precision, PrecisionTask, escalate};

@@ -12,8 +12,7 @@ use super::{ContactProblem, Origin};
 use crate::planar::Pair;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Trigonometry};
 
-/// What stands behind the rounded numbers of a [`ContactProblem`]: data that are exact, and the way from them to G and
-/// c.
+/// What stands behind the rounded numbers of a [`ContactProblem`]: exact data, and the way from them to G and c.
 pub trait Source {
     /// The contact problem itself, in numbers of any kind.
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T>;
@@ -35,8 +34,7 @@ pub trait Source {
 /// Error bounds of a problem in f64.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors<'a> {
-    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite if nothing is known, neither of it nor
-    /// of the velocities.
+    /// Of an entry G_ij, relative to sqrt(G_ii G_jj) of the f64 matrix; infinite if nothing is known, not even of c.
     pub delassus: f64,
     /// Of c- and c_free, per contact \[m/s\]; `None` if they are exact.
     pub velocity: Option<&'a [Pair<f64>]>,
