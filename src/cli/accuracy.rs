@@ -67,7 +67,7 @@ pub(super) fn run(args: &Args) -> Completion {
 
 fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accuracy, Failure> {
     let robot = RobotOptions { robot: robot.to_owned(), ..RobotOptions::default() }.load()?;
-    let input = InputFile::read(state, LARGEST)?;
+    let input = InputFile::read(state, InputFile::LARGE)?;
     let document = only_document(&input)?;
     let state = State::from_json(document.text, &robot, &args.scene.defaults());
     let state = state.map_err(|error| input.refuse(document.locate(error)))?;
@@ -88,9 +88,6 @@ fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accura
     };
     Ok(Accuracy::new(vec![study], compliant))
 }
-
-/// The largest file of a state that is read \[bytes\].
-const LARGEST: u64 = 64 << 20;
 
 /// The case whose compliant contact is shown with the suite.
 const WALKER: &str = "friction infinite, biped";

@@ -8,9 +8,6 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The path that means standard input.
-const STANDARD_INPUT: &str = "-";
-
 /// A file or standard input that was read whole.
 pub(super) struct InputFile {
     /// Its name in messages.
@@ -20,6 +17,13 @@ pub(super) struct InputFile {
 }
 
 impl InputFile {
+    /// The most bytes of a list of loops or a manifest.
+    pub const SMALL: u64 = 1 << 20;
+    /// Of a robot, a mesh, a study or a single state.
+    pub const LARGE: u64 = 64 << 20;
+    /// Of states or problems after each other; `batch` reads line by line.
+    pub const MANY: u64 = 1 << 30;
+
     /// Reads `path`, of at most `limit` bytes: an endless file is refused.
     pub fn read(path: &Path, limit: u64) -> Result<Self> {
         let name = name(path);
@@ -46,24 +50,19 @@ impl InputFile {
 
 /// The name of a file in messages.
 pub(super) fn name(path: &Path) -> String {
-    if is_standard_input(path) { "<stdin>".to_owned() } else { path.display().to_string() }
+    if path == Path::new("-") { "<stdin>".to_owned() } else { path.display().to_string() }
 }
 
 /// Opens a file, or standard input for `-`.
 pub(super) fn stream(path: &Path) -> Result<Box<dyn Read + Send>> {
-    if is_standard_input(path) {
+    if path == Path::new("-") {
         return Ok(Box::new(io::stdin()));
     }
     Ok(Box::new(File::open(path).map_err(|error| cannot_read(path, &error))?))
 }
 
-/// The refusal of a file that cannot be read.
-pub(super) fn cannot_read(path: &Path, error: &io::Error) -> Error {
+fn cannot_read(path: &Path, error: &io::Error) -> Error {
     Error::new(Reason::Io(format!("cannot be read: {error}"))).in_file(name(path))
-}
-
-fn is_standard_input(path: &Path) -> bool {
-    path.as_os_str() == STANDARD_INPUT
 }
 
 /// Whether the file's name says that it holds one JSON object per line.

@@ -20,11 +20,6 @@ use heelstrike::{Error, Reason, Result};
 use percent_encoding::percent_decode_str;
 use std::path::{Component, Path, PathBuf};
 
-/// The largest mesh file that is read \[bytes\].
-const LARGEST: u64 = 64 << 20;
-/// The largest package.xml that is looked into \[bytes\].
-const LARGEST_MANIFEST: u64 = 1 << 20;
-
 /// Where meshes are looked for.
 pub(super) struct Meshes {
     /// The URDF file's folder.
@@ -54,7 +49,9 @@ impl Meshes {
         }
         let found = [&as_written, &decoded].into_iter().find_map(|name| self.find(name));
         let Some(path) = found else { return Ok(Err(self.missing(&decoded))) };
-        Ok(InputFile::read(&path, LARGEST).map(|input| input.bytes).map_err(|error| error.reason().to_string()))
+        Ok(InputFile::read(&path, InputFile::LARGE)
+            .map(|input| input.bytes)
+            .map_err(|error| error.reason().to_string()))
     }
 
     fn find(&self, name: &str) -> Option<PathBuf> {
@@ -123,7 +120,7 @@ fn is_package(folder: &Path, name: &str) -> bool {
     if !manifest.is_file() {
         return false;
     }
-    let Ok(manifest) = InputFile::read(&manifest, LARGEST_MANIFEST) else { return false };
+    let Ok(manifest) = InputFile::read(&manifest, InputFile::SMALL) else { return false };
     let text = String::from_utf8_lossy(&manifest.bytes);
     let own = text.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
     own.is_some_and(|(own, _)| own.trim() == name)

@@ -38,13 +38,10 @@ pub(super) struct LoopOptions {
 }
 
 impl LoopOptions {
-    /// The largest file that is read \[bytes\].
-    const LARGEST: u64 = 1 << 20;
-
     /// Reads the loops of `robot`.
     pub fn load(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
         let Some(path) = &self.loops else { return Ok(Vec::new()) };
-        let input = InputFile::read(path, Self::LARGEST)?;
+        let input = InputFile::read(path, InputFile::SMALL)?;
         input.text().and_then(|text| loops_from_json(text, robot)).map_err(|error| input.refuse(error))
     }
 }

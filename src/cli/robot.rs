@@ -11,9 +11,6 @@ use heelstrike::state::NamedContact;
 use heelstrike::{Error, Reason, Robot};
 use std::path::PathBuf;
 
-/// The largest URDF file that is read \[bytes\].
-const LARGEST: u64 = 64 << 20;
-
 /// The robot's file and what is added to it.
 #[derive(Debug, Default, clap::Args)]
 pub(super) struct RobotOptions {
@@ -107,7 +104,7 @@ impl RobotOptions {
 
     /// Reads the robot, with the description that it was reduced from.
     pub fn described(&self) -> Result<(Description, Reduction, Robot), Failure> {
-        let input = InputFile::read(&self.robot, LARGEST)?;
+        let input = InputFile::read(&self.robot, InputFile::LARGE)?;
         let text = input.text().map_err(|error| error.in_file(&input.name))?;
         let refuse = |error: Error| input.refuse(error);
         let mut description = Description::from_urdf(text).map_err(refuse)?;

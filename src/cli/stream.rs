@@ -15,8 +15,6 @@ use std::path::Path;
 /// Up to so many contacts the text sums up the rejected combinations even without `--explain`: 4^6 take no time.
 pub(super) const SUMMED_UP: usize = 6;
 
-/// The largest file of states or problems that is read at once \[bytes\]; `batch` reads line by line.
-const LARGEST: u64 = 1 << 30;
 /// So many refusals are shown with their line.
 const SHOWN: usize = 10;
 /// Of more refusals than this the rest is counted at the end.
@@ -47,8 +45,8 @@ pub(super) fn only_document(input: &InputFile) -> heelstrike::Result<Document<'_
 
 /// Answers every object of the file at `path`, each of them a `what`; `several` is the answer to more than one.
 ///
-/// `answer` appends the answer to an object, as text if there is a palette, else as a line of JSON, and returns the error
-/// that it contains, if any.
+/// `answer` appends the answer to an object, as text if there is a palette, else as a line of JSON, and returns the
+/// error that it contains, if any.
 pub(super) fn answer_all(
     what: &str,
     path: &Path,
@@ -57,7 +55,7 @@ pub(super) fn answer_all(
     several: Result<(), Failure>,
     mut answer: impl FnMut(&str, Option<&Palette>, &mut Vec<u8>) -> heelstrike::Result<Option<Error>>,
 ) -> Completion {
-    let input = InputFile::read(path, LARGEST)?;
+    let input = InputFile::read(path, InputFile::MANY)?;
     let name = &input.name;
     let whole = input.text().map_err(|error| error.in_file(name))?;
     if whole.trim_ascii().is_empty() {

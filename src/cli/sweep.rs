@@ -85,9 +85,6 @@ impl SweepFormat {
     }
 }
 
-/// The largest study that is read \[bytes\].
-const LARGEST: u64 = 64 << 20;
-
 /// How many samples are answered before they are written.
 const TOGETHER: usize = 4096;
 
@@ -99,7 +96,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;
-    let input = InputFile::read(&args.study, LARGEST)?;
+    let input = InputFile::read(&args.study, InputFile::LARGE)?;
     let refuse = |error: Error| input.refuse(error);
     let study = input.text().and_then(Study::from_json).map_err(refuse)?;
     let model = RobotStudy {

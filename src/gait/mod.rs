@@ -9,8 +9,8 @@
 //! scuffed over the ground. So a touchdown is recognized by motion: the height of every point that can touch (a
 //! circle's lowest, a polygon's corners) is followed. A *descent* is a run of rows in which it falls faster than
 //! [`Thresholds::slow`]. It is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last
-//! not falling, ends no higher than [`Thresholds::ground`] above z = 0, and is free toward the ground: the lowest of its
-//! body over a ground of some slope m near to level.
+//! not falling, ends no higher than [`Thresholds::ground`] above z = 0, and is free toward the ground: the lowest of
+//! its body over a ground of some slope m near to level.
 //!
 //! ```text
 //!     z_i - m x_i <= z_j - m x_j  for all points j of the body of i,        with one |m| <= 0.15
@@ -35,8 +35,8 @@
 //! * Neither goes back over two rows of one time: between them another foot may have struck.
 //! * If the descent ends above that height, the row at which it ends is taken as it is.
 //!
-//! A row within that distance that is followed by one of the same time is the state just before the impact, and is taken
-//! as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
+//! A row within that distance that is followed by one of the same time is the state just before the impact, and is
+//! taken as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
 //! [`Thresholds::above`] of z = 0; if it is below, the moment is the one at which it crosses z = 0. In every case the
 //! base is then shifted along z so that the striking point is at z = 0 (a base that is fixed to the world is not).
 //!
@@ -152,8 +152,8 @@ pub enum Touching {
     /// Of every other body the lowest point, if it is slower than `speed` \[m/s\] and its height differs from the
     /// striking point's by no more than `height` \[m\].
     Slow { speed: f64, height: f64 },
-    /// Every point free toward the ground whose height differs from the striking point's by no more than `height` \[m\],
-    /// however it moves.
+    /// Every point free toward the ground whose height differs from the striking point's by no more than `height`
+    /// \[m\], however it moves.
     Near { height: f64 },
 }
 

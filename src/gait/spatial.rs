@@ -1,5 +1,5 @@
-//! Motions in three dimensions, projected into the robot's plane row by row ([`project`]), and along the mean heading of
-//! each clip ([`sagittal`]).
+//! Motions in three dimensions, projected into the robot's plane row by row ([`project`]), and along the mean heading
+//! of each clip ([`sagittal`]).
 //!
 //! ```text
 //!     R = rotation(w, x, y, z) P^T        columns of R: the robot's forward f, normal and up in the world, z up

@@ -49,7 +49,8 @@ impl Tracked {
     }
 
     fn is_negligible(self, watched: &Watched) -> bool {
-        matches!(self, Self::Numerator(at) if watched.inequalities.negligible.get(at).is_some_and(|&negligible| negligible))
+        let negligible = &watched.inequalities.negligible;
+        matches!(self, Self::Numerator(at) if negligible.get(at).is_some_and(|&negligible| negligible))
     }
 
     fn values(self, nodes: &[Watched]) -> [f64; NODES] {
