@@ -1,10 +1,8 @@
 //! Traces borders through one cell of the plane of two parameters.
 
-use super::edge::{Crossing, Direction, Edge, GridLine, Segment};
+use super::edge::{Crossing, Edge, GridLine, Segment, Sides};
 use super::line::{Probe, RESOLUTION};
 use super::model::Solver;
-use super::regime::Regime;
-use super::transition::Transition;
 use std::sync::Arc;
 
 /// How often a cell is quartered, and into how many cells at most.
@@ -38,57 +36,39 @@ pub struct Trace<'s, 'm> {
     pub segments: Vec<Segment>,
 }
 
-/// A border that enters a cell, met on a walk around it, counter-clockwise.
+/// A border that enters a cell, met on a walk around it, counter-clockwise; what was met before is on its left.
 #[derive(Debug, Clone)]
 struct BorderEntry {
     point: [f64; 2],
-    before: Arc<Regime>,
-    after: Arc<Regime>,
-    /// What changes, with `before` below; `None` at a corner.
-    transition: Option<Arc<Transition>>,
+    sides: Sides,
 }
 
 impl BorderEntry {
-    fn new(line: GridLine, Crossing { at, below, above, transition }: &Crossing, direction: Direction) -> Self {
-        let (before, after, transition) = match direction {
-            Direction::Forward => (below, above, Arc::clone(transition)),
-            Direction::Backward => (above, below, Arc::new(transition.reversed())),
-        };
-        let (before, after, transition) = (Arc::clone(before), Arc::clone(after), Some(transition));
-        Self { point: line.point(*at), before, after, transition }
-    }
-
     /// The piece of the border from here to `to`.
     fn segment(&self, to: [f64; 2]) -> Segment {
-        let (left, right) = (Arc::clone(&self.before), Arc::clone(&self.after));
-        Segment { from: self.point, to, left, right, transition: self.transition.clone() }
+        Segment { from: self.point, to, sides: self.sides.clone() }
     }
 }
 
 impl GridCell {
     /// All borders that enter, counter-clockwise from the least corner.
     fn entries(&self) -> Vec<BorderEntry> {
-        use Direction::{Backward, Forward};
         let [[x0, y0], [x1, y1]] = self.corners;
         let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-        let mut entries: Vec<BorderEntry> = Vec::new();
-        let mut before = &self.edges[3].first;
-        for ((edge, direction), point) in self.edges.iter().zip([Forward, Forward, Backward, Backward]).zip(corners) {
-            let entry = |crossing| BorderEntry::new(edge.line, crossing, direction);
-            let (first, last) = match direction {
-                Forward => (&edge.first, edge.last()),
-                Backward => (edge.last(), &edge.first),
-            };
+        let [below, right, above, left] = &self.edges;
+        let walk = [below.clone(), right.clone(), above.reversed(), left.reversed()];
+        let mut entries = Vec::new();
+        let mut before = walk[3].last();
+        for (edge, point) in walk.iter().zip(corners) {
             // A border may pass through a corner itself: then two edges do not agree about it.
-            if before != first {
-                let (before, after) = (Arc::clone(before), Arc::clone(first));
-                entries.push(BorderEntry { point, before, after, transition: None });
+            if *before != edge.first {
+                let sides = Sides { left: Arc::clone(before), right: Arc::clone(&edge.first), transition: None };
+                entries.push(BorderEntry { point, sides });
             }
-            match direction {
-                Forward => entries.extend(edge.crossings.iter().map(entry)),
-                Backward => entries.extend(edge.crossings.iter().rev().map(entry)),
+            for Crossing { at, sides } in &edge.crossings {
+                entries.push(BorderEntry { point: edge.line.point(*at), sides: sides.clone() });
             }
-            before = last;
+            before = edge.last();
         }
         entries
     }
@@ -107,10 +87,7 @@ impl<'s, 'm> Trace<'s, 'm> {
         if entries.is_empty() {
             return;
         }
-        let alike = |a: &BorderEntry, b: &BorderEntry| match (&a.transition, &b.transition) {
-            (Some(a), Some(b)) => a.is_same_as(&b.reversed()),
-            _ => false,
-        };
+        let alike = |a: &Sides, b: &Sides| a.transition.is_some() && a.is_same_as(&b.reversed());
         let pairs = pairs(&entries, alike).or_else(|| pairs(&entries, |_, _| true));
         if let Some(pairs) = pairs {
             for [a, b] in pairs {
@@ -155,18 +132,18 @@ impl<'s, 'm> Trace<'s, 'm> {
         let solver = &mut *self.solver;
         let mut regime = |off: f64| solver.regime(&off_middle(off));
         let mut reach = STRAIGHT;
-        if regime(reach) == chord.left && regime(-reach) == chord.right {
+        if regime(reach) == chord.sides.left && regime(-reach) == chord.sides.right {
             return None;
         }
         while reach < 0.5 * length {
             reach = (4.0 * reach).min(0.5 * length);
             let (mut left, mut right) = (reach, -reach);
-            if regime(left) == chord.left && regime(right) == chord.right {
+            if regime(left) == chord.sides.left && regime(right) == chord.sides.right {
                 while left - right > FOUND {
                     let middle = 0.5 * (left + right);
                     match regime(middle) {
-                        found if found == chord.left => left = middle,
-                        found if found == chord.right => right = middle,
+                        found if found == chord.sides.left => left = middle,
+                        found if found == chord.sides.right => right = middle,
                         // Something else lies between: these two do not meet here.
                         _ => return None,
                     }
@@ -203,11 +180,12 @@ impl<'s, 'm> Trace<'s, 'm> {
 
 /// Pairs each entry with the one that has the same regimes the other way round and is `alike`; `None` if an entry has
 /// no such partner or several, or if pieces between them would cross.
-fn pairs(entries: &[BorderEntry], alike: impl Fn(&BorderEntry, &BorderEntry) -> bool) -> Option<Vec<[usize; 2]>> {
+fn pairs(entries: &[BorderEntry], alike: impl Fn(&Sides, &Sides) -> bool) -> Option<Vec<[usize; 2]>> {
     let mut pairs = Vec::new();
-    for (at, entry) in entries.iter().enumerate() {
-        let fits =
-            |other: &BorderEntry| other.before == entry.after && other.after == entry.before && alike(entry, other);
+    for (at, BorderEntry { sides, .. }) in entries.iter().enumerate() {
+        let fits = |BorderEntry { sides: other, .. }: &BorderEntry| {
+            other.left == sides.right && other.right == sides.left && alike(sides, other)
+        };
         let mut partners = (0..entries.len()).filter(|&other| other != at && fits(&entries[other]));
         let partner = partners.next()?;
         if partners.next().is_some() {

@@ -21,14 +21,35 @@ impl GridLine {
     }
 }
 
-/// A border that crosses an edge.
+/// What lies on both sides of a border, and what changes there.
+#[derive(Debug, Clone)]
+pub struct Sides {
+    pub left: Arc<Regime>,
+    pub right: Arc<Regime>,
+    /// With the left side below; `None` at a corner and along the frame.
+    pub transition: Option<Arc<Transition>>,
+}
+
+impl Sides {
+    pub fn reversed(&self) -> Self {
+        let transition = self.transition.as_ref().map(|transition| Arc::new(transition.reversed()));
+        Self { left: Arc::clone(&self.right), right: Arc::clone(&self.left), transition }
+    }
+
+    pub fn is_same_as(&self, other: &Self) -> bool {
+        (&self.left, &self.right) == (&other.left, &other.right)
+            && match (&self.transition, &other.transition) {
+                (Some(own), Some(other)) => own.is_same_as(other),
+                (own, other) => own.is_none() && other.is_none(),
+            }
+    }
+}
+
+/// A border that crosses an edge; smaller values are on its left.
 #[derive(Debug, Clone)]
 pub struct Crossing {
     pub at: f64,
-    /// The regimes at smaller and at greater values.
-    pub below: Arc<Regime>,
-    pub above: Arc<Regime>,
-    pub transition: Arc<Transition>,
+    pub sides: Sides,
 }
 
 /// An edge of a cell, from its least to its greatest place.
@@ -43,24 +64,12 @@ pub struct Edge {
     pub crossings: Vec<Crossing>,
 }
 
-/// In which direction an edge is walked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    Forward,
-    Backward,
-}
-
-/// A straight piece of a border, or of the frame around everything.
+/// A straight piece of a border, or of the frame around everything, which has the regime of its left on both sides.
 #[derive(Debug, Clone)]
 pub struct Segment {
     pub from: [f64; 2],
     pub to: [f64; 2],
-    /// The regime on its left.
-    pub left: Arc<Regime>,
-    /// The regime on its right; of the frame the left one.
-    pub right: Arc<Regime>,
-    /// What changes, with `left` below; `None` for the frame.
-    pub transition: Option<Arc<Transition>>,
+    pub sides: Sides,
 }
 
 impl Edge {
@@ -70,11 +79,10 @@ impl Edge {
         let place = |at: f64| line.point(at).to_vec();
         let found = brackets(&mut Along { solver, place }, &a, &b, resolution);
         let (stretches, borders) = stretches(a.clone(), b, &found, resolution);
-        let crossing = |bracket: &Bracket| Crossing {
-            at: bracket.at(),
-            below: Arc::clone(&bracket.below.regime),
-            above: Arc::clone(&bracket.above.regime),
-            transition: Arc::new(Transition::at(solver, bracket, place)),
+        let crossing = |bracket: &Bracket| {
+            let [left, right] = [&bracket.below, &bracket.above].map(|probe| Arc::clone(&probe.regime));
+            let transition = Some(Arc::new(Transition::at(solver, bracket, place)));
+            Crossing { at: bracket.at(), sides: Sides { left, right, transition } }
         };
         let crossings = borders.iter().map(crossing).collect();
         let first = stretches.first().map_or(a.regime, |stretch| Arc::clone(&stretch.regime));
@@ -82,7 +90,7 @@ impl Edge {
     }
 
     pub fn last(&self) -> &Arc<Regime> {
-        self.crossings.last().map_or(&self.first, |crossing| &crossing.above)
+        self.crossings.last().map_or(&self.first, |crossing| &crossing.sides.right)
     }
 
     pub fn part(&self, from: f64, to: f64) -> Self {
@@ -92,7 +100,7 @@ impl Edge {
             line: self.line,
             from,
             to,
-            first: Arc::clone(before.map_or(&self.first, |crossing| &crossing.above)),
+            first: Arc::clone(before.map_or(&self.first, |crossing| &crossing.sides.right)),
             crossings: self.crossings.iter().filter(inside).cloned().collect(),
         }
     }
@@ -101,17 +109,23 @@ impl Edge {
         self.part(at, self.to).first
     }
 
+    /// The same edge, walked the other way.
+    pub fn reversed(&self) -> Self {
+        let reversed = |crossing: &Crossing| Crossing { at: crossing.at, sides: crossing.sides.reversed() };
+        let crossings = self.crossings.iter().rev().map(reversed).collect();
+        Self { line: self.line, from: self.to, to: self.from, first: Arc::clone(self.last()), crossings }
+    }
+
     /// Its pieces of one regime each, which lies on their left.
-    pub fn pieces(&self, direction: Direction) -> Vec<Segment> {
+    pub fn pieces(&self) -> Vec<Segment> {
         let mut pieces = Vec::new();
-        let (mut from, mut regime) = (self.from, &self.first);
-        let ends = self.crossings.iter().map(|crossing| (crossing.at, &crossing.above)).chain([(self.to, self.last())]);
-        for (to, next) in ends {
-            let [a, b] = [from, to].map(|at| self.line.point(at));
-            let (a, b) = if direction == Direction::Forward { (a, b) } else { (b, a) };
-            let (left, right) = (Arc::clone(regime), Arc::clone(regime));
-            pieces.push(Segment { from: a, to: b, left, right, transition: None });
-            (from, regime) = (to, next);
+        let (mut at, mut regime) = (self.from, &self.first);
+        let ends = self.crossings.iter().map(|crossing| (crossing.at, &crossing.sides.right));
+        for (end, next) in ends.chain([(self.to, self.last())]) {
+            let [from, to] = [at, end].map(|at| self.line.point(at));
+            let sides = Sides { left: Arc::clone(regime), right: Arc::clone(regime), transition: None };
+            pieces.push(Segment { from, to, sides });
+            (at, regime) = (end, next);
         }
         pieces
     }

@@ -10,7 +10,7 @@
 //! two of them until a curve is straight to 5e-5 of the ranges.
 
 use super::cell::{GridCell, Trace};
-use super::edge::{Direction, Edge, GridLine, Segment};
+use super::edge::{Edge, GridLine, Segment};
 use super::interior::{deepest_nodes, distance};
 use super::letter;
 use super::line::{Probe, RESOLUTION};
@@ -143,13 +143,15 @@ impl<'p> Grid<'p> {
     fn frame(&self) -> Vec<Segment> {
         let (nx, ny) = (self.xs.len(), self.ys.len());
         let mut frame = Vec::new();
+        let mut add = |forward: &Edge, backward: &Edge| {
+            frame.extend(forward.pieces());
+            frame.extend(backward.reversed().pieces().into_iter().rev());
+        };
         for column in 0..nx - 1 {
-            frame.extend(self.rows[column].pieces(Direction::Forward));
-            frame.extend(self.rows[(ny - 1) * (nx - 1) + column].pieces(Direction::Backward));
+            add(&self.rows[column], &self.rows[(ny - 1) * (nx - 1) + column]);
         }
         for row in 0..ny - 1 {
-            frame.extend(self.columns[row * nx + nx - 1].pieces(Direction::Forward));
-            frame.extend(self.columns[row * nx].pieces(Direction::Backward));
+            add(&self.columns[row * nx + nx - 1], &self.columns[row * nx]);
         }
         frame
     }
@@ -197,8 +199,8 @@ impl Map {
         let segments: Vec<Segment> = segments.into_iter().flatten().collect();
         let frame = grid.frame();
         let mut regimes: Vec<Arc<Regime>> = Vec::new();
-        let met = grid.nodes.iter().chain(frame.iter().map(|piece| &piece.left));
-        for regime in met.chain(segments.iter().flat_map(|segment| [&segment.left, &segment.right])) {
+        let met = grid.nodes.iter().chain(frame.iter().map(|piece| &piece.sides.left));
+        for regime in met.chain(segments.iter().flat_map(|segment| [&segment.sides.left, &segment.sides.right])) {
             if !regimes.contains(regime) {
                 regimes.push(Arc::clone(regime));
             }
@@ -221,9 +223,10 @@ impl Map {
         }
         let index = |regime: &Arc<Regime>| areas.iter().position(|area| area.regime == *regime);
         let curve = |(segment, points): (&Segment, Vec<[f64; 2]>)| {
-            let sides = [index(&segment.left)?, index(&segment.right)?];
+            let sides = [index(&segment.sides.left)?, index(&segment.sides.right)?];
             let points = points.into_iter().map(|point| grid.outward(point)).collect();
-            Some(BorderCurve { sides, points, transition: segment.transition.as_deref().cloned().unwrap_or_default() })
+            let transition = segment.sides.transition.as_deref().cloned().unwrap_or_default();
+            Some(BorderCurve { sides, points, transition })
         };
         let curves: Vec<BorderCurve> = polylines(&segments).into_iter().filter_map(curve).collect();
         for BorderCurve { sides, transition, .. } in &curves {

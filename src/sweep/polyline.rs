@@ -32,7 +32,9 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
             let mut points = Vec::new();
             loop {
                 let next = starts[&key(point)].iter().find(|&&(index, at_start)| {
-                    !used[index] && same_border(own, &segments[index], at_start == forward)
+                    let sides = &segments[index].sides;
+                    let along = at_start == forward;
+                    !used[index] && own.sides.is_same_as(&if along { sides.clone() } else { sides.reversed() })
                 });
                 let Some(&(index, at_start)) = next else { return points };
                 used[index] = true;
@@ -47,18 +49,6 @@ pub fn polylines(segments: &[Segment]) -> Vec<(&Segment, Vec<[f64; 2]>)> {
     polylines
 }
 
-/// Whether two segments are of one border, the other one in the same direction or reversed.
-fn same_border(own: &Segment, other: &Segment, along: bool) -> bool {
-    let sides = if along { (&other.left, &other.right) } else { (&other.right, &other.left) };
-    (&own.left, &own.right) == sides
-        && match (&own.transition, &other.transition) {
-            (Some(a), Some(b)) if along => a.is_same_as(b),
-            (Some(a), Some(b)) => a.is_same_as(&b.reversed()),
-            (None, None) => true,
-            _ => false,
-        }
-}
-
 /// The closed loops that have `regime` on their left, of borders and of the frame.
 pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> Vec<Vec<[f64; 2]>> {
     let mut next: HashMap<PointKey, Vec<[f64; 2]>> = HashMap::new();
@@ -68,14 +58,14 @@ pub fn loops(segments: &[Segment], frame: &[Segment], regime: &Arc<Regime>) -> V
         order.push(from);
     };
     for segment in segments {
-        if segment.left == *regime {
+        if segment.sides.left == *regime {
             add(segment.from, segment.to);
         }
-        if segment.right == *regime {
+        if segment.sides.right == *regime {
             add(segment.to, segment.from);
         }
     }
-    frame.iter().filter(|piece| piece.left == *regime).for_each(|piece| add(piece.from, piece.to));
+    frame.iter().filter(|piece| piece.sides.left == *regime).for_each(|piece| add(piece.from, piece.to));
     let mut loops = Vec::new();
     for start in order {
         let mut points = Vec::new();
