@@ -36,7 +36,7 @@ pub struct Chunks<R> {
     fresh: bool,
 }
 
-impl<R: Read> Chunks<R> {
+impl<R: Read + Send> Chunks<R> {
     /// An input with one record per line.
     pub fn of_lines(input: R) -> Self {
         Self { input: BufReader::with_capacity(READ, input), quotes: None, line: 1, fresh: true }
@@ -134,11 +134,6 @@ impl<R: Read> Chunks<R> {
         }
         Ok(self.input.buffer())
     }
-
-    /// Whether no whole line is buffered.
-    fn keeps_waiting(&self) -> bool {
-        memchr(b'\n', self.input.buffer()).is_none()
-    }
 }
 
 /// The refusal of a record longer than [`RECORD_LIMIT`].
@@ -154,8 +149,9 @@ impl<R: Read + Send> Source for Chunks<R> {
         self.records(RECORDS)
     }
 
+    /// Whether no whole line is buffered.
     fn keeps_waiting(&self) -> bool {
-        Chunks::keeps_waiting(self)
+        memchr(b'\n', self.input.buffer()).is_none()
     }
 }
 
@@ -195,7 +191,7 @@ mod tests {
     }
 
     /// The records of each chunk with their lines.
-    fn chunks(mut chunks: Chunks<impl Read>) -> Vec<String> {
+    fn chunks(mut chunks: Chunks<impl Read + Send>) -> Vec<String> {
         let chunks = std::iter::from_fn(|| chunks.records(RECORDS).unwrap());
         let shown = |(line, record): (usize, &[u8])| format!("{line}:{}", record.escape_ascii());
         chunks.map(|chunk| chunk.records().map(shown).collect::<Vec<_>>().join(" ")).collect()

@@ -27,7 +27,7 @@ pub struct RowOrigin {
 }
 
 /// The rows of a table with their times. If reading fails, the last sample is refused with [`Reason::Io`].
-pub fn samples<'h, R: Read>(
+pub fn samples<'h, R: Read + Send>(
     mut chunks: Chunks<R>,
     header: &'h Header,
     robot: &'h Robot,

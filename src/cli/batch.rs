@@ -265,7 +265,7 @@ impl RecordingOptions {
 
 impl Args {
     /// The columns of a table; `None` for lines of JSON and for an empty table.
-    fn header(&self, robot: &Robot, chunks: &mut Chunks<impl Read>) -> Result<Option<Header>, Failure> {
+    fn header(&self, robot: &Robot, chunks: &mut Chunks<impl Read + Send>) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();
         if !chunks.is_table() {
             if in_order {

@@ -197,6 +197,17 @@ impl Robot {
         self.base_dofs() + self.joints.len()
     }
 
+    /// The units of each coordinate and of its rate, in the order of q.
+    pub fn units(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        const LENGTH: (&str, &str) = ("m", "m/s");
+        const ANGLE: (&str, &str) = ("rad", "rad/s");
+        let joints = self.joints.iter().map(|joint| match joint.axis {
+            Axis::Revolute { .. } => ANGLE,
+            Axis::Prismatic { .. } => LENGTH,
+        });
+        [LENGTH, LENGTH, ANGLE].into_iter().take(self.base_dofs()).chain(joints)
+    }
+
     /// Names of the coordinates in the order of q: x, z, pitch (if the base floats), then the joints in the file's
     /// order.
     pub fn coordinates(&self) -> impl Iterator<Item = &str> {

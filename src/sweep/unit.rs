@@ -7,7 +7,6 @@
 use super::model::{RobotStudy, Solver};
 use crate::Robot;
 use crate::description::{Description, Inertial};
-use crate::robot::{Axis, Base};
 use crate::state::{Ground, State};
 
 /// A unit and a number that has it.
@@ -72,19 +71,8 @@ fn of_robot(description: &Description) -> Vec<Measured> {
 }
 
 fn of_state(robot: &Robot, State { position, velocity, scene, .. }: &State) -> Vec<Measured> {
-    const LENGTH: (&str, &str) = ("m", "m/s");
-    const ANGLE: (&str, &str) = ("rad", "rad/s");
-    let base = match robot.base {
-        Base::Floating => [LENGTH, LENGTH, ANGLE].as_slice(),
-        Base::Fixed => &[],
-    };
-    let joints = robot.joints.iter().map(|joint| match joint.axis {
-        Axis::Revolute { .. } => ANGLE,
-        Axis::Prismatic { .. } => LENGTH,
-    });
-    let units = || base.iter().copied().chain(joints.clone());
-    let positions = units().map(|(unit, _)| unit).zip(position.iter().copied());
-    let velocities = units().map(|(_, unit)| unit).zip(velocity.iter().copied());
+    let positions = robot.units().map(|(unit, _)| unit).zip(position.iter().copied());
+    let velocities = robot.units().map(|(_, unit)| unit).zip(velocity.iter().copied());
     let slope = match scene.ground {
         Ground::Slope(slope) => Some(("rad", slope)),
         Ground::Profile(_) => None,

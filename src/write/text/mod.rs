@@ -14,7 +14,6 @@ use crate::law::{Friction, Mode};
 use crate::pipeline::Impact;
 use crate::planar::Vector;
 use crate::read::Problem;
-use crate::robot::Axis;
 use crate::state::State;
 use std::fmt::Write;
 
@@ -35,15 +34,10 @@ pub struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
-        let base = ["m/s", "m/s", "rad/s"].into_iter().take(robot.base_dofs());
-        let joints = robot.joints.iter().map(|joint| match joint.axis {
-            Axis::Revolute { .. } => "rad/s",
-            Axis::Prismatic { .. } => "m/s",
-        });
         Self {
             title: words::titled(&robot.name, &state.id),
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
-            units: base.chain(joints).collect(),
+            units: robot.units().map(|(_, unit)| unit).collect(),
             analysis: impact.analysis.as_ref(),
         }
     }
