@@ -282,8 +282,7 @@ impl Mechanism {
         let poses = self.poses(q, q);
         let there = poses.point(link, at)[0];
         let there = turned(minus(there, poses.origin[other][0]), -poses.pitch[other][0]);
-        let end =
-            |link: usize, point| json!({"link": self.links[link].name, "offset": self.local(&frames, link, point)});
+        let end = |link: usize, at| point(&self.links[link].name, self.local(&frames, link, at));
         json!({"a": end(link, at), "b": end(other, there)})
     }
 
