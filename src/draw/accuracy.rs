@@ -9,9 +9,7 @@ use crate::write::words::grouped;
 const MARKS: [Mark; 6] = [Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Star, Mark::Cross];
 
 impl Accuracy {
-    /// Errors of G and of the outcomes against run time, a point for each method and case. The reference is left out:
-    /// its hundred digits would squeeze all others together. An error of exactly zero has no place on a logarithmic
-    /// axis.
+    /// Errors against run time, without the reference, whose hundred digits would squeeze all others together.
     pub fn picture(&self) -> Picture {
         let named = self.studies.len() <= MARKS.len();
         let title = match self.studies.as_slice() {

@@ -3,7 +3,6 @@
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod robot;
-mod keyframe;
 #[cfg(feature = "plot")]
 pub mod sweep;
 #[cfg(all(feature = "accuracy", feature = "plot"))]
@@ -11,7 +10,55 @@ mod accuracy;
 #[cfg(feature = "plot")]
 pub mod page;
 
-pub use keyframe::{Keyframe, KeyframeAnswer, ListedKeyframe};
 #[cfg(feature = "plot")]
 pub use plot::Picture;
 pub use robot::Drawing;
+
+use crate::state::{NamedContact, State};
+use crate::{Error, Impact, Outcome, Robot, Verdict};
+use serde_json::Value;
+
+#[derive(Debug, Clone)]
+pub struct Keyframe {
+    /// The robot, its contacts and the ground; `None` if the state is refused.
+    pub drawing: Option<Drawing>,
+    /// What happens, or why there is no answer.
+    pub answer: Result<KeyframeAnswer, Error>,
+    /// What a reader should know, in sentences.
+    pub notes: Vec<String>,
+}
+
+#[derive(Debug, Clone)]
+pub struct KeyframeAnswer {
+    pub verdict: Verdict,
+    /// Whether the list of outcomes is proven to be complete and right.
+    pub proven: bool,
+    pub outcomes: Vec<Outcome>,
+}
+
+#[derive(Debug, Clone)]
+pub struct ListedKeyframe {
+    /// The line on which it begins, from 1.
+    pub line: usize,
+    pub id: Option<Value>,
+    /// In s.
+    pub time: Option<f64>,
+    pub keyframe: Keyframe,
+}
+
+impl Keyframe {
+    /// A state and its impact; `feet` are those in addition to the robot's own shapes.
+    pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
+        let answer = impact.analysed().map(|analysis| KeyframeAnswer {
+            verdict: analysis.verdict,
+            proven: analysis.proven,
+            outcomes: analysis.outcomes.clone(),
+        });
+        let drawing = Some(Drawing::of_impact(robot, feet, state, impact));
+        Self { drawing, answer, notes: impact.notes.clone() }
+    }
+
+    pub fn refused(error: Error) -> Self {
+        Self { drawing: None, answer: Err(error), notes: Vec::new() }
+    }
+}

@@ -1,11 +1,10 @@
 //! Results as CSV: one row per outcome.
 
 use crate::contact::Feet;
-use crate::impact::Outcome;
 use crate::read::table::{Carried, Header, prefixed};
 use crate::state::NamedContact;
 use crate::write::{Refused, Report, words};
-use crate::{Error, Reason, Result, Robot};
+use crate::{Error, Outcome, Reason, Result, Robot};
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
@@ -52,24 +51,18 @@ impl Cells {
 }
 
 impl Columns {
-    /// The columns for states of `robot` with the `feet` that were added to it; `input` is the table that the states
-    /// come from, if they come from one; `touchdowns` if they are touchdowns found in it.
+    /// The columns for states of `robot` with these `feet`, read from the table `input` or found in it as `touchdowns`.
     pub fn new(robot: &Robot, feet: &[NamedContact], input: Option<&Header>, touchdowns: bool) -> Self {
-        Self::with(robot, feet, std::iter::empty(), input.into_iter().flat_map(Header::carried), touchdowns)
+        let through: Vec<&str> = input.into_iter().flat_map(Header::carried).collect();
+        Self::with(robot, feet, &[], &through, touchdowns)
     }
 
     /// The same with columns of these names that are carried through, and for contacts that states name themselves.
-    pub fn with<'n>(
-        robot: &Robot,
-        feet: &[NamedContact],
-        named: impl Iterator<Item = &'n str>,
-        through: impl Iterator<Item = &'n str>,
-        touchdowns: bool,
-    ) -> Self {
+    pub fn with(robot: &Robot, feet: &[NamedContact], named: &[&str], through: &[&str], touchdowns: bool) -> Self {
         let mut contacts = contacts(robot, feet, touchdowns);
         for name in named {
             if !contacts.iter().any(|known| known == name) {
-                contacts.push(name.to_owned());
+                contacts.push((*name).to_owned());
             }
         }
         let mut names: Vec<String> = FIRST.map(str::to_owned).into();
@@ -81,9 +74,8 @@ impl Columns {
             names.extend(TOUCHDOWN.map(|name| format!("touchdown_{name}")));
         }
         let own: HashSet<String> = names.iter().cloned().chain(LAST.map(str::to_owned)).collect();
-        let through: Vec<&str> = through.collect();
         let taken: HashSet<&str> = through.iter().copied().collect();
-        for column in &through {
+        for column in through {
             let mut name = (*column).to_owned();
             while own.contains(&name) || (name != *column && taken.contains(name.as_str())) {
                 name.insert_str(0, "in_");
@@ -99,11 +91,8 @@ impl Columns {
         append(&self.names, out);
     }
 
-    /// Appends the rows of a result, one per outcome.
-    ///
-    /// # Errors
-    /// A contact that has no column, because the state names it and the robot has no such foot; nothing is appended
-    /// then.
+    /// Appends the rows of a result, one per outcome; nothing and an error if a contact has no column, because
+    /// the state names it and the robot has no such foot.
     pub fn append_result(&self, report: &Report, carried: Option<&Carried>, out: &mut Vec<u8>) -> Result<()> {
         let mut cells = self.cells(report.id.as_deref(), carried);
         cells.text(1, report.verdict.map_or(String::new(), |verdict| verdict.to_string()));

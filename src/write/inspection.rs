@@ -5,25 +5,22 @@ mod text;
 use super::result::LeftOutRecord;
 use crate::Robot;
 use crate::planar::Vector;
-use crate::robot::{Axis, Base, Body, FootShape, FreezeReason, FrozenJoint, Joint, MimicJoint, ParentJoint, Rim};
+use crate::robot::{Axis, Base, Body, FootShape, FreezeReason, FrozenJoint, Joint, Link, MimicJoint, ParentJoint, Rim};
 use crate::state::NamedContact;
 use serde::Serialize;
 
 /// The reduced robot as it is written; what is proven refers to these numbers. [`Report`](super::Report) has an example.
 #[derive(Debug, Clone, Serialize)]
 pub struct Inspection<'a> {
-    /// The robot's name in the file.
     pub name: &'a str,
     /// Forward and up in the file's root frame.
     pub plane: &'static str,
     /// Its normal there, with its sign.
     #[serde(skip)]
     normal: &'static str,
-    /// Why this plane.
     pub plane_because: String,
     /// `floating` or `fixed`.
     pub base: &'static str,
-    /// Why it is.
     pub base_because: &'a str,
     /// What a user must know before trusting the rest, with the remedy.
     pub cautions: &'a [String],
@@ -163,19 +160,22 @@ impl<'a> Inspection<'a> {
             let mimicked = &robot.joints[mimic.mimicked].name;
             MimicRecord { joint: joint(&mimic.joint), mimicked, multiplier: mimic.multiplier, offset: mimic.offset }
         };
-        let held = robot.reading.frozen.iter().map(|FrozenJoint { name, reason, body, .. }| FrozenRecord {
+        let frozen = |FrozenJoint { name, reason, body, .. }: &'a FrozenJoint| FrozenRecord {
             name,
             body,
             why: reason.to_string(),
             reason,
-        });
+        };
         let feet = robot.links.iter().enumerate().flat_map(|(at, link)| {
             let foot = |shape: FootRecord<'a>| FootRecord { link: &link.name, body: body_name(link.body), ..shape };
             let given = feet.iter().filter(move |foot| foot.link == at);
             let given = given.map(|foot| FootRecord::disc(link.point(foot.offset), foot.radius));
             link.shapes.iter().map(FootRecord::new).chain(given).map(foot)
         });
-        let links = robot.links.iter();
+        let link = |link: &'a Link| {
+            let &Link { ref name, body, has_inertial, .. } = link;
+            LinkRecord { name, body: body_name(body), has_inertial }
+        };
         Self {
             name: &robot.name,
             plane: robot.reading.plane.name(),
@@ -192,14 +192,8 @@ impl<'a> Inspection<'a> {
             bodies: robot.bodies.iter().enumerate().map(body).collect(),
             joints: robot.joints.iter().map(joint).collect(),
             followers: robot.mimic_joints.iter().map(mimic).collect(),
-            held: held.collect(),
-            links: links
-                .map(|link| LinkRecord {
-                    name: &link.name,
-                    body: body_name(link.body),
-                    has_inertial: link.has_inertial,
-                })
-                .collect(),
+            held: robot.reading.frozen.iter().map(frozen).collect(),
+            links: robot.links.iter().map(link).collect(),
             feet: feet.collect(),
             left_out: LeftOutRecord::all(robot),
         }

@@ -5,14 +5,12 @@
 
 use super::Detail;
 use super::state::{CounterexampleRecord, HoldsRecord};
-use crate::contact::Contact;
 use crate::impact::{Analysis, Explanation, Outcome, Rejection, Verdict};
-use crate::law::Mode;
 use crate::pipeline::{Impact, LeftOut};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::state::{Named, State};
-use crate::{Error, Robot, description};
+use crate::{Error, Mode, Robot, description};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use std::borrow::Cow;
@@ -49,12 +47,10 @@ pub struct Report<'a> {
     /// The answer in one word; absent next to an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
-    /// Every combination is decided by an error bound: the list is complete and right; absent next to an
-    /// `error`.
+    /// Every combination is decided by an error bound; absent next to an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
-    /// Whether every state of the box has the same outcomes, as lists of modes: true, false or "unknown"; of an
-    /// uncertain state.
+    /// Whether every state of the box has the same lists of modes: true, false or "unknown"; of an uncertain state.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<HoldsRecord>,
     /// A state of the box with other outcomes; if `holds` is false.
@@ -339,7 +335,13 @@ impl<'a> Report<'a> {
             analysis => analysis.err(),
         };
         let contacts = impact.contacts.iter().zip(&impact.velocity_before);
-        let contacts = contacts.map(|(contact, velocity)| ContactRecord::of_robot(robot, contact, *velocity)).collect();
+        let contacts = contacts.map(|(contact, velocity)| ContactRecord {
+            link: robot.links.get(contact.link).map(|link| Cow::Borrowed(&*link.name)),
+            point: Some(contact.point),
+            normal: Some(contact.normal()),
+            gap: Some(contact.gap),
+            ..ContactRecord::of_problem(&contact.name, *velocity)
+        });
         let matrices = impact.matrices.as_ref();
         Ok(Self {
             id: state.id.as_ref().map(Cow::Borrowed),
@@ -353,7 +355,7 @@ impl<'a> Report<'a> {
             contact_jacobian: matrices.map(|matrices| Cow::Borrowed(&*matrices.contact_jacobian)),
             delassus: matrices.map(|matrices| Cow::Borrowed(&*matrices.delassus)),
             error: error.as_ref().map(ErrorObject::new),
-            ..Self::of_analysis(contacts, impact.analysis.as_ref(), detail)
+            ..Self::of_analysis(contacts.collect(), impact.analysis.as_ref(), detail)
         })
     }
 
@@ -374,7 +376,14 @@ impl<'a> Report<'a> {
         let explained = known.filter(|_| detail.explain);
         let rejected = explained.map(|analysis| {
             let names: Vec<String> = contacts.iter().map(|contact| contact.name.to_string()).collect();
-            analysis.rejected.iter().map(|rejection| Rejected::new(rejection, &names)).collect()
+            let rejected = |rejection: &'a Rejection| Rejected {
+                modes: Cow::Borrowed(&rejection.modes),
+                because: rejection.because.describe(&names),
+                margin: rejection.margin,
+                impulse: rejection.motion.as_ref().map(|motion| Cow::Borrowed(&*motion.impulse)),
+                velocity_after: rejection.motion.as_ref().map(|motion| Cow::Borrowed(&*motion.velocity_after)),
+            };
+            analysis.rejected.iter().map(rejected).collect()
         });
         Self {
             verdict: known.map(|analysis| analysis.verdict),
@@ -393,13 +402,18 @@ impl<'a> Report<'a> {
 
     /// The same in brief.
     pub fn brief(&self) -> Brief<'_> {
+        let outcomes = self.outcomes.as_deref().unwrap_or_default().iter();
+        let in_brief = outcomes.map(|&Outcome { ref modes, index, margin, decided, .. }| {
+            let modes = Cow::Borrowed(&**modes);
+            OutcomeInBrief { modes, index, margin, decided }
+        });
         Brief {
             id: self.id.clone(),
             touchdown: self.touchdown.clone(),
             verdict: self.verdict,
             proven: self.proven,
             holds: self.holds,
-            outcomes: self.outcomes.as_deref().map(|outcomes| outcomes.iter().map(OutcomeInBrief::new).collect()),
+            outcomes: self.outcomes.is_some().then(|| in_brief.collect()),
             error: self.error.clone(),
         }
     }
@@ -411,38 +425,8 @@ impl<'a> Report<'a> {
 }
 
 impl<'a> ContactRecord<'a> {
-    fn of_robot(robot: &'a Robot, contact: &'a Contact, velocity_before: Pair<f64>) -> Self {
-        Self {
-            link: robot.links.get(contact.link).map(|link| Cow::Borrowed(&*link.name)),
-            point: Some(contact.point),
-            normal: Some(contact.normal()),
-            gap: Some(contact.gap),
-            ..Self::of_problem(&contact.name, velocity_before)
-        }
-    }
-
     fn of_problem(name: &'a str, velocity_before: Pair<f64>) -> Self {
         Self { name: Cow::Borrowed(name), velocity_before, ..Self::default() }
-    }
-}
-
-impl<'a> Rejected<'a> {
-    fn new(rejection: &'a Rejection, names: &[String]) -> Self {
-        let motion = rejection.motion.as_ref();
-        Self {
-            modes: Cow::Borrowed(&rejection.modes),
-            because: rejection.because.describe(names),
-            margin: rejection.margin,
-            impulse: motion.map(|motion| Cow::Borrowed(&*motion.impulse)),
-            velocity_after: motion.map(|motion| Cow::Borrowed(&*motion.velocity_after)),
-        }
-    }
-}
-
-impl<'a> OutcomeInBrief<'a> {
-    fn new(outcome: &'a Outcome) -> Self {
-        let Outcome { modes, index, margin, decided, .. } = outcome;
-        Self { modes: Cow::Borrowed(modes), index: *index, margin: *margin, decided: *decided }
     }
 }
 

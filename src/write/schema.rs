@@ -116,8 +116,7 @@ fn schema_of<T: JsonSchema>() -> Value {
     settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
-/// Says of one schema what the contract says of all: what is not named does not exist, what is optional is absent and
-/// not null.
+/// Says of one schema what holds for all: what is not named does not exist, what is optional is absent and not null.
 fn strict(schema: &mut Schema) {
     if let Some(Value::String(description)) = schema.get_mut("description") {
         *description = plain_text(description);

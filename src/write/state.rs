@@ -1,10 +1,8 @@
 //! A state in the format in which it is read, and whether a verdict holds on the box of its uncertainty.
 
-use crate::Robot;
-use crate::impact::Verdict;
-use crate::law::{Friction, Mode};
 use crate::pipeline::robust::Robustness;
 use crate::state::{ByLink, Ground, LinkPoint, Named, State, Uncertainty};
+use crate::{Friction, Mode, Robot, Verdict};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, to_raw_value};
@@ -12,9 +10,7 @@ use serde_json::{Value, json};
 use std::borrow::Cow;
 
 impl State {
-    /// The state as the JSON object from which [`State::from_json`] reads it again.
-    ///
-    /// What a state leaves out when it is read, such as the base's x and z with a stance, is left out here, too.
+    /// The state as the JSON object from which [`State::from_json`] reads it; without what follows from the rest.
     pub fn to_json(&self, robot: &Robot) -> String {
         // A state has no keys that are not strings, so that this cannot fail.
         serde_json::to_string(&StateRecord { robot, state: self }).unwrap_or_default()

@@ -27,9 +27,8 @@ impl Table {
         self
     }
 
-    /// Adds a column of numbers with as many decimals as its largest needs for six digits; `-` where there is none.
-    ///
-    /// What is left of a zero after rounding, beside numbers of the size `scale`, is written as `~0`.
+    /// Adds a column of numbers with the decimals that its largest needs for six digits; `-` where there is none, `~0`
+    /// for what rounding left of a zero, next to numbers of the size `scale`.
     pub(crate) fn numbers(self, head: &str, scale: f64, numbers: impl IntoIterator<Item: Into<Option<f64>>>) -> Self {
         let numbers: Vec<Option<f64>> = numbers.into_iter().map(Into::into).collect();
         let largest = self::scale(numbers.iter().flatten().copied().filter(|&number| !is_residue(number, scale)));

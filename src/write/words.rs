@@ -1,8 +1,7 @@
 //! Names, modes, verdicts and grades in words.
 
 use super::table::number;
-use crate::impact::Verdict;
-use crate::law::Mode;
+use crate::{Mode, Verdict};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -63,12 +62,12 @@ fn verb(mode: Mode) -> &'static str {
 
 /// The names that there is `room` for, at least the first, and how many more there are.
 pub(crate) fn list(names: &[impl AsRef<str>], room: usize) -> String {
-    let lengths = names.iter().map(|name| name.as_ref().chars().count() + 2);
-    let ends = lengths.scan(0, |end, length| {
-        *end += length;
-        Some(*end)
-    });
-    let shown = ends.take_while(|&end| end <= room + 2).count().max(1).min(names.len());
+    let mut end = 0;
+    let fits = |name: &&_| {
+        end += AsRef::<str>::as_ref(*name).chars().count() + 2;
+        end <= room + 2
+    };
+    let shown = names.iter().take_while(fits).count().max(1).min(names.len());
     let mut text = names[..shown].iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
     if shown < names.len() {
         text.push_str(&format!(" and {} more", names.len() - shown));

@@ -1,12 +1,11 @@
 //! States as the data of a page: bodies, contacts and outcomes, and the scale of all drawings.
 
 use super::{Interned, PageState};
-use crate::Error;
-use crate::draw::keyframe::KeyframeAnswer;
+use crate::draw::KeyframeAnswer;
 use crate::draw::robot::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnShape, Extent, picture};
-use crate::impact::{Outcome, Verdict};
 use crate::planar::{Pair, Vector};
 use crate::write::words;
+use crate::{Error, Outcome, Verdict};
 use serde::Serialize;
 
 /// A state. Texts and bodies are given by their numbers.
@@ -82,8 +81,7 @@ pub(super) struct PageScale {
     /// Coordinates are multiples of this \[m\].
     #[serde(skip)]
     pub unit: f64,
-    /// The lower left corner of the view, from the middle of the robot along an axis on which the view follows it
-    /// \[m\], and the upper right one.
+    /// The corners of the view, from the middle of the robot along axes on which the view follows it \[m\].
     low: Vector<f64>,
     high: Vector<f64>,
     /// Along which axes the view follows the robot.
@@ -180,16 +178,22 @@ fn outcomes(answer: &KeyframeAnswer, contacts: &[DrawnContact], texts: &mut Inte
 impl PageDrawing {
     fn new(drawing: &Drawing, unit: f64, parts: &mut Interned, texts: &mut Interned) -> Self {
         let at = |point: &Vector<f64>| place(*point, unit);
+        let outline = |shape: &DrawnShape| match shape {
+            DrawnShape::Disc { center, radius } => {
+                DrawnShape::Disc { center: at(center), radius: to_unit(*radius, unit) }
+            }
+            DrawnShape::Polygon(corners) => DrawnShape::Polygon(corners.iter().map(at).collect()),
+        };
         let body = |body: &DrawnBody| {
+            let outlines = body.shapes.iter().map(outline).collect();
+            let (com, mass) = (body.com.as_ref().map(at), significant(body.mass, 5));
+            let part = BodyPart { outlines, com, mass, last: body.is_last };
             // Writing into memory cannot fail.
-            let part = parts.number(serde_json::to_string(&BodyPart::new(body, unit)).unwrap_or_default());
+            let part = parts.number(serde_json::to_string(&part).unwrap_or_default());
             let (origin, axis) = (at(&body.origin), vector(&body.x_axis));
             (part, origin.x, origin.z, axis.x, axis.z)
         };
-        let bone = |from: Vector<f64>, to: Vector<f64>| [from.x, from.z, to.x, to.z];
-        let bones = |body: &'_ DrawnBody| -> Vec<[f64; 4]> {
-            body.bones.iter().map(|end| bone(at(&body.origin), at(end))).collect()
-        };
+        let ends = drawing.bodies.iter().flat_map(|body| body.bones.iter().map(|end| [at(&body.origin), at(end)]));
         let contact = |contact: &DrawnContact| PageContact {
             name: texts.number(&contact.name),
             point: at(&contact.point),
@@ -200,30 +204,12 @@ impl PageDrawing {
         let Extent { low, high } = drawing.extent();
         Self {
             bodies: drawing.bodies.iter().map(body).collect(),
-            bones: drawing.bodies.iter().flat_map(bones).collect(),
+            bones: ends.map(|[from, to]| [from.x, from.z, to.x, to.z]).collect(),
             joints: drawing.joints.iter().map(at).collect(),
             ground: drawing.ground.iter().map(at).collect(),
             contacts: drawing.contacts.iter().map(contact).collect(),
             applied: drawing.applied.iter().map(arrow).collect(),
             middle: at(&((low + high) * 0.5)),
-        }
-    }
-}
-
-impl BodyPart {
-    fn new(body: &DrawnBody, unit: f64) -> Self {
-        let at = |point: &Vector<f64>| place(*point, unit);
-        let outline = |shape: &DrawnShape| match shape {
-            DrawnShape::Disc { center, radius } => {
-                DrawnShape::Disc { center: at(center), radius: to_unit(*radius, unit) }
-            }
-            DrawnShape::Polygon(corners) => DrawnShape::Polygon(corners.iter().map(at).collect()),
-        };
-        Self {
-            outlines: body.shapes.iter().map(outline).collect(),
-            com: body.com.as_ref().map(at),
-            mass: significant(body.mass, 5),
-            last: body.is_last,
         }
     }
 }
@@ -264,10 +250,8 @@ mod tests {
     #[test]
     fn numbers_have_the_digits_of_a_screen() {
         let unit = unit(1.3);
-        assert_eq!(
-            [0.1 + 0.2, -1e-9, 1234.56789].map(|value| format!("{}", to_unit(value, unit))),
-            ["0.3", "0", "1234.5679"]
-        );
+        let texts = [0.1 + 0.2, -1e-9, 1234.56789].map(|value| to_unit(value, unit).to_string());
+        assert_eq!(texts, ["0.3", "0", "1234.5679"]);
         assert_eq!(to_unit(123_456.0, super::unit(5e6)), 123_500.0);
         assert_eq!([1.0 / 3.0, 2e-300, -123_456.7].map(|value| significant(value, 5)), [0.33333, 2e-300, -123_460.0]);
         assert_eq!(super::unit(0.0), 1e-4);

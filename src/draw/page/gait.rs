@@ -5,9 +5,8 @@ use crate::draw::ListedKeyframe;
 use crate::draw::plot::{
     self, Band, Color, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotShape, Rendered, Stroke,
 };
-use crate::impact::Verdict;
-use crate::law::Mode;
 use crate::write::words;
+use crate::{Mode, Verdict};
 
 /// States in their order, at most [`MOST`] of them: of more every second, third ... one is kept.
 #[derive(Debug, Clone, Default)]
@@ -104,7 +103,7 @@ fn bands(runs: &[GaitRun]) -> Vec<Band> {
         match bands.last_mut() {
             Some(band) if last == Some(look.answer) => band.to = to,
             before => {
-                // Neighbours meet half way.
+                // Neighbors meet half way.
                 let from = before.map_or(from, |band| {
                     band.to = 0.5 * (band.to + from);
                     band.to

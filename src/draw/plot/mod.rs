@@ -93,9 +93,6 @@ impl Picture {
     }
 
     /// The picture as PNG, twice as large as the SVG says; `None` if nothing in it can be drawn.
-    ///
-    /// # Errors
-    /// [`Unsupported`](crate::Reason::Unsupported) if the picture cannot be rendered.
     pub fn png(&self) -> Result<Option<Vec<u8>>> {
         self.layout().map(|(canvas, _)| png::png(&canvas)).transpose()
     }

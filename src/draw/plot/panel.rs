@@ -56,11 +56,9 @@ impl Track {
     }
 }
 
-/// Heights of fonts \[px\].
+/// Heights of the fonts of titles, labels and letters, and of numbers and smaller titles \[px\].
 const LABEL: u32 = 14;
 const NUMBER: u32 = 12;
-const TITLE: u32 = 14;
-const LETTER: u32 = 14;
 /// From one line of a panel's title to the next \[px\].
 const LINE: f64 = 18.0;
 /// The length of a tick, and from a tick to its number \[px\].
@@ -94,7 +92,7 @@ impl Panel {
     fn title_lines(&self) -> Vec<(String, bool)> {
         let (first, rest) = self.title.split_once('\n').unwrap_or((&self.title, ""));
         let lines = |text, size| font::lines(text, size, self.size.0);
-        let first = lines(first, TITLE).into_iter().map(|line| (line, true));
+        let first = lines(first, LABEL).into_iter().map(|line| (line, true));
         first.chain(lines(rest, NUMBER).into_iter().map(|line| (line, false))).collect()
     }
 }
@@ -152,7 +150,7 @@ impl<'p> PlacedPanel<'p> {
         let panel = self.panel;
         let title = panel.title_lines();
         for (line, (content, is_first)) in title.iter().enumerate() {
-            let (size, color) = if *is_first { (TITLE, Color::Black) } else { (NUMBER, Color::Gray) };
+            let (size, color) = if *is_first { (LABEL, Color::Black) } else { (NUMBER, Color::Gray) };
             let baseline = corner.1 - 8.0 - LINE * (title.len() - 1 - line) as f64;
             let at = (corner.0 + 0.5 * panel.size.0, baseline);
             out.text(TextLine { color, ..TextLine::new(at, content, size, Anchor::Middle) });
@@ -165,8 +163,8 @@ impl<'p> PlacedPanel<'p> {
         let mut taken = panel.shapes.iter().flat_map(|shape| shape.marked(&self.area)).collect();
         panel.shapes.iter().for_each(|shape| shape.draw(&self.area, &mut taken, &mut inside));
         for BandLetter { text, middle, story, is_wide } in self.letters() {
-            let baseline = MARGIN + font::CAPITAL * f64::from(LETTER) + story as f64 * STORY;
-            inside.text(TextLine { rim: is_wide, ..TextLine::new((middle, baseline), text, LETTER, Anchor::Middle) });
+            let baseline = MARGIN + font::CAPITAL * f64::from(LABEL) + story as f64 * STORY;
+            inside.text(TextLine { rim: is_wide, ..TextLine::new((middle, baseline), text, LABEL, Anchor::Middle) });
         }
         out.0.push(Element::Window { corner, size: panel.size, layer: inside });
         if panel.framed {
@@ -242,7 +240,7 @@ impl<'p> PlacedPanel<'p> {
         for band in self.panel.bands.iter().filter(|band| !band.letter.is_empty()) {
             let inside = self.sides(band).map(|(from, to)| (from.max(0.0), to.min(width)));
             let Some((from, to)) = inside.filter(|(from, to)| from <= to) else { continue };
-            let half = 0.5 * font::width(&band.letter, LETTER).max(ROOM);
+            let half = 0.5 * font::width(&band.letter, LABEL).max(ROOM);
             let middle = (0.5 * (from + to)).min(width - half).max(half);
             let story = ends.iter().position(|end| middle - half >= *end).unwrap_or(STORIES - 1);
             ends[story] = middle + half;

@@ -104,8 +104,7 @@ const RINGS: i32 = 8;
 /// A name farther from its point has a line to it \[px\].
 const FAR: f64 = 20.0;
 
-/// Draws a name next to its point, clear of what is `taken`. It looks for a place below the point first, or next to and
-/// above it.
+/// Draws a name next to its point, rather above or rather `below` it, clear of what is `taken`.
 fn draw_name(at: Pixel, name: &str, below: bool, area: &PlotArea, taken: &mut Vec<TextBox>, out: &mut PlotLayer) {
     let width = font::width(name, SIZE);
     let is_free = |place: &TextBox| place.is_within(area.size()) && !taken.iter().any(|other| other.meets(place));

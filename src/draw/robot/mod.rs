@@ -45,8 +45,7 @@ pub struct DrawnBody {
     pub shapes: Vec<DrawnShape>,
     /// Its CoG, in its frame; `None` if it has no mass.
     pub com: Option<Vector<f64>>,
-    /// The ends of its bones, which all begin at its origin: joints of its children, shapes, a CoG apart from all of
-    /// them.
+    /// The ends of its bones, which begin at its origin: joints of its children, shapes, a CoG apart from them.
     pub bones: Vec<Vector<f64>>,
     /// Whether it has no children.
     pub is_last: bool,

@@ -5,13 +5,11 @@ use crate::contact::Placement;
 use crate::draw::plot::{
     Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke,
 };
-use crate::impact::Outcome;
-use crate::pipeline::Impact;
 use crate::planar::Vector;
-use crate::robot::Robot;
 use crate::state::{NamedContact, State};
 use crate::write::table::number;
 use crate::write::words;
+use crate::{Impact, Outcome, Robot};
 use std::iter;
 
 const IMPULSE: Stroke = Stroke::solid(Color::Vermilion, 3.0);
@@ -40,8 +38,7 @@ const HEAVY: f64 = 8.0;
 /// Names are drawn for at most so many bodies.
 const NAMED: usize = 60;
 
-/// A state with an arrow for each impulse and velocity, a panel for each outcome; `feet` are those in addition to the
-/// robot's own shapes. `None` if the outcomes were refused.
+/// Impulses and velocities as arrows, a panel for each outcome; `None` if the outcomes were refused.
 pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Option<Picture> {
     let analysis = impact.analysis.as_ref()?;
     let drawing = Drawing::of_impact(robot, feet, state, impact);
@@ -66,8 +63,7 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     })
 }
 
-/// The robot with its joints at zero, or where they are held, and the names of its bodies; `feet` are those in addition
-/// to its own shapes.
+/// The robot with its joints at zero, or where they are frozen, and the names of its bodies.
 pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
     let placement = Placement::of_robot(robot, &vec![0.0; robot.dofs()]);
     let drawing = Drawing::of_robot(robot, &placement, feet);

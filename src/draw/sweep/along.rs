@@ -35,8 +35,13 @@ const NEAR_POLE: f64 = 1.5;
 const ZERO: f64 = 1e-12;
 
 /// The picture of a survey's regions, with these courses of their outcomes.
-pub fn picture(x: PlotAxis, survey: &Survey, courses: &[RegionCurves]) -> Picture {
-    let kinds = kinds(survey);
+pub fn picture<'s>(x: PlotAxis, survey: &'s Survey, courses: &[RegionCurves]) -> Picture {
+    let look = |(region, color): (&'s Region, Color)| KindLook {
+        letter: letter(region.kind),
+        color,
+        happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
+    };
+    let kinds: Vec<KindLook> = firsts(survey).into_iter().zip(fills_along(survey)).map(look).collect();
     let styles = OutcomeStyles::of(survey, &kinds);
     let whole = Curves { survey, courses, styles: &styles };
     let mut panels: Vec<Panel> = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect();
@@ -61,15 +66,6 @@ pub fn picture(x: PlotAxis, survey: &Survey, courses: &[RegionCurves]) -> Pictur
     }
     let legend = styles.legend(&kinds, angles);
     Picture { title: String::new(), rows: panels.into_iter().map(|panel| vec![panel]).collect(), legend }
-}
-
-fn kinds<'s>(survey: &'s Survey) -> Vec<KindLook<'s>> {
-    let look = |(region, color): (&'s Region, Color)| KindLook {
-        letter: letter(region.kind),
-        color,
-        happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
-    };
-    firsts(survey).into_iter().zip(fills_along(survey)).map(look).collect()
 }
 
 struct Curves<'a> {
@@ -137,8 +133,7 @@ impl<'a> Curves<'a> {
     }
 }
 
-/// The range of a curve's values that a panel shows: all of them, except those that grow like 1 / x toward a pole at
-/// its end.
+/// The range of values that a panel shows: all, except those that grow like 1 / x toward a pole at the curve's end.
 fn shown(points: &[PlotPoint]) -> Option<(f64, f64)> {
     let (&(from, _), &(to, _)) = (points.first()?, points.last()?);
     let largest = |least: f64, most: f64| {

@@ -90,8 +90,7 @@ pub(crate) fn fills_of_map(map: &Map) -> Vec<Color> {
     colors(&regimes, &borders)
 }
 
-/// A color for each of `regimes`, the kinds in their order. Neighbors, which `borders` separate, differ in hue, and in
-/// lightness if possible.
+/// A color for each regime; neighbors, which `borders` separate, differ in hue, and in lightness if possible.
 fn colors(regimes: &[&Regime], borders: &[[usize; 2]]) -> Vec<Color> {
     let mut tints: Vec<Option<usize>> = Vec::new();
     for (kind, regime) in regimes.iter().enumerate() {

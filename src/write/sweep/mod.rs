@@ -13,12 +13,10 @@ pub(super) use samples::RefusedSample;
 pub use samples::{Sample, columns};
 
 use super::ErrorObject;
-use crate::Error;
-use crate::impact::Verdict;
-use crate::law::Mode;
 use crate::sweep::{
     Area, BorderCurve, CELLS, Findings, Map, Parameter, Regime, Region, RegionBorder, Survey, WATCHED_CONTACTS, letter,
 };
+use crate::{Error, Mode, Verdict};
 use serde::Serialize;
 
 /// The record of a study of one parameter, without its samples.

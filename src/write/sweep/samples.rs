@@ -1,11 +1,10 @@
 //! The samples of a study, each as an object or as rows of a table.
 
-use crate::Result;
-use crate::pipeline::Impact;
 use crate::read::table::Carried;
 use crate::state::NamedContact;
 use crate::sweep::{Regime, RobotStudy, Solver};
 use crate::write::{Columns, Detail, ErrorObject, Report, append_line};
+use crate::{Impact, Result};
 use serde::Serialize;
 use serde_json::json;
 
@@ -63,8 +62,7 @@ impl<'a> Sample<'a> {
         refused.is_none()
     }
 
-    /// Appends the rows of the sample, with the letter that `letter` gives to its regime; returns whether it was
-    /// answered.
+    /// Appends its rows, with the letter that `letter` gives to its regime; returns whether it was answered.
     pub fn append_rows(
         &self,
         solver: &mut Solver,
@@ -87,9 +85,9 @@ impl<'a> Sample<'a> {
     }
 }
 
-/// The columns of a table of samples: those of a batch, then the parameters and the region's letter; `contacts` are
-/// those that occur.
+/// The columns of a batch with these `contacts`, then the parameters and the letter of the region.
 pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
-    Columns::with(model.robot, feet, contacts, parameters.chain(["region"]), false)
+    let through: Vec<&str> = parameters.chain(["region"]).collect();
+    Columns::with(model.robot, feet, &contacts.collect::<Vec<_>>(), &through, false)
 }

@@ -1,10 +1,9 @@
 //! The regions of a study for people.
 
 use super::{Happening, MapSweep, Regions, Sweep};
-use crate::impact::Verdict;
-use crate::law::Mode;
 use crate::sweep::{BorderCurve, EndedOutcome, Side, Transition, letter};
 use crate::write::{Palette, words, written};
+use crate::{Mode, Verdict};
 use std::fmt::Write;
 
 impl Regions<'_> {

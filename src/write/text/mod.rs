@@ -8,13 +8,10 @@ use super::result::{ContactRecord, Report};
 use super::state::HoldsRecord;
 use super::table::{Table, is_residue, number, scale};
 use super::{Detail, Palette, words};
-use crate::Robot;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
-use crate::law::{Friction, Mode};
-use crate::pipeline::Impact;
 use crate::planar::Vector;
 use crate::read::Problem;
-use crate::state::State;
+use crate::{Friction, Impact, Mode, Robot, State};
 use std::fmt::Write;
 
 /// The room for what was left out, in characters.
@@ -129,13 +126,10 @@ impl<'w> Writer<'w> {
         if normals().any(|normal| Some(normal) != normals().next()) {
             table = table.pairs(["n: x", "z"], 1.0, normals());
         }
+        let before = contacts.iter().map(|contact| contact.velocity_before);
         let friction = self.subject.friction.iter().map(|friction| friction.map_or("-".into(), |mu| mu.to_string()));
         table
-            .pairs(
-                ["before: t [m/s]", "n [m/s]"],
-                self.speeds(),
-                contacts.iter().map(|contact| contact.velocity_before),
-            )
+            .pairs(["before: t [m/s]", "n [m/s]"], self.speeds(), before)
             .text("friction", friction.collect::<Vec<String>>())
             .write(&mut self.out);
         let Palette { faint, plain, .. } = *self.palette;

@@ -1,12 +1,11 @@
 //! Each outcome, and the velocities after all of them.
 
 use super::Writer;
-use crate::impact::Outcome;
-use crate::law::Mode;
 use crate::planar::Vector;
 use crate::write::Palette;
 use crate::write::table::{Table, number, scale};
 use crate::write::words;
+use crate::{Mode, Outcome};
 use std::fmt::Write;
 
 impl Writer<'_> {
@@ -51,10 +50,7 @@ impl Writer<'_> {
     }
 
     fn loops(&mut self, outcome: &Outcome) {
-        let impulses = outcome.loop_impulse.as_deref().unwrap_or_default();
-        if impulses.is_empty() {
-            return;
-        }
+        let Some(impulses) = outcome.loop_impulse.as_deref().filter(|list| !list.is_empty()) else { return };
         let size = scale(impulses.iter().copied().flat_map(Vector::components));
         Table::default()
             .text("loop", (0..impulses.len()).map(|index| format!("loops[{index}]")))

@@ -17,13 +17,12 @@ impl Writer<'_> {
         }
         // 4^n; the number of contacts is bounded long before this overflows.
         let others = 4usize.saturating_pow(contacts as u32).saturating_sub(outcomes);
-        let nothing = if outcomes == 0 { "" } else { "Nothing else: " };
-        let fail = if others == 1 { "the other combination of modes fails" } else { "combinations of modes fail" };
         match (others, outcomes) {
             (0, _) => return Ok(()),
-            (1, _) => write!(self.out, "\n{nothing}{fail}")?,
-            (_, 0) => write!(self.out, "\nAll {others} {fail}")?,
-            _ => write!(self.out, "\n{nothing}the other {others} {fail}")?,
+            (1, 0) => write!(self.out, "\nthe other combination of modes fails")?,
+            (1, _) => write!(self.out, "\nNothing else: the other combination of modes fails")?,
+            (_, 0) => write!(self.out, "\nAll {others} combinations of modes fail")?,
+            _ => write!(self.out, "\nNothing else: the other {others} combinations of modes fail")?,
         }
         let rejected = self.subject.analysis.map_or(&[][..], |analysis| &analysis.rejected).iter();
         let mut reasons = words::grouped(rejected.map(|rejection| (in_general(rejection.because), ())));
@@ -40,10 +39,7 @@ impl Writer<'_> {
     }
 
     pub(super) fn rejected(&mut self) {
-        let rejected = self.report.rejected.as_deref().unwrap_or_default();
-        if rejected.is_empty() {
-            return;
-        }
+        let Some(rejected) = self.report.rejected.as_deref().filter(|list| !list.is_empty()) else { return };
         let mut table = Table::default();
         for (contact, name) in self.names().enumerate() {
             table = table.text(name, rejected.iter().map(|rejection| rejection.modes[contact].to_string()));
