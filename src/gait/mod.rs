@@ -180,23 +180,18 @@ impl FromStr for Touching {
 
     /// Reads `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`; `slow` alone is the default.
     fn from_str(text: &str) -> Result<Self, Error> {
-        let refused = || {
-            let reason = Reason::Syntax(format!("expected strike, slow:SPEED,HEIGHT or near:HEIGHT, found \"{text}\""));
-            Error::new(reason).hint("as in slow:0.35,0.02, in m/s and m")
-        };
-        let number = |text: &str| {
-            let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
-            number.ok_or_else(refused)
-        };
-        match text.split_once(':') {
-            None if text == "strike" => Ok(Self::Strike),
-            None if text == "slow" => Ok(Self::default()),
-            Some(("slow", bounds)) => {
-                let (speed, height) = bounds.split_once(',').ok_or_else(refused)?;
-                Ok(Self::Slow { speed: number(speed)?, height: number(height)? })
+        let (kind, bounds) = text.split_once(':').map_or((text, None), |(kind, bounds)| (kind, Some(bounds)));
+        let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
+        let bounds: Option<Vec<f64>> = bounds.into_iter().flat_map(|bounds| bounds.split(',')).map(number).collect();
+        match (kind, bounds.as_deref()) {
+            ("strike", Some([])) => Ok(Self::Strike),
+            ("slow", Some([])) => Ok(Self::default()),
+            ("slow", Some(&[speed, height])) => Ok(Self::Slow { speed, height }),
+            ("near", Some(&[height])) => Ok(Self::Near { height }),
+            _ => {
+                let found = format!("expected strike, slow:SPEED,HEIGHT or near:HEIGHT, found \"{text}\"");
+                Err(Error::new(Reason::Syntax(found)).hint("as in slow:0.35,0.02, in m/s and m"))
             }
-            Some(("near", height)) => Ok(Self::Near { height: number(height)? }),
-            _ => Err(refused()),
         }
     }
 }

@@ -37,7 +37,7 @@ const INSIDE: f64 = 1e-7;
 const BESIDE: f64 = 0.013_7;
 
 /// All areas of a study of two parameters.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Map {
     /// The different regimes, in the order in which the grid meets them.
     pub areas: Vec<Area>,
@@ -185,9 +185,7 @@ impl<'p> Grid<'p> {
 impl Map {
     /// The areas of `model`, whose study has two parameters; reports [`Map::work`] pieces of work to `workers`.
     pub fn of(model: &RobotStudy, workers: Workers) -> Self {
-        let [first, second] = model.study.parameters() else {
-            return Self { areas: Vec::new(), curves: Vec::new(), dependent: false };
-        };
+        let [first, second] = model.study.parameters() else { return Self::default() };
         let grid = Grid::new(model, [first, second], workers);
         let cells = (grid.xs.len() - 1) * (grid.ys.len() - 1);
         let trace = |solver: &mut Solver, k: usize| {

@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::sync::Arc;
 
 /// All regions along one parameter.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Survey {
     /// The regions from the least to the greatest value, each with positive width; neighbours differ.
     pub regions: Vec<Region>,
@@ -49,9 +49,7 @@ pub struct RegionBorder {
 impl Survey {
     /// The regions of `model`, whose study has one parameter; reports [`Survey::work`] pieces of work to `workers`.
     pub fn of(model: &RobotStudy, workers: Workers) -> Self {
-        let Some(parameter) = model.study.parameters().first() else {
-            return Self { regions: Vec::new(), borders: Vec::new(), dependent: false };
-        };
+        let Some(parameter) = model.study.parameters().first() else { return Self::default() };
         let resolution = RESOLUTION * parameter.range();
         let begin = || Solver::new(model);
         let sample = |solver: &mut Solver, index: usize| {
