@@ -88,11 +88,13 @@ pub struct Location {
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, thiserror::Error)]
+#[error(transparent)]
 pub struct Error(Box<Refusal>);
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, thiserror::Error)]
 struct Refusal {
+    #[source]
     reason: Reason,
     file: Option<String>,
     location: Option<Location>,
@@ -164,10 +166,10 @@ impl Error {
     }
 }
 
-impl fmt::Display for Error {
+impl fmt::Display for Refusal {
     /// `file:line:column: place: reason`, as far as known, without the remedy.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Refusal { reason, file, location, place, .. } = &*self.0;
+        let Self { reason, file, location, place, .. } = self;
         match (file, location) {
             (Some(file), Some(Location { line, column })) => write!(f, "{file}:{line}:{column}: ")?,
             (Some(file), None) => write!(f, "{file}: ")?,
@@ -178,12 +180,6 @@ impl fmt::Display for Error {
             write!(f, "{place}: ")?;
         }
         write!(f, "{reason}")
-    }
-}
-
-impl std::error::Error for Error {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        Some(&self.0.reason)
     }
 }
 

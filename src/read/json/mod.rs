@@ -53,9 +53,7 @@ impl<'n> Node<'n> {
 
     /// The fields of an object in their order, no key twice; `what` names what the keys stand for.
     pub(crate) fn fields(&'n self, what: &'static str) -> Result<impl Iterator<Item = Node<'n>> + Clone> {
-        let Value::Object(fields) = self.value else {
-            return Err(self.expected("an object"));
-        };
+        let Value::Object(fields) = self.value else { return Err(self.expected("an object")) };
         let field = |key, value| Node { value, way: Way::Field { parent: self, key } };
         if let Some(second) = second_of_its_name(fields) {
             let name = second.to_owned();
@@ -83,9 +81,7 @@ impl<'n> Node<'n> {
 
     /// The entries of a list.
     pub(crate) fn entries(&'n self) -> Result<impl ExactSizeIterator<Item = Node<'n>>> {
-        let Value::List(entries) = self.value else {
-            return Err(self.expected("a list"));
-        };
+        let Value::List(entries) = self.value else { return Err(self.expected("a list")) };
         let entries = entries.iter().enumerate();
         Ok(entries.map(move |(index, value)| Node { value, way: Way::Entry { parent: self, index } }))
     }
