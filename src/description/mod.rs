@@ -6,9 +6,9 @@
 //! ```
 //!
 //! urdf-rs alone is too trusting and too strict: it drops non-numbers from a vector, reads a missing `<inertial>` as a
-//! mass of zero, and refuses an incomplete `<limit>` that is not needed here. So `draft` checks every element with its
-//! place in the text, writes what the analysis uses into a strict copy, and urdf-rs reads the values from it. Nothing
-//! here opens a file, starts a process or recurses, and time and memory grow linearly with the text.
+//! mass of zero, and refuses an incomplete `<limit>`. So `draft` checks every element with its place in the text, and
+//! urdf-rs reads the values from a strict copy of it. Nothing here opens a file, starts a process or recurses, and time
+//! and memory grow linearly with the text.
 
 mod pose;
 mod xml;

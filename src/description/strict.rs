@@ -1,8 +1,5 @@
-//! The strict copy of one link or joint: URDF text that urdf-rs reads the values from.
-//!
-//! It holds numbers, joint types and shapes alone: each checked, each element where urdf-rs wants it, and no names,
-//! which need no reading. What urdf-rs would misread cannot reach it: it drops words from a vector that are no numbers,
-//! and wants a `velocity` in every `<limit>`.
+//! The strict copy of one link or joint, from which urdf-rs reads the values: numbers, joint types and shapes alone,
+//! each checked and where urdf-rs wants it, and no names.
 
 use super::{Geometry, JointKind, Mesh, Pose, xml};
 use crate::error::{Error, Reason, Result};

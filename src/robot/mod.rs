@@ -5,10 +5,8 @@
 //! ```
 //!
 //! Links joined by fixed and frozen joints are one [`Body`]. A body's frame has its origin at its joint's origin (the
-//! root body: at the root link's origin) and, at zero joint coordinates, the axes of the plane: forward, normal and up
-//! among those of the file's root link. So no constant rotation stands between a body and its parent, and where the
-//! file turns nothing its numbers are kept bit for bit. Bodies are numbered so that a parent comes before its children;
-//! joints, and with them the coordinates, keep the file's order.
+//! root body: at the root link's origin) and, at zero joint coordinates, the axes of the plane. So no constant rotation
+//! stands between a body and its parent, and where the file turns nothing its numbers are kept bit for bit.
 //!
 //! ```text
 //!     Description --posture--> axes in the posture --plane--> plane --role--> revolute, prismatic or fixed

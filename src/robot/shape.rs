@@ -9,9 +9,6 @@
 //!     two      point    flat plate, upright              two      ellipse  cylinder oblique to the plane
 //!     two      circle   capsule
 //! ```
-//!
-//! Along a direction d the outline reaches as far as its farthest corner does, plus the rim's own reach: so it touches
-//! a line with one corner's rim, or with those of both ends of a flat side.
 
 use crate::planar::Vector;
 use parry2d::math::Vector as ParryVector;

@@ -7,8 +7,7 @@
 //! ```
 //!
 //! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is held at
-//! a value shifts and turns its child by that once more. What lies off the plane counts as if it lay in it. Linear in
-//! links; nothing recurses.
+//! a value shifts and turns its child by that once more. Linear in links; nothing recurses.
 
 use super::posture::{Posture, held_shift, held_turn};
 use super::role::Role;

@@ -4,9 +4,8 @@
 //!     file name --fetch, the caller's--> bytes --by the name's ending--> stl | obj | collada --> vertices
 //! ```
 //!
-//! The library opens no file: the caller resolves a name and supplies the bytes. A mesh that is missing or cannot be
-//! read is left out of its link with a reason, because robots often come without some of their meshes. Each file is
-//! requested once. Time and memory grow no faster than n log n with the bytes, and the bytes are limited.
+//! The caller resolves a name, once for each file, and supplies the bytes, which are limited. A mesh that is missing or
+//! cannot be read is left out of its link with a reason, because robots often come without some of their meshes.
 
 mod collada;
 mod obj;

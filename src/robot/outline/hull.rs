@@ -5,10 +5,9 @@
 //!     points --parry, scaled to size one--> convex hull --drop what bulges less than 1e-6 of the size--> corners
 //! ```
 //!
-//! A real sole is meshed with dozens of vertices along one side, which rounding (f32, or six decimals of a text) leaves
-//! a little off the line. The chain of hull vertices between two kept ones is replaced by its chord where none of it is
-//! farther off than [`FLAT`] (Douglas and Peucker, 1973); corners are dropped, never moved, so a side loses at most
-//! that much, and what is kept are points of the file. In n points with h on the hull: n log h as a rule.
+//! A real sole has dozens of vertices along one side, which rounding leaves a little off the line. The chain of hull
+//! vertices between two kept ones is replaced by its chord where none of it is farther off than [`FLAT`] (Douglas and
+//! Peucker, 1973); corners are dropped, never moved. In n points with h on the hull: n log h as a rule.
 
 use crate::planar::Vector;
 use parry2d::math::Vector as ParryVector;
