@@ -11,7 +11,7 @@ use heelstrike::accuracy::compliant::compare;
 use heelstrike::accuracy::{Budget, Case, CaseStudy, CaseSubject, cases, of_state, study};
 use heelstrike::pipeline::Options;
 use heelstrike::state::State;
-use heelstrike::write::{Accuracy, Compliant};
+use heelstrike::write::{Accuracy, Compliant, titled};
 use heelstrike::{Error, Reason, Robot};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -77,10 +77,7 @@ fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accura
         no_proof: args.no_proof,
         ..Options::default()
     };
-    let called = match &state.id {
-        Some(id) => format!("{} ({})", robot.name, id.as_str().map_or_else(|| id.to_string(), str::to_owned)),
-        None => robot.name.clone(),
-    };
+    let called = titled(&robot.name, &state.id);
     let study = of_state(&called, &robot, &state, &options, budget);
     let compliant = match study.refused {
         Some(_) => None,

@@ -33,6 +33,7 @@ pub use result::{
 };
 pub use state::{CounterexampleRecord, HoldsRecord};
 pub use text::{Subject, text};
+pub use words::titled;
 
 use serde::Serialize;
 

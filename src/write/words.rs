@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 
 /// `ramone (k17)`.
-pub(crate) fn titled(name: &str, id: &Option<Value>) -> String {
+pub fn titled(name: &str, id: &Option<Value>) -> String {
     id.as_ref().map_or(name.to_owned(), |own| format!("{name} ({})", self::id(own)))
 }
 
