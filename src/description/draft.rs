@@ -1,4 +1,4 @@
-//! XML elements -> links and joints: checked, named and located, with the values that urdf-rs reads of their strict copy.
+//! XML elements -> links and joints: checked and located, with the values that urdf-rs reads of their strict copy.
 
 use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, undefined_world};
 use super::repair::Repaired;

@@ -127,7 +127,7 @@ mod tests {
         let inertia = |ixx, iyy| [[ixx, 0.0, 0.0], [0.0, iyy, 0.0], [0.0, 0.0, 0.0]];
         assert_eq!(projected(inertia(-1.0, 0.5), [0.0; 3]), Ok(0.5));
         assert!(projected(inertia(0.5, -1e-30), [0.0; 3]).is_err());
-        // No error: a thin rod along (1, 1, 1) / sqrt(3), turned to the normal, of which rounding may leave less than 0.
+        // No error: a thin rod along (1, 1, 1) / sqrt(3), turned to the normal: rounding may leave less than 0.
         let third = 1.0 / 3.0;
         let rod = [[2.0 * third, -third, -third], [-third, 2.0 * third, -third], [-third, -third, 2.0 * third]];
         let rotation = [[0.0; 3], [3.0_f64.sqrt().recip(); 3], [0.0; 3]];

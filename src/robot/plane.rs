@@ -1,7 +1,7 @@
 //! The plane that a robot moves in: axes of the joints -> forward, normal and up.
 //!
 //! ```text
-//!     rows of P = forward, n, up          n = up x forward          P w: a vector w of the root link in the plane's axes
+//!     rows of P = forward, n, up          n = up x forward        P w: a vector w of the root link in the plane's axes
 //! ```
 //!
 //! P only picks components and changes signs, so it costs no digit.

@@ -1,8 +1,8 @@
 //! The ground: a line through the world's origin, or a profile of segments.
 //!
 //! ```text
-//!     solid below the line           level (slope 0), or uphill toward +x
-//!     solid below the profile        (x_0, z_0) -- (x_1, z_1) -- ... -- (x_n, z_n), x rising; no ground beyond the ends
+//!     solid below the line          level (slope 0), or uphill toward +x
+//!     solid below the profile       (x_0, z_0) -- (x_1, z_1) -- ... -- (x_n, z_n), x rising; no ground beyond the ends
 //! ```
 
 use crate::error::{Error, Reason, Result, finite};

@@ -6,7 +6,7 @@
 //!
 //! Only what places vertices is read (COLLADA 1.4.1, chapters 5 and 6): asset, visual scene, nodes and the positions of
 //! geometries, those of skins in their bind shape. A file without a visual scene has its geometries as they are; one
-//! without an up axis has z up, as in the URDF (as every tool of ROS does, although COLLADA's own default is y). Nothing
+//! without an up axis has z up, as in the URDF (so in every tool of ROS, although COLLADA's own default is y). Nothing
 //! recurses, and node instances are counted: a file of a few lines could ask for 2^100 of them.
 
 use super::super::pose::{Matrix, apply, product, turn, unit};

@@ -1,7 +1,7 @@
 //! Strict reading of JSON: every field once, every refusal with its place, line and column.
 //!
 //! ```text
-//!     text --serde_json--> Value (a tree that borrows the text) --Node (a value that knows its way from the root)--> State, Problem
+//!     text --serde_json--> Value (borrows the text) --Node (a value and its way from the root)--> State, Problem, Study
 //! ```
 //!
 //! A [`Value`] keeps objects as lists, so that a key given twice is seen, and borrows keys and strings, so that their

@@ -12,7 +12,7 @@ const BASE: [&str; 3] = ["base_x", "base_z", "base_pitch"];
 const QUATERNION: [&str; 4] = ["base_qw", "base_qx", "base_qy", "base_qz"];
 /// Its lateral position.
 const SIDEWAYS: &str = "base_y";
-/// Why velocities of a base in three dimensions are refused: engines give them in the world's axes, the body's, or both.
+/// Why velocities of a base in three dimensions are refused: engines give them in the world's axes or the body's.
 const SPATIAL_VELOCITY: &str = "velocities of a robot whose base is in three dimensions are not read";
 /// The remedy.
 const WITHOUT_VELOCITY: &str =

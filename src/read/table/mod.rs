@@ -10,7 +10,7 @@
 //! others, and `time`, are copied to the results. An empty cell is refused where a number belongs, because some
 //! programs write NaN so. It means "not given" in `id`, `friction`, `restitution` and `stance`. In a row with a stance
 //! the cells of `q_base_x`, `q_base_z`, `v_base_x` and `v_base_z` must be empty. A base in three dimensions has also
-//! `q_base_y`, and a quaternion instead of the pitch ([`crate::gait::spatial`]); its velocities come from the time alone.
+//! `q_base_y`, and a quaternion instead of the pitch ([`crate::gait::spatial`]); its velocities come from the time.
 
 mod records;
 mod header;
