@@ -16,7 +16,6 @@ mod index;
 mod program;
 mod singular;
 mod combination;
-mod border;
 mod explanation;
 mod rank;
 mod collected;

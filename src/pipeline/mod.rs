@@ -6,13 +6,11 @@
 
 pub(crate) mod assembly;
 pub(crate) mod exact;
-mod left_out;
 mod loops;
 mod prepared;
 pub mod robust;
 
 use self::assembly::{Assembly, Elimination};
-pub use self::left_out::LeftOut;
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::Unsolved;
 use self::prepared::check_length;
@@ -23,7 +21,7 @@ use crate::error::{Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, too_many_contacts,
 };
-use crate::law::{Friction, Mode};
+use crate::law::{Friction, Law, Mode};
 use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
@@ -96,6 +94,21 @@ impl Impact {
     pub fn into_analysis(self) -> Result<Analysis> {
         self.analysis.ok_or_else(|| too_many_contacts(self.contacts.len()))
     }
+}
+
+/// Something that this scene does not need; what the file does not is in [`Robot`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LeftOut {
+    /// The column of a joint that keeps its rate (an index into [`Robot::joints`](crate::Robot)).
+    Column(usize),
+    /// This many collision shapes, which are too high to reach the ground.
+    OutOfReach(usize),
+    /// This many collision shapes, because contacts are named by hand.
+    NotAsked(usize),
+    /// The tangential impulses of these contacts, which have no friction.
+    Tangential(Vec<usize>),
+    /// The friction cones of these contacts, whose friction is infinite.
+    Cone(Vec<usize>),
 }
 
 /// The answer for one state, and what of its contacts was taken as given.
@@ -301,6 +314,29 @@ impl<'r> Pipeline<'r> {
             self.assembly.push(by, at, vector, &mut after);
         }
         after
+    }
+
+    /// Lists what a scene leaves out; `out_of_reach` is how many shapes are too far from the ground.
+    fn left_out(&self, scene: &Scene, laws: &[Law], out_of_reach: usize) -> Vec<LeftOut> {
+        let mut all = Vec::new();
+        if self.options.reductions.held {
+            all.extend(scene.held.iter().map(|&joint| LeftOut::Column(joint)));
+        }
+        let shapes = self.feet.iter().count();
+        match scene.contacts {
+            Some(_) if shapes > 0 => all.push(LeftOut::NotAsked(shapes)),
+            None if out_of_reach > 0 => all.push(LeftOut::OutOfReach(out_of_reach)),
+            _ => {}
+        }
+        let with = |wanted: Law| (0..laws.len()).filter(|&at| laws[at] == wanted).collect::<Vec<_>>();
+        let [none, infinite] = [Friction::ZERO, Friction::Infinite].map(|friction| with(friction.into()));
+        if self.options.reductions.frictionless && !none.is_empty() {
+            all.push(LeftOut::Tangential(none));
+        }
+        if !infinite.is_empty() {
+            all.push(LeftOut::Cone(infinite));
+        }
+        all
     }
 
     fn matrices(&self) -> Matrices {
