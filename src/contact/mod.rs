@@ -27,7 +27,7 @@ use crate::planar::{Rotation, Vector};
 /// A closed contact of one state; [`Pipeline`](crate::Pipeline) has an example.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
-    /// The URDF link that carries the shape, also after welding (an index into [`Robot::links`](crate::Robot)).
+    /// The URDF link that carries the shape, merged or not (an index into [`Robot::links`](crate::Robot)).
     pub link: usize,
     /// The link's name, or link/0, link/1 ... where a link has several contacts.
     pub name: String,

@@ -28,9 +28,9 @@ impl Placement {
     /// The bodies of `robot` at `position` (q).
     pub fn of_robot(robot: &Robot, position: &[f64]) -> Self {
         let plan = Plan::new(robot, &[], &[]);
-        let (mut posture, mut workspace) = (Configuration::default(), Workspace::default());
-        posture.set(&plan, position);
-        kinematics(&plan, &posture, &mut workspace);
+        let (mut configuration, mut workspace) = (Configuration::default(), Workspace::default());
+        configuration.set(&plan, position);
+        kinematics(&plan, &configuration, &mut workspace);
         let base = match (robot.base, position) {
             (Base::Floating, &[x, z, ..]) => Vector::new(x, z),
             _ => Vector::zero(),

@@ -81,9 +81,9 @@ impl Bounds {
                 (Motion::Prismatic { direction, .. }, None) => {
                     configuration.displacement[body.place].abs() * length(direction)
                 }
-                (Motion::Prismatic { direction, .. }, Some(tie)) => {
+                (Motion::Prismatic { direction, .. }, Some(mimic)) => {
                     let value = configuration.displacement[body.coordinate];
-                    ((tie.multiplier * value).abs() + tie.offset.abs()) * length(direction)
+                    ((mimic.multiplier * value).abs() + mimic.offset.abs()) * length(direction)
                 }
                 (Motion::Root | Motion::Revolute { .. } | Motion::Fixed, _) => 0.0,
             };
@@ -194,7 +194,7 @@ impl Bounds {
                 Motion::Root => break,
                 Motion::Revolute { rate, .. } => visit(body.column, body.coordinate, arm * rate.abs()),
                 Motion::Prismatic { .. } => {
-                    visit(body.column, body.coordinate, body.mimic.map_or(1.0, |tie| tie.multiplier.abs()));
+                    visit(body.column, body.coordinate, body.mimic.map_or(1.0, |mimic| mimic.multiplier.abs()));
                 }
                 Motion::Fixed => {}
             }

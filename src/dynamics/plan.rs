@@ -26,10 +26,10 @@ use crate::scalar::{Real, Trigonometry};
 pub struct Plan<T = f64> {
     /// Bodies from the root outward.
     pub(crate) bodies: Vec<PlanBody<T>>,
-    /// Parent of each column in the elimination tree of M; without followers the nearest moving joint below it.
+    /// Parent of each column in the elimination tree of M; without mimic joints the nearest moving joint below it.
     pub(crate) parents: Vec<Option<usize>>,
     pub(crate) coordinates: Vec<usize>,
-    /// Entries of a [`Configuration`]: coordinates and followers.
+    /// Entries of a [`Configuration`]: coordinates and mimic joints.
     pub(crate) places: usize,
     pub(crate) floating: bool,
     /// Whether some column moves more than one joint.
