@@ -237,8 +237,8 @@ pub(super) fn run(args: &Args) -> Completion {
     let _ = match counts.states {
         0 if touchdowns => writeln!(
             io::stderr(),
-            "no touchdown found: a foot must descend {least:.4} m or more, faster than {:.4} m/s, to at most {ground:.4} m \
-             above the ground (see --drop, --ground-height)",
+            "no touchdown found: a foot must descend {least:.4} m or more, faster than {:.4} m/s, to at most \
+             {ground:.4} m above the ground (see --drop, --ground-height)",
             thresholds.slow
         ),
         0 | 1 if summary.is_none() => Ok(()),
