@@ -30,17 +30,14 @@ struct Case {
 static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     let mut cases = Vec::new();
     for model in &MODELS {
-        let listed: Vec<(&str, &At, &str)> = REFERENCE[model.name]
-            .at
-            .iter()
-            .flat_map(|(alpha, at)| at.outcomes.keys().map(move |friction| (alpha.as_str(), at, friction.as_str())))
-            .collect();
-        let states: Vec<Value> = listed
-            .iter()
-            .map(|&(alpha, at, friction)| model.state(alpha.parse().unwrap(), at.pose.as_ref(), friction))
-            .collect();
-        for ((alpha, reference, friction), answer) in listed.into_iter().zip(impact(model, &states)) {
-            let place = format!("{}, alpha {alpha}, friction {friction}", model.name);
+        let (mut listed, mut states) = (Vec::new(), Vec::new());
+        for (alpha, at) in &REFERENCE[model.name].at {
+            for friction in at.outcomes.keys() {
+                listed.push((format!("{}, alpha {alpha}, friction {friction}", model.name), friction, at));
+                states.push(model.state(alpha.parse().expect("an angle"), at.pose.as_ref(), friction));
+            }
+        }
+        for ((place, friction, reference), answer) in listed.into_iter().zip(impact(model, &states)) {
             cases.push(Case { model, place, friction, reference, answer });
         }
     }
@@ -105,13 +102,10 @@ fn matrices_are_those_of_the_paper_in_the_tools_coordinates() {
         let turn = to_reference(case.model.kneed);
         let joints: &[&str] =
             if case.model.kneed { &["left_hip", "left_knee", "right_hip", "right_knee"] } else { &["hip"] };
-        if answer.coordinates != [&["x", "z", "pitch"], joints].concat() {
-            differences.note(place, format!("coordinates {:?}", answer.coordinates));
-        }
+        let coordinates: Vec<&str> = answer.coordinates.iter().map(String::as_str).collect();
+        differences.same(place, coordinates, [&["x", "z", "pitch"], joints].concat());
         let touching: Vec<_> = answer.contacts.iter().filter_map(|contact| contact.link.as_deref()).collect();
-        if touching != case.model.feet() {
-            differences.note(place, format!("contacts {touching:?}"));
-        }
+        differences.same(place, &touching[..], &case.model.feet());
         let mass = turn.transpose() * matrix(&at.mass_matrix) * &turn;
         differences.compare_matrix(&format!("{place}: M"), &answer.mass_matrix, &mass, TOLERANCE);
         let jacobian = matrix(&at.contact_jacobian) * &turn;
@@ -167,18 +161,9 @@ fn every_outcome_is_found_and_no_other() {
     for case in CASES.iter() {
         let Some(answer) = differences.accepted(&case.place, case.answer.as_ref()) else { continue };
         let (place, expected) = (&case.place, &case.reference.outcomes[case.friction]);
-        let found = found(answer);
-        let should = sorted(expected.iter().map(|outcome| outcome.modes.join("/")));
-        if found != should {
-            differences.note(place, format!("outcomes {found:?} instead of {should:?}"));
-        }
+        differences.same(place, found(answer), sorted(expected.iter().map(|outcome| outcome.modes.join("/"))));
         let verdict = if expected.len() == 1 { "unique" } else { "ambiguous" };
-        if answer.verdict.as_deref() != Some(verdict) {
-            differences.note(place, format!("verdict {:?} instead of {verdict}", answer.verdict));
-        }
-        if answer.index_sum != Some(1) {
-            differences.note(place, format!("index sum {:?}", answer.index_sum));
-        }
+        differences.same(place, (answer.verdict.as_deref(), answer.index_sum), (Some(verdict), Some(1)));
         for outcome in expected {
             let Some(found) = answer.outcomes.iter().find(|found| found.modes == outcome.modes) else { continue };
             let place = format!("{place}: {}", outcome.modes.join("/"));
@@ -187,9 +172,7 @@ fn every_outcome_is_found_and_no_other() {
             differences.compare(&format!("{place}: c after"), &velocity, &outcome.velocity_after, TOLERANCE * size);
             let size = largest(&outcome.impulse);
             differences.compare(&format!("{place}: L"), &found.impulse.concat(), &outcome.impulse, TOLERANCE * size);
-            if !found.impulse_unique || found.border.is_some() {
-                differences.note(&place, format!("unique {}, border {:?}", found.impulse_unique, found.border));
-            }
+            differences.same(&place, (found.impulse_unique, &found.border), (true, &None));
         }
     }
     differences.finish();
@@ -220,10 +203,7 @@ fn regions_of_the_leg_angle_begin_and_end_where_the_reference_says() {
         for ((state, should), answer) in states.iter().zip(expected).zip(impact(model, &states)) {
             let place = state["id"].as_str().expect("a name");
             let Some(answer) = differences.accepted(place, answer) else { continue };
-            let found = found(&answer);
-            if found != should {
-                differences.note(place, format!("{:?}: {found:?} instead of {should:?}", answer.verdict));
-            }
+            differences.same(place, found(&answer), should);
         }
     }
     differences.finish();
@@ -274,41 +254,38 @@ fn the_degenerate_walker_is_proven_however_near_its_border_is() {
 #[test]
 fn the_single_body_ends_as_its_region_says() {
     let model = Model { name: "block", urdf: "block", inertia: None, kneed: false };
-    let regions: [(&str, [f64; 2], &[&str]); 4] = [
-        ("A", [0.0, 1.0], &["separate"]),
-        ("B", [-4.0, 1.0], &["slide-"]),
-        ("C", [0.0, -1.0], &["stick"]),
-        ("E", [1.0, -0.25], &["separate", "slide+", "stick"]),
+    // Modes with impulse and velocity after: sticking takes L_ext up; sliding has L_n = 0 and c_n = 0 = G_nt (L_t +
+    // L_ext,t) + G_nn L_ext,n.
+    type Ends<'a> = &'a [(&'a str, [f64; 2], [f64; 2])];
+    let regions: [(&str, [f64; 2], Ends); 4] = [
+        ("A", [1.0, 2.0], &[("separate", [0.0, 0.0], [1.0, 2.0])]),
+        ("B", [-7.0, -2.0], &[("slide-", [2.0, 0.0], [-3.0, 0.0])]),
+        ("C", [-1.0, -2.0], &[("stick", [0.0, 1.0], [0.0, 0.0])]),
+        (
+            "E",
+            [1.75, 0.5],
+            &[
+                ("separate", [0.0, 0.0], [1.75, 0.5]),
+                ("slide+", [-0.5, 0.0], [0.75, 0.0]),
+                ("stick", [-1.0, 0.25], [0.0, 0.0]),
+            ],
+        ),
     ];
-    let states: Vec<Value> = regions
-        .iter()
-        .map(|&(region, [l_t, l_n], _)| {
-            let velocity = json!({"base": {"x": 2.0 * l_t + l_n, "z": l_t + 2.0 * l_n}});
-            json!({"id": region, "velocity": velocity, "friction": "infinite"})
-        })
-        .collect();
+    let state = |&(region, [x, z], _): &(&str, [f64; 2], Ends)| json!({"id": region, "velocity": {"base": {"x": x, "z": z}}, "friction": "infinite"});
+    let states: Vec<Value> = regions.iter().map(state).collect();
     let mut differences = Differences::default();
-    for ((region, [l_t, l_n], modes), answer) in regions.into_iter().zip(impact(&model, &states)) {
-        let Some(answer) = differences.accepted(region, answer) else { continue };
+    for ((region, before, ends), answer) in regions.into_iter().zip(impact(&model, &states)) {
+        let Some(mut answer) = differences.accepted(region, answer) else { continue };
         let delassus = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]);
         differences.compare_matrix(&format!("{region}: G"), &answer.delassus, &delassus, TOLERANCE);
-        let found = found(&answer);
-        if found != modes {
-            differences.note(region, format!("{found:?} instead of {modes:?}"));
-        }
-        for outcome in &answer.outcomes {
-            // Sticking takes the external impulse up; sliding has L_n = 0 and c_n = 0 = G_nt (L_t + L_ext,t) + G_nn
-            // L_ext,n.
-            let (impulse, velocity) = match outcome.modes[0].as_str() {
-                "separate" => ([0.0, 0.0], [2.0 * l_t + l_n, l_t + 2.0 * l_n]),
-                "stick" => ([-l_t, -l_n], [0.0, 0.0]),
-                _ => ([-l_t - 2.0 * l_n, 0.0], [-3.0 * l_n, 0.0]),
-            };
-            let place = format!("{region}, {}", outcome.modes[0]);
-            let within = TOLERANCE * largest(&impulse);
-            differences.compare(&format!("{place}: L"), &outcome.impulse.concat(), &impulse, within);
-            let within = TOLERANCE * (2.0 * l_t + l_n).abs().max((l_t + 2.0 * l_n).abs());
-            differences.compare(&format!("{place}: c after"), &outcome.velocity_after.concat(), &velocity, within);
+        answer.outcomes.sort_by(|a, b| a.modes.cmp(&b.modes));
+        differences.same(region, found(&answer), ends.iter().map(|end| end.0.to_owned()).collect());
+        for (outcome, (modes, impulse, velocity)) in answer.outcomes.iter().zip(ends) {
+            let place = format!("{region}, {modes}");
+            let (is, within) = (outcome.impulse.concat(), TOLERANCE * largest(impulse));
+            differences.compare(&format!("{place}: L"), &is, impulse, within);
+            let (is, within) = (outcome.velocity_after.concat(), TOLERANCE * largest(&before));
+            differences.compare(&format!("{place}: c after"), &is, velocity, within);
         }
     }
     differences.finish();

@@ -60,16 +60,10 @@ fn compare(problem: &Problem, answer: &Answer, differences: &mut Differences) {
         let found: Vec<_> = answer.outcomes.iter().map(|outcome| &outcome.modes).collect();
         differences.note(id, format!("{:?}: {found:?}, {} outcomes too many or few", answer.verdict, found.len()));
     }
-    if !answer.proven {
-        differences.note(id, "not proven".to_owned());
-    }
-    if answer.rank != Some(expected.rank) {
-        differences.note(id, format!("rank {:?} instead of {}", answer.rank, expected.rank));
-    }
-    // The references have no sum where a contact's share in it is defined by regularization.
-    if expected.index_sum.is_some() && answer.index_sum != expected.index_sum {
-        differences.note(id, format!("index sum {:?} instead of {:?}", answer.index_sum, expected.index_sum));
-    }
+    // The references have no index sum where a contact's share in it is defined by regularization.
+    let index_sum = answer.index_sum.filter(|_| expected.index_sum.is_some());
+    let found = (answer.proven, answer.rank, index_sum);
+    differences.same(id, found, (true, Some(expected.rank), expected.index_sum));
     for should in &expected.outcomes {
         let after = should.velocity_after.concat();
         let within = TOLERANCE * largest(&problem.velocity_before.concat()).max(largest(&after));
@@ -86,15 +80,9 @@ fn compare(problem: &Problem, answer: &Answer, differences: &mut Differences) {
 }
 
 fn compare_outcome(place: &str, found: &Outcome, should: &ExpectedOutcome, differences: &mut Differences) {
-    let flags = (found.impulse_unique, found.border.is_some(), found.family);
-    let expected = (should.impulse_unique, should.border, should.family);
-    if flags != expected {
-        differences.note(place, format!("(impulse unique, border, family) {flags:?} instead of {expected:?}"));
-    }
-    let expected = should.index.or(should.index_extended);
-    if !found.proven || found.index != expected {
-        differences.note(place, format!("proven {}, index {:?} instead of {expected:?}", found.proven, found.index));
-    }
+    let flags = (found.impulse_unique, found.border.is_some(), found.family, found.proven, found.index);
+    let index = should.index.or(should.index_extended);
+    differences.same(place, flags, (should.impulse_unique, should.border, should.family, true, index));
     let (impulse, least) = (found.impulse.concat(), should.impulse.concat());
     let within = TOLERANCE * largest(&least);
     differences.compare(&format!("{place}: impulse"), &impulse, &least, within);
@@ -103,9 +91,7 @@ fn compare_outcome(place: &str, found: &Outcome, should: &ExpectedOutcome, diffe
         (Some(found), Some(should)) => {
             let [found, should] = [found, should].map(|range| range.concat().concat());
             let bounded = |range: &[Option<f64>]| range.iter().map(Option::is_some).collect::<Vec<_>>();
-            if bounded(&found) != bounded(&should) {
-                differences.note(place, format!("range {found:?} instead of {should:?}"));
-            }
+            differences.same(place, bounded(&found), bounded(&should));
             let numbers = |range: &[Option<f64>]| range.iter().flatten().copied().collect::<Vec<f64>>();
             let within = TOLERANCE * largest(&numbers(&should)).max(largest(&least));
             differences.compare(&format!("{place}: range"), &numbers(&found), &numbers(&should), within);

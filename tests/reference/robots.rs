@@ -114,9 +114,7 @@ fn compare_matrices(robot: &Robot, differences: &mut Differences) {
     for ((config, state), answer) in configs.iter().zip(&states).zip(answers) {
         let place = state["id"].as_str().expect("a name");
         let Some(answer) = differences.accepted(place, answer) else { continue };
-        if answer.coordinates != *coordinates {
-            differences.note(place, format!("coordinates {:?}", answer.coordinates));
-        }
+        differences.same(place, &answer.coordinates, coordinates);
         differences.compare_matrix(&format!("{place}: M"), &answer.mass_matrix, &matrix(&config.M), TOLERANCE);
         differences.compare_matrix(&format!("{place}: J"), &answer.contact_jacobian, &matrix(&config.J), TOLERANCE);
         differences.compare_matrix(&format!("{place}: G"), &answer.delassus, &matrix(&config.G), TOLERANCE);

@@ -17,6 +17,13 @@ impl Differences {
         result.map_err(|refusal| self.note(place, refusal)).ok()
     }
 
+    /// Compares what is no number.
+    pub fn same<T: PartialEq + std::fmt::Debug>(&mut self, place: &str, is: T, should: T) {
+        if is != should {
+            self.note(place, format!("{is:?} instead of {should:?}"));
+        }
+    }
+
     /// Compares number by number; `tolerance` is absolute: the factor times the size it refers to.
     pub fn compare(&mut self, place: &str, is: &[f64], should: &[f64], tolerance: f64) {
         if is.len() != should.len() {
