@@ -139,42 +139,27 @@ fn exact(value: f64) -> RBig {
     RBig::try_from(value).expect("finite")
 }
 
-fn far(exact_value: &RBig, value: f64) -> f64 {
-    (exact_value - exact(value)).to_f64().value().abs()
+/// What is compared with the exact core.
+fn numbers<T: Real>() -> Vec<T> {
+    let states = HALF_TANGENTS.iter().flat_map(|tangents| run(tangents.map(T::from_f64)));
+    states.chain(combinations(&problem())).collect()
 }
 
 #[test]
 fn f64_is_within_rounding_of_the_exact_core() {
-    for tangents in HALF_TANGENTS {
-        let reference = run(tangents.map(Exact::from_f64));
-        for (index, (reference, found)) in reference.iter().zip(run(tangents)).enumerate() {
-            let reference = reference.value();
-            // Entries are sums of some dozen terms of order ten at most.
-            assert!(far(&reference, found) < 1e3 * f64::EPSILON, "entry {index}: {found} for {tangents:?}");
-        }
-    }
-    for (reference, found) in combinations::<Exact>(&problem()).iter().zip(combinations::<f64>(&problem())) {
-        assert!(far(&reference.value(), found) < 1e3 * f64::EPSILON);
+    for (entry, (reference, found)) in numbers::<Exact>().iter().zip(numbers::<f64>()).enumerate() {
+        let far = (reference.value() - exact(found)).to_f64().value().abs();
+        // Entries are sums of some dozen terms of order ten at most.
+        assert!(far < 1e3 * f64::EPSILON, "entry {entry}: {found} is off by {far}");
     }
 }
 
 #[test]
 fn balls_enclose_the_exact_core() {
-    let enclosed = |ball: &Ball, reference: &RBig| {
-        let distance = reference - exact(ball.mid);
-        let radius = exact(ball.radius);
-        distance <= radius && -distance <= radius
-    };
     let mut widest = 0.0_f64;
-    for tangents in HALF_TANGENTS {
-        let reference = run(tangents.map(Exact::from_f64));
-        for (reference, ball) in reference.iter().zip(run(tangents.map(Ball::from_f64))) {
-            assert!(enclosed(&ball, &reference.value()), "{ball:?}");
-            widest = widest.max(ball.radius);
-        }
-    }
-    for (reference, ball) in combinations::<Exact>(&problem()).iter().zip(combinations::<Ball>(&problem())) {
-        assert!(enclosed(&ball, &reference.value()), "{ball:?}");
+    for (reference, ball) in numbers::<Exact>().iter().zip(numbers::<Ball>()) {
+        let (distance, radius) = (reference.value() - exact(ball.mid), exact(ball.radius));
+        assert!(distance <= radius && -distance <= radius, "{ball:?}");
         widest = widest.max(ball.radius);
     }
     assert!(widest < 1e-11, "balls are of use only while they are small: {widest}");

@@ -1,18 +1,20 @@
 //! A random tree in a random state with random contacts, and its exact impact.
 
 use super::enumeration::{Enumeration, Friction, Problem, enumerate};
-use super::tree::{Motion, Motions, Point, Tree, kinetic_energy};
+use super::tree::{Motions, Point, Tree, kinetic_energy};
 use crate::support::random::Random;
 use crate::support::rational::{Matrix, delassus, dot, rank, ratio, times, to_f64};
 use dashu::rational::RBig;
-use serde_json::{Value, json};
+use heelstrike::Robot;
+use heelstrike::impact;
+use heelstrike::state::{ByLink, NamedContact, Scene, State};
 
 /// A contact on a link: a point, or a circle that touches at its bottom.
 #[derive(Debug, Clone)]
 pub struct Contact {
     pub body: usize,
-    pub centre: Point,
-    /// Component of the centre along the plane's normal; it must not matter.
+    pub center: Point,
+    /// Component of the center along the plane's normal; it must not matter.
     pub sideways: RBig,
     pub radius: RBig,
 }
@@ -48,7 +50,7 @@ impl Case {
 
         let placed = tree.place(&motions);
         let jacobian: Matrix =
-            contacts.iter().flat_map(|at| placed[at.body].bottom_jacobian(&at.centre, &at.radius)).collect();
+            contacts.iter().flat_map(|at| placed[at.body].bottom_jacobian(&at.center, &at.radius)).collect();
         if contacts.len() > 1 && random.once_in(3) {
             // The first contact rests, as a walker's trailing foot does.
             let at = times(&jacobian, &motions.velocity);
@@ -88,39 +90,32 @@ impl Case {
         -(dot(impulse, &self.problem.velocity_before) + dot(impulse, after)) / ratio(2, 1)
     }
 
-    /// The state as the tool reads it; angles are those whose cosine and sine the case holds.
-    pub fn state(&self, tree: &Tree) -> Value {
-        let angle = |k: usize| to_f64(&self.motions.sin[k]).atan2(to_f64(&self.motions.cos[k]));
-        let speed = |k: usize| to_f64(&self.motions.velocity[k]);
-        let moving = tree.moving();
-        let joints = |value: &dyn Fn(usize, usize) -> f64| -> Value {
-            moving.iter().enumerate().map(|(k, &body)| (Tree::joint(body), json!(value(3 + k, body)))).collect()
+    /// The state as the library holds it; angles are those whose cosine and sine the case holds.
+    pub fn state(&self, robot: &Robot) -> State {
+        let Motions { cos, sin, displacement, velocity } = &self.motions;
+        // Where the angle moves, the displacement is zero; elsewhere the angle is.
+        let position = |k: usize| to_f64(&displacement[k]) + to_f64(&sin[k]).atan2(to_f64(&cos[k]));
+        let link = |at: &Contact| robot.link(&Tree::link(at.body)).expect("a link of the file");
+        let contact = |at: &Contact| {
+            let [x, z] = at.center.each_ref().map(to_f64);
+            NamedContact { link: link(at), offset: [x, to_f64(&at.sideways), z], radius: to_f64(&at.radius) }
         };
-        let position = joints(&|k, body| match tree.bodies[body].motion {
-            Motion::Slide(_) => to_f64(&self.motions.displacement[k]),
-            _ => angle(k),
-        });
-        let by_link = |value: &dyn Fn(usize) -> Value| -> Value {
-            self.contacts.iter().enumerate().map(|(k, at)| (Tree::link(at.body), value(k))).collect()
+        let links = || self.contacts.iter().map(link);
+        let scene = Scene {
+            friction: ByLink { default: None, links: links().zip(self.friction.iter().map(rounded)).collect() },
+            restitution: ByLink { default: None, links: links().zip(self.restitution.iter().map(to_f64)).collect() },
+            contacts: Some(self.contacts.iter().map(contact).collect()),
+            ..Scene::default()
         };
-        let contacts: Vec<Value> = self
-            .contacts
-            .iter()
-            .map(|at| {
-                let [x, z] = at.centre.each_ref().map(to_f64);
-                json!({"link": Tree::link(at.body), "offset": [x, to_f64(&at.sideways), z], "radius": to_f64(&at.radius)})
-            })
-            .collect();
-        json!({
-            "id": self.seed,
-            "position": {"base": {"x": to_f64(&self.motions.displacement[0]), "z": to_f64(&self.motions.displacement[1]),
-                                  "pitch": angle(2)}, "joints": position},
-            "velocity": {"base": {"x": speed(0), "z": speed(1), "pitch": speed(2)}, "joints": joints(&|k, _| speed(k))},
-            "friction": by_link(&|k| self.friction[k].as_ref().map_or(json!("infinite"), |mu| json!(to_f64(mu)))),
-            "restitution": by_link(&|k| json!(to_f64(&self.restitution[k]))),
-            "contacts": contacts,
-        })
+        let position = (0..cos.len()).map(position).collect();
+        let velocity = velocity.iter().map(to_f64).collect();
+        State { id: Some(self.seed.into()), position, velocity, scene, ..State::default() }
     }
+}
+
+/// Friction as the library holds it.
+pub fn rounded(friction: &Friction) -> impact::Friction {
+    friction.as_ref().map_or(impact::Friction::Infinite, |mu| impact::Friction::Finite(to_f64(mu)))
 }
 
 impl Contact {
@@ -128,7 +123,7 @@ impl Contact {
         let eighths = |random: &mut Random| ratio(random.whole(-8, 8), 8);
         Self {
             body,
-            centre: [eighths(random), eighths(random)],
+            center: [eighths(random), eighths(random)],
             sideways: ratio(random.whole(-1, 1), 4),
             radius: if random.once_in(2) { RBig::ZERO } else { ratio(random.whole(1, 8), 16) },
         }

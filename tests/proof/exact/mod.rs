@@ -10,14 +10,14 @@ use crate::support::command::place;
 use crate::support::parallel::{added, total};
 use crate::support::random::Random;
 use crate::support::rational::{self, ratio, to_f64};
-use case::Case;
+use case::{Case, rounded};
 use dashu::rational::RBig;
 use enumeration::{Combination, Enumeration, Friction, Problem, enumerate};
 use heelstrike::Robot;
 use heelstrike::dynamics::plan::Configuration;
 use heelstrike::impact::{self, Analysis, ContactProblem, Mode, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
-use heelstrike::state::NamedContact;
+use heelstrike::state::State;
 use std::collections::BTreeMap;
 use tree::Tree;
 
@@ -106,16 +106,12 @@ fn compare(problem: &Problem, all: &Enumeration, verdict: &str, answers: &Answer
     Ok(())
 }
 
-fn given(friction: &Friction) -> impact::Friction {
-    friction.as_ref().map_or(impact::Friction::Infinite, |mu| impact::Friction::Finite(to_f64(mu)))
-}
-
 /// The crate's analysis of a problem.
 fn analyse_problem(problem: &Problem, seed: u64) -> Analysis {
     let contact_problem = ContactProblem::new(
         problem.delassus.iter().flatten().map(to_f64).collect(),
         problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
-        problem.friction.iter().map(given).collect(),
+        problem.friction.iter().map(rounded).collect(),
         problem.restitution.iter().map(to_f64).collect(),
     );
     let analysis = contact_problem.and_then(|problem| impact::analyse(&problem, false));
@@ -271,53 +267,42 @@ fn solve_json(problem: &Problem) -> serde_json::Value {
 /// States of each robot; some are left out, because G is singular or a border is near.
 const STATES: u64 = 13;
 
-/// The robot of that number and its states that are off every border.
-fn robot(number: u64) -> (Tree, Vec<(Case, Enumeration)>) {
+/// The robot of that number, and its states that are off every border.
+fn robot(number: u64) -> (Tree, Robot, Vec<(Case, Enumeration)>) {
     let tree = Tree::random(&mut Random::new(number));
+    let robot = Robot::from_urdf(&tree.urdf()).unwrap_or_else(|error| panic!("{error}\n{}", tree.urdf()));
     let cases = (0..STATES).filter_map(|state| Case::random(&tree, 1000 * number + state));
     let all = cases.map(|case| {
         let all = case.enumerate();
         (case, all)
     });
     let clear = all.filter(|(_, all)| all.clearance() > 1e-9).collect();
-    (tree, clear)
+    (tree, robot, clear)
 }
 
 /// The crate's analysis of a case, from the cosines and sines of its angles.
 fn analyse(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
     let numbers = |values: &[_]| values.iter().map(to_f64).collect::<Vec<f64>>();
-    let motions = &case.motions;
-    let posture = Configuration {
-        cos: numbers(&motions.cos),
-        sin: numbers(&motions.sin),
-        displacement: numbers(&motions.displacement),
+    let configuration = Configuration {
+        cos: numbers(&case.motions.cos),
+        sin: numbers(&case.motions.sin),
+        displacement: numbers(&case.motions.displacement),
     };
-    let named = case.contacts.iter().map(|contact| {
-        let [x, z] = contact.centre.each_ref().map(to_f64);
-        NamedContact {
-            link: robot.link(&Tree::link(contact.body)).expect("a link of the file"),
-            offset: [x, to_f64(&contact.sideways), z],
-            radius: to_f64(&contact.radius),
-        }
-    });
-    let problem = Pipeline::new(robot, Options::default()).contact_problem(
-        &posture,
-        &numbers(&motions.velocity),
-        &named.collect::<Vec<_>>(),
-        case.friction.iter().map(given).collect(),
-        numbers(&case.restitution),
-    )?;
-    impact::analyse(&problem, false)
+    let State { velocity, scene, .. } = case.state(robot);
+    let friction = case.friction.iter().map(rounded).collect();
+    let contacts = scene.contacts.unwrap_or_default();
+    let mut pipeline = Pipeline::new(robot, Options::default());
+    let restitution = numbers(&case.restitution);
+    impact::analyse(&pipeline.contact_problem(&configuration, &velocity, &contacts, friction, restitution)?, false)
 }
 
 #[test]
 fn trees_have_the_outcomes_of_exact_arithmetic() {
     let [compared, ambiguous, three] = total(1_050, |number| {
-        let (tree, cases) = robot(number);
-        let robot = Robot::from_urdf(&tree.urdf()).unwrap_or_else(|error| panic!("{error}\n{}", tree.urdf()));
+        let (tree, robot, cases) = robot(number);
         let mut counts = [0, 0, 0];
         for (case, all) in &cases {
-            let fail = |difference: &str| -> ! { panic!("{}", report(&tree, case, difference)) };
+            let fail = |difference: &str| -> ! { panic!("{}", report(&tree, &robot, case, difference)) };
             let analysis = analyse(&robot, case).unwrap_or_else(|error| fail(&error.to_string()));
             let answers = from_analysis(&analysis);
             compare(&case.problem, all, &analysis.verdict.to_string(), &answers, analysis.outcomes.len())
@@ -331,22 +316,25 @@ fn trees_have_the_outcomes_of_exact_arithmetic() {
 }
 
 /// Everything that is needed to run a case by hand.
-fn report(tree: &Tree, case: &Case, difference: &str) -> String {
-    format!("robot {}, seed {}: {difference}\n{}{}", case.seed / 1000, case.seed, tree.urdf(), case.state(tree))
+fn report(tree: &Tree, robot: &Robot, case: &Case, difference: &str) -> String {
+    let state = case.state(robot).to_json(robot);
+    format!("robot {}, seed {}: {difference}\n{}{state}", case.seed / 1000, case.seed, tree.urdf())
 }
 
 #[test]
 fn the_binary_has_the_outcomes_of_exact_arithmetic() {
     let folder = place("");
     let [compared, ambiguous] = total(110, |number| {
-        let (tree, cases) = robot(number);
+        let (tree, robot, cases) = robot(number);
         let path = format!("{folder}{number}.urdf");
         std::fs::write(&path, tree.urdf()).expect("the target directory can be written");
-        let states: Vec<_> = cases.iter().map(|(case, _)| case.state(&tree)).collect();
+        let state = |(case, _): &(Case, _)| serde_json::from_str(&case.state(&robot).to_json(&robot)).expect("JSON");
+        let states: Vec<_> = cases.iter().map(state).collect();
         let mut counts = [0, 0];
         for ((case, all), answer) in cases.iter().zip(answers(&["batch", &path, "-"], &states)) {
-            let answer = answer.unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
-            check_line(&tree, case, all, &answer).unwrap_or_else(|error| panic!("{}", report(&tree, case, &error)));
+            let answer = answer.unwrap_or_else(|error| panic!("{}", report(&tree, &robot, case, &error)));
+            check_line(&tree, case, all, &answer)
+                .unwrap_or_else(|error| panic!("{}", report(&tree, &robot, case, &error)));
             counts = added(counts, [1, u64::from(answer.outcomes.len() > 1)]);
         }
         counts

@@ -89,8 +89,8 @@ impl Placed {
     }
 
     /// Jacobian of the material point at the bottom of a circle.
-    pub fn bottom_jacobian(&self, centre: &Point, radius: &RBig) -> [Vec<RBig>; 2] {
-        let [x, z] = self.turned(centre);
+    pub fn bottom_jacobian(&self, center: &Point, radius: &RBig) -> [Vec<RBig>; 2] {
+        let [x, z] = self.turned(center);
         self.jacobian_at(&[x, z - radius])
     }
 }
