@@ -1,5 +1,6 @@
 //! `inspect`, and what options and cautions make of a robot.
 
+use super::support::urdf;
 use super::{RAMONE, each, file, heelstrike, heelstrike_reads, list, result};
 use serde_json::json;
 
@@ -60,13 +61,10 @@ fn a_state_that_names_a_frozen_joint_is_refused() {
 
 #[test]
 fn every_command_warns_of_a_robot_that_loses_joints() {
-    let link = |name: &str| {
-        let inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>";
-        format!("<link name='{name}'><inertial><mass value='1'/>{inertia}</inertial></link>")
-    };
+    let [a, b] = ["a", "b"].map(|name| urdf::link(name, 1.0, [0.0; 2], 1.0, ""));
     let joint = "<joint name='j' type='revolute'><origin rpy='0.0872665 0 0'/><axis xyz='0 1 0'/><parent link='a'/>\
                  <child link='b'/></joint>";
-    let file = file("tilted.urdf", format!("<robot name='r'>{}{}{joint}</robot>", link("a"), link("b")));
+    let file = file("tilted.urdf", urdf::robot(&[a, b, joint.to_owned()]));
     let word = "1 of 1 joints that could move are held only because their axes are 5.0 degrees off the plane (j); to keep \
                 them: straighten the rpy of j";
     let inspect = heelstrike(&["inspect", &file]);

@@ -18,7 +18,6 @@ mod refusals;
 mod schema;
 #[path = "../support/mod.rs"]
 mod support;
-mod sweep_picture;
 
 const RAMONE: &str = "urdf/ramone.urdf";
 const WALKER: &str = "urdf/minimalistic.urdf";

@@ -1,6 +1,7 @@
 //! Mesh files as a user meets them: how the command finds them by name, what it says of those that are missing, broken
 //! or hostile, and the feet that they give. Readers and hulls are tested beside their code.
 
+use super::support::urdf;
 use super::{command, each, finished, fs, list, place};
 use assert_cmd::Command;
 use serde_json::{Value, json};
@@ -20,10 +21,7 @@ fn write(path: &Path, text: impl AsRef<[u8]>) {
 
 /// A robot of one link with this element inside `<collision>`.
 fn robot(collision: &str) -> String {
-    format!(
-        "<robot name=\"r\">\n<link name=\"foot\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"0.5\" izz=\"1\"/>\
-         </inertial>\n<collision>{collision}</collision></link></robot>"
-    )
+    urdf::robot(&[urdf::link("foot", 2.0, [0.0; 2], 0.5, &format!("<collision>{collision}</collision>"))])
 }
 
 fn mesh(name: &str) -> String {

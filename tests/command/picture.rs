@@ -1,16 +1,19 @@
-//! `impact --plot` and `inspect --plot`: pictures of robots as snapshots, always the same bytes and never large; what
-//! is not drawn and why.
+//! `--plot`: pictures of robots and studies as snapshots, always the same bytes and never large; what is not drawn and
+//! why.
 //!
 //! The snapshots have a line per element. Look at a changed picture itself before its snapshot is accepted.
 
-use super::{RAMONE, fs, heelstrike, heelstrike_reads, place, read};
+use super::{RAMONE, WALKER, file, fs, heelstrike, heelstrike_reads, place, read, walker};
+use serde_json::json;
 use std::path::Path;
+
+const MINIMALISTIC: [&str; 3] = ["sweep", WALKER, "examples/paper/figures_3_and_6.json"];
 
 /// No SVG is larger \[bytes\].
 const LARGEST: usize = 500_000;
 
 /// The SVG, drawn twice.
-pub(super) fn svg(args: &[&str], name: &str) -> String {
+fn svg(args: &[&str], name: &str) -> String {
     let [svg, again] = ["a", "b"].map(|time| {
         let path = place(&format!("{name}_{time}.svg"));
         let run = heelstrike(&[args, &["--plot", &path]].concat());
@@ -22,15 +25,31 @@ pub(super) fn svg(args: &[&str], name: &str) -> String {
     svg.replace("><", ">\n<")
 }
 
+/// How often a text stands in the picture.
+fn count(svg: &str, text: &str) -> usize {
+    svg.matches(&format!(">{text}<")).count()
+}
+
 #[test]
-fn robots_and_outcomes_are_drawn() {
+fn robots_outcomes_and_regions_are_drawn() {
+    let mut map = walker(json!({
+        "alpha": {"from": 0.001, "to": 1.5697, "steps": 2},
+        "j": {"from": 0.0, "to": 0.5, "steps": 2},
+    }));
+    let leg = json!({"inertia": "j", "com": [0, 0, -0.4]});
+    map["robot"] = json!({"links": {"left_leg": leg, "right_leg": leg}});
+    let map = file("inertia.json", map.to_string());
     for (name, arguments) in [
         ("picture_ramone", &["impact", RAMONE, "examples/ramone.json"][..]),
-        ("picture_minimalistic", &["impact", "urdf/minimalistic.urdf", "examples/minimalistic.json"]),
+        ("picture_minimalistic", &["impact", WALKER, "examples/minimalistic.json"]),
         ("picture_stairs", &["impact", RAMONE, "examples/stairs.json"]),
         ("picture_five_bar", &["impact", "urdf/five_bar.urdf", "examples/five_bar.json"]),
         ("picture_inspect_ramone", &["inspect", RAMONE]),
         ("picture_inspect_a1", &["inspect", "tests/data/robots/a1/a1.urdf"]),
+        ("sweep_minimalistic", &MINIMALISTIC),
+        ("sweep_ramone_paper", &["sweep", "urdf/ramone_paper.urdf", "examples/paper/table_1.json"]),
+        ("sweep_explained", &[&MINIMALISTIC[..], &["--explain"]].concat()),
+        ("sweep_map", &["sweep", "urdf/pdw.urdf", &map]),
     ] {
         insta::assert_snapshot!(name, svg(arguments, name));
     }
@@ -83,7 +102,7 @@ fn a_picture_and_the_results_are_two_files() {
     for command in [
         &["inspect", "urdf/block.urdf"][..],
         &["impact", RAMONE, "examples/ramone.json"],
-        &["sweep", "urdf/minimalistic.urdf", "examples/paper/figure_7.json"],
+        &["sweep", WALKER, "examples/paper/figure_7.json"],
         &["batch", RAMONE, "examples/ramone.json"],
         &["accuracy", "--case", "massless", "--time", "0"],
     ] {
@@ -101,8 +120,8 @@ fn a_file_that_cannot_be_written_is_refused_before_the_work() {
     let path = &place("no_such_directory/x.svg");
     for command in [
         &["batch", RAMONE, "examples/gait/ramone_walk.ndjson", "--plot"][..],
-        &["sweep", "urdf/minimalistic.urdf", "examples/paper/figure_7.json", "--plot"],
-        &["sweep", "urdf/minimalistic.urdf", "examples/paper/figure_7.json", "-o"],
+        &["sweep", WALKER, "examples/paper/figure_7.json", "--plot"],
+        &["sweep", WALKER, "examples/paper/figure_7.json", "-o"],
     ] {
         let stderr = heelstrike(&[command, &[path]].concat()).refusal(1);
         let start = "error: the output cannot be written: ";
@@ -115,4 +134,48 @@ fn a_png_is_drawn_as_well() {
     let path = place("five_bar.png");
     heelstrike(&["inspect", "urdf/five_bar.urdf", "--plot", &path]).well();
     assert_eq!(&fs::read(path).expect("a PNG")[..8], b"\x89PNG\r\n\x1a\n");
+}
+
+#[test]
+fn a_picture_has_the_same_bytes_for_any_number_of_threads() {
+    let with = |threads: &'static str| svg(&[&MINIMALISTIC[..], &["--threads", threads]].concat(), threads);
+    assert_eq!(with("1"), with("5"));
+}
+
+#[test]
+fn the_text_still_goes_to_standard_output() {
+    let path = place("beside.svg");
+    let plotted = heelstrike(&[&MINIMALISTIC[..], &["--plot", &path]].concat());
+    assert_eq!(plotted.stdout, heelstrike(&MINIMALISTIC).stdout);
+    assert!(Path::new(&path).exists());
+}
+
+#[test]
+fn what_is_refused_is_gray_and_explained() {
+    let mut refused = walker(json!({"alpha": {"from": 0.2, "to": 1.2, "steps": 20}}));
+    refused["state"]["restitution"] = json!("alpha - 0.4");
+    let refused = file("refused.json", refused.to_string());
+    let path = place("refused.svg");
+    let run = heelstrike(&["sweep", WALKER, &refused, "--plot", &path]);
+    assert_eq!(run.status, 1, "{}", run.stderr);
+    let svg = read(&path);
+    assert!(svg.contains(">A: refused: restitution must be between 0 and 1") && svg.contains("#e4e4e4"), "{svg}");
+}
+
+#[test]
+fn only_regions_are_drawn_where_nothing_touches() {
+    let air = file(
+        "air.json",
+        r#"{"parameters": {"h": {"from": 5, "to": 6, "steps": 3}}, "state": {"position": {"base": {"z": "h"}, "joints": {"hip": 0.5}}, "friction": 1}}"#,
+    );
+    let svg = svg(&["sweep", WALKER, &air], "sweep_air");
+    assert_eq!(["A: nothing touches the ground", "h [m]", "impulse [N s]"].map(|text| count(&svg, text)), [1, 1, 0]);
+}
+
+#[test]
+fn pictures_have_a_known_ending() {
+    heelstrike(&[&MINIMALISTIC[..], &["--plot", "picture.pdf"]].concat()).refusal(2);
+    let own = file("own.svg", "{}");
+    assert_eq!(heelstrike(&["sweep", WALKER, &own, "--plot", &own]).status, 1);
+    assert_eq!(read(&own), "{}");
 }

@@ -13,8 +13,8 @@ mod table;
 
 /// A disc of 2 kg, 1 kg m^2 and radius 0.5 m.
 fn disc() -> String {
-    let sphere = "<collision><geometry><sphere radius=\"0.5\"/></geometry></collision>";
-    file("disc.urdf", urdf::robot(&[urdf::link("disc", 2.0, [0.0, 0.0], 1.0, sphere)]))
+    let sphere = urdf::collision([0.0; 2], "sphere radius=\"0.5\"");
+    file("disc.urdf", urdf::robot(&[urdf::link("disc", 2.0, [0.0; 2], 1.0, &sphere)]))
 }
 
 /// Runs `heelstrike batch` on a disc.

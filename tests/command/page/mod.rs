@@ -6,6 +6,7 @@
 mod browser;
 mod live;
 
+use super::support::urdf;
 use super::{RAMONE, WALKER, each, file, fs, heelstrike, heelstrike_reads, list, parsed, place, read, walker};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -50,12 +51,8 @@ const HOSTILE: &str = "</script><script>alert(1)</script><!--";
 
 fn hostile() -> (String, PathBuf) {
     let escaped = HOSTILE.replace('<', "&lt;").replace('>', "&gt;");
-    let urdf = format!(
-        r#"<robot name="{escaped}"><link name="{escaped}">
-            <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-            <collision><geometry><sphere radius="0.5"/></geometry></collision></link></robot>"#
-    );
-    let robot = file("hostile.urdf", urdf);
+    let link = urdf::link(&escaped, 2.0, [0.0; 2], 1.0, &urdf::collision([0.0; 2], "sphere radius=\"0.5\""));
+    let robot = file("hostile.urdf", format!("<robot name=\"{escaped}\">{link}</robot>"));
     let state =
         json!({"id": HOSTILE, "position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1}}, "friction": 1});
     let states = format!("{state}\n{}\n", json!({"id": "{data}", "position": {"base": {"z": 0.5, "{program}": 1}}}));

@@ -1,6 +1,7 @@
 //! A JSON Schema validator for the keywords that the schemas use; any other is a failure, so that none is passed over.
 
-use serde_json::Value;
+use crate::list;
+use serde_json::{Value, json};
 
 /// Whether `value` is valid by `schema`.
 pub fn is_valid(schema: &Value, value: &Value) -> bool {
@@ -13,6 +14,7 @@ fn holds(root: &Value, schema: &Value, value: &Value) -> bool {
         Value::Object(keywords) => keywords,
         _ => panic!("no schema: {schema}"),
     };
+    let (number, array, object) = (value.as_f64(), value.as_array(), value.as_object());
     keywords.iter().all(|(keyword, argument)| match keyword.as_str() {
         "$schema" | "$defs" | "title" | "description" | "format" => true,
         "$ref" => holds(root, target(root, argument), value),
@@ -25,30 +27,25 @@ fn holds(root: &Value, schema: &Value, value: &Value) -> bool {
         "anyOf" => list(argument).iter().any(|choice| holds(root, choice, value)),
         "oneOf" => list(argument).iter().filter(|choice| holds(root, choice, value)).count() == 1,
         "not" => !holds(root, argument, value),
-        "minimum" => value.as_f64().is_none_or(|number| number >= number_of(argument)),
-        "maximum" => value.as_f64().is_none_or(|number| number <= number_of(argument)),
-        "exclusiveMinimum" => value.as_f64().is_none_or(|number| number > number_of(argument)),
-        "exclusiveMaximum" => value.as_f64().is_none_or(|number| number < number_of(argument)),
-        "items" => value.as_array().is_none_or(|entries| entries.iter().all(|entry| holds(root, argument, entry))),
-        "minItems" => value.as_array().is_none_or(|entries| entries.len() as f64 >= number_of(argument)),
-        "maxItems" => value.as_array().is_none_or(|entries| entries.len() as f64 <= number_of(argument)),
-        "uniqueItems" => value
-            .as_array()
-            .is_none_or(|entries| entries.iter().enumerate().all(|(at, entry)| !entries[..at].contains(entry))),
-        "minProperties" => value.as_object().is_none_or(|object| object.len() as f64 >= number_of(argument)),
-        "maxProperties" => value.as_object().is_none_or(|object| object.len() as f64 <= number_of(argument)),
-        "propertyNames" => value
-            .as_object()
-            .is_none_or(|object| object.keys().all(|key| holds(root, argument, &Value::from(key.as_str())))),
+        "minimum" => number.is_none_or(|number| number >= number_of(argument)),
+        "maximum" => number.is_none_or(|number| number <= number_of(argument)),
+        "exclusiveMinimum" => number.is_none_or(|number| number > number_of(argument)),
+        "exclusiveMaximum" => number.is_none_or(|number| number < number_of(argument)),
+        "items" => array.is_none_or(|entries| entries.iter().all(|entry| holds(root, argument, entry))),
+        "minItems" => array.is_none_or(|entries| entries.len() as f64 >= number_of(argument)),
+        "maxItems" => array.is_none_or(|entries| entries.len() as f64 <= number_of(argument)),
+        "uniqueItems" => array.is_none_or(|entries| (1..entries.len()).all(|at| !entries[..at].contains(&entries[at]))),
+        "minProperties" => object.is_none_or(|object| object.len() as f64 >= number_of(argument)),
+        "maxProperties" => object.is_none_or(|object| object.len() as f64 <= number_of(argument)),
+        "propertyNames" => object.is_none_or(|object| object.keys().all(|key| holds(root, argument, &json!(key)))),
         "pattern" => value.as_str().is_none_or(|text| matches(argument, text)),
-        "required" => value
-            .as_object()
+        "required" => object
             .is_none_or(|object| list(argument).iter().all(|name| object.contains_key(name.as_str().expect("a name")))),
-        "properties" => value.as_object().is_none_or(|object| {
+        "properties" => object.is_none_or(|object| {
             let properties = argument.as_object().expect("schemas by name");
             object.iter().all(|(name, field)| properties.get(name).is_none_or(|schema| holds(root, schema, field)))
         }),
-        "additionalProperties" => value.as_object().is_none_or(|object| {
+        "additionalProperties" => object.is_none_or(|object| {
             let named = |name: &str| keywords.get("properties").is_some_and(|named| named.get(name).is_some());
             object.iter().all(|(name, field)| named(name) || holds(root, argument, field))
         }),
@@ -79,10 +76,6 @@ fn matches(pattern: &Value, text: &str) -> bool {
     assert_eq!(pattern, "^[A-Za-z_][A-Za-z0-9_]*$");
     let letter = |c: char| c == '_' || c.is_ascii_alphabetic();
     text.starts_with(letter) && text.chars().all(|c| letter(c) || c.is_ascii_digit())
-}
-
-fn list(argument: &Value) -> &[Value] {
-    argument.as_array().expect("a list")
 }
 
 fn number_of(argument: &Value) -> f64 {
