@@ -74,7 +74,7 @@ fn a_mesh_of_a_box_strikes_as_the_box_does() {
 }
 
 #[test]
-fn packages_are_found_by_option_environment_and_the_folders_above() {
+fn packages_are_found_by_option_variable_and_folder() {
     let folder = folder();
     let urdf = folder.join("robots/deep/r.urdf");
     write(&urdf, mesh("package://a_description/meshes/sole.obj"));

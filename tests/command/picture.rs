@@ -116,7 +116,7 @@ fn a_picture_and_the_results_are_two_files() {
 }
 
 #[test]
-fn a_file_that_cannot_be_written_is_refused_before_the_work() {
+fn an_unwritable_file_is_refused_before_the_work() {
     let path = &place("no_such_directory/x.svg");
     for command in [
         &["batch", RAMONE, "examples/gait/ramone_walk.ndjson", "--plot"][..],
@@ -137,7 +137,7 @@ fn a_png_is_drawn_as_well() {
 }
 
 #[test]
-fn a_picture_has_the_same_bytes_for_any_number_of_threads() {
+fn a_picture_has_the_same_bytes_for_any_threads() {
     let with = |threads: &'static str| svg(&[&MINIMALISTIC[..], &["--threads", threads]].concat(), threads);
     assert_eq!(with("1"), with("5"));
 }

@@ -14,7 +14,7 @@ fn impact(urdf: &str, state: &str) -> Result<Impact> {
 /// The change by the impulse was taken from the sum with a velocity beside which it vanishes, and the contact was shown
 /// to separate and to press at once.
 #[test]
-fn an_applied_impulse_is_not_lost_beside_a_great_velocity() {
+fn an_impulse_is_not_lost_beside_a_great_velocity() {
     let state = r#"{"friction": 0.5, "stance": "right_foot",
         "position": {"base": {"pitch": 0.4}, "joints": {"left_hip": 0.5, "left_knee": 0.4, "right_knee": 2.0}},
         "velocity": {"base": {"pitch": -3e112}}, "contacts": [{"link": "right_foot"}],

@@ -94,7 +94,7 @@ fn combination(answer: &Answer, modes: [&str; 2]) -> Option<(Vec<f64>, Vec<f64>)
 }
 
 #[test]
-fn matrices_are_those_of_the_paper_in_the_tools_coordinates() {
+fn matrices_are_those_of_the_paper() {
     let mut differences = Differences::default();
     for case in CASES.iter() {
         let Some(answer) = differences.accepted(&case.place, case.answer.as_ref()) else { continue };
@@ -181,7 +181,7 @@ fn every_outcome_is_found_and_no_other() {
 /// In the middle of every region and just inside its ends the outcomes are the region's: so the borders lie where the
 /// reference has them.
 #[test]
-fn regions_of_the_leg_angle_begin_and_end_where_the_reference_says() {
+fn regions_of_the_leg_angle_are_the_reference_s() {
     const BESIDE: f64 = 1e-8;
     let mut differences = Differences::default();
     for model in &MODELS {
@@ -211,7 +211,7 @@ fn regions_of_the_leg_angle_begin_and_end_where_the_reference_says() {
 
 /// Table 2 prints c of lift-off, L of stop, c_x and L_x of the slide, in 1e-4 m/s and 1e-4 N s, for alpha = 0.5.
 #[test]
-fn table_2_of_the_paper_comes_out_to_its_printed_digits() {
+fn table_2_comes_out_to_its_printed_digits() {
     const UNIT: f64 = 1e-4;
     const ROUNDED: f64 = 0.5e-3;
     // Exact is 0.82681, which rounds to 0.827: the paper's 0.826 is one off in its last digit.
@@ -234,10 +234,10 @@ fn table_2_of_the_paper_comes_out_to_its_printed_digits() {
     differences.finish();
 }
 
-/// With the centre of percussion in the foot, at j = 0.24, all outcomes touch at alpha = pi/4. The f64 nearest to it
+/// With the center of percussion in the foot, at j = 0.24, all outcomes touch at alpha = pi/4. The f64 nearest to it
 /// lies beside that point, and is reported as one.
 #[test]
-fn the_degenerate_walker_is_proven_however_near_its_border_is() {
+fn the_degenerate_walker_is_proven() {
     let model = MODELS.iter().find(|model| model.name == "pdw_j0.24").expect("the walker");
     let answer = impact(model, &[model.state(FRAC_PI_4, None, "infinite")])
         .pop()

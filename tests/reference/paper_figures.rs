@@ -67,7 +67,7 @@ fn nothing_is_refused_anywhere_in_a_study() {
 /// Table 1 gives the shanks' CoG from the foot, and calls it the distance from the knee: with its numbers the paper's
 /// own bands and its Table 2 do not come out. The numbers of the pitch are lost.
 #[test]
-fn all_claims_come_out_but_those_on_table_1_as_printed() -> Result<(), Box<dyn Error>> {
+fn all_claims_but_those_on_table_1_come_out() -> Result<(), Box<dyn Error>> {
     for figure in FIGURES {
         for claim in figure.claims {
             let finding = (claim.check)(&FOUND[figure.name])?;

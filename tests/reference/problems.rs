@@ -40,7 +40,7 @@ struct ExpectedOutcome {
 }
 
 #[test]
-fn the_problems_of_others_have_exactly_their_outcomes() {
+fn the_problems_of_others_have_their_outcomes() {
     let text = include_str!("../data/problems.json");
     let problems: Vec<Problem> = serde_json::from_str(text).expect("the problems are readable");
     // What is expected is no field of a problem and not read.

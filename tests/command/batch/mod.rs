@@ -65,7 +65,7 @@ fn answers_come_in_order_and_refusals_in_their_place() {
 }
 
 #[test]
-fn the_bytes_do_not_depend_on_threads_or_on_the_way_in() {
+fn the_bytes_depend_on_neither_threads_nor_input() {
     let states = file("bytes.ndjson", many());
     let run = |threads: &str, input: &str, stdin: String| {
         let summary = place(&format!("bytes-{threads}.json"));
@@ -109,7 +109,7 @@ fn an_empty_input_gives_an_empty_output() {
 }
 
 #[test]
-fn line_ends_may_be_of_either_kind_and_the_last_one_is_optional() {
+fn line_ends_may_be_of_either_kind_or_missing() {
     let expected = batch(&["-", "--friction", "1"], strike(1, 0.0) + &strike(2, 0.1)).stdout;
     for end in ["\n", "\r\n", "\n\n"] {
         let lines = (strike(1, 0.0) + strike(2, 0.1).trim_end()).replace('\n', end);

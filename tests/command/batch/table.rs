@@ -13,7 +13,7 @@ fn many() -> String {
 }
 
 #[test]
-fn rows_are_answered_in_order_for_any_threads_and_input() {
+fn rows_are_answered_in_order_for_any_threads() {
     let table = file("rows.csv", many());
     let run = |arguments: &[&str], stdin: &str| {
         batch(&[arguments, &["--friction", "0.5", "--output-format", "csv"]].concat(), stdin)
@@ -62,7 +62,7 @@ fn options_that_need_a_table_are_refused_without_one() {
 }
 
 #[test]
-fn velocities_over_time_are_the_same_for_any_number_of_threads() {
+fn velocities_are_the_same_for_any_threads() {
     let rows: String = (0..200).map(|row| format!("{},{}\n", row as f64 * 0.01, 0.7 - row as f64 * 1e-3)).collect();
     let table = file("velocity.csv", format!("time,q_base_z\n{rows}"));
     let run = |threads: &str| batch(&[&table, "--velocity", "central", "--threads", threads], "").well();

@@ -37,7 +37,7 @@ fn what_cannot_be_read_is_refused() {
 }
 
 #[test]
-fn bytes_that_are_no_text_are_refused_with_their_place() {
+fn bytes_that_are_no_text_are_refused() {
     let hint = "hint: save it as UTF-8; iconv -f LATIN1 -t UTF-8 converts what older editors wrote";
     for (arguments, stdin, place) in [
         (INSPECT, &b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..], "1:1"),
@@ -71,7 +71,7 @@ fn an_output_that_cannot_be_written_is_reported() {
 }
 
 #[test]
-fn escape_sequences_of_a_file_do_not_reach_the_terminal() {
+fn escape_sequences_do_not_reach_the_terminal() {
     // XML has no such character; JSON strings may hold it escaped.
     let urdf = "<robot name=\"r\"><link name=\"a\"/><link name=\"\x1b[2J\"/></robot>";
     for (arguments, stdin) in [(INSPECT, urdf), (IMPACT, "{\"stance\": \"\\u001b[2J\"}")] {

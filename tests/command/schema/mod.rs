@@ -179,7 +179,7 @@ fn schema_and_reader_of_problems_agree() {
 }
 
 #[test]
-fn the_schema_of_states_has_the_fields_of_the_reader() {
+fn the_schema_of_states_has_the_reader_s_fields() {
     for (value, pointer) in [
         (json!({"?": 0}), "/properties"),
         (json!({"position": {"?": 0}}), "/$defs/Coordinates/properties"),

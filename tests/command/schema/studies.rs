@@ -86,7 +86,7 @@ fn expressions_stand_for_every_number_but_ids() {
 }
 
 #[test]
-fn the_schema_of_studies_has_the_fields_of_the_reader() {
+fn the_schema_of_studies_has_the_reader_s_fields() {
     let of_robot = |robot: Value| {
         let mut study = sample();
         study["robot"] = robot;

@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_triangle_is_feasible_until_its_corner_passes_the_side() {
+    fn a_triangle_is_feasible_up_to_its_corner() {
         // x >= 0, y >= 0, x + y <= width, and x + 2 y above (or no less than) a limit.
         let answer = |width: f64, limit: f64, strict: bool| {
             let inequality = |constant: f64, factors: [f64; 2], strict| Inequality {

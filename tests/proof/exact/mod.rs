@@ -131,7 +131,7 @@ fn delassus(random: &mut Random, contacts: usize, most: i64) -> Option<rational:
 
 /// Up to four contacts and no dynamics.
 #[test]
-fn matrices_have_the_outcomes_of_exact_arithmetic() {
+fn matrices_have_exact_outcomes() {
     let [compared, ambiguous] = total(8_000, |seed| {
         let mut random = Random::new(seed);
         let contacts = random.whole(1, 4) as usize;
@@ -216,7 +216,7 @@ fn beside_borders(random: &mut Random) -> Option<Problem> {
 
 /// Matrices that are given are exact, so that a sign of theirs may stay undecided but not be wrong, however small.
 #[test]
-fn matrices_beside_borders_have_the_outcomes_of_exact_arithmetic() {
+fn matrices_beside_borders_have_exact_outcomes() {
     let [compared, borders, near, undecided] = total(16_000, |seed| {
         let Some(problem) = beside_borders(&mut Random::new(seed)) else { return [0; 4] };
         let all = enumerate(&problem);
@@ -297,7 +297,7 @@ fn analyse(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
 }
 
 #[test]
-fn trees_have_the_outcomes_of_exact_arithmetic() {
+fn trees_have_exact_outcomes() {
     let [compared, ambiguous, three] = total(1_050, |number| {
         let (tree, robot, cases) = robot(number);
         let mut counts = [0, 0, 0];
@@ -322,7 +322,7 @@ fn report(tree: &Tree, robot: &Robot, case: &Case, difference: &str) -> String {
 }
 
 #[test]
-fn the_binary_has_the_outcomes_of_exact_arithmetic() {
+fn the_binary_has_exact_outcomes() {
     let folder = place("");
     let [compared, ambiguous] = total(110, |number| {
         let (tree, robot, cases) = robot(number);
