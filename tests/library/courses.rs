@@ -1,8 +1,8 @@
 //! Curves of outcomes along a parameter against single states, and the units of parameters.
 
 use crate::support::scaled::largest;
+use crate::sweep::command::straight;
 use crate::sweep::studies::with;
-use crate::sweep::walkers::straight;
 use heelstrike::impact::{Explanation, Mode, Motion};
 use heelstrike::sweep::{CurvePoint, RESOLUTION, RegionCurves, RobotStudy, Solver, Survey, Workers};
 use serde_json::{Value, json};

@@ -2,8 +2,8 @@
 //! parameter.
 
 use crate::support::random::Random;
+use crate::sweep::command::straight;
 use crate::sweep::studies::with;
-use crate::sweep::walkers::straight;
 use heelstrike::impact::Mode;
 use heelstrike::sweep::{Area, Findings, Map, Regime, RobotStudy, Solver, Survey, Workers};
 use serde_json::{Value, json};

@@ -249,7 +249,7 @@ proptest! {
 }
 
 #[test]
-fn a_rate_with_noise_is_noted_and_mended_by_the_least_energy() {
+fn a_rate_with_noise_is_mended_by_the_least_energy() {
     let mechanism = cut_at_the_pin();
     let (q, mut v) = kept(closed(0.1, 0.4, -0.3), [0.2, -1.0, 0.3, 0.5, -0.4]);
     v[6] += 1e-3;

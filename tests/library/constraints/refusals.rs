@@ -46,14 +46,8 @@ fn a_massless_coordinate_that_only_a_loop_holds() {
     (mechanism.links[2].mass, mechanism.links[2].moment) = (0.0, 0.0);
     let state = state(&mechanism, 0.6, -2.0, json!([pin("rear", WIDTH)]));
     let error = try_impact(&bolted(&mechanism), &state).expect_err("refused");
-    assert_eq!(
-        (error.reason().to_string().as_str(), error.remedy()),
-        (
-            "the mass matrix is singular: nothing resists a motion of joint \"rear\"",
-            Some(
-                "it needs inertia of its own, whatever the loops hold: give its links a mass or it a `rotor_inertia`, however \
-                 small, or name it in `held`"
-            )
-        )
-    );
+    let reason = "the mass matrix is singular: nothing resists a motion of joint \"rear\"";
+    let remedy = "it needs inertia of its own, whatever the loops hold: give its links a mass or it a `rotor_inertia`, \
+                  however small, or name it in `held`";
+    assert_eq!((error.reason().to_string().as_str(), error.remedy()), (reason, Some(remedy)));
 }

@@ -99,7 +99,7 @@ fn shapes_touch_with_their_lowest_points() {
 }
 
 #[test]
-fn both_corners_of_a_flat_drop_take_half_of_the_momentum() {
+fn corners_of_a_flat_drop_share_the_momentum() {
     let found = impact(&sole(), at(0.1, 1.0));
     let analysis = found.analysis.as_ref().unwrap();
     assert_eq!((analysis.verdict, analysis.rank), (Verdict::Unique, 3));

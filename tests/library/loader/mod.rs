@@ -256,7 +256,7 @@ fn close(value: f64, reference: f64) {
 }
 
 #[test]
-fn wheels_of_upkie_are_discs_and_meshes_of_solo_left_out() {
+fn wheels_are_discs_and_unread_meshes_left_out() {
     let upkie = load(include_str!("../../data/robots/upkie/upkie.urdf"));
     let tire = &upkie.links[upkie.link("left_wheel_tire").expect("a tire")];
     assert_eq!(disc(tire).1, 0.05);
@@ -329,10 +329,8 @@ fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
     assert_eq!(robot.coordinates().skip(3).collect::<Vec<_>>(), ["ankle", "knee", "hip", "tail"]);
     let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.name.as_str(), body.joint)).collect();
     let joint = |joint| Some(ParentJoint::Joint(joint));
-    assert_eq!(
-        bodies,
-        [("root", None), ("thigh", joint(2)), ("shin", joint(1)), ("foot", joint(0)), ("tip", joint(3))]
-    );
+    let expected = [("root", None), ("thigh", joint(2)), ("shin", joint(1)), ("foot", joint(0)), ("tip", joint(3))];
+    assert_eq!(bodies, expected);
     assert_eq!(robot.links.iter().map(|link| link.body).collect::<Vec<_>>(), [3, 2, 1, 0, 4]);
 }
 

@@ -89,7 +89,7 @@ fn joints_that_leave_the_plane_are_frozen_at_zero() {
 }
 
 #[test]
-fn frozen_joints_stay_at_their_values_and_axes_are_judged_there() {
+fn frozen_joints_keep_their_values() {
     // j turns about x by a quarter, so that the z axis of k points to -y: k stays.
     let text = massive(&[("revolute", "2 0 0"), YAW, ("prismatic", "0 0 1")]);
     let hold =
@@ -138,7 +138,7 @@ fn what_cannot_be_held_is_refused() {
 }
 
 #[test]
-fn joints_without_a_single_axis_are_frozen_with_a_caution() {
+fn joints_without_one_axis_are_frozen_with_a_caution() {
     for (kind, word) in
         [("planar", "planar"), ("floating", "floating"), ("spherical", "spherical"), ("ball", "spherical")]
     {

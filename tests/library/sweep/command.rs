@@ -1,9 +1,10 @@
-//! Runs `heelstrike sweep` on a study and reads what it writes.
+//! Runs `heelstrike sweep` on a study and reads what it writes; the studies of the paper's models, each pivoting about
+//! its trailing foot at 1 rad/s, against the leg angle `alpha`.
 
 use crate::support::command::{Run, heelstrike_reads};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// What is written as JSON, as far as the tests read it.
@@ -76,4 +77,41 @@ pub fn assert_begins(place: &str, sweep: &Sweep, expected: &[(f64, &str)], withi
         let off = (from - begin).abs();
         assert!(at == 0 || off <= within, "{place}, region {at}: {from} instead of {begin}, off by {off:.1e}");
     }
+}
+
+/// From where to where the leg angle goes; at 0 both feet are one point.
+pub const RANGE: [f64; 2] = [0.001, 1.57];
+
+/// Two straight legs; with `inertia`, that of both legs.
+pub fn straight(inertia: Option<f64>) -> Value {
+    let mut study = json!({
+        "parameters": {"alpha": {"from": RANGE[0], "to": RANGE[1], "steps": 50}},
+        "state": {
+            "position": {"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}},
+            "velocity": {"base": {"pitch": -1}},
+            "stance": "left_leg",
+            "friction": "infinite",
+        },
+    });
+    if let Some(inertia) = inertia {
+        study["constants"] = json!({"j": inertia});
+        study["robot"] = json!({"links": {"left_leg": {"inertia": "j"}, "right_leg": {"inertia": "j"}}});
+    }
+    study
+}
+
+/// RAMone: knees at a right angle, the main body upright.
+pub fn kneed() -> Value {
+    json!({
+        "parameters": {"alpha": {"from": RANGE[0], "to": RANGE[1], "steps": 50}},
+        "constants": {"upper": 0.2, "lower": 0.2385, "knee": "-pi/2", "bend": "atan2(lower, upper)"},
+        "state": {
+            "position": {"joints": {
+                "left_hip": "bend + alpha", "left_knee": "knee", "right_hip": "bend - alpha", "right_knee": "knee",
+            }},
+            "velocity": {"base": {"pitch": -1}},
+            "stance": "left_foot",
+            "friction": "infinite",
+        },
+    })
 }

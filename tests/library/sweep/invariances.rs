@@ -1,7 +1,6 @@
 //! The same study written another way has the same regions.
 
-use crate::sweep::command::{Sweep, run, sweep};
-use crate::sweep::walkers::{RANGE, kneed, straight};
+use crate::sweep::command::{RANGE, Sweep, kneed, run, straight, sweep};
 use serde_json::{Value, json};
 
 const ROBOT: &str = "urdf/ramone_paper.urdf";

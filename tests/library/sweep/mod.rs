@@ -3,7 +3,7 @@
 //! Borders that are known go to `paper`, `thin` and `turns`; `completeness` compares with dense scans of random
 //! studies.
 
-mod command;
+pub mod command;
 mod completeness;
 mod invariances;
 mod output;
@@ -11,4 +11,3 @@ mod paper;
 pub mod studies;
 mod thin;
 mod transitions;
-pub mod walkers;

@@ -1,8 +1,7 @@
 //! What is written: samples, tables, text, endings, and what happens to refused samples.
 
 use crate::support::command::{Run, heelstrike_reads, place};
-use crate::sweep::command::{assert_begins, run, sweep, written};
-use crate::sweep::walkers::{kneed, straight};
+use crate::sweep::command::{assert_begins, kneed, run, straight, sweep, written};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 

@@ -2,8 +2,7 @@
 //! that are printed.
 
 use crate::support::paper::{MODELS, Model, REFERENCE};
-use crate::sweep::command::{Sweep, assert_begins, sweep};
-use crate::sweep::walkers::{kneed, straight};
+use crate::sweep::command::{Sweep, assert_begins, kneed, straight, sweep};
 use serde_json::json;
 
 #[test]

@@ -11,8 +11,7 @@
 //! alone (lift-off: c_n+ = 0 of the trailing foot). Where neither is valid the trailing foot slides, and where both
 //! are, it does as well: three outcomes.
 
-use crate::sweep::command::{Sweep, assert_begins, sweep, written};
-use crate::sweep::walkers::{RANGE, straight};
+use crate::sweep::command::{RANGE, Sweep, assert_begins, straight, sweep, written};
 use serde_json::json;
 
 /// Of `urdf/pdw.urdf`.

@@ -1,7 +1,6 @@
 //! What turns at a border, where that is known by hand.
 
-use crate::sweep::command::{Border, Turn, sweep};
-use crate::sweep::walkers::straight;
+use crate::sweep::command::{Border, Turn, straight, sweep};
 use serde_json::json;
 use std::f64::consts::PI;
 

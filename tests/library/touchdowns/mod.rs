@@ -159,7 +159,7 @@ fn batch(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_command_prints_where_a_touchdown_was_and_who_strikes() {
+fn the_command_prints_row_and_foot_of_a_touchdown() {
     let lines = batch(&["--at", "row"]);
     let results: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let rows: Vec<u64> = results.iter().map(|result| result["touchdown"]["row"].as_u64().unwrap()).collect();
