@@ -40,7 +40,7 @@ fn points(robot: &Robot, state: &State) -> Vec<ContactPoint> {
     let point = |contact: &NamedContact| {
         let link = &robot.links[contact.link];
         let ground = Rotation { cos: 1.0, sin: 0.0 };
-        ContactPoint { body: link.body, centre: link.point(contact.offset), radius: contact.radius, ground }
+        ContactPoint { body: link.body, center: link.point(contact.offset), radius: contact.radius, ground }
     };
     contacts.iter().map(point).collect()
 }

@@ -88,7 +88,7 @@ const RAMONE_CASES: &[Claim] = &[Claim {
     },
 }];
 
-/// The inertia at which the legs' centre of percussion is the foot \[kg m^2\], of legs of 1 kg and 1 m: m along (l -
+/// The inertia at which the legs' center of percussion is the foot \[kg m^2\], of legs of 1 kg and 1 m: m along (l -
 /// along).
 const fn critical_inertia(along: f64) -> f64 {
     along * (1.0 - along)

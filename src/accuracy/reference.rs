@@ -5,7 +5,7 @@
 
 use super::computation::{Computation, Factorization};
 use super::number::Number;
-use crate::dynamics::plan::{Motion, Plan};
+use crate::dynamics::plan::{JointMotion, Plan};
 use crate::pipeline::assembly::Elimination;
 use crate::pipeline::exact::{Contacts, ExactState};
 use crate::planar::{Inertia, Vector};
@@ -168,15 +168,15 @@ fn columns(computation: &Computation<Interval>) -> Vec<Vec<UnitMotion>> {
             });
         };
         match body.motion {
-            Motion::Root => {
+            JointMotion::Root => {
                 for (axis, direction) in Vector::axes().into_iter().enumerate() {
                     add(axis, MotionAxis::Prismatic(direction));
                 }
                 add(column, MotionAxis::Revolute(Interval::one()));
             }
-            Motion::Revolute { rate, .. } => add(column, MotionAxis::Revolute(rate)),
-            Motion::Prismatic { .. } => add(column, MotionAxis::Prismatic(workspace.direction[index])),
-            Motion::Fixed => {}
+            JointMotion::Revolute { rate, .. } => add(column, MotionAxis::Revolute(rate)),
+            JointMotion::Prismatic { .. } => add(column, MotionAxis::Prismatic(workspace.direction[index])),
+            JointMotion::Fixed => {}
         }
     }
     columns

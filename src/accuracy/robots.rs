@@ -122,12 +122,12 @@ fn hinge(name: String, parent: usize, child: usize, origin: Vector<f64>) -> Join
 }
 
 /// A link that is its body and touches the ground with a point.
-fn point_foot(name: String, body: usize, centre: Vector<f64>) -> Link {
+fn point_foot(name: String, body: usize, center: Vector<f64>) -> Link {
     Link {
         name,
         body,
         pose: [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
-        shapes: vec![FootShape::disc(centre, 0.0)],
+        shapes: vec![FootShape::disc(center, 0.0)],
         has_inertial: true,
     }
 }

@@ -1,6 +1,6 @@
 //! Cuts a stream into chunks of whole records.
 
-use super::run::Source;
+use super::run::TaskSource;
 use crate::read::table::Quotes;
 use crate::{Error, Reason, Result};
 use memchr::memchr;
@@ -142,7 +142,7 @@ pub(super) fn too_long() -> Error {
     Error::new(reason).hint("is a line break or a closing quote missing?")
 }
 
-impl<R: Read + Send> Source for Chunks<R> {
+impl<R: Read + Send> TaskSource for Chunks<R> {
     type Task = Chunk;
 
     fn next(&mut self) -> Result<Option<Chunk>> {

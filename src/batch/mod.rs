@@ -15,7 +15,7 @@ mod recording;
 use chunk::too_long;
 pub use chunk::{Chunk, Chunks, RECORD_LIMIT};
 pub use recording::{Recording, RowOrigin, samples};
-pub use run::{Block, RefusedRecord, Sink, Source, run};
+pub use run::{Block, RefusedRecord, Sink, TaskSource, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
 
 use crate::draw::{Keyframe, ListedKeyframe};

@@ -2,7 +2,7 @@
 //! other.
 
 use super::chunk::{Chunks, too_long};
-use super::run::Source;
+use super::run::TaskSource;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Sample, Sampled};
 use crate::read::table::{Carried, Header};
@@ -77,7 +77,7 @@ impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Recording<I> {
     }
 }
 
-impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> Source for Recording<I> {
+impl<I: Iterator<Item = Sampled<RowOrigin>> + Send> TaskSource for Recording<I> {
     type Task = Vec<Sampled<RowOrigin>>;
 
     fn next(&mut self) -> Result<Option<Self::Task>> {

@@ -20,7 +20,7 @@ use std::thread::{self, Builder};
 const AHEAD: usize = 4;
 
 /// Gives tasks, one after the other.
-pub trait Source: Send {
+pub trait TaskSource: Send {
     type Task: Send;
 
     /// The next records; `None` at the end. After an error of reading this is not called again.
@@ -66,7 +66,7 @@ pub trait Sink {
 ///
 /// # Errors
 /// Those of the source; what came before is answered.
-pub fn run<S: Source, F: FnMut(S::Task) -> Block>(
+pub fn run<S: TaskSource, F: FnMut(S::Task) -> Block>(
     source: S,
     threads: usize,
     answerer: impl Fn() -> F + Sync,
@@ -79,7 +79,7 @@ pub fn run<S: Source, F: FnMut(S::Task) -> Block>(
     }
 }
 
-fn alone<S: Source>(mut source: S, mut answer: impl FnMut(S::Task) -> Block, sink: &mut impl Sink) -> Result<()> {
+fn alone<S: TaskSource>(mut source: S, mut answer: impl FnMut(S::Task) -> Block, sink: &mut impl Sink) -> Result<()> {
     while let Some(task) = source.next()? {
         sink.block(answer(task));
         if source.keeps_waiting() {
@@ -91,7 +91,7 @@ fn alone<S: Source>(mut source: S, mut answer: impl FnMut(S::Task) -> Block, sin
 }
 
 /// Starts thread `k` by `builder(k)`, of which 0 reads.
-fn in_threads<S: Source, F: FnMut(S::Task) -> Block>(
+fn in_threads<S: TaskSource, F: FnMut(S::Task) -> Block>(
     source: S,
     threads: usize,
     answerer: impl Fn() -> F + Sync,
@@ -166,7 +166,7 @@ mod tests {
     /// The numbers below a limit.
     struct Numbers(u32, u32);
 
-    impl Source for Numbers {
+    impl TaskSource for Numbers {
         type Task = u32;
 
         fn next(&mut self) -> Result<Option<u32>> {

@@ -14,7 +14,7 @@ use heelstrike::draw::sweep as picture;
 use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
 use heelstrike::write::append_line;
-use heelstrike::write::sweep::{Regions, Sample, columns};
+use heelstrike::write::sweep::{Regions, SampleRecord, columns};
 use heelstrike::{Error, Reason};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -111,7 +111,7 @@ pub(super) fn run(args: &Args) -> Completion {
     for name in study.unused() {
         note(&format!("nothing in the state or the robot depends on {name}"));
     }
-    let pieces = Findings::work(&model) + if format == SweepFormat::Text { 0 } else { Sample::count(&model) };
+    let pieces = Findings::work(&model) + if format == SweepFormat::Text { 0 } else { SampleRecord::count(&model) };
     let progress = progress::of(pieces);
     let done = || progress.inc(1);
     let workers = Workers { threads: args.threads.count(), done: &done };
@@ -169,13 +169,13 @@ fn samples(
     writer: &mut impl Write,
     model: &RobotStudy,
     workers: Workers,
-    append: impl Fn(&mut Solver, &Sample, &mut Vec<u8>) -> bool + Sync,
+    append: impl Fn(&mut Solver, &SampleRecord, &mut Vec<u8>) -> bool + Sync,
 ) -> Result<usize, Failure> {
-    let (count, mut refused) = (Sample::count(model), 0);
+    let (count, mut refused) = (SampleRecord::count(model), 0);
     for start in (0..count).step_by(TOGETHER) {
         let answer = |solver: &mut Solver, index: usize| {
             let mut out = Vec::new();
-            let answered = append(solver, &Sample::new(model, start + index), &mut out);
+            let answered = append(solver, &SampleRecord::new(model, start + index), &mut out);
             (out, answered)
         };
         for (out, answered) in workers.map(TOGETHER.min(count - start), || Solver::new(model), answer) {

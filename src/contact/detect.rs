@@ -16,10 +16,10 @@ impl Contact {
             link,
             name: String::new(),
             body: circle.body,
-            centre: circle.centre,
+            center: circle.center,
             offset: circle.offset,
             radius: circle.radius,
-            point: placement.world(circle.body, circle.centre),
+            point: placement.world(circle.body, circle.center),
             ground,
             gap,
         };

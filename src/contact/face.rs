@@ -64,17 +64,17 @@ impl Face {
         self.past_begin(point) >= 0.0 && self.past_end(point) <= 0.0
     }
 
-    /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbour` stays in front of
+    /// Whether a boundary that goes on straight from `point`, which is at this side, to `neighbor` stays in front of
     /// the side: it may go behind it by `slack` \[m\] where both lie flat on each other.
-    pub fn clears(&self, point: Vector<f64>, neighbour: Vector<f64>, slack: f64) -> bool {
-        let way = unit(neighbour - point);
+    pub fn clears(&self, point: Vector<f64>, neighbor: Vector<f64>, slack: f64) -> bool {
+        let way = unit(neighbor - point);
         let descent = -self.normal.dot(way);
         if descent <= 0.0 || descent > FLAT {
             return descent <= 0.0;
         }
         let along = self.tangent.dot(way);
         let room = if along > 0.0 { -self.past_end(point) } else { self.past_begin(point) };
-        descent * (room / along.abs()).min(distance(point, neighbour)) <= slack
+        descent * (room / along.abs()).min(distance(point, neighbor)) <= slack
     }
 }
 

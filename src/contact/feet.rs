@@ -13,7 +13,7 @@ pub struct Foot {
     pub body: usize,
     /// Its outline in the body's frame.
     pub outline: FootShape,
-    /// The centre of a foot that was named, in the link's own 3-D frame \[m\].
+    /// The center of a foot that was named, in the link's own 3-D frame \[m\].
     pub offset: Option<[f64; 3]>,
     /// Centre and radius of a circle about its outline, in the body's frame \[m\].
     pub bounding_circle: (Vector<f64>, f64),
@@ -71,11 +71,11 @@ fn size(robot: &Robot, feet: &[Foot]) -> f64 {
         }
     }
     let distance = |body: usize, point: Vector<f64>| (origins[body] + point).length();
-    let centres = robot.centers().into_iter().enumerate();
-    let centres = centres.filter_map(|(index, centre)| Some(distance(index, centre?)));
+    let centers = robot.centers().into_iter().enumerate();
+    let centers = centers.filter_map(|(index, center)| Some(distance(index, center?)));
     let soles = feet.iter().map(|foot| {
         let corners = foot.outline.corners().iter();
         corners.map(|&corner| distance(foot.body, corner)).fold(0.0, f64::max) + foot.outline.rim.bound()
     });
-    centres.chain(soles).fold(0.0, f64::max)
+    centers.chain(soles).fold(0.0, f64::max)
 }

@@ -18,7 +18,7 @@ mod detect;
 pub(crate) use detect::Footing;
 pub use feet::{Feet, Foot};
 pub use placement::Placement;
-pub(crate) use plane::Plane;
+pub(crate) use plane::HalfPlane;
 pub(crate) use point::{Circle, Point, points};
 pub(crate) use surface::Surface;
 
@@ -33,10 +33,10 @@ pub struct Contact {
     pub name: String,
     /// The body that it is rigid on.
     pub body: usize,
-    /// The point, or the centre of the circle, in the body's frame \[m\].
-    pub centre: Vector<f64>,
-    /// Where the centre was named in the link's own 3-D frame \[m\]; `None` for a shape of the robot, whose center is
-    /// `centre`.
+    /// The point, or the center of the circle, in the body's frame \[m\].
+    pub center: Vector<f64>,
+    /// Where the center was named in the link's own 3-D frame \[m\]; `None` for a shape of the robot, whose center is
+    /// `center`.
     pub offset: Option<[f64; 3]>,
     /// Radius of the circle against the ground's normal \[m\]; 0 for a point.
     pub radius: f64,

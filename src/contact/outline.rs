@@ -30,7 +30,7 @@ pub(super) struct Outline<'p> {
 impl<'p> Outline<'p> {
     pub fn new(foot: &Foot, placement: &'p Placement) -> Self {
         let points: Vec<Point> = points(foot).collect();
-        let corners: Vec<Vector<f64>> = points.iter().map(|point| placement.world(point.body, point.centre)).collect();
+        let corners: Vec<Vector<f64>> = points.iter().map(|point| placement.world(point.body, point.center)).collect();
         let bones: Vec<Face> = match corners[..] {
             [_] => Vec::new(),
             _ => (0..corners.len()).map(|at| Face::of_foot(corners[at], corners[(at + 1) % corners.len()])).collect(),
@@ -97,8 +97,8 @@ impl<'p> Outline<'p> {
         let face = &self.sides[side];
         let (from, to) = (self.points[side], self.points[(side + 1) % self.points.len()]);
         let (behind, ahead) = (face.past_begin(at), -face.past_end(at));
-        let along = (to.centre - from.centre) * (behind / (behind + ahead));
-        let point = Point { centre: from.centre + along, offset: None, ..from };
+        let along = (to.center - from.center) * (behind / (behind + ahead));
+        let point = Point { center: from.center + along, offset: None, ..from };
         self.placement.circle(point, -face.normal)
     }
 
@@ -115,7 +115,7 @@ impl<'p> Outline<'p> {
 
     /// The direction out of a corner's rim toward a point, and how far it lies beyond \[m\]; `None` from the center.
     ///
-    /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the centre,
+    /// Of an ellipse `cos(s) a + sin(s) b` the direction is that at the point of the rim on the way from the center,
     /// which is the nearest one where the distance is nothing; and the distance that to the tangent there.
     pub fn beyond_rim(&self, corner: usize, point: Vector<f64>) -> Option<(Vector<f64>, f64)> {
         let way = point - self.corners[corner];

@@ -62,12 +62,12 @@ impl Placement {
     /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material
     /// point that is lowest along the normal now.
     pub(super) fn circle(&self, point: Point, normal: Vector<f64>) -> Circle {
-        let Point { body, centre, offset, rim } = point;
+        let Point { body, center, offset, rim } = point;
         match rim {
-            Rim::Circle { radius } => Circle { body, centre, offset, radius },
+            Rim::Circle { radius } => Circle { body, center, offset, radius },
             Rim::Ellipse { .. } => {
                 let down = self.turned_back(body, -normal);
-                Circle { body, centre: centre + rim.support(down), offset, radius: 0.0 }
+                Circle { body, center: center + rim.support(down), offset, radius: 0.0 }
             }
         }
     }

@@ -19,12 +19,12 @@ use parry2d::shape::HalfSpace;
 
 /// Solid ground below a line through the world's origin.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Plane {
+pub(crate) struct HalfPlane {
     /// Turn from the world's axes to the ground's (tangent, normal).
     ground: Rotation<f64>,
 }
 
-impl Plane {
+impl HalfPlane {
     pub const LEVEL: Self = Self { ground: Rotation { cos: 1.0, sin: 0.0 } };
 
     /// The ground of this slope \[rad\], uphill toward +x, which is a turn against the pitch.
@@ -46,8 +46,8 @@ impl Plane {
 
     /// The world's point of a rim about a corner that is lowest along the normal.
     pub fn lowest(&self, placement: &Placement, point: Point) -> Vector<f64> {
-        let Circle { body, centre, radius, .. } = self.circle(placement, point);
-        placement.world(body, centre) - self.normal() * radius
+        let Circle { body, center, radius, .. } = self.circle(placement, point);
+        placement.world(body, center) - self.normal() * radius
     }
 
     pub(super) fn height(&self, placement: &Placement, point: Point) -> f64 {
@@ -73,8 +73,8 @@ impl Plane {
 
     /// Whether a foot is so high that none of its points can be within `tolerance` \[m\] of the ground.
     pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
-        let (centre, radius) = foot.bounding_circle;
-        self.normal().dot(placement.world(foot.body, centre)) - radius > tolerance
+        let (center, radius) = foot.bounding_circle;
+        self.normal().dot(placement.world(foot.body, center)) - radius > tolerance
     }
 
     /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that
@@ -101,7 +101,7 @@ impl Plane {
         let mut touching: Vec<Point> = Vec::new();
         let near = manifolds.iter().flat_map(|manifold| &manifold.points).filter(|near| near.dist <= prediction);
         for at in near.map(|near| near.local_p2) {
-            let far = |point: &Point| libm::hypot(point.centre.x - at.x, point.centre.z - at.y);
+            let far = |point: &Point| libm::hypot(point.center.x - at.x, point.center.z - at.y);
             let nearest = points(foot).min_by(|a, b| far(a).total_cmp(&far(b)));
             touching.extend(nearest.filter(|point| !touching.contains(point)));
         }

@@ -12,7 +12,7 @@ use crate::state::NamedContact;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     pub body: usize,
-    pub centre: Vector<f64>,
+    pub center: Vector<f64>,
     /// In the link's own frame, where it was named so.
     pub offset: Option<[f64; 3]>,
     pub rim: Rim,
@@ -22,7 +22,7 @@ pub(crate) struct Point {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Circle {
     pub body: usize,
-    pub centre: Vector<f64>,
+    pub center: Vector<f64>,
     /// In the link's own frame, where it was named so.
     pub offset: Option<[f64; 3]>,
     pub radius: f64,
@@ -34,21 +34,21 @@ pub(super) struct Touch {
     pub circle: Circle,
     /// Turn from the world's axes to the ground's (tangent, normal) there.
     pub ground: Rotation<f64>,
-    /// Height of the material point, centre - radius * normal, above the ground \[m\].
+    /// Height of the material point, center - radius * normal, above the ground \[m\].
     pub gap: f64,
 }
 
 impl Point {
     pub(super) fn named(robot: &Robot, contact: &NamedContact) -> Self {
         let link = &robot.links[contact.link];
-        let (centre, offset) = (link.point(contact.offset), Some(contact.offset));
-        Self { body: link.body, centre, offset, rim: Rim::Circle { radius: contact.radius } }
+        let (center, offset) = (link.point(contact.offset), Some(contact.offset));
+        Self { body: link.body, center, offset, rim: Rim::Circle { radius: contact.radius } }
     }
 }
 
 pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
     let corners = foot.outline.corners().iter();
-    corners.map(|&centre| Point { body: foot.body, centre, offset: foot.offset, rim: foot.outline.rim })
+    corners.map(|&center| Point { body: foot.body, center, offset: foot.offset, rim: foot.outline.rim })
 }
 
 impl Contact {
@@ -58,19 +58,19 @@ impl Contact {
     }
 
     pub fn point_of(&self) -> ContactPoint {
-        ContactPoint { body: self.body, centre: self.centre, radius: self.radius, ground: self.ground }
+        ContactPoint { body: self.body, center: self.center, radius: self.radius, ground: self.ground }
     }
 
     /// The same in numbers of any kind, a named point from the digits that it was named with.
     pub fn exact_point<T: Real>(&self, robot: &Robot, ground: Rotation<T>) -> ContactPoint<T> {
-        let centre = match self.offset {
+        let center = match self.offset {
             Some(offset) => robot.links[self.link].point(offset),
-            None => self.centre.map(T::from_f64),
+            None => self.center.map(T::from_f64),
         };
-        ContactPoint { body: self.body, centre, radius: T::from_f64(self.radius), ground }
+        ContactPoint { body: self.body, center, radius: T::from_f64(self.radius), ground }
     }
 
-    /// What the centre's coordinates were added up from, by magnitude \[m\].
+    /// What the center's coordinates were added up from, by magnitude \[m\].
     pub fn stretch(&self, robot: &Robot) -> f64 {
         match self.offset {
             Some(offset) => {
@@ -79,7 +79,7 @@ impl Contact {
                     .map(|(a, b)| (a * b).abs())
                     .sum()
             }
-            None => self.centre.x.abs() + self.centre.z.abs(),
+            None => self.center.x.abs() + self.center.z.abs(),
         }
     }
 }

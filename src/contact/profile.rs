@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!     a corner's rim at a segment              the segment's normal; in a notch two contacts, one for each segment
-//!     a circle at a convex corner              from the ground's corner to the circle's centre
+//!     a circle at a convex corner              from the ground's corner to the circle's center
 //!     a foot's side across a convex corner     the side's own normal, turned round: the edge of a stair under a sole
 //!     a foot's corner on a convex corner       the middle of the normals that both allow
 //! ```
@@ -85,7 +85,7 @@ fn all(terrain: &Terrain) -> Vec<usize> {
 /// The material point of a contact in the world \[m\].
 fn place(placement: &Placement, touch: &Touch) -> Vector<f64> {
     let normal = touch.ground.apply(Vector::new(0.0, 1.0));
-    placement.world(touch.circle.body, touch.circle.centre) - normal * touch.circle.radius
+    placement.world(touch.circle.body, touch.circle.center) - normal * touch.circle.radius
 }
 
 /// How far heights are off by rounding alone \[m\]: they are sums of a few terms of this size.
@@ -115,14 +115,14 @@ fn depth(terrain: &Terrain, outline: &Outline, near: &[usize]) -> f64 {
 
 /// How deep a corner's rim is behind the segments that it is above \[m\], or as a whole below the profile.
 fn depth_of_rim(terrain: &Terrain, outline: &Outline, corner: usize, near: &[usize]) -> f64 {
-    let centre = outline.corners[corner];
-    if let Some((depth, normal)) = terrain.depth_of(centre) {
+    let center = outline.corners[corner];
+    if let Some((depth, normal)) = terrain.depth_of(center) {
         return depth + outline.reach(-normal);
     }
     let above = near.iter().filter_map(|&segment| {
         let face = terrain.face(segment);
         let lowest = outline.lowest(corner, face.normal);
-        (face.height(centre) >= 0.0 && face.faces(lowest)).then(|| -face.height(lowest))
+        (face.height(center) >= 0.0 && face.faces(lowest)).then(|| -face.height(lowest))
     });
     above.fold(f64::NEG_INFINITY, f64::max)
 }
@@ -156,7 +156,7 @@ fn crossing(a: &Face, b: &Face) -> Option<f64> {
 /// A corner's rim at a segment.
 fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usize, close: Closeness) -> Option<Touch> {
     let face = terrain.face(segment);
-    let centre = outline.corners[corner];
+    let center = outline.corners[corner];
     let lowest = outline.lowest(corner, face.normal);
     let gap = face.height(lowest);
     if gap.abs() > close.tolerance {
@@ -173,15 +173,15 @@ fn on_segment(terrain: &Terrain, segment: usize, outline: &Outline, corner: usiz
     let clear = |face: &Face| {
         let slack = 2.0 * close.tolerance;
         let beside = outline.beside_corner(corner);
-        beside.is_none_or(|beside| beside.into_iter().all(|neighbour| face.clears(centre, neighbour, slack)))
+        beside.is_none_or(|beside| beside.into_iter().all(|neighbor| face.clears(center, neighbor, slack)))
     };
     // Behind both sides of a convex corner the one that is left by the shorter way counts.
-    let height = face.height(centre);
+    let height = face.height(center);
     let nearer = |other: usize, convex: bool| {
         let beside = terrain.face(other);
         let shorter = |other_height: f64| other_height > height || (other_height == height && other < segment);
-        let behind_both = convex && height < 0.0 && !terrain.is_wall(other) && beside.faces(centre);
-        behind_both && shorter(beside.height(centre)) && clear(beside)
+        let behind_both = convex && height < 0.0 && !terrain.is_wall(other) && beside.faces(center);
+        behind_both && shorter(beside.height(center)) && clear(beside)
     };
     if !clear(face) || nearer(segment - 1, rear) || nearer(segment + 1, front) {
         return None;

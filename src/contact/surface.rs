@@ -5,7 +5,7 @@ use super::face::{PARALLEL, distance};
 use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
-use super::plane::Plane;
+use super::plane::HalfPlane;
 use super::point::{Point, Touch, points};
 use super::profile;
 use super::terrain::Terrain;
@@ -15,7 +15,7 @@ use crate::state::Ground;
 
 /// A ground, compiled once for all feet of a state.
 pub(crate) enum Surface {
-    Plane(Plane),
+    HalfPlane(HalfPlane),
     Profile(Terrain),
 }
 
@@ -28,15 +28,15 @@ pub(super) struct Sunk {
 impl Surface {
     pub fn new(ground: &Ground) -> Self {
         match ground {
-            Ground::Slope(slope) => Self::Plane(Plane::sloped(*slope)),
+            Ground::Slope(slope) => Self::HalfPlane(HalfPlane::sloped(*slope)),
             Ground::Profile(profile) => Self::Profile(Terrain::new(profile)),
         }
     }
 
     /// The plane on which the foot of a stance is placed, and the point of the ground that it is placed at \[m\].
-    pub(super) fn stance(&self) -> Result<(Plane, Vector<f64>)> {
+    pub(super) fn stance(&self) -> Result<(HalfPlane, Vector<f64>)> {
         match self {
-            Self::Plane(plane) => Ok((*plane, Vector::zero())),
+            Self::HalfPlane(plane) => Ok((*plane, Vector::zero())),
             Self::Profile(terrain) => {
                 let (axes, point) = terrain.at_origin().ok_or_else(|| {
                     let [Vector { x: rear, .. }, Vector { x: front, .. }] = terrain.ends();
@@ -46,7 +46,7 @@ impl Surface {
                         .at("stance")
                         .hint("shift the profile along x, or give the base's x and z instead of a stance")
                 })?;
-                Ok((Plane::turned(axes), point))
+                Ok((HalfPlane::turned(axes), point))
             }
         }
     }
@@ -54,11 +54,11 @@ impl Surface {
     /// The contact of a circle or point that was named, whatever its height.
     pub(super) fn touch(&self, placement: &Placement, named: Point, tolerance: f64) -> Touch {
         match self {
-            Self::Plane(plane) => plane.touch(placement, named),
+            Self::HalfPlane(plane) => plane.touch(placement, named),
             Self::Profile(terrain) => {
                 // A circle's place is the same whatever the normal.
                 let circle = placement.circle(named, Vector::new(0.0, 1.0));
-                terrain.nearest_touch(circle, placement.world(circle.body, circle.centre), tolerance)
+                terrain.nearest_touch(circle, placement.world(circle.body, circle.center), tolerance)
             }
         }
     }
@@ -66,7 +66,7 @@ impl Surface {
     /// How far heights are off by rounding alone \[m\].
     pub(super) fn rounding(&self, placement: &Placement, size: f64) -> f64 {
         match self {
-            Self::Plane(plane) => plane.rounding(placement, size),
+            Self::HalfPlane(plane) => plane.rounding(placement, size),
             Self::Profile(_) => profile::rounding(placement, size),
         }
     }
@@ -81,7 +81,7 @@ impl Surface {
         rounding: f64,
     ) -> Result<std::result::Result<Vec<Touch>, Sunk>> {
         let (found, how) = match self {
-            Self::Plane(plane) => {
+            Self::HalfPlane(plane) => {
                 let touches = plane.touching(foot, placement, tolerance)?;
                 let deep = touches.iter().map(|touch| -touch.gap).find(|&depth| depth > tolerance);
                 (deep.map_or(Ok(touches), Err), "raise the base")
@@ -100,7 +100,7 @@ impl Surface {
     /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
     pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
         match self {
-            Self::Plane(plane) => plane.is_out_of_reach(foot, placement, tolerance),
+            Self::HalfPlane(plane) => plane.is_out_of_reach(foot, placement, tolerance),
             Self::Profile(terrain) => {
                 profile::within_reach(terrain, foot, &Outline::new(foot, placement), tolerance).is_empty()
             }
@@ -110,7 +110,7 @@ impl Surface {
     /// What contacts of a link are in the order of: the place along a plane, x along a profile \[m\].
     pub(super) fn along(&self, point: Vector<f64>) -> f64 {
         match self {
-            Self::Plane(plane) => plane.along(point),
+            Self::HalfPlane(plane) => plane.along(point),
             Self::Profile(_) => point.x,
         }
     }
@@ -119,9 +119,9 @@ impl Surface {
     /// to `rounding` \[m\], because a side's point at a corner is found and not given.
     pub(super) fn is_same(&self, a: &Contact, b: &Contact, rounding: f64) -> bool {
         let same_place = match self {
-            Self::Plane(_) => a.centre == b.centre,
+            Self::HalfPlane(_) => a.center == b.center,
             Self::Profile(_) => {
-                distance(a.centre, b.centre) <= rounding && distance(a.normal(), b.normal()) <= PARALLEL
+                distance(a.center, b.center) <= rounding && distance(a.normal(), b.normal()) <= PARALLEL
             }
         };
         same_place && (a.link, a.body, a.radius) == (b.link, b.body, b.radius)
@@ -130,7 +130,7 @@ impl Surface {
     /// The end of the profile that a foot reaches beyond, not higher than `tolerance` above it.
     pub(super) fn left_behind(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Option<f64> {
         match self {
-            Self::Plane(_) => None,
+            Self::HalfPlane(_) => None,
             Self::Profile(terrain) => profile::left_behind(terrain, &Outline::new(foot, placement), tolerance),
         }
     }
@@ -138,7 +138,7 @@ impl Surface {
     /// How far a foot is from the ground \[m\].
     pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {
-            Self::Plane(plane) => {
+            Self::HalfPlane(plane) => {
                 points(foot).map(|point| plane.height(placement, point)).fold(f64::INFINITY, f64::min)
             }
             Self::Profile(terrain) => profile::clearance(terrain, &Outline::new(foot, placement)),

@@ -123,21 +123,21 @@ impl Terrain {
         [segments[0].from, segments[segments.len() - 1].to]
     }
 
-    /// The contact of a circle or point that was named: with the ground nearest to its centre, which is in the world at
-    /// `centre`. A point within `tolerance` of a corner takes the middle of the corner's normals; beyond the ends the
+    /// The contact of a circle or point that was named: with the ground nearest to its center, which is in the world at
+    /// `center`. A point within `tolerance` of a corner takes the middle of the corner's normals; beyond the ends the
     /// last segment counts as going on.
-    pub(super) fn nearest_touch(&self, circle: Circle, centre: Vector<f64>, tolerance: f64) -> Touch {
-        let (face, corner) = self.nearest(centre);
+    pub(super) fn nearest_touch(&self, circle: Circle, center: Vector<f64>, tolerance: f64) -> Touch {
+        let (face, corner) = self.nearest(center);
         let inner = corner.filter(|&corner| corner > 0 && corner + 2 < self.faces.len() && self.is_convex(corner));
         let (ground, height) = match inner {
-            Some(corner) if !self.is_inside(centre) => {
+            Some(corner) if !self.is_inside(center) => {
                 let at = self.faces[corner].to;
-                let (way, far) = (centre - at, distance(centre, at));
+                let (way, far) = (center - at, distance(center, at));
                 let meets = far == 0.0 || circle.radius == 0.0 && far <= tolerance;
                 let normal = if meets { self.middle_normal(corner) } else { unit(way) };
                 (upright(normal), normal.dot(way))
             }
-            _ => (self.faces[face].axes(), self.faces[face].height(centre)),
+            _ => (self.faces[face].axes(), self.faces[face].height(center)),
         };
         Touch { circle, ground, gap: height - circle.radius }
     }
@@ -157,7 +157,7 @@ impl Terrain {
     }
 }
 
-/// The points without those that lie, to rounding, on the straight line between their neighbours.
+/// The points without those that lie, to rounding, on the straight line between their neighbors.
 fn without_straight_ones(points: &[Vector<f64>]) -> Vec<Vector<f64>> {
     let mut kept: Vec<Vector<f64>> = Vec::with_capacity(points.len());
     for (at, &point) in points.iter().enumerate() {

@@ -4,7 +4,7 @@ use super::elements::{ByName, EXPAND, IgnoredCount, WORLD, undefined_world};
 use super::repair::Repaired;
 use super::strict::{ANY, copy, copy_axis, copy_collision, copy_inertial, copy_origin, geometry, pose, values};
 use super::xml::{self, Cursor, MOST_LINKS, Unparsed};
-use super::{Collision, Description, Inertial, Joint, JointKind, Link, Mimic, joint_place, link_place};
+use super::{Collision, Description, Inertial, JointKind, Mimic, UrdfJoint, UrdfLink, joint_place, link_place};
 use crate::error::{Location, Reason, Result};
 use roxmltree::{Document, Node};
 
@@ -74,7 +74,7 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         });
         description.links.push(link.map_err(|error| error.at(link_place(name)))?);
     }
-    description.links.extend(world.map(|location| Link {
+    description.links.extend(world.map(|location| UrdfLink {
         name: WORLD.into(),
         inertial: None,
         collisions: Vec::new(),
@@ -149,7 +149,7 @@ fn tag<'a>(robot: Node<'_, '_>, element: Node<'a, '_>) -> Option<&'a str> {
     (element.tag_name().namespace() == robot.tag_name().namespace()).then(|| element.tag_name().name())
 }
 
-fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mut IgnoredCount) -> Result<Link> {
+fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mut IgnoredCount) -> Result<UrdfLink> {
     let mut strict = String::from("<link name=\"\">");
     // An empty one says no more than none.
     let inertial =
@@ -175,7 +175,7 @@ fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mu
     let collisions = shapes.into_iter().zip(&collision);
     let collisions = collisions
         .map(|(shape, values)| Collision { origin: pose(&values.origin), geometry: geometry(shape, &values.geometry) });
-    Ok(Link { inertial, collisions: collisions.collect(), name: name.into(), joint: None, location })
+    Ok(UrdfLink { inertial, collisions: collisions.collect(), name: name.into(), joint: None, location })
 }
 
 fn read_joint(
@@ -183,7 +183,7 @@ fn read_joint(
     links: &ByName,
     joints: &ByName,
     ignored: &mut IgnoredCount,
-) -> Result<Joint> {
+) -> Result<UrdfJoint> {
     let kind = joint_kind(element)?;
     let parent = links.find(xml::required_child(element, "parent")?, "link")?;
     let child = links.find(xml::required_child(element, "child")?, "link")?;
@@ -216,7 +216,7 @@ fn read_joint(
         offset: values.offset.unwrap_or(0.0),
     });
     let (origin, axis) = (pose(&values.origin), values.axis.xyz.0);
-    Ok(Joint { name: name.into(), kind, parent, child, origin, axis, mimic, location })
+    Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, mimic, location })
 }
 
 /// The joint's type.

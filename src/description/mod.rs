@@ -41,9 +41,9 @@ pub struct Description {
     /// The robot's name; empty where the file gives none.
     pub name: String,
     /// The links in the file's order; at least one, no name twice.
-    pub links: Vec<Link>,
+    pub links: Vec<UrdfLink>,
     /// The joints in the file's order; no name twice, but a joint may be named like a link.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<UrdfJoint>,
     /// The link that is no joint's child (an index into [`Description::links`]).
     pub root: usize,
     /// Elements that were passed over, in the order in which they first occur.
@@ -52,7 +52,7 @@ pub struct Description {
 
 /// A link of the file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Link {
+pub struct UrdfLink {
     pub name: String,
     /// Its inertia; `None` if the file has no `<inertial>`, which differs from a mass of zero.
     pub inertial: Option<Inertial>,
@@ -104,7 +104,7 @@ pub enum Geometry {
 
 /// A joint of the file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Joint {
+pub struct UrdfJoint {
     pub name: String,
     pub kind: JointKind,
     /// Its parent link (an index into [`Description::links`]).
@@ -213,14 +213,14 @@ pub(crate) fn joint_place(name: &str) -> String {
     format!("joint \"{name}\"")
 }
 
-impl Link {
+impl UrdfLink {
     /// `error` at this link.
     pub(crate) fn refuse(&self, error: impl Into<Error>) -> Error {
         error.into().at(link_place(&self.name)).on(self.location.line, self.location.column)
     }
 }
 
-impl Joint {
+impl UrdfJoint {
     /// `error` at this joint.
     pub(crate) fn refuse(&self, error: impl Into<Error>) -> Error {
         error.into().at(joint_place(&self.name)).on(self.location.line, self.location.column)

@@ -1,11 +1,11 @@
 //! Connects links and joints to one tree.
 
-use super::{Description, Joint, Link};
+use super::{Description, UrdfJoint, UrdfLink};
 use crate::error::{Reason, Result};
 
 /// Sets the joint of each link and returns the root, in time linear in links and joints. A link with two parents, more
 /// than one root, or a cycle are refused.
-pub(super) fn connect(links: &mut [Link], joints: &[Joint]) -> Result<usize> {
+pub(super) fn connect(links: &mut [UrdfLink], joints: &[UrdfJoint]) -> Result<usize> {
     for (index, joint) in joints.iter().enumerate() {
         if let Some(first) = links[joint.child].joint {
             let reason = format!(
@@ -51,7 +51,7 @@ impl Description {
 }
 
 /// A link that is its own ancestor, if any, and its joint.
-fn first_in_cycle(links: &[Link], joints: &[Joint]) -> Option<(usize, usize)> {
+fn first_in_cycle(links: &[UrdfLink], joints: &[UrdfJoint]) -> Option<(usize, usize)> {
     // The walk toward the root in which a link was first met, counted from 1.
     let mut met = vec![0; links.len()];
     for start in 0..links.len() {

@@ -14,7 +14,7 @@
 use super::articulated_inertia::{ArticulatedInertia, Wrench};
 use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Motion, Plan, PlanBody};
+use crate::dynamics::plan::{JointMotion, Plan, PlanBody};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
@@ -31,19 +31,19 @@ pub fn articulated_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T
     for (index, body) in plan.bodies.iter().enumerate().rev() {
         let own = articulated[index];
         let passed = match (body.motion, body.column) {
-            (Motion::Root, Some(column)) => {
+            (JointMotion::Root, Some(column)) => {
                 pivots[column] = own.moment;
                 let [xx, xz, zz] = own.without_turn(T::zero(), own.moment).linear;
                 pivots[1] = zz;
                 pivots[0] = xx - xz * (xz / zz);
                 continue;
             }
-            (Motion::Fixed, _) | (_, None) => own,
-            (Motion::Revolute { .. }, Some(column)) => {
+            (JointMotion::Fixed, _) | (_, None) => own,
+            (JointMotion::Revolute { .. }, Some(column)) => {
                 pivots[column] = own.moment + body.rotor;
                 own.without_turn(body.rotor, pivots[column])
             }
-            (Motion::Prismatic { .. }, Some(column)) => {
+            (JointMotion::Prismatic { .. }, Some(column)) => {
                 let along = direction[index];
                 pivots[column] = along.dot(own.stretch(along)) + body.rotor;
                 own.without_slide(along, body.rotor, pivots[column])
@@ -129,13 +129,13 @@ pub fn add_articulated_impulse<T: Real>(
         };
         let pivot = workspace.pivots[column];
         motions.push(match body.motion {
-            Motion::Root | Motion::Fixed => (spin, carried),
-            Motion::Revolute { sign, .. } => {
+            JointMotion::Root | JointMotion::Fixed => (spin, carried),
+            JointMotion::Revolute { sign, .. } => {
                 let moment = own.moment * spin + own.coupling.dot(carried);
                 rates[column] = rates[column] - sign * (moment / pivot);
                 (spin + sign * rates[column], carried)
             }
-            Motion::Prismatic { .. } => {
+            JointMotion::Prismatic { .. } => {
                 let along = workspace.direction[index];
                 let force = along.dot(own.coupling) * spin + own.stretch(along).dot(carried);
                 rates[column] = rates[column] - force / pivot;
@@ -169,7 +169,7 @@ fn to_root<T: Real>(
     for (at, &PlanBody { motion, column, parent, rotor, .. }) in plan.way_to_root(body) {
         let own = &workspace.articulated[at];
         match (motion, column) {
-            (Motion::Root, Some(column)) => {
+            (JointMotion::Root, Some(column)) => {
                 let pitch = force.moment / workspace.pivots[column];
                 visit(column, force.moment, pitch);
                 let Vector { x, z } = force.linear - own.coupling * pitch;
@@ -179,15 +179,15 @@ fn to_root<T: Real>(
                 let rest = x - xz * up;
                 visit(0, rest, rest / workspace.pivots[0]);
             }
-            (Motion::Fixed, _) | (_, None) => {}
-            (Motion::Revolute { sign, .. }, Some(column)) => {
+            (JointMotion::Fixed, _) | (_, None) => {}
+            (JointMotion::Revolute { sign, .. }, Some(column)) => {
                 let rate = force.moment / workspace.pivots[column];
                 visit(column, sign * force.moment, sign * rate);
                 // n - A_nn n / D without the cancellation: nothing at all is passed on where there is no rotor.
                 force.moment = rotor * rate;
                 force.linear = force.linear - own.coupling * rate;
             }
-            (Motion::Prismatic { .. }, Some(column)) => {
+            (JointMotion::Prismatic { .. }, Some(column)) => {
                 let along = workspace.direction[at];
                 let push = along.dot(force.linear);
                 let rate = push / workspace.pivots[column];

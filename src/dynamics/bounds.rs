@@ -23,7 +23,7 @@
 //! tenth. The constants are generous: a sign that falls within them is settled by balls.
 
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Configuration, Motion, Plan};
+use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::planar::{Pair, Vector};
 
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -44,7 +44,7 @@ pub struct Arm {
 
 /// Error bounds of one state, in memory that is reused.
 #[derive(Debug, Clone, Default)]
-pub struct Bounds {
+pub struct RoundingBounds {
     /// Of an entry G_ij, relative to sqrt(G_ii G_jj); infinite where nothing is known.
     pub delassus: f64,
     /// Of c, per contact \[m/s\].
@@ -69,7 +69,7 @@ struct Stretched {
     depth: usize,
 }
 
-impl Bounds {
+impl RoundingBounds {
     /// Takes the lengths of a configuration and of its contacts; the others read them.
     pub fn stretch(&mut self, plan: &Plan, configuration: &Configuration, contacts: impl Iterator<Item = Arm>) {
         self.contacts.clear();
@@ -78,14 +78,14 @@ impl Bounds {
         self.bodies.clear();
         for body in &plan.bodies {
             let shift = match (body.motion, body.mimic) {
-                (Motion::Prismatic { direction, .. }, None) => {
+                (JointMotion::Prismatic { direction, .. }, None) => {
                     configuration.displacement[body.place].abs() * length(direction)
                 }
-                (Motion::Prismatic { direction, .. }, Some(mimic)) => {
+                (JointMotion::Prismatic { direction, .. }, Some(mimic)) => {
                     let value = configuration.displacement[body.coordinate];
                     ((mimic.multiplier * value).abs() + mimic.offset.abs()) * length(direction)
                 }
-                (Motion::Root | Motion::Revolute { .. } | Motion::Fixed, _) => 0.0,
+                (JointMotion::Root | JointMotion::Revolute { .. } | JointMotion::Fixed, _) => 0.0,
             };
             let levels = if body.mimic.is_some() { 3 } else { 1 };
             self.bodies.push(Stretched {
@@ -149,13 +149,13 @@ impl Bounds {
         for (body, stretched) in plan.bodies.iter().zip(&self.bodies) {
             let Some(column) = body.column else { continue };
             let moment = match body.motion {
-                Motion::Root => {
+                JointMotion::Root => {
                     self.roots[..2].fill(stretched.mass.sqrt());
                     stretched.second
                 }
-                Motion::Revolute { rate, .. } => stretched.second * (rate * rate) + body.rotor,
-                Motion::Prismatic { rate, .. } => stretched.mass * rate.dot(rate) + body.rotor,
-                Motion::Fixed => continue,
+                JointMotion::Revolute { rate, .. } => stretched.second * (rate * rate) + body.rotor,
+                JointMotion::Prismatic { rate, .. } => stretched.mass * rate.dot(rate) + body.rotor,
+                JointMotion::Fixed => continue,
             };
             self.roots[column] += moment.sqrt();
         }
@@ -191,12 +191,12 @@ impl Bounds {
         let mut arm = contact.length;
         for (index, body) in plan.way_to_root(contact.body) {
             match body.motion {
-                Motion::Root => break,
-                Motion::Revolute { rate, .. } => visit(body.column, body.coordinate, arm * rate.abs()),
-                Motion::Prismatic { .. } => {
+                JointMotion::Root => break,
+                JointMotion::Revolute { rate, .. } => visit(body.column, body.coordinate, arm * rate.abs()),
+                JointMotion::Prismatic { .. } => {
                     visit(body.column, body.coordinate, body.mimic.map_or(1.0, |mimic| mimic.multiplier.abs()));
                 }
-                Motion::Fixed => {}
+                JointMotion::Fixed => {}
             }
             arm += self.bodies[index].arm;
         }

@@ -10,7 +10,7 @@
 
 use super::articulated_inertia::Wrench;
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Motion, Plan};
+use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
@@ -29,7 +29,7 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
         }
         let Some(column) = body.column else { continue };
         let momentum = match body.motion {
-            Motion::Root => {
+            JointMotion::Root => {
                 let linear = own.first.perpendicular();
                 mass_matrix[0] = own.mass;
                 mass_matrix[nv + 1] = own.mass;
@@ -39,19 +39,19 @@ pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
                 mass_matrix[column * nv + column] = own.second;
                 continue;
             }
-            Motion::Revolute { rate, .. } => {
+            JointMotion::Revolute { rate, .. } => {
                 Wrench { linear: own.first.perpendicular() * rate, moment: rate * own.second }
             }
-            Motion::Prismatic { .. } => {
+            JointMotion::Prismatic { .. } => {
                 Wrench { linear: direction[index] * own.mass, moment: own.first.perpendicular().dot(direction[index]) }
             }
-            Motion::Fixed => continue,
+            JointMotion::Fixed => continue,
         };
         // `momentum` is that of a unit rate of this joint; the walk to the root projects it on every joint below.
         let along = |at: usize, momentum: Wrench<T>| match plan.bodies[at].motion {
-            Motion::Root | Motion::Fixed => momentum.moment,
-            Motion::Revolute { rate, .. } => rate * momentum.moment,
-            Motion::Prismatic { .. } => direction[at].dot(momentum.linear),
+            JointMotion::Root | JointMotion::Fixed => momentum.moment,
+            JointMotion::Revolute { rate, .. } => rate * momentum.moment,
+            JointMotion::Prismatic { .. } => direction[at].dot(momentum.linear),
         };
         plan.bring(&mut mass_matrix[column * nv + column], along(index, momentum) + body.rotor);
         let (mut at, mut momentum) = (index, momentum);

@@ -5,7 +5,7 @@
 //! subtracted. Source: Featherstone 2008, section 2.9 and the paper, section 2. Cost: O(n depth).
 
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Motion, Plan};
+use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
@@ -15,7 +15,7 @@ pub struct ContactPoint<T = f64> {
     /// The body, an index into the plan's bodies (those of [`Robot::bodies`](crate::Robot)).
     pub body: usize,
     /// The point, or the center of the circle, in the body's frame \[m\].
-    pub centre: Vector<T>,
+    pub center: Vector<T>,
     /// Radius of the circle \[m\]: the point is at the center - radius * normal.
     pub radius: T,
     /// Turn from the world's axes to the ground's (tangent, normal) at the contact.
@@ -31,7 +31,7 @@ impl<T: Real> ContactPoint<T> {
     /// The point from its body's origin, in the world's axes \[m\].
     pub fn arm(&self, workspace: &Workspace<T>) -> Vector<T> {
         let [_, normal] = self.axes();
-        workspace.rotation[self.body].apply(self.centre) - normal * self.radius
+        workspace.rotation[self.body].apply(self.center) - normal * self.radius
     }
 }
 
@@ -100,10 +100,10 @@ pub(super) fn walk<T: Real>(
     let (mut arm, mut speed) = (arm, Vector::zero());
     for (index, body) in plan.way_to_root(body) {
         let unit = match body.motion {
-            Motion::Root => break,
-            Motion::Revolute { rate, .. } => Some(arm.perpendicular() * rate),
-            Motion::Prismatic { .. } => Some(workspace.direction[index]),
-            Motion::Fixed => None,
+            JointMotion::Root => break,
+            JointMotion::Revolute { rate, .. } => Some(arm.perpendicular() * rate),
+            JointMotion::Prismatic { .. } => Some(workspace.direction[index]),
+            JointMotion::Fixed => None,
         };
         if let Some(unit) = unit {
             if let Some(column) = body.column {
@@ -127,7 +127,7 @@ pub(super) fn walk<T: Real>(
 fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     let base = if plan.floating { velocity[2] } else { T::zero() };
     plan.way_to_root(body).fold(base, |rate, (_, body)| match body.motion {
-        Motion::Revolute { rate: own, .. } => rate + own * velocity[body.coordinate],
+        JointMotion::Revolute { rate: own, .. } => rate + own * velocity[body.coordinate],
         _ => rate,
     })
 }
@@ -147,7 +147,7 @@ pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Works
         let first = workspace.rotation[index].apply(body.inertia.first);
         let cross = rate * origin.dot(first.perpendicular());
         twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * rate * rate;
-        if !matches!(body.motion, Motion::Root | Motion::Fixed) {
+        if !matches!(body.motion, JointMotion::Root | JointMotion::Fixed) {
             let own = velocity[body.coordinate];
             twice = twice + body.rotor * own * own;
         }

@@ -3,7 +3,7 @@
 //! Source: Featherstone 2008, section 4.1, in world axes. Cost: O(nb).
 
 use super::workspace::Workspace;
-use crate::dynamics::plan::{Configuration, Motion, Plan};
+use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
@@ -22,18 +22,20 @@ pub fn kinematics<T: Real>(plan: &Plan<T>, configuration: &Configuration<T>, wor
         };
         let base = rotation[parent];
         arm.push(base.apply(match body.motion {
-            Motion::Prismatic { direction, .. } => body.origin + direction * configuration.displacement[body.place],
+            JointMotion::Prismatic { direction, .. } => {
+                body.origin + direction * configuration.displacement[body.place]
+            }
             _ => body.origin,
         }));
         rotation.push(match body.motion {
-            Motion::Revolute { sign, .. } => {
+            JointMotion::Revolute { sign, .. } => {
                 let Rotation { cos, sin } = configuration.turn(body.place);
                 base.then(Rotation { cos, sin: sign * sin })
             }
             _ => base,
         });
         direction.push(match body.motion {
-            Motion::Prismatic { rate, .. } => base.apply(rate),
+            JointMotion::Prismatic { rate, .. } => base.apply(rate),
             _ => Vector::zero(),
         });
     }

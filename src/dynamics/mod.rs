@@ -23,7 +23,7 @@ mod bounds;
 
 pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
 pub use articulated_inertia::ArticulatedInertia;
-pub use bounds::{Arm, Bounds};
+pub use bounds::{Arm, RoundingBounds};
 pub use crba::{factorize, mass_matrix};
 pub use delassus::{add_impulse, delassus};
 pub use jacobian::{ContactPoint, contact_jacobian, kinetic_energy, point_velocity};
@@ -136,7 +136,7 @@ mod tests {
         fn points<T: Real>(&self, radius: f64, ground: Rotation<T>) -> Vec<ContactPoint<T>> {
             let point = |&(body, center): &(Index, [f64; 2])| ContactPoint {
                 body: body.index(self.robot.bodies.len()),
-                centre: Vector::from(center).map(T::from_f64),
+                center: Vector::from(center).map(T::from_f64),
                 radius: T::from_f64(radius),
                 ground,
             };
@@ -257,9 +257,9 @@ mod tests {
             type Exact = Ball<DoubleDouble>;
             let (plan, contacts) = (Plan::new(&case.robot, &[], &[]), case.points(0.0, Rotation::identity()));
             let workspace = case.computed(&plan, &contacts);
-            let (mut bounds, mut configuration) = (Bounds::default(), Configuration::default());
+            let (mut bounds, mut configuration) = (RoundingBounds::default(), Configuration::default());
             configuration.set(&plan, &case.position);
-            let arm = |own: &ContactPoint| Arm { body: own.body, length: own.centre.x.abs() + own.centre.z.abs() };
+            let arm = |own: &ContactPoint| Arm { body: own.body, length: own.center.x.abs() + own.center.z.abs() };
             bounds.stretch(&plan, &configuration, contacts.iter().map(arm));
             bounds.velocities(&plan, &case.velocity, None, |_| false);
             bounds.delassus(&plan, &workspace);

@@ -42,7 +42,7 @@ pub(crate) struct PlanBody<T> {
     pub parent: Option<usize>,
     /// Origin of the joint in the parent's frame \[m\].
     pub origin: Vector<T>,
-    pub motion: Motion<T>,
+    pub motion: JointMotion<T>,
     /// The joint's coordinate, or that of the joint it mimics; of no meaning for the root and for fixed joints.
     pub coordinate: usize,
     /// Where a [`Configuration`] has the joint's angle or displacement.
@@ -59,7 +59,7 @@ pub(crate) struct PlanBody<T> {
 
 /// The joint's motion in numbers of the plan; `rate` is its motion for a unit rate of its coordinate.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Motion<T> {
+pub(crate) enum JointMotion<T> {
     Root,
     Revolute { sign: T, rate: T },
     Prismatic { direction: Vector<T>, rate: Vector<T> },
@@ -95,12 +95,12 @@ impl<T: Trigonometry> Configuration<T> {
         for body in &plan.bodies {
             let (place, value) = (body.place, position.get(body.coordinate).copied().unwrap_or(0.0));
             let turn = match (body.motion, body.mimic) {
-                (Motion::Root, _) if !plan.floating => continue,
-                (Motion::Fixed, _) => continue,
-                (Motion::Root | Motion::Revolute { .. }, None) => Rotation::by(value),
-                (Motion::Root | Motion::Revolute { .. }, Some(mimic)) => mimic.turn(value),
-                (Motion::Prismatic { .. }, None) => continue,
-                (Motion::Prismatic { .. }, Some(mimic)) => {
+                (JointMotion::Root, _) if !plan.floating => continue,
+                (JointMotion::Fixed, _) => continue,
+                (JointMotion::Root | JointMotion::Revolute { .. }, None) => Rotation::by(value),
+                (JointMotion::Root | JointMotion::Revolute { .. }, Some(mimic)) => mimic.turn(value),
+                (JointMotion::Prismatic { .. }, None) => continue,
+                (JointMotion::Prismatic { .. }, Some(mimic)) => {
                     let [multiplier, value, offset] = [mimic.multiplier, value, mimic.offset].map(T::from_f64);
                     self.displacement[place] = multiplier * value + offset;
                     continue;
@@ -166,7 +166,7 @@ impl<T: Real> Plan<T> {
                 plan.bodies.push(PlanBody {
                     parent: None,
                     origin: Vector::zero(),
-                    motion: Motion::Root,
+                    motion: JointMotion::Root,
                     coordinate: 2,
                     place: 2,
                     mimic: None,
@@ -200,15 +200,15 @@ impl<T: Real> Plan<T> {
                 parent: Some(parent),
                 origin: origin.map(number),
                 motion: match axis {
-                    None => Motion::Fixed,
+                    None => JointMotion::Fixed,
                     // Exactly: the sign is one or minus one.
                     Some(Axis::Revolute { sign }) => {
-                        Motion::Revolute { sign: number(sign), rate: number(sign * multiplier) }
+                        JointMotion::Revolute { sign: number(sign), rate: number(sign * multiplier) }
                     }
                     Some(Axis::Prismatic { direction }) => {
                         let direction = direction.map(number);
                         let rate = if mimic.is_some() { direction * number(multiplier) } else { direction };
-                        Motion::Prismatic { direction, rate }
+                        JointMotion::Prismatic { direction, rate }
                     }
                 },
                 coordinate: moved.map_or(0, |(index, _)| base + index),

@@ -12,7 +12,7 @@ pub(super) struct Clock {
 
 /// From one sample to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Step {
+pub(super) enum ClockStep {
     NewClip,
     /// The time stands still: an impact lies between.
     Impact,
@@ -21,18 +21,18 @@ pub(super) enum Step {
 }
 
 impl Clock {
-    pub fn step(&mut self, time: f64) -> Step {
+    pub fn step(&mut self, time: f64) -> ClockStep {
         let passed = self.last.map(|last| time - last);
         self.last = Some(time);
         match passed {
-            Some(0.0) => Step::Impact,
+            Some(0.0) => ClockStep::Impact,
             Some(passed) if passed > 0.0 && (self.longest == 0.0 || passed <= LONGER * self.longest) => {
                 self.longest = self.longest.max(passed);
-                Step::Later(passed)
+                ClockStep::Later(passed)
             }
             _ => {
                 self.longest = 0.0;
-                Step::NewClip
+                ClockStep::NewClip
             }
         }
     }
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn a_jump_back_and_a_long_pause_begin_a_clip() {
-        use Step::{Impact, Later, NewClip};
+        use ClockStep::{Impact, Later, NewClip};
         let mut clock = Clock::default();
         let steps = [0.0, 0.5, 0.5, 1.0, 0.0, 0.25, 0.5, 9.0, 10.0].map(|time| clock.step(time));
         let expected =

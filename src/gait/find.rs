@@ -1,7 +1,7 @@
 //! Finds the touchdowns of a recording, sample by sample, in memory for the last moments alone.
 
 use super::carry::{Onward, on_line};
-use super::clip::{Clock, Step};
+use super::clip::{Clock, ClockStep};
 use super::points::Points;
 use super::{At, Landing, Sample, Sampled, Thresholds, Touching};
 use crate::planar::Vector;
@@ -130,14 +130,14 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     fn take(&mut self, sample: Sample<S>) {
         let places = self.points.at(&sample.state.position);
         match self.clock.step(sample.time) {
-            Step::NewClip => {
+            ClockStep::NewClip => {
                 self.end_clip();
                 self.descents = places.iter().map(|place| Descent { from: place.z, falling: false }).collect();
             }
-            Step::Impact => {
+            ClockStep::Impact => {
                 self.window.back_mut().into_iter().for_each(|last| last.before_impact = true);
             }
-            Step::Later(passed) => self.follow(&places, passed),
+            ClockStep::Later(passed) => self.follow(&places, passed),
         }
         // A point that falls at `slow` or faster was `above` its level no longer ago than this; twice that is kept.
         let oldest = sample.time - 2.0 * self.thresholds.above / self.thresholds.slow;

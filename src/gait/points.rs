@@ -1,7 +1,7 @@
 //! The points of a robot that can touch the ground, and where they are.
 
 use super::Touching;
-use crate::contact::{Circle, Feet, Placement, Plane, Point, points};
+use crate::contact::{Circle, Feet, HalfPlane, Placement, Point, points};
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{ContactPoint, Workspace, kinematics, point_velocity};
 use crate::planar::{Rotation, Vector};
@@ -43,7 +43,7 @@ impl<'r> Points<'r> {
     /// Where the points are at `position` (q), `[x, z]` in the world \[m\].
     pub fn at(&mut self, position: &[f64]) -> Vec<Vector<f64>> {
         let placement = self.placement(position);
-        self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect()
+        self.points.iter().map(|&(_, point)| HalfPlane::LEVEL.lowest(&placement, point)).collect()
     }
 
     fn placement(&mut self, position: &[f64]) -> Placement {
@@ -85,7 +85,7 @@ impl<'r> Points<'r> {
         together: f64,
     ) -> (f64, String) {
         let placement = self.placement(&state.position);
-        let places: Vec<_> = self.points.iter().map(|&(_, point)| Plane::LEVEL.lowest(&placement, point)).collect();
+        let places: Vec<_> = self.points.iter().map(|&(_, point)| HalfPlane::LEVEL.lowest(&placement, point)).collect();
         let above = |point: usize| (places[point].z - places[striking].z).abs();
         let mut closed = vec![striking];
         closed.extend(also);
@@ -138,15 +138,15 @@ impl<'r> Points<'r> {
 
     /// Speed of a point after `at` \[m/s\].
     fn speed(&self, point: usize, placement: &Placement, velocity: &[f64]) -> f64 {
-        let Circle { body, centre, radius, .. } = Plane::LEVEL.circle(placement, self.points[point].1);
-        let arm = ContactPoint { body, centre, radius, ground: Rotation::identity() }.arm(&self.workspace);
+        let Circle { body, center, radius, .. } = HalfPlane::LEVEL.circle(placement, self.points[point].1);
+        let arm = ContactPoint { body, center, radius, ground: Rotation::identity() }.arm(&self.workspace);
         let Vector { x, z } = point_velocity(&self.plan, body, arm, velocity, &self.workspace);
         libm::hypot(x, z)
     }
 
     fn named(&self, point: usize, placement: &Placement) -> NamedContact {
         let (link, point) = self.points[point];
-        let Circle { centre, radius, .. } = Plane::LEVEL.circle(placement, point);
-        NamedContact { link, offset: self.robot.links[link].offset(centre), radius }
+        let Circle { center, radius, .. } = HalfPlane::LEVEL.circle(placement, point);
+        NamedContact { link, offset: self.robot.links[link].offset(center), radius }
     }
 }

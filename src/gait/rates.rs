@@ -3,7 +3,7 @@
 //! Rows of one time are an impact: no difference is taken across it, nor from one clip to the next, nor across a
 //! refused row. At such an end the difference is one-sided.
 
-use super::clip::{Clock, Step};
+use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};
 use crate::{Error, Reason};
 
@@ -19,14 +19,14 @@ pub enum Difference {
 
 /// Gives every sample the velocity from its neighbors, one sample late and in order; one without a neighbor is refused.
 pub fn rates<S>(samples: impl Iterator<Item = Sampled<S>>, difference: Difference) -> impl Iterator<Item = Sampled<S>> {
-    let mut pending = Pending { difference, sample: None, before: None };
+    let mut pending = PendingSample { difference, sample: None, before: None };
     let mut clock = Clock::default();
     samples.map(Some).chain([None]).flat_map(move |next| {
         let (sample, refused) = match next {
             Some(Ok(sample)) => (Some(sample), None),
             other => (None, other),
         };
-        let linked = |sample: &&Sample<S>| matches!(clock.step(sample.time), Step::Later(_));
+        let linked = |sample: &&Sample<S>| matches!(clock.step(sample.time), ClockStep::Later(_));
         let settled = pending.settle(sample.as_ref().filter(linked));
         pending.sample = sample;
         settled.into_iter().chain(refused)
@@ -34,14 +34,14 @@ pub fn rates<S>(samples: impl Iterator<Item = Sampled<S>>, difference: Differenc
 }
 
 /// The sample that waits for the one after it.
-struct Pending<S> {
+struct PendingSample<S> {
     difference: Difference,
     sample: Option<Sample<S>>,
     /// Time and position of the neighbor before it.
     before: Option<(f64, Vec<f64>)>,
 }
 
-impl<S> Pending<S> {
+impl<S> PendingSample<S> {
     /// Gives the sample its velocity, `after` being the neighbor that follows.
     fn settle(&mut self, after: Option<&Sample<S>>) -> Option<Sampled<S>> {
         let before = self.before.take();

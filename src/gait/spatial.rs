@@ -12,7 +12,7 @@
 //! stride does not walk in circles. So turning or shifting a whole clip about the world's z changes nothing but where x
 //! begins. The heading is known at a clip's end, so a clip is held in memory.
 
-use super::clip::{Clock, Step};
+use super::clip::{Clock, ClockStep};
 use super::{Sample, Sampled};
 use crate::description::{Matrix, apply};
 use crate::robot::Plane;
@@ -117,7 +117,7 @@ pub fn sagittal<S>(
     samples.map(Some).chain([None]).flat_map(move |next| {
         let ended = match &next {
             None => true,
-            Some(Ok(sample)) => clock.step(sample.time) == Step::NewClip,
+            Some(Ok(sample)) => clock.step(sample.time) == ClockStep::NewClip,
             Some(Err(_)) => false,
         };
         let whole: Vec<Sampled<S>> = if ended { take(&mut clip) } else { Vec::new() };

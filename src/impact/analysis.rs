@@ -8,7 +8,7 @@
 //! Each combination is first read in f64 with a bound of its error; what lies within it is decided with more digits. So
 //! every sign in an answer was shown, and nothing is guessed.
 
-use super::bound::Bounds;
+use super::bound::LeafBounds;
 use super::collected::{AnalysisOptions, Collected, ListedRejections};
 use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
@@ -33,7 +33,7 @@ pub fn too_many_contacts(contacts: usize) -> Error {
 pub struct Scratch {
     tableau: Tableau<f64>,
     scale: Scale,
-    bounds: Bounds,
+    bounds: LeafBounds,
     labels: Labels,
 }
 

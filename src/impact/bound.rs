@@ -141,14 +141,14 @@ fn is_far_from_underflow(scale: &Scale) -> bool {
 
 /// Bounds of every tableau on the way to a leaf; memory that is reused.
 #[derive(Debug, Clone, Default)]
-pub struct Bounds {
+pub struct LeafBounds {
     depths: Vec<Bound>,
     /// 1 / sqrt(G_ii) of every row.
     inverse: Vec<f64>,
     speed: f64,
 }
 
-impl Bounds {
+impl LeafBounds {
     /// Begins with a G off by `delassus` (relative to sqrt(G_ii G_jj)) and scaled velocities off by `noise`.
     pub fn load(&mut self, tableau: &Tableau<f64>, scale: &Scale, delassus: f64, noise: f64) {
         self.inverse.clear();
@@ -226,7 +226,7 @@ mod tests {
 
     /// Follows the bounds and compares those of every leaf with its numbers.
     struct Watch<'a> {
-        bounds: Bounds,
+        bounds: LeafBounds,
         scale: &'a Scale,
         problem: &'a ContactProblem,
     }
@@ -277,7 +277,7 @@ mod tests {
             scale.measure(&problem, Errors::NONE);
             let mut tableau = Tableau::default();
             tableau.load(&problem);
-            let mut bounds = Bounds::default();
+            let mut bounds = LeafBounds::default();
             bounds.load(&tableau, &scale, 0.0, 0.0);
             tableau.visit(&mut Watch { bounds, scale: &scale, problem: &problem });
         }

@@ -4,7 +4,7 @@ use super::enumerate::Tableau;
 use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
 use super::problem::ContactProblem;
-use super::reading::{Reading, motion, read_signed};
+use super::reading::{CombinationReading, motion, read_signed};
 use super::singular::{SingularCase, solve_singular};
 use super::slack::Scale;
 use crate::law::Mode;
@@ -15,7 +15,7 @@ use crate::scalar::{Ordered, Sign};
 pub enum Solved {
     /// Its equations have one solution.
     Regular {
-        reading: Reading,
+        reading: CombinationReading,
         /// Sign of det A.
         index: i8,
         motion: Motion,
@@ -48,12 +48,12 @@ impl Solved {
 }
 
 /// A problem in these numbers and its elimination.
-pub struct Solver<'e, T> {
+pub struct CombinationSolver<'e, T> {
     exact: &'e ContactProblem<T>,
     tableau: Tableau<T>,
 }
 
-impl<'e, T: Ordered> Solver<'e, T> {
+impl<'e, T: Ordered> CombinationSolver<'e, T> {
     pub fn new(exact: &'e ContactProblem<T>) -> Self {
         let mut tableau = Tableau::<T>::default();
         tableau.load(exact);

@@ -23,12 +23,12 @@ pub fn settled<T: Ordered>(number: T) -> Result<Ordering, Unsettled> {
 
 /// An affine function of y: `constant + coefficients . y`.
 #[derive(Debug, Clone)]
-pub struct Affine<T> {
+pub struct LinearFunction<T> {
     pub constant: T,
     pub coefficients: Vec<T>,
 }
 
-impl<T: Real> Affine<T> {
+impl<T: Real> LinearFunction<T> {
     pub fn at(&self, y: &[T]) -> T {
         self.from(self.constant, y)
     }
@@ -53,7 +53,7 @@ pub fn extended<T: Real>(list: &[T], last: T) -> Vec<T> {
     [list, &[last]].concat()
 }
 
-impl<T: Ordered> Affine<T> {
+impl<T: Ordered> LinearFunction<T> {
     pub fn is_constant(&self) -> Result<bool, Unsettled> {
         for &coefficient in &self.coefficients {
             if settled(coefficient)?.is_ne() {
@@ -73,9 +73,12 @@ pub struct Solutions<T> {
 
 impl<T: Real> Solutions<T> {
     /// `constant + coefficients . x` on the solutions, as a function of y.
-    pub fn affine(&self, constant: T, coefficients: &[T]) -> Affine<T> {
+    pub fn affine(&self, constant: T, coefficients: &[T]) -> LinearFunction<T> {
         let along = |x: &Vec<T>| dot(coefficients, x);
-        Affine { constant: constant + along(&self.origin), coefficients: self.directions.iter().map(along).collect() }
+        LinearFunction {
+            constant: constant + along(&self.origin),
+            coefficients: self.directions.iter().map(along).collect(),
+        }
     }
 
     pub fn at(&self, y: &[T]) -> Vec<T> {
@@ -94,7 +97,7 @@ impl<T: Real> Solutions<T> {
 
 impl<T: Ordered> Solutions<T> {
     /// The solutions on which `function`, one of y, is also zero; `None` if there are none.
-    pub fn where_zero(&self, function: &Affine<T>) -> Result<Option<Self>, Unsettled> {
+    pub fn where_zero(&self, function: &LinearFunction<T>) -> Result<Option<Self>, Unsettled> {
         let equation = extended(&function.coefficients, -function.constant);
         let Some(inner) = solve(self.directions.len(), vec![equation])? else { return Ok(None) };
         let direction = |z: &Vec<T>| self.moved(vec![T::zero(); self.origin.len()], z);
@@ -164,7 +167,7 @@ fn largest<T: Ordered>(rows: &[Vec<T>], column: usize) -> Result<Option<usize>, 
 
 /// The y at which `objective . y` is greatest among those where no function is negative; `None` if it grows without
 /// bound. At y = 0 no function may be negative.
-pub fn maximize<T: Ordered>(functions: &[Affine<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
+pub fn maximize<T: Ordered>(functions: &[LinearFunction<T>], objective: &[T]) -> Result<Option<Vec<T>>, Unsettled> {
     let free = objective.len();
     let mut dictionary = Dictionary {
         rows: functions.iter().map(|function| extended(&function.coefficients, function.constant)).collect(),
@@ -260,7 +263,7 @@ impl<T: Ordered> Dictionary<T> {
 }
 
 /// The y whose smallest function is greatest, and that value, at most `cap`: an unbounded set needs one.
-pub fn widest<T: Ordered>(functions: &[Affine<T>], dimension: usize, cap: T) -> Result<(Vec<T>, T), Unsettled> {
+pub fn widest<T: Ordered>(functions: &[LinearFunction<T>], dimension: usize, cap: T) -> Result<(Vec<T>, T), Unsettled> {
     let mut least = cap;
     for function in functions {
         if settled(function.constant - least)?.is_lt() {
@@ -270,8 +273,8 @@ pub fn widest<T: Ordered>(functions: &[Affine<T>], dimension: usize, cap: T) -> 
     // Unknowns y and s = rise above `least`; at y = 0, s = 0 every function is where it must be.
     let (one, still) = (T::one(), vec![T::zero(); dimension]);
     let shifted = functions.iter().map(|function| function.extended(function.constant - least, -one));
-    let top = Affine { constant: cap - least, coefficients: extended(&still, -one) };
-    let rows: Vec<Affine<T>> = shifted.chain([top]).collect();
+    let top = LinearFunction { constant: cap - least, coefficients: extended(&still, -one) };
+    let rows: Vec<LinearFunction<T>> = shifted.chain([top]).collect();
     // The cap bounds the program.
     let mut y = maximize(&rows, &extended(&still, one))?.ok_or(Unsettled)?;
     let rise = y.pop().ok_or(Unsettled)?;
@@ -289,15 +292,15 @@ pub(super) mod tests {
         entries.iter().map(|&entry| Number::from_f64(entry)).collect()
     }
 
-    pub fn affine(constant: f64, coefficients: &[f64]) -> Affine<Number> {
-        Affine { constant: Number::from_f64(constant), coefficients: numbers(coefficients) }
+    pub fn affine(constant: f64, coefficients: &[f64]) -> LinearFunction<Number> {
+        LinearFunction { constant: Number::from_f64(constant), coefficients: numbers(coefficients) }
     }
 
     #[test]
     fn a_degenerate_program_does_not_cycle() {
         // Beale's example, which cycles under the largest-coefficient rule; x >= 0 are rows here. Greatest 1/20.
         let unit = |own: usize| std::array::from_fn(|entry| f64::from(u8::from(entry == own)));
-        let mut rows: Vec<Affine<Number>> = (0..4).map(|own| affine(0.0, &unit(own) as &[f64; 4])).collect();
+        let mut rows: Vec<LinearFunction<Number>> = (0..4).map(|own| affine(0.0, &unit(own) as &[f64; 4])).collect();
         rows.push(affine(0.0, &[-0.25, 60.0, 0.04, -9.0]));
         rows.push(affine(0.0, &[-0.5, 90.0, 0.02, -3.0]));
         rows.push(affine(1.0, &[0.0, 0.0, -1.0, 0.0]));

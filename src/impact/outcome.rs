@@ -89,7 +89,7 @@ pub struct Border {
     pub at_zero: Vec<AtZero>,
     /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are
     /// combinations.
-    pub neighbours: Vec<Vec<Mode>>,
+    pub neighbors: Vec<Vec<Mode>>,
 }
 
 /// An impulse inequality that is zero.

@@ -1,8 +1,8 @@
 //! The passes over all combinations: first in f64, then with more digits those that need them.
 
-use super::bound::Bounds;
+use super::bound::LeafBounds;
 use super::collected::{Collected, Pending};
-use super::combination::Solver;
+use super::combination::CombinationSolver;
 use super::enumerate::{Labels, Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
 use super::outcome::Rejection;
@@ -22,7 +22,7 @@ const DIGITS: f64 = 1e-12;
 
 /// All combinations in f64.
 pub struct F64Pass<'a, 'm> {
-    pub bounds: &'m mut Bounds,
+    pub bounds: &'m mut LeafBounds,
     pub labels: &'m mut Labels,
     /// Whether some modes with the same impulses are visited as one.
     pub shares: bool,
@@ -76,7 +76,7 @@ pub struct UndecidedPass<'a, 'c> {
 
 impl PrecisionTask for UndecidedPass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, precision: Precision) -> bool {
-        let mut solver = Solver::new(exact);
+        let mut solver = CombinationSolver::new(exact);
         let before = self.undecided.len();
         let Self { undecided, coarse, collected } = self;
         // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
@@ -120,7 +120,7 @@ pub struct CoarsePass<'a, 'c> {
 
 impl PrecisionTask for CoarsePass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, _: Precision) -> bool {
-        let mut solver = Solver::new(exact);
+        let mut solver = CombinationSolver::new(exact);
         let Self { coarse, collected } = self;
         coarse.retain(|pending| match solver.solve(&pending.modes, collected.problem, collected.scale) {
             Ok(solved) if solved.error().is_some_and(|error| error <= DIGITS) => {

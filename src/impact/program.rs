@@ -4,7 +4,7 @@
 //!     min_y |L0 + D y|^2   with   f_i(y) = constant + coefficients . y >= 0
 //! ```
 
-use super::linear::{Affine, Unsettled, settled, solve};
+use super::linear::{LinearFunction, Unsettled, settled, solve};
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 pub fn least_impulse<T: Ordered>(
     origin: &[T],
     directions: &[Vec<T>],
-    functions: &[Affine<T>],
+    functions: &[LinearFunction<T>],
 ) -> Result<Vec<T>, Unsettled> {
     let mut y = vec![T::zero(); directions.len()];
     let mut binding: Vec<usize> = Vec::new();
@@ -50,7 +50,7 @@ const ROUNDS: usize = 8;
 fn least_on_face<T: Ordered>(
     origin: &[T],
     directions: &[Vec<T>],
-    functions: &[Affine<T>],
+    functions: &[LinearFunction<T>],
     binding: &[usize],
 ) -> Result<(Vec<T>, Vec<T>), Unsettled> {
     let free = directions.len();
@@ -75,7 +75,7 @@ fn least_on_face<T: Ordered>(
 
 /// The function that reaches zero first on the way along `step`, before its end, and the part of the way until then.
 fn first_reached<T: Ordered>(
-    functions: &[Affine<T>],
+    functions: &[LinearFunction<T>],
     binding: &[usize],
     y: &[T],
     step: &[T],
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
     use crate::impact::linear::tests::{Number, affine, numbers};
 
-    fn least(origin: &[f64], directions: &[&[f64]], functions: &[Affine<Number>]) -> Vec<f64> {
+    fn least(origin: &[f64], directions: &[&[f64]], functions: &[LinearFunction<Number>]) -> Vec<f64> {
         let directions: Vec<Vec<Number>> = directions.iter().map(|direction| numbers(direction)).collect();
         least_impulse(&numbers(origin), &directions, functions).unwrap().iter().map(|entry| entry.to_f64()).collect()
     }

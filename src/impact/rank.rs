@@ -1,6 +1,6 @@
 //! Rank and condition of the Delassus matrix.
 
-use super::bound::Bounds;
+use super::bound::LeafBounds;
 use super::enumerate::Tableau;
 use super::linear::solve;
 use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
@@ -10,7 +10,7 @@ use crate::scalar::Ordered;
 use nalgebra::DMatrix;
 
 /// Whether f64 shows that G is regular: for problems none of whose combinations solves for all impulses.
-pub fn shows_regular(tableau: &mut Tableau<f64>, bounds: &mut Bounds, contacts: usize) -> bool {
+pub fn shows_regular(tableau: &mut Tableau<f64>, bounds: &mut LeafBounds, contacts: usize) -> bool {
     tableau.stick_all(|tableau, contact| bounds.follow(tableau, contact, contact));
     bounds.at(contacts).impulse_error().is_finite()
 }

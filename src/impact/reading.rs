@@ -10,7 +10,7 @@ use crate::scalar::{Ordered, Real, Sign};
 
 /// What the slacks of a combination say.
 #[derive(Debug)]
-pub struct Reading {
+pub struct CombinationReading {
     /// Valid, rejected or undecided; never zero.
     pub sign: Sign,
     pub because: RejectionReason,
@@ -28,7 +28,7 @@ pub fn read_f64(
     scale: &Scale,
     bound: &Bound,
     complete: bool,
-) -> Reading {
+) -> CombinationReading {
     let (velocity, impulse) = (bound.velocity_error(), bound.impulse_error());
     let speed = |contact: usize, c_t: f64| Sign::within(c_t / scale.speed / scale.mobility[2 * contact], velocity);
     read(leaf, modes, problem.laws(), complete, speed, |slack| {
@@ -38,7 +38,12 @@ pub fn read_f64(
 }
 
 /// Reads a leaf whose numbers know their own sign.
-pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Reading {
+pub fn read_signed<T: Ordered>(
+    leaf: &Leaf<'_, T>,
+    modes: &[Mode],
+    problem: &ContactProblem,
+    scale: &Scale,
+) -> CombinationReading {
     let scaled = |slack: &Slack<T>| scale.scaled(slack, slack.number.to_f64());
     read(leaf, modes, problem.laws(), true, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
 }
@@ -51,9 +56,13 @@ fn read<T: Real>(
     complete: bool,
     speed: impl Fn(usize, T) -> Sign,
     slack: impl Fn(&Slack<T>) -> (Sign, f64),
-) -> Reading {
-    let mut reading =
-        Reading { sign: Sign::Positive, because: RejectionReason::NoSolution, margin: None, at_zero: Vec::new() };
+) -> CombinationReading {
+    let mut reading = CombinationReading {
+        sign: Sign::Positive,
+        because: RejectionReason::NoSolution,
+        margin: None,
+        at_zero: Vec::new(),
+    };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         if law.is_unheld(mode) {
             match speed(contact, leaf.numbers(contact)[0]) {
@@ -62,7 +71,7 @@ fn read<T: Real>(
                 Sign::Positive | Sign::Negative => {
                     // Two equations for one impulse: no slack measures how far they are from agreeing.
                     let because = RejectionReason::NothingHolds { contact };
-                    return Reading { sign: Sign::Negative, because, ..reading };
+                    return CombinationReading { sign: Sign::Negative, because, ..reading };
                 }
             }
         }

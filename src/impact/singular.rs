@@ -12,7 +12,7 @@
 
 use super::generators::Generators;
 use super::index::index;
-use super::linear::{Affine, Solutions, Unsettled, extended, maximize, settled, solve, widest};
+use super::linear::{LinearFunction, Solutions, Unsettled, extended, maximize, settled, solve, widest};
 use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
@@ -57,7 +57,7 @@ pub struct SingularOutcome {
 struct Constraint<T> {
     contact: usize,
     inequality: Inequality,
-    function: Affine<T>,
+    function: LinearFunction<T>,
 }
 
 /// Solves one combination; `rounded` is the same problem in f64.
@@ -93,14 +93,15 @@ struct Equations<'a, T> {
 impl<T: Ordered> Equations<'_, T> {
     fn weigh(&self, solutions: &Solutions<T>) -> Result<SingularCase, Unsettled> {
         let inequalities = self.inequalities(solutions);
-        let velocities: Vec<Affine<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
+        let velocities: Vec<LinearFunction<T>> =
+            (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
         for Constraint { function, .. } in inequalities.iter().filter(|own| own.inequality.is_strict()) {
             if function.is_constant()? && settled(function.constant)?.is_eq() {
                 return Ok(SingularCase::Rejected(Rejection::of(self.modes, RejectionReason::RedundantTwin)));
             }
         }
         let dimension = solutions.directions.len();
-        let functions: Vec<Affine<T>> = inequalities.iter().map(|own| own.function.clone()).collect();
+        let functions: Vec<LinearFunction<T>> = inequalities.iter().map(|own| own.function.clone()).collect();
         let (inside, least) = widest(&functions, dimension, T::from_f64(UNBOUNDED))?;
         let standing = settled(least)?;
         if standing.is_lt() {
@@ -126,7 +127,7 @@ impl<T: Ordered> Equations<'_, T> {
         Ok(SingularCase::Family([self.end_outcome(&greatest)?, self.end_outcome(&least)?]))
     }
 
-    fn velocity(&self, solutions: &Solutions<T>, row: usize) -> Affine<T> {
+    fn velocity(&self, solutions: &Solutions<T>, row: usize) -> LinearFunction<T> {
         solutions.affine(self.problem.free_row(row), &self.generators.velocity_row(self.problem, row))
     }
 
@@ -178,8 +179,8 @@ impl<T: Ordered> Equations<'_, T> {
             own.function.extended(own.function.at(inside), strictly)
         };
         let still = vec![T::zero(); inside.len()];
-        let top = Affine { constant: T::one(), coefficients: extended(&still, -T::one()) };
-        let rows: Vec<Affine<T>> = inequalities.iter().map(shifted).chain([top]).collect();
+        let top = LinearFunction { constant: T::one(), coefficients: extended(&still, -T::one()) };
+        let rows: Vec<LinearFunction<T>> = inequalities.iter().map(shifted).chain([top]).collect();
         let best = maximize(&rows, &extended(&still, T::one()))?.ok_or(Unsettled)?;
         best.last().map_or(Ok(false), |&rise| Ok(settled(rise)?.is_gt()))
     }
@@ -204,12 +205,13 @@ impl<T: Ordered> Equations<'_, T> {
             if velocity.is_constant()? {
                 continue;
             }
-            let functions: Vec<Affine<T>> = self.inequalities(&space).into_iter().map(|each| each.function).collect();
+            let functions: Vec<LinearFunction<T>> =
+                self.inequalities(&space).into_iter().map(|each| each.function).collect();
             let toward: Vec<T> = velocity.coefficients.iter().map(|&entry| sign * entry).collect();
             // Energy bounds every velocity.
             let best = maximize(&functions, &toward)?.ok_or(Unsettled)?;
             let point = space.at(&best);
-            let rest = Affine { constant: velocity.constant - velocity.at(&best), ..velocity };
+            let rest = LinearFunction { constant: velocity.constant - velocity.at(&best), ..velocity };
             space = space.where_zero(&rest)?.ok_or(Unsettled)?;
             space.origin = point;
         }
@@ -248,9 +250,12 @@ impl<T: Ordered> Equations<'_, T> {
         let dimension = space.directions.len();
         // Velocities are settled; only impulses still depend on y.
         let pressing: Vec<&Constraint<T>> = inequalities.iter().filter(|own| !own.inequality.is_strict()).collect();
-        let shifted: Vec<Affine<T>> = pressing
+        let shifted: Vec<LinearFunction<T>> = pressing
             .iter()
-            .map(|each| Affine { constant: each.function.at(inside), coefficients: each.function.coefficients.clone() })
+            .map(|each| LinearFunction {
+                constant: each.function.at(inside),
+                coefficients: each.function.coefficients.clone(),
+            })
             .collect();
         let mut at_zero: Vec<(usize, Inequality)> = Vec::new();
         if settled(least)?.is_eq() {

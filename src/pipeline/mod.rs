@@ -16,7 +16,7 @@ pub use self::prepared::Unsolved;
 use self::prepared::check_length;
 use crate::contact::{Contact, Feet, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{Bounds, ContactPoint, articulated_inertias};
+use crate::dynamics::{ContactPoint, RoundingBounds, articulated_inertias};
 use crate::error::{Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, too_many_contacts,
@@ -159,7 +159,7 @@ pub struct Pipeline<'r> {
     /// The held joints and rotors for which the last plan was compiled.
     held: Vec<usize>,
     rotor_inertia: Vec<f64>,
-    bounds: Bounds,
+    bounds: RoundingBounds,
     scratch: Scratch,
 }
 
@@ -176,7 +176,7 @@ impl<'r> Pipeline<'r> {
             assembly: Assembly::new(Plan::new(robot, &[], &[])),
             held: Vec::new(),
             rotor_inertia: Vec::new(),
-            bounds: Bounds::default(),
+            bounds: RoundingBounds::default(),
             scratch: Scratch::default(),
         }
     }
@@ -275,8 +275,8 @@ impl<'r> Pipeline<'r> {
         self.check_inertia(false)?;
         let point = |contact: &NamedContact| {
             let link = &self.robot.links[contact.link];
-            let (centre, ground) = (link.point(contact.offset), Rotation::identity());
-            ContactPoint { body: link.body, centre, radius: contact.radius, ground }
+            let (center, ground) = (link.point(contact.offset), Rotation::identity());
+            ContactPoint { body: link.body, center, radius: contact.radius, ground }
         };
         self.assembly.points = contacts.iter().map(point).collect();
         self.assembly.contact_jacobian(velocity, None);

@@ -356,7 +356,7 @@ pub(super) fn check_length(place: &'static str, found: usize, wanted: usize) -> 
 /// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {
     let same = |other: &Contact| {
-        (foot.link, foot.body, foot.centre, foot.radius) == (other.link, other.body, other.centre, other.radius)
+        (foot.link, foot.body, foot.center, foot.radius) == (other.link, other.body, other.center, other.radius)
     };
     let at = |exactly: bool| {
         contacts.iter().position(|other| same(other) && (other.ground == foot.ground || !exactly && foot.radius == 0.0))

@@ -12,7 +12,7 @@
 use super::plane::PARALLEL;
 use super::role::Role;
 use super::{Axis, Base, FreezeReason};
-use crate::description::{Description, Joint};
+use crate::description::{Description, UrdfJoint};
 
 /// The share of the robot's mass up to which a link looks as if it only had to be given one.
 const LIGHT: f64 = 1e-2;
@@ -42,7 +42,7 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
         }
     }
     if let Some(joint) = free {
-        let Joint { kind, name, child, .. } = &description.joints[joint];
+        let UrdfJoint { kind, name, child, .. } = &description.joints[joint];
         let because = format!("{} joint \"{name}\" is the base itself", kind.name());
         return Judgement { base: Base::Floating, root: *child, because, chain: vec![joint], caution: None };
     }

@@ -1,8 +1,8 @@
 //! What a user must know before trusting a reduced robot, each with its remedy.
 
 use super::plane::{PARALLEL, Plane};
-use super::posture::Posture;
 use super::reading::{FreezeReason, FrozenJoint};
+use super::reference_pose::ReferencePose;
 use crate::description::{Description, JointKind, Matrix, apply, turn};
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
@@ -10,10 +10,10 @@ const NEARLY: f64 = 0.35;
 /// The most joints that are named.
 const NAMED: usize = 3;
 
-/// The description in its posture and plane.
+/// The description in its pose and plane.
 pub(super) struct Seen<'a> {
     pub(super) description: &'a Description,
-    pub(super) posture: &'a Posture,
+    pub(super) pose: &'a ReferencePose,
     pub(super) plane: Plane,
 }
 
@@ -88,8 +88,8 @@ fn about_tilted(seen: &Seen, nearly: &[&FrozenJoint], all: usize) -> String {
 /// What brings the axis of a joint into line: a held hinge before it that can turn it there, or else the joint whose
 /// origin tilts it.
 fn remedy(seen: &Seen, joint: usize) -> Option<String> {
-    let Seen { description, posture, plane } = seen;
-    let axis = posture.axes[joint];
+    let Seen { description, pose, plane } = seen;
+    let axis = pose.axes[joint];
     let before = || {
         let link = |joint: usize| description.links[description.joints[joint].parent].joint;
         std::iter::successors(link(joint), move |&joint| link(joint))
@@ -98,10 +98,10 @@ fn remedy(seen: &Seen, joint: usize) -> Option<String> {
         let kind = description.joints[before].kind;
         // One that is nearly in line is to be kept itself.
         matches!(kind, JointKind::Revolute | JointKind::Continuous)
-            && posture.held[before].is_none()
-            && plane.off_normal(posture.axes[before]) > NEARLY
+            && pose.held[before].is_none()
+            && plane.off_normal(pose.axes[before]) > NEARLY
     });
-    let mut turned = turned.filter_map(|before| Some((before, angle_into_line(axis, posture.axes[before], *plane)?)));
+    let mut turned = turned.filter_map(|before| Some((before, angle_into_line(axis, pose.axes[before], *plane)?)));
     if let Some((hinge, angle)) = turned.next() {
         return Some(format!("`hold: {}={angle:.6}`", description.joints[hinge].name));
     }
@@ -111,7 +111,7 @@ fn remedy(seen: &Seen, joint: usize) -> Option<String> {
     };
     let tilts = |at: &usize| {
         let joint = &description.joints[*at];
-        in_line(&posture.rotations[joint.parent]) && !in_line(&posture.rotations[joint.child])
+        in_line(&pose.rotations[joint.parent]) && !in_line(&pose.rotations[joint.child])
     };
     match std::iter::once(joint).chain(before()).find(tilts) {
         Some(tilting) => Some(format!("straighten the rpy of {}", description.joints[tilting].name)),

@@ -1,29 +1,29 @@
 //! What of a file does not enter the analysis, in words.
 
-use super::LeftOut;
+use super::LeftOutPart;
 use super::reading::{FrozenJoint, Reading};
 use crate::description::{self, Collision, Description, Geometry, Ignored, JointKind, joint_place, link_place};
 
 /// A joint without a coordinate.
-pub(super) fn held(joint: &FrozenJoint) -> LeftOut {
-    LeftOut { what: joint_place(&joint.name), why: joint.why() }
+pub(super) fn held(joint: &FrozenJoint) -> LeftOutPart {
+    LeftOutPart { what: joint_place(&joint.name), why: joint.why() }
 }
 
 /// A joint whose axis was `tilt` \[rad\] off and is taken as exactly in line.
-pub(super) fn tilted(joint: &description::Joint, tilt: f64) -> LeftOut {
+pub(super) fn tilted(joint: &description::UrdfJoint, tilt: f64) -> LeftOutPart {
     let wanted = if joint.kind == JointKind::Prismatic { "the plane" } else { "the plane's normal" };
     let why = format!("its axis is {tilt:.1e} rad off {wanted}: taken as exactly on it");
-    LeftOut { what: joint_place(&joint.name), why }
+    LeftOutPart { what: joint_place(&joint.name), why }
 }
 
 /// Links that are part of the base.
-pub(super) fn outside(reading: &Reading) -> impl Iterator<Item = LeftOut> {
+pub(super) fn outside(reading: &Reading) -> impl Iterator<Item = LeftOutPart> {
     let why = "not part of the robot: it belongs to the world or to the base";
-    reading.outside.iter().map(move |name| LeftOut { what: link_place(name), why: why.into() })
+    reading.outside.iter().map(move |name| LeftOutPart { what: link_place(name), why: why.into() })
 }
 
 /// A link whose inertia is only half given or impossible.
-pub(super) fn doubtful_inertia(link: &description::Link) -> Option<LeftOut> {
+pub(super) fn doubtful_inertia(link: &description::UrdfLink) -> Option<LeftOutPart> {
     let inertial = link.inertial.as_ref()?;
     let why = match &inertial.inertia {
         None => "its <inertial> has no <inertia>: taken as a point mass",
@@ -32,17 +32,17 @@ pub(super) fn doubtful_inertia(link: &description::Link) -> Option<LeftOut> {
         }
         Some(_) => return None,
     };
-    Some(LeftOut { what: link_place(&link.name), why: why.into() })
+    Some(LeftOutPart { what: link_place(&link.name), why: why.into() })
 }
 
 /// The shapes of a link that is bolted to the world.
-pub(super) fn bolted_shapes(link: &description::Link) -> LeftOut {
+pub(super) fn bolted_shapes(link: &description::UrdfLink) -> LeftOutPart {
     let why = "bolted to the world: it cannot strike the ground";
-    LeftOut { what: format!("collision shapes of {}", link_place(&link.name)), why: why.into() }
+    LeftOutPart { what: format!("collision shapes of {}", link_place(&link.name)), why: why.into() }
 }
 
 /// A collision shape without a foot.
-pub(super) fn skipped(link: &description::Link, collision: &Collision, why: String) -> LeftOut {
+pub(super) fn skipped(link: &description::UrdfLink, collision: &Collision, why: String) -> LeftOutPart {
     let shape = match &collision.geometry {
         Geometry::Box { .. } => "box".into(),
         Geometry::Cylinder { .. } => "cylinder".into(),
@@ -51,11 +51,11 @@ pub(super) fn skipped(link: &description::Link, collision: &Collision, why: Stri
         Geometry::Mesh { file, .. } => format!("mesh \"{file}\""),
         Geometry::Unknown { tag } => format!("<{tag}>"),
     };
-    LeftOut { what: format!("collision {shape} of {}", link_place(&link.name)), why }
+    LeftOutPart { what: format!("collision {shape} of {}", link_place(&link.name)), why }
 }
 
 /// Elements that the description passed over.
-pub(super) fn passed_over(description: &Description) -> impl Iterator<Item = LeftOut> {
+pub(super) fn passed_over(description: &Description) -> impl Iterator<Item = LeftOutPart> {
     description.ignored.iter().map(|Ignored { parent, tag, count }| {
         let why = match (*parent, tag.as_str()) {
             ("joint", "limit") => "joint limits do not enter an impact",
@@ -63,6 +63,6 @@ pub(super) fn passed_over(description: &Description) -> impl Iterator<Item = Lef
             _ => "no part of the robot's mechanics",
         };
         let times = if *count == 1 { String::new() } else { format!("{count} ") };
-        LeftOut { what: format!("{times}<{tag}> in <{parent}>"), why: why.into() }
+        LeftOutPart { what: format!("{times}<{tag}> in <{parent}>"), why: why.into() }
     })
 }

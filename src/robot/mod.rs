@@ -9,13 +9,13 @@
 //! stands between a body and its parent, and where the file turns nothing its numbers are kept bit for bit.
 //!
 //! ```text
-//!     Description --posture--> axes in the posture --plane--> plane --role--> revolute, prismatic or fixed
+//!     Description --pose--> axes in the pose --plane--> plane --role--> revolute, prismatic or fixed
 //!     --base--> where the robot begins --tree--> bodies, places of links --composite, outline--> inertias, feet
 //! ```
 
 mod composite;
 mod plane;
-mod posture;
+mod reference_pose;
 mod reading;
 mod caution;
 mod left_out;
@@ -70,7 +70,7 @@ pub struct Robot {
     /// The links of the file, in its order; without those that are the base itself.
     pub links: Vec<Link>,
     /// What of the file does not enter the analysis, and why.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<LeftOutPart>,
     /// How the file was read.
     pub reading: Reading,
 }
@@ -155,7 +155,7 @@ pub struct Link {
 /// Something of the file that does not enter the analysis, as in `joint "left_ankle"`, and why, as in `fixed: welded
 /// into left_shank`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct LeftOutPart {
     pub what: String,
     pub why: String,
 }

@@ -4,11 +4,11 @@
 use super::composite::{LinkInertia, composite};
 use super::outline::outline;
 use super::plane::{PARALLEL, Plane};
-use super::posture::Posture;
 use super::reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
+use super::reference_pose::ReferencePose;
 use super::role::{Role, roles};
 use super::tree::{Place, Tree};
-use super::{Base, LeftOut, Link, ParentJoint, Robot, base, caution, left_out};
+use super::{Base, LeftOutPart, Link, ParentJoint, Robot, base, caution, left_out};
 use crate::description::{self, Description, Inertial, JointKind, product};
 use crate::error::{Error, Reason, Result};
 use crate::reductions::Reductions;
@@ -17,7 +17,7 @@ use crate::reductions::Reductions;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reduction {
     pub plane: Option<Plane>,
-    /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this posture the
+    /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this pose the
     /// axes are judged.
     pub hold: Vec<(usize, f64)>,
     pub base: Option<Base>,
@@ -46,24 +46,24 @@ impl Robot {
     /// value, and where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the
     /// normal; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
-        let posture = Posture::new(description, &reduction.hold)?;
-        let (plane, plane_because) = find_plane(description, &posture, reduction.plane);
-        let mut roles = roles(description, &posture, plane);
+        let pose = ReferencePose::new(description, &reduction.hold)?;
+        let (plane, plane_because) = find_plane(description, &pose, reduction.plane);
+        let mut roles = roles(description, &pose, plane);
         let found = base::judge(description, &mut roles, reduction.base);
-        let rotation = product(&plane.axes(), &posture.rotations[found.root]);
-        let tree = Tree::grow(description, (&posture, &roles), found.root, rotation, reduction.reductions);
+        let rotation = product(&plane.axes(), &pose.rotations[found.root]);
+        let tree = Tree::grow(description, (&pose, &roles), found.root, rotation, reduction.reductions);
 
         let held = held(description, &roles, &tree, &found);
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
         let outside: Vec<String> = outside.map(|(link, _)| link.name.clone()).collect();
-        let seen = caution::Seen { description, posture: &posture, plane };
+        let seen = caution::Seen { description, pose: &pose, plane };
         let mut cautions = caution::about_held(&seen, &held, tree.joints.len() + tree.mimic_joints.len());
         cautions.extend(found.caution);
         cautions.extend(caution::about_outside(description, &outside));
         let reading = Reading {
             plane,
             plane_because,
-            better_plane: better_plane(description, &posture, plane),
+            better_plane: better_plane(description, &pose, plane),
             base_because: found.because,
             frozen: held,
             outside,
@@ -115,12 +115,12 @@ impl Robot {
 }
 
 /// The plane that is `asked` for, or that all hinges lie along, or the usual one.
-fn find_plane(description: &Description, posture: &Posture, asked: Option<Plane>) -> (Plane, PlaneReason) {
+fn find_plane(description: &Description, pose: &ReferencePose, asked: Option<Plane>) -> (Plane, PlaneReason) {
     let hinges = (0..description.joints.len()).filter(|&joint| {
         let kind = description.joints[joint].kind;
-        matches!(kind, JointKind::Revolute | JointKind::Continuous) && posture.held[joint].is_none()
+        matches!(kind, JointKind::Revolute | JointKind::Continuous) && pose.held[joint].is_none()
     });
-    match (asked, Plane::normal_to(hinges.map(|joint| posture.axes[joint]))) {
+    match (asked, Plane::normal_to(hinges.map(|joint| pose.axes[joint]))) {
         (Some(plane), _) => (plane, PlaneReason::Asked),
         (None, Some(plane)) => (plane, PlaneReason::CommonAxis),
         (None, None) => (Plane::default(), PlaneReason::Usual),
@@ -128,9 +128,9 @@ fn find_plane(description: &Description, posture: &Posture, asked: Option<Plane>
 }
 
 /// The plane in which most joints move, if that is more than in `plane`.
-fn better_plane(description: &Description, posture: &Posture, plane: Plane) -> Option<(Plane, usize)> {
+fn better_plane(description: &Description, pose: &ReferencePose, plane: Plane) -> Option<(Plane, usize)> {
     let moving = |plane| {
-        let roles = roles(description, posture, plane);
+        let roles = roles(description, pose, plane);
         roles.iter().filter(|role| matches!(role, Role::Moves { .. })).count()
     };
     let others = Plane::ALL.into_iter().filter(|&other| other != plane).map(|other| (other, moving(other)));
@@ -160,7 +160,7 @@ fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Ju
 }
 
 /// What is left out of joints, in the file's order, and of links that are not part of the robot.
-fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, reading: &Reading) -> Vec<LeftOut> {
+fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, reading: &Reading) -> Vec<LeftOutPart> {
     let mut held = reading.frozen.iter().peekable();
     let mut all = Vec::new();
     for (index, joint) in description.joints.iter().enumerate() {
@@ -178,7 +178,7 @@ fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, readi
 }
 
 /// `link` with its collision shapes, in its body's frame.
-fn reduce_link(link: &description::Link, place: &Place, left_out: &mut Vec<LeftOut>) -> Link {
+fn reduce_link(link: &description::UrdfLink, place: &Place, left_out: &mut Vec<LeftOutPart>) -> Link {
     let pose = [0, 2].map(|row| {
         let [a, b, c] = place.rotation[row];
         [a, b, c, place.offset[row]]

@@ -6,7 +6,7 @@
 //! ```
 
 use super::plane::{PARALLEL, Plane};
-use super::posture::Posture;
+use super::reference_pose::ReferencePose;
 use super::{Axis, FreezeReason};
 use crate::description::{Description, JointKind, Mimic, apply, unit};
 use crate::planar::Vector;
@@ -26,16 +26,16 @@ pub(super) enum Role {
     },
     /// Planar or floating: the base itself where it joins the robot to the world.
     Free,
-    /// It keeps its value in the posture.
+    /// It keeps its value in the pose.
     Frozen(FreezeReason),
 }
 
 /// The role of every joint.
-pub(super) fn roles(description: &Description, posture: &Posture, plane: Plane) -> Vec<Role> {
+pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plane) -> Vec<Role> {
     let joints = &description.joints;
-    let alone: Vec<Role> = (0..joints.len()).map(|index| role(joints[index].kind, index, posture, plane)).collect();
+    let alone: Vec<Role> = (0..joints.len()).map(|index| role(joints[index].kind, index, pose, plane)).collect();
     let mut roles = alone.clone();
-    for (index, mimicked) in posture.mimicked.iter().enumerate() {
+    for (index, mimicked) in pose.mimicked.iter().enumerate() {
         let Some(mimicked) = mimicked else { continue };
         let follows = || Role::Frozen(FreezeReason::Follows { mimicked: joints[mimicked.joint].name.clone() });
         match (&mut roles[index], &alone[mimicked.joint]) {
@@ -44,7 +44,7 @@ pub(super) fn roles(description: &Description, posture: &Posture, plane: Plane) 
             // Reported as what it is: frozen at zero whatever the mimicked joint does.
             (Role::Free | Role::Frozen(_), _) => {}
         }
-        if posture.held[index].is_some() && joints[index].kind != JointKind::Fixed {
+        if pose.held[index].is_some() && joints[index].kind != JointKind::Fixed {
             roles[index] = follows();
         }
     }
@@ -52,11 +52,11 @@ pub(super) fn roles(description: &Description, posture: &Posture, plane: Plane) 
 }
 
 /// A joint's role by itself.
-fn role(kind: JointKind, index: usize, posture: &Posture, plane: Plane) -> Role {
-    if let (Some(value), true) = (posture.held[index], kind.has_axis()) {
+fn role(kind: JointKind, index: usize, pose: &ReferencePose, plane: Plane) -> Role {
+    if let (Some(value), true) = (pose.held[index], kind.has_axis()) {
         return Role::Frozen(FreezeReason::Asked { value });
     }
-    let axis = posture.axes[index];
+    let axis = pose.axes[index];
     match kind {
         JointKind::Fixed => Role::Frozen(FreezeReason::Fixed),
         JointKind::Spherical => Role::Frozen(FreezeReason::Kind(kind)),

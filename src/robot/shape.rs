@@ -75,7 +75,7 @@ impl FootShape {
 
     /// The polygon of `corners` \[m\] in the body's frame, convex and counter-clockwise seen with forward to the right
     /// and up upward, with `rim` about each; two corners are a line, one is a point. None for no corner, or for
-    /// neighbours that coincide.
+    /// neighbors that coincide.
     pub fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Option<Self> {
         let points: Vec<ParryVector> = corners.iter().map(|&Vector { x, z }| ParryVector::new(x, z)).collect();
         let polygon = match points[..] {

@@ -9,7 +9,7 @@
 //! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is held at
 //! a value shifts and turns its child by that once more. Linear in links; nothing recurses.
 
-use super::posture::{Posture, held_shift, held_turn};
+use super::reference_pose::{ReferencePose, held_shift, held_turn};
 use super::role::Role;
 use super::{Body, Joint, MimicJoint, ParentJoint};
 use crate::description::{self, Description, Inertial, Matrix, Mimic, Pose, apply, product};
@@ -58,7 +58,7 @@ impl Tree {
     /// before the next.
     pub(super) fn grow(
         description: &Description,
-        (posture, roles): (&Posture, &[Role]),
+        (pose, roles): (&ReferencePose, &[Role]),
         root: usize,
         rotation: Matrix,
         reductions: Reductions,
@@ -101,7 +101,7 @@ impl Tree {
                     Place { body: child, offset: [0.0; 3], ..at }
                 }
                 _ => {
-                    let at = match posture.held[index] {
+                    let at = match pose.held[index] {
                         Some(value) => {
                             let offset = at.point(held_shift(joint, value));
                             Place { rotation: product(&at.rotation, &held_turn(joint, value)), offset, ..at }
@@ -132,7 +132,7 @@ fn in_order<T>(mut joints: Vec<(usize, T)>) -> Vec<T> {
 }
 
 /// Whether nothing of a link is left once it is welded: it has neither inertia nor shapes.
-fn vanishes(link: &description::Link) -> bool {
+fn vanishes(link: &description::UrdfLink) -> bool {
     let inertia = |inertia: &Matrix| inertia.iter().flatten().all(|&entry| entry == 0.0);
     let massless = |own: &Inertial| own.mass == 0.0 && own.inertia.as_ref().is_none_or(inertia);
     link.collisions.is_empty() && link.inertial.as_ref().is_none_or(massless)

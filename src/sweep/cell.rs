@@ -158,14 +158,14 @@ impl<'s, 'm> Trace<'s, 'm> {
     fn quarters(&mut self, cell: &GridCell) -> [GridCell; 4] {
         let ([x0, y0], [x, y], [x1, y1]) = (cell.corners[0], cell.middle(), cell.corners[1]);
         let [below, right, above, left] = &cell.edges;
-        let centre = Probe { at: x, regime: self.solver.regime(&[x, y]) };
-        let upward = Probe { at: y, ..centre.clone() };
+        let center = Probe { at: x, regime: self.solver.regime(&[x, y]) };
+        let upward = Probe { at: y, ..center.clone() };
         let mut search = |axis: usize, ends: [Probe; 2]| {
             let line = GridLine { axis, fixed: if axis == 0 { y } else { x } };
             Edge::search(self.solver, line, ends, self.resolution[axis])
         };
-        let to_left = search(0, [Probe { at: x0, regime: left.at(y) }, centre.clone()]);
-        let to_right = search(0, [centre, Probe { at: x1, regime: right.at(y) }]);
+        let to_left = search(0, [Probe { at: x0, regime: left.at(y) }, center.clone()]);
+        let to_right = search(0, [center, Probe { at: x1, regime: right.at(y) }]);
         let to_below = search(1, [Probe { at: y0, regime: below.at(x) }, upward.clone()]);
         let to_above = search(1, [upward, Probe { at: y1, regime: above.at(x) }]);
         let cell = |corners, edges| GridCell { corners, edges };

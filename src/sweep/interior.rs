@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 /// For each connected part of a grid's nodes of one kind: the kind, and the nodes that are most steps away from others.
 /// The nodes are given row by row, `columns` in each.
 pub fn deepest_nodes(kinds: &[Option<usize>], columns: usize) -> Vec<(usize, Vec<usize>)> {
-    let neighbours = |k: usize| {
+    let neighbors = |k: usize| {
         let column = k % columns;
         let left = (column > 0).then(|| k - 1);
         let right = (column + 1 < columns).then(|| k + 1);
@@ -14,7 +14,7 @@ pub fn deepest_nodes(kinds: &[Option<usize>], columns: usize) -> Vec<(usize, Vec
         let above = (k + columns < kinds.len()).then(|| k + columns);
         [left, right, below, above]
     };
-    let alike = |k: usize| neighbours(k).into_iter().flatten().filter(move |&other| kinds[other] == kinds[k]);
+    let alike = |k: usize| neighbors(k).into_iter().flatten().filter(move |&other| kinds[other] == kinds[k]);
     // Steps to the nearest node of another kind, or to the frame.
     let at_edge = |&k: &usize| alike(k).count() < 4;
     let mut queue: VecDeque<usize> = (0..kinds.len()).filter(at_edge).collect();

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// All regions along one parameter.
 #[derive(Debug, Clone, Default)]
 pub struct Survey {
-    /// The regions from the least to the greatest value, each with positive width; neighbours differ.
+    /// The regions from the least to the greatest value, each with positive width; neighbors differ.
     pub regions: Vec<Region>,
     /// The border between each two of them.
     pub borders: Vec<RegionBorder>,

@@ -241,7 +241,7 @@ fn the_stance_foot_is_the_lowest_also_under_a_coarse_tolerance() {
     let state = r#"{"stance": "body", "position": {"base": {"pitch": 0.05}}}"#;
     let found = try_impact(&flat_box(), options, state).expect("an answer");
     let at_origin = found.contacts.iter().find(|contact| contact.point == [0.0; 2]).expect("it stands at the origin");
-    assert_eq!(at_origin.centre, [0.2, -0.1], "the toe, with the nose down");
+    assert_eq!(at_origin.center, [0.2, -0.1], "the toe, with the nose down");
 }
 
 #[test]

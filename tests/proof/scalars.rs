@@ -107,7 +107,7 @@ fn run<T: Real>(half_tangents: [T; 5]) -> Vec<T> {
         let link = &robot.links[robot.link(name).expect("a foot")];
         ContactPoint {
             body: link.body,
-            centre: link.point([0.0; 3]).map(T::from_f64),
+            center: link.point([0.0; 3]).map(T::from_f64),
             radius: T::from_f64(0.02815),
             ground: Rotation::identity(),
         }

@@ -10,7 +10,7 @@
 use super::ground::{SoftGround, Suspension, mean_mobility};
 use super::integrate::{Limits, StiffEquations, integrate};
 use crate::Result;
-use crate::dynamics::plan::{Configuration, Motion, Plan};
+use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::dynamics::{
     ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
@@ -191,12 +191,12 @@ fn inertial_forces(plan: &Plan, velocity: &[f64], workspace: &Workspace) -> Vec<
                 let (spin, rate) = (spins[parent], velocity[body.coordinate]);
                 let carried = origins[parent] - workspace.arm[index] * (spin * spin);
                 match motion {
-                    Motion::Revolute { rate: unit, .. } => (spin + unit * rate, carried),
+                    JointMotion::Revolute { rate: unit, .. } => (spin + unit * rate, carried),
                     // Coriolis: twice the turn of the direction of sliding.
-                    Motion::Prismatic { .. } => {
+                    JointMotion::Prismatic { .. } => {
                         (spin, carried + workspace.direction[index].perpendicular() * (2.0 * spin * rate))
                     }
-                    Motion::Root | Motion::Fixed => (spin, carried),
+                    JointMotion::Root | JointMotion::Fixed => (spin, carried),
                 }
             }
         };

@@ -47,14 +47,14 @@ pub(super) struct PlotLayer(pub Vec<Element>);
 /// A window is a layer that is cut at a rectangle, whose upper left corner is the layer's origin.
 #[derive(Debug)]
 pub(super) enum Element {
-    Shape { outline: Outline, fill: Option<Color>, stroke: Option<Stroke> },
+    Shape { outline: CanvasOutline, fill: Option<Color>, stroke: Option<Stroke> },
     Text(TextLine),
     Window { corner: Pixel, size: Pixel, layer: PlotLayer },
 }
 
 /// A path is lines from corner to corner; what lies in an odd number of closed ones is filled.
 #[derive(Debug)]
-pub(super) enum Outline {
+pub(super) enum CanvasOutline {
     Path { pieces: Vec<Vec<Pixel>>, closed: bool },
     Circle { center: Pixel, radius: f64 },
 }
@@ -105,12 +105,12 @@ impl PlotLayer {
     }
 
     pub fn lines(&mut self, pieces: Vec<Vec<Pixel>>, stroke: Stroke) {
-        let outline = Outline::Path { pieces, closed: false };
+        let outline = CanvasOutline::Path { pieces, closed: false };
         self.0.push(Element::Shape { outline, fill: None, stroke: Some(stroke) });
     }
 
     pub fn area(&mut self, pieces: Vec<Vec<Pixel>>, fill: Option<Color>, stroke: Option<Stroke>) {
-        self.0.push(Element::Shape { outline: Outline::Path { pieces, closed: true }, fill, stroke });
+        self.0.push(Element::Shape { outline: CanvasOutline::Path { pieces, closed: true }, fill, stroke });
     }
 
     /// A rectangle from its upper left corner.
@@ -119,7 +119,7 @@ impl PlotLayer {
     }
 
     pub fn circle(&mut self, center: Pixel, radius: f64, fill: Option<Color>, stroke: Option<Stroke>) {
-        self.0.push(Element::Shape { outline: Outline::Circle { center, radius }, fill, stroke });
+        self.0.push(Element::Shape { outline: CanvasOutline::Circle { center, radius }, fill, stroke });
     }
 
     pub fn text(&mut self, text: TextLine) {
@@ -176,7 +176,7 @@ impl Display for PlotLayer {
     }
 }
 
-impl Display for Outline {
+impl Display for CanvasOutline {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Circle { center: (x, y), radius } => {

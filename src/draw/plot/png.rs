@@ -1,6 +1,6 @@
 //! A picture as pixels (the only user of tiny-skia).
 
-use super::canvas::{Anchor, Canvas, Element, Outline, PlotLayer, RIM, Stroke, TextLine};
+use super::canvas::{Anchor, Canvas, CanvasOutline, Element, PlotLayer, RIM, Stroke, TextLine};
 use super::color::Color;
 use super::font;
 use crate::{Error, Reason, Result};
@@ -47,10 +47,12 @@ impl Brush<'_> {
         Brush { pixels: self.pixels, place, clip: Some(mask) }.layer(layer);
     }
 
-    fn shape(&mut self, outline: &Outline, fill: Option<Color>, stroke: Option<Stroke>) {
+    fn shape(&mut self, outline: &CanvasOutline, fill: Option<Color>, stroke: Option<Stroke>) {
         let path = match outline {
-            &Outline::Circle { center: (x, y), radius } => PathBuilder::from_circle(x as f32, y as f32, radius as f32),
-            Outline::Path { pieces, closed } => {
+            &CanvasOutline::Circle { center: (x, y), radius } => {
+                PathBuilder::from_circle(x as f32, y as f32, radius as f32)
+            }
+            CanvasOutline::Path { pieces, closed } => {
                 let mut path = PathBuilder::new();
                 for piece in pieces {
                     for (at, &(x, y)) in piece.iter().enumerate() {

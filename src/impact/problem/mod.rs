@@ -17,7 +17,7 @@ pub use source::{Errors, Source};
 pub(super) use source::{Precision, PrecisionTask, escalate};
 
 use self::dense::Dynamics;
-use self::repair::{Rows, is_semidefinite};
+use self::repair::{FactorRows, is_semidefinite};
 use crate::error::{Error, Reason, Result, finite};
 use crate::law::{Friction, Law};
 use crate::planar::Pair;
@@ -49,7 +49,7 @@ enum Origin {
     /// G and c- were computed from M, J and v.
     Dynamics(Box<Dynamics>),
     /// A given G was indefinite by its rounding, and was replaced by Z Z^T.
-    Repaired(Rows),
+    Repaired(FactorRows),
 }
 
 impl<T: Real> ContactProblem<T> {
@@ -167,7 +167,7 @@ impl ContactProblem {
         if problem.check_definite()? || is_semidefinite(&problem) {
             return Ok(problem);
         }
-        let rows = Rows::of(&problem);
+        let rows = FactorRows::of(&problem);
         Ok(Self { delassus: rows.delassus(), origin: Origin::Repaired(rows), ..problem })
     }
 

@@ -7,9 +7,9 @@ use crate::scalar::{Ordered, Real, dot};
 
 /// Rows Z of G = Z Z^T, taken exactly.
 #[derive(Debug, Clone)]
-pub(super) struct Rows(Vec<Vec<f64>>);
+pub(super) struct FactorRows(Vec<Vec<f64>>);
 
-impl Rows {
+impl FactorRows {
     /// Those of `problem`: elimination with diagonal pivoting, to the rounding of its entries.
     pub fn of(problem: &ContactProblem) -> Self {
         let count = 2 * problem.contacts();

@@ -53,7 +53,7 @@ impl KeptContacts<'_, '_> {
         let Answer { impact, foot, resting, rows } = self.pipeline.answer(&state, None).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
-                let far = one.centre - other.centre;
+                let far = one.center - other.center;
                 (one.body, one.radius) == (other.body, other.radius) && far.dot(far) <= self.place_rounding()
             }
             (one, other) => one.is_none() == other.is_none(),
@@ -150,7 +150,7 @@ pub(super) fn with_named_contacts(robot: &Robot, state: &State, answer: &Answer)
     let mut named = State { id: None, uncertainty: None, ..state.clone() };
     let name = |contact: &Contact| NamedContact {
         link: contact.link,
-        offset: robot.links[contact.link].offset(contact.centre),
+        offset: robot.links[contact.link].offset(contact.center),
         radius: contact.radius,
     };
     named.scene.contacts.get_or_insert_with(|| contacts.iter().map(name).collect());

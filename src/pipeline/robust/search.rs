@@ -61,8 +61,8 @@ impl Pipeline<'_> {
 /// Looks for a state of the box whose outcomes are not `expected` (lists of modes, sorted), until none is left.
 fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expected: &[Vec<Mode>]) -> Robustness {
     let mut boxes = vec![(whole, kept.combinations())];
-    let mut search: Search<'_, '_, '_, N> =
-        Search { kept, expected, tried: Vec::new(), combination: BoxCombination::default(), ways: Vec::new() };
+    let mut search: BoxSearch<'_, '_, '_, N> =
+        BoxSearch { kept, expected, tried: Vec::new(), combination: BoxCombination::default(), ways: Vec::new() };
     let mut effort = EFFORT * USUAL / N.max(USUAL);
     let mut first = true;
     while let Some((own, open)) = boxes.pop() {
@@ -93,7 +93,7 @@ struct Examined {
     split: Option<usize>,
 }
 
-struct Search<'a, 'k, 'r, const N: usize> {
+struct BoxSearch<'a, 'k, 'r, const N: usize> {
     kept: &'a mut KeptContacts<'k, 'r>,
     expected: &'a [Vec<Mode>],
     /// Points whose outcomes are as expected.
@@ -103,7 +103,7 @@ struct Search<'a, 'k, 'r, const N: usize> {
     ways: Vec<Vec<f64>>,
 }
 
-impl<const N: usize> Search<'_, '_, '_, N> {
+impl<const N: usize> BoxSearch<'_, '_, '_, N> {
     fn examine(&mut self, own: &StateBox, mut open: Vec<Vec<Mode>>) -> Examined {
         let problem = self.kept.problem::<N>(own);
         let mut influence = vec![0.0; own.ends.len()];
@@ -127,7 +127,7 @@ impl<const N: usize> Search<'_, '_, '_, N> {
 
     /// A state of the box whose outcomes are not the expected ones.
     fn counterexample(&mut self, own: &StateBox, whole: bool) -> Option<Counterexample> {
-        let mut points = vec![own.centre()];
+        let mut points = vec![own.center()];
         points.extend(self.ways.iter().map(|way| own.corner(way)));
         if whole {
             let mut random = 0x9e37_79b9_7f4a_7c15;

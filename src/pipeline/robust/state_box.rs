@@ -1,6 +1,6 @@
 //! Boxes of states.
 
-use crate::dynamics::plan::{Configuration, Motion, Plan};
+use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::law::Friction;
 use crate::planar::Rotation;
 use crate::robot::{Base, ParentJoint, Robot};
@@ -83,7 +83,7 @@ impl StateBox {
     }
 
     /// The middle of every interval.
-    pub fn centre(&self) -> Vec<f64> {
+    pub fn center(&self) -> Vec<f64> {
         (0..self.ends.len()).map(|index| self.middle(index)).collect()
     }
 
@@ -149,16 +149,16 @@ impl StateBox {
             let unit = Affine::varying(0.0, radius, index);
             let by = body.mimic.map_or(unit, |mimic| unit * Affine::from_f64(mimic.multiplier));
             match body.motion {
-                Motion::Root if !plan.floating => {}
-                Motion::Root | Motion::Revolute { .. } => {
+                JointMotion::Root if !plan.floating => {}
+                JointMotion::Root | JointMotion::Revolute { .. } => {
                     let [cos, sin] = by.cos_sin_near_zero();
                     configuration.turn_on(body.place, Rotation { cos, sin });
                 }
-                Motion::Prismatic { .. } => {
+                JointMotion::Prismatic { .. } => {
                     let displacement = &mut configuration.displacement[body.place];
                     *displacement = *displacement + by;
                 }
-                Motion::Fixed => {}
+                JointMotion::Fixed => {}
             }
         }
         configuration
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn a_corner_lies_in_its_direction() {
         assert_eq!(example().corner(&[-0.1, 2.0]), [1.0, 0.5]);
-        assert_eq!(example().corner(&[0.0, f64::NAN]), example().centre());
+        assert_eq!(example().corner(&[0.0, f64::NAN]), example().center());
     }
 
     #[test]

@@ -32,7 +32,7 @@ pub enum Rates {
 #[derive(Debug, Clone)]
 pub struct Header {
     pub(crate) names: Vec<String>,
-    pub(crate) columns: Vec<Column>,
+    pub(crate) columns: Vec<TableColumn>,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
 }
@@ -50,7 +50,7 @@ pub(crate) struct SpatialColumns {
 
 /// The meaning of a column; coordinates are indices into q.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Column {
+pub(crate) enum TableColumn {
     Id,
     Position(usize),
     Velocity(usize),
@@ -106,28 +106,28 @@ impl Header {
     /// Names of the columns that are not read, because their joints have no coordinate: they are frozen, fixed or mimic
     /// joints.
     pub fn ignored(&self) -> impl Iterator<Item = &str> {
-        self.places(Column::Ignored).map(|at| self.names[at].as_str())
+        self.places(TableColumn::Ignored).map(|at| self.names[at].as_str())
     }
 
     /// Names of the columns that are copied to the results.
     pub fn carried(&self) -> impl Iterator<Item = &str> {
-        self.places(Column::Carried).map(|at| self.names[at].as_str())
+        self.places(TableColumn::Carried).map(|at| self.names[at].as_str())
     }
 
     /// The columns of a kind.
-    pub(super) fn places(&self, wanted: Column) -> impl Iterator<Item = usize> {
+    pub(super) fn places(&self, wanted: TableColumn) -> impl Iterator<Item = usize> {
         (0..self.columns.len()).filter(move |&at| self.columns[at] == wanted)
     }
 
     /// The first one.
-    pub(super) fn place(&self, wanted: Column) -> Option<usize> {
+    pub(super) fn place(&self, wanted: TableColumn) -> Option<usize> {
         self.places(wanted).next()
     }
 
     /// The columns of a base in three dimensions, if it is given so.
     fn spatial(&self, record: &[u8], robot: &Robot) -> Result<Option<SpatialColumns>> {
-        let components = [0, 1, 2, 3].map(|component| self.place(Column::Quaternion(component)));
-        let sideways = self.place(Column::Sideways);
+        let components = [0, 1, 2, 3].map(|component| self.place(TableColumn::Quaternion(component)));
+        let sideways = self.place(TableColumn::Sideways);
         let Some(first) = components.into_iter().flatten().chain(sideways).min() else { return Ok(None) };
         if let Some(missing) = components.iter().position(Option::is_none) {
             let missing = Error::new(Reason::Missing(format!("column q_{}", QUATERNION[missing])));
@@ -135,20 +135,20 @@ impl Header {
                         q_base_x, q_base_z, q_base_pitch alone";
             return Err(in_column(missing.hint(hint), record, first));
         }
-        if let Some(pitch) = self.place(Column::Position(2)) {
+        if let Some(pitch) = self.place(TableColumn::Position(2)) {
             let reason = Reason::Inconsistent("the base is turned by a quaternion, and by a pitch besides".into());
             return Err(in_column(Error::new(reason).hint("leave out the one or the other"), record, pitch));
         }
         let quaternion = components.map(Option::unwrap_or_default);
-        let origin = [self.place(Column::Position(0)), sideways];
+        let origin = [self.place(TableColumn::Position(0)), sideways];
         Ok(Some(SpatialColumns { origin, quaternion, plane: robot.reading.plane }))
     }
 
     /// Refuses a table that lacks what a state needs.
     fn check(&self, record: &[u8], robot: &Robot, rates: Rates) -> Result<()> {
-        let first = |wanted: fn(&Column) -> bool| self.columns.iter().position(wanted);
-        let velocity = first(|column| matches!(column, Column::Velocity(_)));
-        let position = first(|column| matches!(column, Column::Position(_) | Column::Quaternion(_)));
+        let first = |wanted: fn(&TableColumn) -> bool| self.columns.iter().position(wanted);
+        let velocity = first(|column| matches!(column, TableColumn::Velocity(_)));
+        let position = first(|column| matches!(column, TableColumn::Position(_) | TableColumn::Quaternion(_)));
         let missing = |what: &str, prefix: &str, hint: &str| {
             let example = robot.coordinates().next().map_or("base_x".to_owned(), |name| prefixed(robot, name));
             Err(in_table(Reason::Missing(format!("a column of {what}, such as {prefix}{example},")), hint))
@@ -235,24 +235,24 @@ fn names(record: &[u8]) -> Result<Vec<String>> {
 }
 
 /// The meaning of the column `name`.
-fn column(name: &str, robot: &Robot) -> Result<Column> {
+fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
     if let Some(coordinate) = name.strip_prefix("q_") {
-        return self::coordinate("q_", coordinate, robot, Column::Position);
+        return self::coordinate("q_", coordinate, robot, TableColumn::Position);
     }
     if let Some(coordinate) = name.strip_prefix("v_") {
-        return self::coordinate("v_", coordinate, robot, Column::Velocity);
+        return self::coordinate("v_", coordinate, robot, TableColumn::Velocity);
     }
     Ok(match name {
-        "id" => Column::Id,
-        "friction" => Column::Friction,
-        "restitution" => Column::Restitution,
-        "stance" => Column::Stance,
-        _ => Column::Carried,
+        "id" => TableColumn::Id,
+        "friction" => TableColumn::Friction,
+        "restitution" => TableColumn::Restitution,
+        "stance" => TableColumn::Stance,
+        _ => TableColumn::Carried,
     })
 }
 
 /// The meaning of a coordinate's column: `moving` of its index in q if the robot has it.
-fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Column) -> Result<Column> {
+fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> TableColumn) -> Result<TableColumn> {
     if let Some(joint) = robot.joint(name).filter(|_| robot.base == Base::Fixed || !BASE.contains(&name)) {
         return Ok(moving(robot.base_dofs() + joint));
     }
@@ -261,7 +261,7 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
         return Ok(moving(at));
     }
     let in_space = QUATERNION.iter().position(|entry| *entry == name);
-    let spatial = in_space.map(Column::Quaternion).or((name == SIDEWAYS).then_some(Column::Sideways));
+    let spatial = in_space.map(TableColumn::Quaternion).or((name == SIDEWAYS).then_some(TableColumn::Sideways));
     if robot.base == Base::Fixed && (in_base.is_some() || spatial.is_some()) {
         let reason = "the robot is bolted to the world, its base has no coordinates".to_owned();
         return Err(Error::new(Reason::Inconsistent(reason)).hint("leave the column out, or give `base: floating`"));
@@ -277,8 +277,8 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Colu
             let hint = format!("give {prefix}base_x, {prefix}base_z and {prefix}base_pitch");
             return Err(Error::new(reason).hint(hint));
         }
-        Some(_) => return Ok(Column::Ignored),
-        None if robot.mimic_joints.iter().any(|mimic| mimic.joint.name == name) => return Ok(Column::Ignored),
+        Some(_) => return Ok(TableColumn::Ignored),
+        None if robot.mimic_joints.iter().any(|mimic| mimic.joint.name == name) => return Ok(TableColumn::Ignored),
         None => {}
     }
     let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();

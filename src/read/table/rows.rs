@@ -1,6 +1,6 @@
 //! Reads the rows of a table as states.
 
-use super::header::{Column, Header, SpatialColumns, short};
+use super::header::{Header, SpatialColumns, TableColumn, short};
 use super::records::{Quotes, place_of};
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
@@ -99,7 +99,7 @@ impl Row<'_> {
 
     /// Its id, if it can be read.
     pub fn id(&self) -> Option<Value> {
-        let text = std::str::from_utf8(self.record.get(self.header.place(Column::Id)?)?).ok()?;
+        let text = std::str::from_utf8(self.record.get(self.header.place(TableColumn::Id)?)?).ok()?;
         (!text.is_empty()).then(|| Value::String(text.to_owned()))
     }
 
@@ -108,7 +108,7 @@ impl Row<'_> {
         if self.record.len() != self.header.columns.len() {
             return Carried::default();
         }
-        Carried(self.header.places(Column::Carried).filter_map(|at| self.record.get(at)).collect())
+        Carried(self.header.places(TableColumn::Carried).filter_map(|at| self.record.get(at)).collect())
     }
 
     /// The time \[s\].
@@ -137,21 +137,21 @@ impl Row<'_> {
         let mut friction = None;
         for (at, &column) in self.header.columns.iter().enumerate() {
             match column {
-                Column::Position(to @ 0..2) | Column::Velocity(to @ 0..2) if stance.is_some() => {
+                TableColumn::Position(to @ 0..2) | TableColumn::Velocity(to @ 0..2) if stance.is_some() => {
                     self.placed_base(at, ["x", "z"][to])?
                 }
-                Column::Sideways if stance.is_some() => self.placed_base(at, "y")?,
-                Column::Sideways | Column::Quaternion(_) => drop(self.number(at)?),
-                Column::Position(to) => state.position[to] = self.number(at)?,
-                Column::Velocity(to) => state.velocity[to] = self.number(at)?,
-                Column::Friction => friction = self.given(at)?.map(|text| self.friction(at, text)).transpose()?,
-                Column::Restitution => {
+                TableColumn::Sideways if stance.is_some() => self.placed_base(at, "y")?,
+                TableColumn::Sideways | TableColumn::Quaternion(_) => drop(self.number(at)?),
+                TableColumn::Position(to) => state.position[to] = self.number(at)?,
+                TableColumn::Velocity(to) => state.velocity[to] = self.number(at)?,
+                TableColumn::Friction => friction = self.given(at)?.map(|text| self.friction(at, text)).transpose()?,
+                TableColumn::Restitution => {
                     if self.given(at)?.is_some() {
                         state.scene.restitution = ByLink::everywhere(self.restitution(at)?);
                     }
                 }
-                Column::Id => drop(self.given(at)?),
-                Column::Stance | Column::Carried | Column::Ignored => {}
+                TableColumn::Id => drop(self.given(at)?),
+                TableColumn::Stance | TableColumn::Carried | TableColumn::Ignored => {}
             }
         }
         if let Some((pitch, _)) = self.projected()? {
@@ -182,7 +182,7 @@ impl Row<'_> {
     }
 
     fn stance(&self, robot: &Robot) -> Result<Option<usize>> {
-        let Some(at) = self.header.place(Column::Stance) else { return Ok(None) };
+        let Some(at) = self.header.place(TableColumn::Stance) else { return Ok(None) };
         let Some(name) = self.given(at)? else { return Ok(None) };
         if robot.base == Base::Fixed {
             let reason = "the robot is bolted to the world, a stance cannot place it".to_owned();

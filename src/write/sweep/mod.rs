@@ -10,7 +10,7 @@ mod text;
 
 #[cfg(feature = "schema")]
 pub(super) use samples::RefusedSample;
-pub use samples::{Sample, columns};
+pub use samples::{SampleRecord, columns};
 
 use super::ErrorObject;
 use crate::sweep::{

@@ -10,7 +10,7 @@ use serde_json::json;
 
 /// A sample: the parameters' values and the result there.
 #[derive(Debug, Clone)]
-pub struct Sample<'a> {
+pub struct SampleRecord<'a> {
     pub names: Vec<&'a str>,
     pub point: Vec<f64>,
     /// Its number, from 0.
@@ -25,7 +25,7 @@ pub(crate) struct RefusedSample {
     error: ErrorObject,
 }
 
-impl<'a> Sample<'a> {
+impl<'a> SampleRecord<'a> {
     /// Sample number `index` of a study; the last parameter changes fastest.
     pub fn new(model: &RobotStudy<'a>, index: usize) -> Self {
         let mut rest = index;

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 fn a_sole_across_an_edge_stands_on_its_corner_and_on_the_edge() {
     let found = impact(&sole(), &state([0.0, 0.1, 0.0], FALLING, 0.5, &step_down(0.1, 0.2)));
     assert_touches(&found, &[[[-0.2, 0.0], [0.0, 1.0]], [[0.1, 0.0], [0.0, 1.0]]]);
-    assert_close(&found.contacts[1].centre.components(), &[0.1, -0.1]);
+    assert_close(&found.contacts[1].center.components(), &[0.1, -0.1]);
     // The CoG is between both: the box stops. L1 + L2 = 2 kg * 1 m/s, and 0.2 L1 = 0.1 L2 keeps it from turning. What
     // both could squeeze along the ground is free, and least at none.
     let (impulse, after) = only_outcome(&found);

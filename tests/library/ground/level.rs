@@ -79,7 +79,7 @@ fn shapes_touch_with_their_lowest_points() {
         for (contact, (center, radius)) in found.contacts.iter().zip(points) {
             let arm = [cos * center[0] + sin * center[1], cos * center[1] - sin * center[0]];
             let arm = [arm[0] - radius * normal[0], arm[1] - radius * normal[1]];
-            let [point, own] = [contact.point, contact.centre].map(Vector::components);
+            let [point, own] = [contact.point, contact.center].map(Vector::components);
             assert_close(
                 &[point, own, contact.normal().components()].concat(),
                 &[[x + arm[0], z + arm[1]], *center, normal].concat(),

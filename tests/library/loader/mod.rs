@@ -8,7 +8,7 @@ use crate::support::robots::{ROBOTS, robot_and_reference};
 use crate::support::urdf::{self, HINGE, joint, link};
 use heelstrike::description::Description;
 use heelstrike::planar::Vector;
-use heelstrike::robot::{Axis, Base, Body, LeftOut, Link, ParentJoint, Reduction, Rim, Robot};
+use heelstrike::robot::{Axis, Base, Body, LeftOutPart, Link, ParentJoint, Reduction, Rim, Robot};
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 
@@ -104,8 +104,8 @@ fn assert_at(found: Vector, [x, z]: [f64; 2]) {
     assert!((found.x - x).abs() < 1e-15 && (found.z - z).abs() < 1e-15, "{found:?} is not {x}, {z}");
 }
 
-fn left_out(what: &str, why: &str) -> LeftOut {
-    LeftOut { what: what.into(), why: why.into() }
+fn left_out(what: &str, why: &str) -> LeftOutPart {
+    LeftOutPart { what: what.into(), why: why.into() }
 }
 
 // The models of the paper.

@@ -1,14 +1,14 @@
-//! The posture in which axes are judged: held joints at their values, all others at zero.
+//! The pose in which axes are judged: held joints at their values, all others at zero.
 //!
 //! ```text
 //!     R_child = R_parent R_origin turn(a, q)          axis in the root's axes = R_parent R_origin a
 //! ```
 
-use crate::description::{Description, Joint, JointKind, Matrix, Mimic, Pose, apply, product, turn, unit};
+use crate::description::{Description, JointKind, Matrix, Mimic, Pose, UrdfJoint, apply, product, turn, unit};
 use crate::error::{Reason, Result};
 
 /// Every joint's axis, and where held joints are.
-pub(super) struct Posture {
+pub(super) struct ReferencePose {
     /// The value at which a joint is to be held \[rad or m\], by the joint's index; those that mimic it are held too.
     pub(super) held: Vec<Option<f64>>,
     /// The joint that a joint mimics in the end, by its index.
@@ -19,8 +19,8 @@ pub(super) struct Posture {
     pub(super) rotations: Vec<Matrix>,
 }
 
-impl Posture {
-    /// The posture with these joints held at these values, no joint twice, and none without a coordinate of its own.
+impl ReferencePose {
+    /// The pose with these joints held at these values, no joint twice, and none without a coordinate of its own.
     pub(super) fn new(description: &Description, hold: &[(usize, f64)]) -> Result<Self> {
         let joints = &description.joints;
         let mut held = vec![None; joints.len()];
@@ -53,7 +53,7 @@ impl Posture {
 }
 
 /// How a joint that is held at `value` turns its child.
-pub(super) fn held_turn(joint: &Joint, value: f64) -> Matrix {
+pub(super) fn held_turn(joint: &UrdfJoint, value: f64) -> Matrix {
     match joint.kind {
         JointKind::Revolute | JointKind::Continuous => turn(unit(joint.axis), value),
         _ => Pose::default().rotation(),
@@ -61,14 +61,14 @@ pub(super) fn held_turn(joint: &Joint, value: f64) -> Matrix {
 }
 
 /// How a joint that is held at `value` shifts its child, in the joint's frame \[m\].
-pub(super) fn held_shift(joint: &Joint, value: f64) -> [f64; 3] {
+pub(super) fn held_shift(joint: &UrdfJoint, value: f64) -> [f64; 3] {
     match joint.kind {
         JointKind::Prismatic => unit(joint.axis).map(|component| component * value),
         _ => [0.0; 3],
     }
 }
 
-fn refuse_no_coordinate(joint: &Joint, joints: &[Joint]) -> Result<()> {
+fn refuse_no_coordinate(joint: &UrdfJoint, joints: &[UrdfJoint]) -> Result<()> {
     let refuse = |reason: String| joint.refuse(Reason::Inconsistent(reason));
     match (joint.kind, &joint.mimic) {
         (_, Some(mimic)) => {
