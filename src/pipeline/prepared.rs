@@ -78,6 +78,7 @@ impl Prepared {
 
 impl Pipeline<'_> {
     /// The `state` that was just `prepared`, for numbers of any kind.
+    #[cfg(feature = "accuracy")]
     pub(crate) fn exact<'a>(&'a self, state: &'a State, prepared: &'a Prepared) -> ExactState<'a> {
         prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN)
     }
