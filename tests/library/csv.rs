@@ -43,18 +43,15 @@ fn state(table: &str) -> State {
 }
 
 #[test]
-fn columns_go_by_name_and_what_has_none_is_zero() {
+fn columns_go_by_name_and_cells_may_be_missing() {
     let state = state("v_knee,id,q_base_pitch,phase,friction,q_base_z,restitution\n2e1,007,-0.5,x,infinite, .25 ,1\n");
     assert_eq!(state.position, [0.0, 0.25, -0.5, 0.0]);
     assert_eq!(state.velocity, [0.0, 0.0, 0.0, 20.0]);
     assert_eq!(state.id, Some("007".into()), "a number would lose its zeros");
     assert_eq!(state.scene.friction.default, Some(Friction::Infinite));
     assert_eq!(state.scene.restitution.default, Some(1.0));
-}
 
-#[test]
-fn empty_cells_leave_open_what_need_not_be_given() {
-    let state = state("id,friction,restitution,stance,v_knee\n,,,,1\n");
+    let state = self::state("id,friction,restitution,stance,v_knee\n,,,,1\n");
     assert_eq!((state.id, state.scene.stance), (None, None));
     assert_eq!(state.scene.friction.default, Some(Friction::Finite(0.25)), "the command line's");
     assert_eq!(state.scene.restitution.default, None);
@@ -91,7 +88,7 @@ fn shown(error: &Error) -> String {
 }
 
 #[test]
-fn a_header_that_does_not_fit_is_refused_with_the_columns_place() {
+fn headers_that_do_not_fit_are_refused_with_their_place() {
     let bolted = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
     let bolted = Robot::reduce(&Description::from_urdf(&leg_urdf()).unwrap(), &bolted).unwrap();
     let with_rates: [&[u8]; 12] = [
@@ -115,12 +112,12 @@ fn a_header_that_does_not_fit_is_refused_with_the_columns_place() {
         b"q_knee",
         b"time,q_knee,v_knee",
     ];
-    let of_bolted: [&[u8]; 2] = [b"v_knee,q_base_qw", b"v_knee,q_base_x"];
     let mut refusals = String::new();
     for (robot, rates, records) in [
         (&leg(), Rates::Columns, &with_rates[..]),
         (&leg(), Rates::Time, &with_time),
-        (&bolted, Rates::Columns, &of_bolted),
+        (&bolted, Rates::Columns, &[b"v_knee,q_base_qw", b"v_knee,q_base_x"]),
+        (&hip(), Rates::Columns, &[b"q_knee,v_rise"]),
     ] {
         for record in records {
             let error = Header::read(record, robot, rates).map(|_| ()).unwrap_err();
@@ -158,17 +155,7 @@ fn columns_of_frozen_joints_are_listed_and_not_read() {
 }
 
 #[test]
-fn a_joint_of_the_base_is_given_as_the_base() {
-    let robot = hip();
-    let error = Header::read(b"q_knee,v_rise", &robot, Rates::Columns).map(|_| ()).unwrap_err();
-    assert_eq!(
-        shown(&error),
-        "1:8: column 2: joint \"rise\" is part of the floating base: x, z and pitch of body take its place | give v_base_x, v_base_z and v_base_pitch"
-    );
-}
-
-#[test]
-fn a_row_that_does_not_fit_is_refused_with_line_and_column() {
+fn rows_that_do_not_fit_are_refused_with_their_place() {
     let rows: [&[u8]; 18] = [
         b"a,x,1,,,,",
         b"a,,1,,,,",
@@ -200,15 +187,11 @@ fn a_row_that_does_not_fit_is_refused_with_line_and_column() {
 }
 
 #[test]
-fn a_broken_row_does_not_touch_the_next() {
+fn a_broken_row_stays_out_of_the_next_and_of_the_message() {
     let table = b"q_knee,v_knee\n\"open,1\n0.5,1\n1\r2,3\n0.25,1\n";
     let found: Vec<Option<f64>> =
         states(table, &leg()).iter().map(|state| Some(state.as_ref().ok()?.position[3])).collect();
     assert_eq!(found, [None, Some(0.5), None, Some(0.25)]);
-}
-
-#[test]
-fn a_long_cell_stays_out_of_the_message() {
     let table = format!("q_knee,v_knee\n{},1\n", "x".repeat(1 << 20));
     let error = states(table.as_bytes(), &leg()).pop().unwrap().unwrap_err();
     assert!(shown(&error).len() < 200, "{error}");
@@ -260,7 +243,7 @@ fn every_outcome_is_a_row_with_every_number() {
 }
 
 #[test]
-fn the_header_has_every_contact_that_the_feet_can_give() {
+fn the_header_has_every_contact_that_feet_can_give() {
     let header = |feet: &[NamedContact], touchdowns| {
         let mut out = Vec::new();
         Columns::new(&leg(), feet, None, touchdowns).append_header(&mut out);
@@ -284,23 +267,21 @@ fn the_header_has_every_contact_that_the_feet_can_give() {
 }
 
 #[test]
-fn two_corners_have_columns_of_their_own() {
-    let state = state("q_base_z,q_knee,v_base_z,friction\n0.1,1.5707963267948966,-1,0.5\n");
-    let (rows, _) = rows(&leg(), &state, Options { contact_tolerance: Some(1e-6), ..Options::default() });
-    assert_eq!(rows.len(), 1);
-    assert_eq!((rows[0]["mode_body"].as_str(), rows[0]["mode_shin"].as_str()), ("", ""));
-    assert!(!rows[0]["mode_body/0"].is_empty() && !rows[0]["mode_body/1"].is_empty());
+fn a_row_has_modes_only_of_what_touches() {
+    let only = |table: &str, contact_tolerance| {
+        let (mut rows, _) = rows(&leg(), &state(table), Options { contact_tolerance, ..Options::default() });
+        assert_eq!(rows.len(), 1);
+        rows.remove(0)
+    };
+    let row = only("q_base_z,q_knee,v_base_z,friction\n0.1,1.5707963267948966,-1,0.5\n", Some(1e-6));
+    assert_eq!(["mode_body", "mode_shin"].map(|column| row[column].as_str()), ["", ""]);
+    assert!(!row["mode_body/0"].is_empty() && !row["mode_body/1"].is_empty());
+    let row = only("q_base_z,v_base_z\n9,-1\n", None);
+    assert_eq!(["verdict", "mode_shin", "v_base_z"].map(|column| row[column].as_str()), ["no_contact", "", "-1.0"]);
 }
 
 #[test]
-fn a_state_in_the_air_has_a_row_without_modes() {
-    let (rows, _) = rows(&leg(), &state("q_base_z,v_base_z\n9,-1\n"), Options::default());
-    assert_eq!(rows.len(), 1);
-    assert_eq!(["verdict", "mode_shin", "v_base_z"].map(|column| rows[0][column].as_str()), ["no_contact", "", "-1.0"]);
-}
-
-#[test]
-fn a_contact_without_columns_is_refused_and_nothing_is_written() {
+fn a_contact_without_columns_is_refused() {
     let robot = leg();
     let mut state = state("q_base_z,v_base_z,friction\n0.5,-1,1\n");
     let named = |x| NamedContact { link: 1, offset: [x, 0.0, -0.5], radius: 0.0 };
@@ -317,7 +298,7 @@ fn a_contact_without_columns_is_refused_and_nothing_is_written() {
 }
 
 #[test]
-fn foreign_columns_are_carried_through_also_beside_a_refusal() {
+fn foreign_columns_are_carried_beside_a_refusal() {
     let robot = leg();
     let header = Header::read(b"time,id,verdict,v_knee,error,note,in_error,family", &robot, Rates::Columns).unwrap();
     let columns = Columns::new(&robot, &[], Some(&header), false);

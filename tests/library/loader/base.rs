@@ -15,21 +15,50 @@ fn found(robot: &Robot) -> (Base, &str, Vec<&str>) {
     (robot.base, &robot.bodies[0].name, names(robot))
 }
 
-#[test]
-fn a_root_with_mass_floats_however_little_it_weighs() {
-    let robot = load(&chain(&[0.001, 1.0], &[PITCH]));
-    assert_eq!(found(&robot), (Base::Floating, "a", vec!["j"]));
-    assert_eq!(robot.reading.base_because, "the root has mass");
-    // Massless by itself, but fixed to what has mass.
-    let robot = load(&chain(&[0.0, 1.0, 1.0], &[FIXED, PITCH]));
-    assert_eq!(found(&robot), (Base::Floating, "a", vec!["k"]));
-    // A joint that is held fixes as well.
-    let robot = load(&chain(&[0.0, 1.0, 1.0], &[ROLL, PITCH]));
-    assert_eq!(found(&robot), (Base::Floating, "a", vec!["k"]));
+/// The chain with a root of this name.
+fn world(text: &str) -> String {
+    text.replace("\"a\"", "\"world\"")
 }
 
 #[test]
-fn a_whole_chain_under_a_massless_root_is_the_base_itself() {
+fn the_root_floats_or_is_bolted_by_its_mass_and_joints() {
+    let mass = "the root has mass";
+    let alone = "the root is massless and joint \"j\" alone carries the robot";
+    let fixed = chain(&[0.0, 1.0, 1.0], &[FIXED, PITCH]);
+    for (text, expected, kg, because) in [
+        // However little it weighs.
+        (chain(&[0.001, 1.0], &[PITCH]), (Base::Floating, "a", vec!["j"]), 1.001, Some(mass)),
+        // Massless by itself, but fixed to what has mass; a joint that is held fixes as well.
+        (fixed.clone(), (Base::Floating, "a", vec!["k"]), 2.0, None),
+        (chain(&[0.0, 1.0, 1.0], &[ROLL, PITCH]), (Base::Floating, "a", vec!["k"]), 2.0, None),
+        // A rail, a single hinge, two of them.
+        (chain(&[0.0, 1.0, 1.0], &[X, PITCH]), (Base::Fixed, "a", vec!["j", "k"]), 2.0, Some(alone)),
+        (chain(&[0.0, 1.0], &[PITCH]), (Base::Fixed, "a", vec!["j"]), 1.0, Some(alone)),
+        // Incomplete: no pitch, two slides along one line, mass on the way.
+        (chain(&[0.0, 0.0, 1.0], &[X, Z]), (Base::Fixed, "a", vec!["j", "k"]), 1.0, Some(alone)),
+        (chain(&[0.0, 0.0, 0.0, 1.0], &[X, X, PITCH]), (Base::Fixed, "a", vec!["j", "k", "l"]), 1.0, Some(alone)),
+        (chain(&[0.0, 0.1, 0.0, 1.0], &[X, Z, PITCH]), (Base::Fixed, "a", vec!["j", "k", "l"]), 1.1, Some(alone)),
+        // A root of this name is bolted unless a whole chain frees it.
+        (world(&fixed), (Base::Fixed, "world", vec!["k"]), 2.0, Some("the root is named world")),
+        (world(&chain(&[5.0, 0.0, 0.0, 1.0], &[X, Z, PITCH])), (Base::Floating, "d", vec![]), 1.0, None),
+        // A whole chain in three dimensions: the yaw behind the pitch is held, so that the root is the link between.
+        (
+            chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0], &[X, Y, Z, ROLL, PITCH, YAW, PITCH]),
+            (Base::Floating, "f", vec!["p"]),
+            3.0,
+            None,
+        ),
+    ] {
+        let robot = load(&text);
+        let base = if robot.base == Base::Floating { 3 } else { 0 };
+        assert_eq!(robot.dofs(), base + expected.2.len(), "{text}");
+        assert_eq!((found(&robot), robot.mass()), (expected, kg), "{text}");
+        assert_eq!(robot.reading.base_because, because.unwrap_or(&robot.reading.base_because), "{text}");
+    }
+}
+
+#[test]
+fn a_whole_chain_is_the_base_itself() {
     for joints in [[X, Z, PITCH, PITCH], [Z, X, PITCH, PITCH], [PITCH, X, Z, PITCH]] {
         let robot = load(&chain(&[0.0, 0.0, 0.0, 2.0, 1.0], &joints));
         assert_eq!(found(&robot), (Base::Floating, "d", vec!["m"]), "{joints:?}");
@@ -45,16 +74,7 @@ fn a_whole_chain_under_a_massless_root_is_the_base_itself() {
 }
 
 #[test]
-fn a_three_dimensional_chain_is_the_base_itself_too() {
-    let joints = [X, Y, Z, ROLL, PITCH, YAW, PITCH];
-    let robot = load(&chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0], &joints));
-    // The yaw behind the pitch is held, so that the robot's root is the link between them.
-    assert_eq!(found(&robot), (Base::Floating, "f", vec!["p"]));
-    assert_eq!((robot.bodies[0].mass, robot.dofs()), (2.0, 4));
-}
-
-#[test]
-fn the_robot_keeps_the_axes_of_the_files_root_behind_a_turned_chain() {
+fn a_turned_chain_keeps_the_axes_of_the_files_root() {
     // The last joint's frame is turned by a quarter about z, so that its own x axis is the root's y; the torso's CoG,
     // at (0, -0.3, 0.2) there, lies at x = 0.3.
     let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, ROLL])
@@ -69,14 +89,10 @@ fn the_robot_keeps_the_axes_of_the_files_root_behind_a_turned_chain() {
 }
 
 #[test]
-fn a_planar_or_floating_joint_under_a_massless_root_is_the_base_itself() {
+fn a_planar_or_floating_joint_is_the_base_itself() {
     for kind in ["planar", "floating"] {
         let text = chain(&[0.0, 2.0, 1.0], &[(kind, "0 1 0"), PITCH]);
-        for text in [
-            text.clone(),
-            text.replace("\"a\"", "\"world\""),
-            text.replace("<link name=\"a\"></link>", "").replace("\"a\"", "\"world\""),
-        ] {
+        for text in [text.clone(), world(&text), world(&text.replace("<link name=\"a\"></link>", ""))] {
             let robot = load(&text);
             assert_eq!(found(&robot), (Base::Floating, "b", vec!["k"]));
             assert_eq!(robot.reading.base_because, format!("{kind} joint \"j\" is the base itself"));
@@ -87,27 +103,8 @@ fn a_planar_or_floating_joint_under_a_massless_root_is_the_base_itself() {
 }
 
 #[test]
-fn a_massless_root_over_a_rail_or_a_single_hinge_is_bolted() {
-    for (masses, joints, kept) in [
-        (&[0.0, 1.0, 1.0][..], &[X, PITCH][..], &["j", "k"][..]),
-        (&[0.0, 1.0], &[PITCH], &["j"]),
-        // Incomplete: no pitch, two slides along one line, mass on the way.
-        (&[0.0, 0.0, 1.0], &[X, Z], &["j", "k"]),
-        (&[0.0, 0.0, 0.0, 1.0], &[X, X, PITCH], &["j", "k", "l"]),
-        (&[0.0, 0.1, 0.0, 1.0], &[X, Z, PITCH], &["j", "k", "l"]),
-    ] {
-        let robot = load(&chain(masses, joints));
-        assert_eq!(found(&robot), (Base::Fixed, "a", kept.to_vec()), "{joints:?}");
-        assert_eq!(robot.reading.base_because, "the root is massless and joint \"j\" alone carries the robot");
-        assert_eq!(robot.mass(), masses.iter().sum::<f64>());
-    }
-}
-
-#[test]
-fn a_root_named_world_is_bolted_unless_a_whole_chain_frees_it() {
-    let world = |text: String| text.replace("\"a\"", "\"world\"");
-    // What the world weighs does not count, and it has no feet.
-    let heavy = world(chain(&[5.0, 1.0], &[PITCH])).replace(
+fn the_world_has_no_mass_no_feet_and_needs_no_definition() {
+    let heavy = world(&chain(&[5.0, 1.0], &[PITCH])).replace(
         "<link name=\"world\">",
         "<link name=\"world\"><collision><geometry><box size=\"9 9 1\"/></geometry></collision>",
     );
@@ -117,17 +114,7 @@ fn a_root_named_world_is_bolted_unless_a_whole_chain_frees_it() {
     let why = "bolted to the world: it cannot strike the ground";
     assert!(robot.left_out.contains(&left_out("collision shapes of link \"world\"", why)), "{:?}", robot.left_out);
 
-    let robot = load(&world(chain(&[0.0, 1.0, 1.0], &[FIXED, PITCH])));
-    assert_eq!(found(&robot), (Base::Fixed, "world", vec!["k"]));
-    assert_eq!(robot.reading.base_because, "the root is named world");
-    let robot = load(&world(chain(&[5.0, 0.0, 0.0, 1.0], &[X, Z, PITCH])));
-    assert_eq!(found(&robot), (Base::Floating, "d", vec![]));
-}
-
-#[test]
-fn the_world_needs_no_definition() {
-    let text = chain(&[0.0, 1.0], &[PITCH]).replace("<link name=\"a\"></link>", "").replace("\"a\"", "\"world\"");
-    let robot = load(&text);
+    let robot = load(&world(&chain(&[0.0, 1.0], &[PITCH]).replace("<link name=\"a\"></link>", "")));
     assert_eq!(found(&robot), (Base::Fixed, "world", vec!["j"]));
     assert_eq!(robot.links.iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["b", "world"]);
 }
@@ -157,15 +144,12 @@ fn the_base_can_be_asked_for() {
 }
 
 #[test]
-fn a_chain_whose_links_were_only_given_a_mass_gets_a_word() {
+fn a_chain_that_weighs_next_to_nothing_gets_a_caution() {
     let robot = load(&chain(&[1e-3, 1e-3, 1e-3, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["j", "k", "l", "m"]));
     let caution = only_caution(&robot);
     assert!(caution.contains("\"j\", \"k\", \"l\"") && caution.contains("`base: fixed`"), "{caution}");
-}
-
-#[test]
-fn a_chain_of_next_to_nothing_under_a_massless_root_is_the_base_all_the_same() {
+    // Under a massless root it is the base all the same.
     let robot = load(&chain(&[0.0, 1e-6, 1e-6, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "d", vec!["m"]));
     let caution = only_caution(&robot);
@@ -176,11 +160,18 @@ fn a_chain_of_next_to_nothing_under_a_massless_root_is_the_base_all_the_same() {
 }
 
 #[test]
-fn a_link_of_the_base_is_no_place_for_a_contact() {
-    let robot = load(&chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]));
+fn links_of_the_base_have_no_contacts() {
+    let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]);
+    let robot = load(&text);
     let state = r#"{"friction": 1, "contacts": [{"link": "b"}]}"#;
     let refused = try_impact(&robot, Options::default(), state).expect_err("a link of the base");
     assert!(refused.to_string().ends_with("link \"b\" is part of the base, not of the robot"), "{refused}");
+    let robot = load(&text.replace(
+        "<link name=\"c\">",
+        "<link name=\"c\"><collision><geometry><sphere radius=\"0\"/></geometry></collision>",
+    ));
+    let caution = only_caution(&robot);
+    assert!(caution.starts_with("c has collision shapes but belongs to the base"), "{caution}");
 }
 
 #[test]
@@ -191,19 +182,8 @@ fn a_joint_that_is_fixed_to_the_base_belongs_to_it() {
 }
 
 #[test]
-fn a_foot_on_a_link_of_the_base_gets_a_word() {
-    let text = chain(&[0.0, 0.0, 0.0, 2.0], &[X, Z, PITCH]).replace(
-        "<link name=\"c\">",
-        "<link name=\"c\"><collision><geometry><sphere radius=\"0\"/></geometry></collision>",
-    );
-    let robot = load(&text);
-    let caution = only_caution(&robot);
-    assert!(caution.starts_with("c has collision shapes but belongs to the base"), "{caution}");
-}
-
-#[test]
-fn a_bolted_robot_of_which_nothing_moves_is_refused_with_the_remedy() {
-    let still = Description::from_urdf(&two_links("fixed", "").replace("\"a\"", "\"world\"")).expect("a description");
+fn a_bolted_robot_of_which_nothing_moves_is_refused() {
+    let still = Description::from_urdf(&world(&two_links("fixed", ""))).expect("a description");
     let refused = Robot::reduce(&still, &Reduction::default()).expect_err("nothing moves");
     assert_eq!(refused.to_string(), "robot: nothing that moves has mass");
     let remedy = "its root is bolted to the world; give `base: floating` to set it free";

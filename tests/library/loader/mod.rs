@@ -9,7 +9,7 @@ use crate::support::urdf::{self, HINGE, joint, link};
 use heelstrike::description::Description;
 use heelstrike::planar::Vector;
 use heelstrike::robot::{Axis, Base, Body, LeftOutPart, Link, ParentJoint, Reduction, Rim, Robot};
-use serde::Deserialize;
+use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
 mod base;
@@ -49,12 +49,6 @@ fn robot(body: &str) -> String {
     format!("<robot name=\"r\">\n{body}\n</robot>")
 }
 
-fn inertial(mass: f64, com: &str, iyy: f64) -> String {
-    format!(
-        "<inertial><origin xyz=\"{com}\"/><mass value=\"{mass}\"/><inertia ixx=\"1\" iyy=\"{iyy}\" izz=\"1\"/></inertial>"
-    )
-}
-
 /// Revolute joints by their axes.
 const ROLL: (&str, &str) = ("revolute", "1 0 0");
 const PITCH: (&str, &str) = ("revolute", "0 1 0");
@@ -64,9 +58,9 @@ const YAW: (&str, &str) = ("revolute", "0 0 1");
 /// and axes; an element on each line.
 fn chain(masses: &[f64], joints: &[(&str, &str)]) -> String {
     let letter = |first: char, k: usize| (first..='z').nth(k).expect("few");
-    let link = |(k, &mass): (usize, &f64)| {
-        let inertial = if mass == 0.0 { String::new() } else { inertial(mass, "0 0 0", 1.0) };
-        format!("<link name=\"{}\">{inertial}</link>\n", letter('a', k))
+    let link = |(k, &mass): (usize, &f64)| match letter('a', k) {
+        name if mass == 0.0 => format!("<link name=\"{name}\"></link>\n"),
+        name => link(name, mass, [0.0; 2], 1.0, ""),
     };
     let joint = |(k, (kind, axis)): (usize, &(&str, &str))| {
         let [name, parent, child] = [letter('j', k), letter('a', k), letter('a', k + 1)];
@@ -177,44 +171,15 @@ fn block_is_one_body_on_one_point() {
 
 // Robots of others.
 
-#[derive(Deserialize)]
-struct Model {
-    coordinates: Vec<String>,
-    joints: Vec<ReferenceJoint>,
-    bodies: Vec<ReferenceBody>,
-    total_mass: f64,
-}
-
-#[derive(Deserialize)]
-struct ReferenceJoint {
-    name: String,
-    parent_body: usize,
-    child_body: usize,
-    origin_zero: [f64; 2],
-    /// Of a hinge.
-    axis_sign_y: Option<f64>,
-    /// Of a slide.
-    direction_zero: Option<[f64; 2]>,
-}
-
-#[derive(Deserialize)]
-struct ReferenceBody {
-    link: String,
-    merged_links: Vec<String>,
-    mass: f64,
-    com_zero: [f64; 2],
-    #[serde(rename = "Iyy_com")]
-    moment: f64,
-}
-
 #[test]
 fn robots_of_others_equal_the_values_of_pinocchio() {
     for named in ROBOTS {
-        let (urdf, expected) = robot_and_reference::<Model>(named);
+        let (urdf, expected) = robot_and_reference::<Value>(named);
         let (robot, folder) = (load(&read(&urdf)), named.0);
-        assert_eq!(robot.coordinates().collect::<Vec<_>>(), expected.coordinates, "{folder}");
-        assert_eq!(robot.bodies.len(), expected.bodies.len(), "{folder}");
-        close(robot.mass(), expected.total_mass);
+        let [bodies, joints] = ["bodies", "joints"].map(|list| expected[list].as_array().expect("a list"));
+        assert_eq!(json!(robot.coordinates().collect::<Vec<_>>()), expected["coordinates"], "{folder}");
+        assert_eq!(robot.bodies.len(), bodies.len(), "{folder}");
+        close(robot.mass(), &expected["total_mass"]);
 
         // Body origins at zero in the root's frame.
         let mut origins = vec![Vector::zero(); robot.bodies.len()];
@@ -223,36 +188,43 @@ fn robots_of_others_equal_the_values_of_pinocchio() {
             origins[index] = origins[parent] + origin;
         }
 
-        let body = |name: &str| robot.bodies.iter().position(|body| body.name == name).expect("the body");
-        for expected in &expected.bodies {
-            let index = body(&expected.link);
+        for expected in bodies {
+            let index = robot.bodies.iter().position(|body| expected["link"] == body.name).expect("the body");
             let reduced = &robot.bodies[index];
-            close(reduced.mass, expected.mass);
-            close(reduced.moment, expected.moment);
-            let com = (origins[index] + reduced.com).components();
-            com.into_iter().zip(expected.com_zero).for_each(|(com, expected)| close(com, expected));
-            for link in &expected.merged_links {
-                assert_eq!(robot.links[robot.link(link).expect("the link")].body, index, "{link}");
+            close(reduced.mass, &expected["mass"]);
+            close(reduced.moment, &expected["Iyy_com"]);
+            close_points(origins[index] + reduced.com, &expected["com_zero"]);
+            for link in expected["merged_links"].as_array().expect("a list") {
+                let link = robot.link(link.as_str().expect("a name")).expect("the link");
+                assert_eq!(robot.links[link].body, index, "{folder}");
             }
         }
-        for (joint, reference) in robot.joints.iter().zip(&expected.joints) {
-            assert_eq!(joint.name, reference.name);
-            assert_eq!(joint.parent, body(&expected.bodies[reference.parent_body].link));
-            assert_eq!(joint.child, body(&expected.bodies[reference.child_body].link));
-            match (joint.axis, reference.axis_sign_y, reference.direction_zero) {
-                (Axis::Revolute { sign }, Some(expected), _) => assert_eq!(sign, expected, "{}", joint.name),
-                (Axis::Prismatic { direction }, _, Some(expected)) => assert_eq!(direction, expected, "{}", joint.name),
-                (axis, ..) => panic!("{}: {axis:?}", joint.name),
+        for (joint, reference) in robot.joints.iter().zip(joints) {
+            assert_eq!(reference["name"], joint.name);
+            for (body, index) in [(joint.parent, "parent_body"), (joint.child, "child_body")] {
+                let index = reference[index].as_u64().expect("an index") as usize;
+                assert_eq!(bodies[index]["link"], robot.bodies[body].name);
             }
-            let origin = origins[joint.child].components();
-            origin.into_iter().zip(reference.origin_zero).for_each(|(origin, expected)| close(origin, expected));
+            match joint.axis {
+                Axis::Revolute { sign } => assert_eq!(reference["axis_sign_y"].as_f64(), Some(sign), "{}", joint.name),
+                Axis::Prismatic { direction } => {
+                    let expected = [0, 1].map(|axis| reference["direction_zero"][axis].as_f64().expect("a number"));
+                    assert_eq!(direction, expected, "{}", joint.name);
+                }
+            }
+            close_points(origins[joint.child], &reference["origin_zero"]);
         }
     }
 }
 
 /// Equal to 1e-12: all lengths are below 1 m and all masses below 50 kg.
-fn close(value: f64, reference: f64) {
+fn close(value: f64, reference: &Value) {
+    let reference = reference.as_f64().expect("a number");
     assert!((value - reference).abs() <= 1e-12 * reference.abs().max(1.0), "{value} is not {reference}");
+}
+
+fn close_points(point: Vector, reference: &Value) {
+    point.components().into_iter().zip([0, 1]).for_each(|(own, axis)| close(own, &reference[axis]));
 }
 
 #[test]
@@ -272,34 +244,29 @@ fn wheels_are_discs_and_unread_meshes_left_out() {
 // Joints.
 
 #[test]
-fn an_axis_may_have_either_sign_and_any_length() {
-    for (axis, sign) in
-        [("0 1 0", 1.0), ("0 -1 0", -1.0), ("0 1e300 0", 1.0), ("0 -1e-310 0", -1.0), ("0.0009 1 0", 1.0)]
-    {
+fn an_axis_has_a_sign_and_is_brought_into_line() {
+    let why = |angle: &str| format!("its axis is {angle} rad off the plane's normal: taken as exactly on it");
+    // Rolled by a quarter turn, b's own z axis is the root's -y.
+    for (roll, axis, sign, off) in [
+        (0.0, "0 1 0", 1.0, None),
+        (0.0, "0 -1 0", -1.0, None),
+        (0.0, "0 1e300 0", 1.0, None),
+        (0.0, "0 -1e-310 0", -1.0, None),
+        (0.0, "0.0009 1 0", 1.0, Some("9.0e-4")),
+        (0.0, "0 1 5e-4", 1.0, Some("5.0e-4")),
+        (FRAC_PI_2, "0 0 1", -1.0, None),
+    ] {
         for kind in ["revolute", "continuous"] {
-            let robot = load(&two_links(kind, &format!("<axis xyz=\"{axis}\"/>")));
+            let robot = load(&two_links(kind, &format!("<origin rpy=\"{roll} 0 0\"/><axis xyz=\"{axis}\"/>")));
             assert_eq!(robot.joints[0].axis, Axis::Revolute { sign }, "{axis}");
+            let expected: Vec<_> = off.map(|angle| left_out("joint \"j\"", &why(angle))).into_iter().collect();
+            assert_eq!(robot.left_out, expected, "{axis}");
         }
     }
 }
 
 #[test]
-fn an_axis_is_turned_by_all_origins_before_it() {
-    // The frame of b is rolled by a quarter turn, so its z axis is the root's -y.
-    let robot = load(&two_links("revolute", &format!("<origin rpy=\"{FRAC_PI_2} 0 0\"/><axis xyz=\"0 0 1\"/>")));
-    assert_eq!(robot.joints[0].axis, Axis::Revolute { sign: -1.0 });
-    assert_eq!(robot.left_out, []);
-}
-
-#[test]
-fn an_axis_slightly_off_is_brought_into_line() {
-    let robot = load(&two_links("revolute", "<axis xyz=\"0 1 5e-4\"/>"));
-    let why = "its axis is 5.0e-4 rad off the plane's normal: taken as exactly on it";
-    assert_eq!(robot.left_out, [left_out("joint \"j\"", why)]);
-}
-
-#[test]
-fn a_slide_has_its_direction_in_the_roots_axes_at_length_one() {
+fn a_slide_has_its_direction_in_the_roots_axes() {
     let direction = |joint: &str| match load(&two_links("prismatic", joint)).joints[0].axis {
         Axis::Prismatic { direction } => direction,
         Axis::Revolute { .. } => panic!("it turns"),
@@ -313,7 +280,7 @@ fn a_slide_has_its_direction_in_the_roots_axes_at_length_one() {
 }
 
 #[test]
-fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
+fn joints_keep_their_order_and_parents_come_first() {
     let link = |name: &str| link(name, 1.0, [0.0; 2], 1.0, "");
     let hinge = |name: &str, parent: &str, child: &str| joint(name, HINGE, [parent, child], [0.0; 2], "");
     let text = urdf::robot(&[
@@ -339,16 +306,14 @@ fn joints_keep_the_order_of_the_file_and_bodies_put_parents_first() {
 #[test]
 fn fixed_links_are_merged_with_their_turned_inertia() {
     let text = robot(&format!(
-        "<link name=\"a\">{}</link>\n\
-         <link name=\"b\"><inertial><origin xyz=\"0 7 1\"/><mass value=\"3\"/>\
+        "{}<link name=\"b\"><inertial><origin xyz=\"0 7 1\"/><mass value=\"3\"/>\
          <inertia ixx=\"0.2\" ixy=\"0\" ixz=\"0\" iyy=\"9\" iyz=\"0\" izz=\"0.1\"/></inertial>\
-         <collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n<link name=\"c\">{}</link>\n\
-         <joint name=\"weld\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>\
+         <collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n{}<joint name=\"weld\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>\
          <origin xyz=\"2 5 0\" rpy=\"0 {FRAC_PI_2} {FRAC_PI_2}\"/></joint>\n\
          <joint name=\"hinge\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/><axis xyz=\"1 0 0\"/>\
          <origin xyz=\"0 0 1\" rpy=\"0 -{FRAC_PI_2} 0\"/></joint>",
-        inertial(1.0, "0 0 4", 0.5),
-        inertial(1.0, "0 0 0", 1.0)
+        link("a", 1.0, [0.0, 4.0], 0.5, ""),
+        link("c", 1.0, [0.0; 2], 1.0, "")
     ));
     // The fixed joint turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment izz.
     let robot = load(&text);
