@@ -240,7 +240,7 @@ fn border(
     if at_zero.is_empty() {
         return None;
     }
-    let mut border = Border { at_zero: Vec::new(), neighbors: Vec::new() };
+    let mut border = Border { at_zero: Vec::new(), neighbours: Vec::new() };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         let own = || at_zero.iter().filter(|(place, _)| *place == contact).map(|&(_, inequality)| inequality);
         // Without pressure the cone is its own tip, and says nothing more.
@@ -251,7 +251,7 @@ fn border(
         for beyond in law.beyond(mode, inequality, tangential).into_iter().filter(|&beyond| beyond != mode) {
             let mut neighbor = modes.to_vec();
             neighbor[contact] = beyond;
-            border.neighbors.push(neighbor);
+            border.neighbours.push(neighbor);
         }
     }
     Some(border)
@@ -266,7 +266,7 @@ mod tests {
     fn border_leads_to_the_modes_beside_it() {
         use Inequality::{FrictionCone, NormalImpulse};
         let laws = [Friction::Finite(0.5), Friction::ZERO].map(Law::from);
-        for (tangential, at_zero, expected, neighbors) in [
+        for (tangential, at_zero, expected, neighbours) in [
             // A cone's edge leads to the slide that its friction resists.
             (0.5, vec![(0, FrictionCone)], vec![("0", FrictionCone)], vec![[Mode::SlideMinus, Mode::Stick]]),
             // A contact without pressure may do anything next.
@@ -285,7 +285,7 @@ mod tests {
             let motion = Motion { impulse: vec![[tangential, 1.0]; 2], velocity_after: vec![[0.0, 0.0]; 2] };
             let found = border(&[Mode::Stick; 2], &laws, &at_zero, &motion, |contact| contact.to_string()).unwrap();
             let zeros: Vec<_> = found.at_zero.iter().map(|zero| (&*zero.contact, zero.inequality)).collect();
-            assert_eq!((zeros, found.neighbors), (expected, neighbors.iter().map(|modes| modes.to_vec()).collect()));
+            assert_eq!((zeros, found.neighbours), (expected, neighbours.iter().map(|modes| modes.to_vec()).collect()));
         }
     }
 }

@@ -89,7 +89,7 @@ pub struct Border {
     pub at_zero: Vec<AtZero>,
     /// The lists of modes beyond, each different in one contact; where several inequalities are zero, so are
     /// combinations.
-    pub neighbors: Vec<Vec<Mode>>,
+    pub neighbours: Vec<Vec<Mode>>,
 }
 
 /// An impulse inequality that is zero.

@@ -44,7 +44,7 @@ impl Writer<'_> {
         let Some(border) = &outcome.border else { return Ok(()) };
         let zeros = border.at_zero.iter().map(|zero| format!("{} has {}", zero.contact, zero.inequality));
         write!(self.out, "  exactly on a border: {}", zeros.collect::<Vec<_>>().join(", "))?;
-        let beyond: Vec<String> = border.neighbors.iter().map(|modes| self.in_words(modes)).collect();
+        let beyond: Vec<String> = border.neighbours.iter().map(|modes| self.in_words(modes)).collect();
         let beyond = if beyond.is_empty() { String::new() } else { format!("; beyond it {}", beyond.join("; or ")) };
         writeln!(self.out, "{beyond}")
     }
