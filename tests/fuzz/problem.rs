@@ -10,13 +10,15 @@ use heelstrike::Error;
 use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
 use heelstrike::read::Problem;
 use heelstrike::write::Report;
+use serde::Serialize;
 use serde_json::json;
 use std::cell::RefCell;
 
 crate::target!(any_contact_problem_is_answered_or_refused, 3_000, 0.6, check);
 
-/// What a contact problem is built from.
-#[derive(Debug)]
+/// What a contact problem is built from, as `heelstrike solve` reads it.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
 enum Matrices {
     Delassus { delassus: Vec<Vec<f64>>, velocity_before: Vec<[f64; 2]> },
     Dynamics { mass_matrix: Vec<Vec<f64>>, contact_jacobian: Vec<Vec<f64>>, velocity: Vec<f64> },
@@ -152,14 +154,7 @@ impl Case {
 
     /// As `heelstrike solve` reads it.
     fn json(&self) -> String {
-        let mut json = match &self.matrices {
-            Matrices::Delassus { delassus, velocity_before } => {
-                json!({"delassus": delassus, "velocity_before": velocity_before})
-            }
-            Matrices::Dynamics { mass_matrix, contact_jacobian, velocity } => {
-                json!({"mass_matrix": mass_matrix, "contact_jacobian": contact_jacobian, "velocity": velocity})
-            }
-        };
+        let mut json = json!(self.matrices);
         let friction = |friction: &Friction| match friction {
             Friction::Finite(mu) => json!(mu),
             Friction::Infinite => json!("infinite"),

@@ -2,11 +2,13 @@
 //! with the reference's contacts named by hand, then each contact struck alone. Of a reference's variants the one is
 //! taken that the rules of `robot` mean: `default` where the root link floats.
 
+use heelstrike::Mode;
+use heelstrike::planar::Vector;
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::support::answers::{Outcome, answers};
+use crate::support::answers::{answers, named_velocity};
 use crate::support::robots::{Contact, ROBOTS, by_name, robot_and_reference};
 use crate::support::scaled::{Differences, largest, matrix};
 
@@ -79,16 +81,6 @@ impl Robot {
         })
     }
 
-    /// The velocity after as v, in the order of the coordinates.
-    fn velocity_after(&self, outcome: &Outcome) -> Vec<f64> {
-        let entry = |(index, name): (usize, &String)| {
-            let is_base = index < self.base_dofs();
-            let part = if is_base { &outcome.base_velocity_after } else { &outcome.joint_velocity_after };
-            part.as_ref().and_then(|part| part.get(name)).copied().unwrap_or(f64::NAN)
-        };
-        self.variant.coordinates.iter().enumerate().map(entry).collect()
-    }
-
     /// The coordinates x, z and pitch come first where the base floats; a joint may be named like them.
     fn base_dofs(&self) -> usize {
         if self.variant.base.mode == "floating" { 3 } else { 0 }
@@ -113,17 +105,17 @@ fn compare_matrices(robot: &Robot, differences: &mut Differences) {
     let answers = answers(&["impact", &robot.urdf, "-", "--format", "json", "--matrices"], &states);
     for ((config, state), answer) in configs.iter().zip(&states).zip(answers) {
         let place = state["id"].as_str().expect("a name");
-        let Some(answer) = differences.accepted(place, answer) else { continue };
-        differences.same(place, &answer.coordinates, coordinates);
+        let (before, answer) = (answer.velocity_before(), answer.report);
+        differences.same(place, answer.coordinates.as_deref(), Some(coordinates));
         differences.compare_matrix(&format!("{place}: M"), &answer.mass_matrix, &matrix(&config.M), TOLERANCE);
         differences.compare_matrix(&format!("{place}: J"), &answer.contact_jacobian, &matrix(&config.J), TOLERANCE);
         differences.compare_matrix(&format!("{place}: G"), &answer.delassus, &matrix(&config.G), TOLERANCE);
         let energy = answer.kinetic_energy.as_slice();
         let within = TOLERANCE * config.kinetic_energy;
         differences.compare(&format!("{place}: kinetic energy"), energy, &[config.kinetic_energy], within);
-        let points: Vec<f64> = answer.contacts.iter().filter_map(|contact| contact.point).flatten().collect();
+        let points = answer.contacts.iter().filter_map(|contact| contact.point);
+        let points: Vec<f64> = points.flat_map(Vector::components).collect();
         differences.compare(&format!("{place}: points"), &points, &config.contact_points.concat(), TOLERANCE);
-        let before: Vec<f64> = answer.contacts.iter().flat_map(|contact| contact.velocity_before).collect();
         let should = contact_velocity(&config.J, &config.v);
         differences.compare(&format!("{place}: c before"), &before, &should, TOLERANCE * largest(&should));
     }
@@ -135,7 +127,9 @@ fn compare_single_contacts(robot: &Robot, differences: &mut Differences) {
     let (mut states, mut expected) = (Vec::new(), Vec::new());
     for (index, config) in robot.variant.configs.iter().enumerate() {
         for (at, (contact, impact)) in robot.variant.contacts.iter().zip(&config.impacts).enumerate() {
-            for (mode, friction, should) in [("stick", 0.8, &impact.stick), ("slide", 0.0, &impact.normal_only)] {
+            for (mode, friction, should) in
+                [(Mode::Stick, 0.8, &impact.stick), (Mode::SlidePlus, 0.0, &impact.normal_only)]
+            {
                 let Some(should) = should else { continue };
                 let id = format!("configuration {index}, contact {at} alone, {mode}");
                 states.push(robot.state(&id, config, std::slice::from_ref(contact), friction));
@@ -146,11 +140,11 @@ fn compare_single_contacts(robot: &Robot, differences: &mut Differences) {
     let answers = answers(&["impact", &robot.urdf, "-", "--format", "json", "--explain"], &states);
     for ((state, (mode, rows, config, should)), answer) in states.iter().zip(expected).zip(answers) {
         let place = state["id"].as_str().expect("a name");
-        let Some(answer) = differences.accepted(place, answer) else { continue };
-        let outcome = answer.outcomes.iter().find(|outcome| outcome.modes[0].starts_with(mode));
-        let rejected = answer.rejected.iter().filter(|rejected| rejected.modes[0].starts_with(mode));
-        let numbers = outcome.map(|outcome| (&outcome.impulse, &outcome.velocity_after)).into_iter();
-        let rejected = rejected.filter_map(|rejected| rejected.impulse.as_ref().zip(rejected.velocity_after.as_ref()));
+        let is = |modes: &[Mode]| modes[0] == mode || (mode.slides() && modes[0].slides());
+        let outcome = answer.outcomes.iter().find(|outcome| is(&outcome.modes));
+        let rejected = answer.report.rejected.iter().flatten().filter(|rejected| is(&rejected.modes));
+        let numbers = outcome.map(|outcome| (&*outcome.impulse, &*outcome.velocity_after)).into_iter();
+        let rejected = rejected.filter_map(|own| own.impulse.as_deref().zip(own.velocity_after.as_deref()));
         let mut listed = false;
         for (impulse, velocity) in numbers.chain(rejected) {
             listed = true;
@@ -170,8 +164,10 @@ fn compare_single_contacts(robot: &Robot, differences: &mut Differences) {
         let Some(outcome) = outcome else { continue };
         // A robot with as many coordinates as the contact has directions stops dead.
         let within = TOLERANCE * largest(&should.v_plus).max(largest(&config.v));
-        differences.compare(&format!("{place}: v after"), &robot.velocity_after(outcome), &should.v_plus, within);
-        let after = answer.kinetic_energy.map(|before| before - outcome.energy_loss);
+        let (names, velocity) = named_velocity(outcome);
+        differences.same(place, names, robot.variant.coordinates.iter().map(String::as_str).collect());
+        differences.compare(&format!("{place}: v after"), &velocity, &should.v_plus, within);
+        let after = answer.report.kinetic_energy.map(|before| before - outcome.energy_loss);
         let within = TOLERANCE * config.kinetic_energy;
         differences.compare(&format!("{place}: energy after"), after.as_slice(), &[should.kinetic_energy_plus], within);
     }

@@ -1,5 +1,6 @@
 //! The paper's models and their states, with the values of `data/paper.json` (40 digits).
 
+use heelstrike::Mode;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -49,7 +50,7 @@ pub struct At {
 
 #[derive(Deserialize)]
 pub struct Expected {
-    pub modes: [String; 2],
+    pub modes: [Mode; 2],
     pub impulse: [f64; 4],
     pub velocity_after: [f64; 4],
 }

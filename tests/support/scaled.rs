@@ -1,6 +1,7 @@
 //! Comparison to a reference, relative to a stated size, that gathers every difference before it fails.
 
 use nalgebra::DMatrix;
+use std::borrow::Cow;
 
 /// Every difference found so far.
 #[derive(Debug, Default)]
@@ -10,11 +11,6 @@ impl Differences {
     /// Notes a difference that is no number.
     pub fn note(&mut self, place: &str, what: impl std::fmt::Display) {
         self.0.push(format!("{place}: {what}"));
-    }
-
-    /// What was accepted; notes a refusal.
-    pub fn accepted<T>(&mut self, place: &str, result: Result<T, impl std::fmt::Display>) -> Option<T> {
-        result.map_err(|refusal| self.note(place, refusal)).ok()
     }
 
     /// Compares what is no number.
@@ -35,8 +31,15 @@ impl Differences {
         }
     }
 
-    /// Compares two matrices to `factor` of the reference's largest entry.
-    pub fn compare_matrix(&mut self, place: &str, is: &[Vec<f64>], should: &DMatrix<f64>, factor: f64) {
+    /// Compares two matrices to `factor` of the reference's largest entry; none is a difference.
+    pub fn compare_matrix(
+        &mut self,
+        place: &str,
+        is: &Option<Cow<'_, [Vec<f64>]>>,
+        should: &DMatrix<f64>,
+        factor: f64,
+    ) {
+        let is = is.as_deref().unwrap_or_default();
         if is.len() != should.nrows() || is.iter().any(|row| row.len() != should.ncols()) {
             return self.note(place, format!("not {} x {}: {is:?}", should.nrows(), should.ncols()));
         }

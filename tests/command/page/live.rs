@@ -1,7 +1,7 @@
 //! What a page does: keys, sliders and clicks move the robot, the cursors and the answers.
 
 use super::browser::found;
-use super::{HOSTILE, WALK, WALKER, data, file, hostile, list, near_a_border, page, swept};
+use super::{HOSTILE, WALK, WALKER, data, each, file, grid, hostile, list, near_a_border, page, swept};
 use crate::result;
 use serde_json::{Value, json};
 
@@ -68,12 +68,12 @@ fn outcomes_are_those_of_the_tool() {
     assert_eq!(found["sentence"], "DThree outcomes are equally valid. Proven.");
     let shown = list(&found["everything"]);
     assert_eq!(shown.len(), 3);
-    let verbs =
-        [("separate", "lifts off"), ("stick", "sticks"), ("slide+", "slides forward"), ("slide-", "slides backward")];
+    let slides = ["slides forward", "slides backward"];
+    let verbs = json!({"separate": "lifts off", "stick": "sticks", "slide+": slides[0], "slide-": slides[1]});
     for (outcome, shown) in outcomes.iter().zip(shown) {
         let words = shown["words"].as_str().expect("words");
         for (contact, mode) in ["left_leg", "right_leg"].iter().zip(list(&outcome["modes"])) {
-            let (_, verb) = verbs.iter().find(|(known, _)| mode == known).expect("a mode");
+            let verb = verbs[mode.as_str().expect("a mode")].as_str().expect("a verb");
             assert!(words.contains(&format!("{contact} {verb}")), "{words}, {outcome}");
         }
         let (_, margin) = words.split_once("margin ").expect("a margin");
@@ -89,12 +89,10 @@ fn outcomes_are_those_of_the_tool() {
             }
         }
     }
-    let pressed =
-        |name: &str| -> Vec<bool> { list(&found[name]).iter().map(|outcome| outcome["pressed"] == "true").collect() };
-    assert_eq!(pressed("everything"), [false; 3]);
-    assert_eq!(pressed("second"), [false, true, false]);
-    assert_eq!(pressed("none"), [false; 3], "there is no ninth outcome");
-    assert_eq!(pressed("third"), [false, false, true]);
+    let pressed = ["everything", "second", "none", "third"].map(|step| each(&found[step], "pressed"));
+    // There is no ninth outcome.
+    let [no, yes] = ["false", "true"];
+    assert_eq!(pressed, [[no, no, no], [no, yes, no], [no, no, no], [no, no, yes]]);
     // The one that is chosen is drawn last.
     assert_eq!(found["effects"], json!(["effect faded", "effect faded", "effect"]));
     assert!(found["status"].as_str().expect("a text").contains("3: left_leg slides forward, right_leg sticks"));
@@ -102,10 +100,7 @@ fn outcomes_are_those_of_the_tool() {
 
 #[test]
 fn a_map_is_walked_in_both_directions() {
-    let mut grid = near_a_border();
-    grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 5});
-    grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
-    let (_, path) = swept(WALKER, &grid, "map.html");
+    let (_, path) = swept(WALKER, &grid(3, 5), "map.html");
     let Some(found) = found(&path, WINDOW, include_str!("scripts/map.js")) else { return };
     let pair = |name: &str| (found[name][0].as_f64(), found[name][1].as_f64());
     assert_eq!(pair("start"), (Some(0.5), Some(-2.0)));
@@ -147,10 +142,8 @@ fn what_is_refused_says_why() {
     let refused = &found["refused"];
     assert_eq!((&refused["scene"], &refused["bodies"]), (&json!("This state is refused."), &json!(0)));
     let sentence = refused["sentence"].as_str().expect("a sentence");
-    assert!(
-        sentence.starts_with("ARefused: link \"left_foot\" is ") && sentence.contains("hint: raise the base"),
-        "{sentence}"
-    );
+    assert!(sentence.starts_with("ARefused: link \"left_foot\" is "), "{sentence}");
+    assert!(sentence.contains("hint: raise the base"), "{sentence}");
     assert_eq!(found["answered"]["bodies"], 5);
 }
 

@@ -41,6 +41,15 @@ fn near_a_border() -> Value {
     walker(json!({"alpha": {"from": 0.5, "to": 0.55, "steps": 3}}))
 }
 
+/// The same at several rates of turning.
+fn grid(samples: usize, rates: usize) -> Value {
+    let mut grid = near_a_border();
+    grid["parameters"]["alpha"]["steps"] = json!(samples);
+    grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": rates});
+    grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
+    grid
+}
+
 fn swept(robot: &str, study: &Value, name: &str) -> (String, PathBuf) {
     let study = file(&name.replace("html", "json"), study.to_string());
     page(&["sweep", robot, &study], "", name)
@@ -131,18 +140,9 @@ fn four_hundred_samples_of_ramone_are_small() {
 
 #[test]
 fn a_grid_of_two_parameters_is_thinned_if_too_fine() {
-    let grid = |steps: usize| {
-        let mut grid = near_a_border();
-        grid["parameters"]["rate"] = json!({"from": -2.0, "to": -1.0, "steps": 2});
-        grid["parameters"]["alpha"]["steps"] = json!(steps);
-        grid["state"]["velocity"]["base"]["pitch"] = json!("rate");
-        let (page, _) = swept(WALKER, &grid, "grid.html");
-        data(&page)
-    };
-    let few = grid(4);
+    let [few, many] = [4, 2600].map(|samples| data(&swept(WALKER, &grid(samples, 2), "grid.html").0));
     assert_eq!((axis(&few, 0).len(), axis(&few, 1).len()), (4, 2));
     assert_eq!(list(&few["frames"]).len(), 8);
-    let many = grid(2600);
     // The longer one is thinned, to its last sample.
     assert_eq!((axis(&many, 0).len(), axis(&many, 1).len()), (1301, 2));
     assert_eq!((axis(&many, 0)[0], axis(&many, 0)[1300]), (0.5, 0.55));

@@ -53,48 +53,31 @@ fn assert_fields<T>(schema: &Value, read: impl Fn(&str) -> Result<T, Error>, val
 
 /// The sample, each of its values replaced by each of some others, left out, and each object with an unknown field.
 fn variants(sample: &Value) -> Vec<Value> {
-    let others = json!([
-        null,
-        true,
-        "x",
-        "infinite",
-        -1,
-        0,
-        1.5,
-        2,
-        [],
-        {},
-        [0, 0],
-        [0, 0, 0],
-        [[0, 0]],
-        ["left_hip", "left_hip"]
-    ]);
-    let mut variants = list(&others).to_vec();
+    const OTHERS: &str = r#"[null, true, "x", "infinite", -1, 0, 1.5, 2, [], {}, [0, 0], [0, 0, 0], [[0, 0]],
+                             ["left_hip", "left_hip"]]"#;
+    let mut variants = list(&parsed(OTHERS)).to_vec();
+    let left_out_or_varied = |part: &Value| [None].into_iter().chain(self::variants(part).into_iter().map(Some));
     match sample {
         Value::Object(fields) => {
             for (name, field) in fields {
-                let with = |field: Option<Value>| {
+                for variant in left_out_or_varied(field) {
                     let mut object = fields.clone();
                     object.remove(name);
-                    object.extend(field.map(|field| (name.clone(), field)));
-                    Value::Object(object)
-                };
-                variants.push(with(None));
-                variants.extend(self::variants(field).into_iter().map(|field| with(Some(field))));
+                    object.extend(variant.map(|field| (name.clone(), field)));
+                    variants.push(object.into());
+                }
             }
             let mut more = sample.clone();
             more["unknown?"] = json!(0);
             variants.push(more);
         }
         Value::Array(entries) => {
-            for at in 0..entries.len() {
-                let with = |entry: Option<Value>| {
+            for (at, entry) in entries.iter().enumerate() {
+                for variant in left_out_or_varied(entry) {
                     let mut entries = entries.clone();
-                    entries.splice(at..=at, entry);
-                    Value::Array(entries)
-                };
-                variants.push(with(None));
-                variants.extend(self::variants(&entries[at]).into_iter().map(|entry| with(Some(entry))));
+                    entries.splice(at..=at, variant);
+                    variants.push(entries.into());
+                }
             }
         }
         _ => {}

@@ -3,9 +3,10 @@
 
 use crate::balls::dynamics::problem;
 use crate::balls::number::{Ball, Number};
-use crate::balls::oracle::{Index, Outcome, answer};
+use crate::balls::oracle::{Index, answer};
 use crate::support::command::read;
 use crate::support::paper::{MODELS, REFERENCE};
+use crate::support::robots::{Contact, robot_and_reference};
 use crate::support::scaled::{Differences, largest};
 use heelstrike::impact::Mode::{SlideMinus, SlidePlus, Stick};
 use heelstrike::robot::Robot;
@@ -27,8 +28,8 @@ fn state(value: &Value, robot: &Robot) -> State {
     State::from_json(&value.to_string(), robot, &Defaults::default()).unwrap_or_else(|error| panic!("{error}\n{value}"))
 }
 
-fn numbers<T: serde::de::DeserializeOwned>(value: &Value) -> T {
-    serde_json::from_value(value.clone()).expect("numbers")
+fn parsed<T: serde::de::DeserializeOwned>(value: &Value) -> T {
+    serde_json::from_value(value.clone()).expect("a value of the reference")
 }
 
 #[test]
@@ -53,12 +54,10 @@ fn the_papers_outcomes_are_found() {
                 ] {
                     differences.compare(&place, &found, &should, 1e-12 * largest(&should));
                 }
-                let mut expected: Vec<Vec<String>> = outcomes.iter().map(|outcome| outcome.modes.to_vec()).collect();
+                let mut expected: Vec<_> = outcomes.iter().map(|outcome| outcome.modes.to_vec()).collect();
                 let answer = answer(&robot, &state).expect("a regular mass matrix");
-                let names = |outcome: &Outcome| outcome.modes.iter().map(|mode| mode.to_string()).collect();
-                let mut found: Vec<Vec<String>> = answer.outcomes.iter().map(names).collect();
+                let found: Vec<_> = answer.outcomes.into_iter().map(|outcome| outcome.modes).collect();
                 expected.sort();
-                found.sort();
                 assert_eq!((found, answer.open), (expected, 0), "{place}");
                 compared += 1;
             }
@@ -73,23 +72,14 @@ fn the_papers_outcomes_are_found() {
 fn matrices_are_those_of_pinocchio() {
     let mut differences = Differences::default();
     for folder in ["rabbit", "upkie", "solo8"] {
-        let folder = format!("tests/data/robots/{folder}");
-        let reference: Value = serde_json::from_str(&read(&format!("{folder}/reference.json"))).expect("JSON");
-        let robot = robot(&format!("{folder}/{}", reference["urdf"].as_str().expect("a file name")));
-        let variant = &reference["variants"]["default"];
-        let mut contacts = variant["contacts"].clone();
-        for contact in contacts.as_array_mut().expect("contacts") {
-            contact
-                .as_object_mut()
-                .expect("a contact")
-                .retain(|name, _| ["link", "offset", "radius"].contains(&&**name));
-        }
+        let (urdf, variant): (String, Value) = robot_and_reference((folder, "default"));
+        let robot = robot(&urdf);
+        let contacts: Vec<Contact> = parsed(&variant["contacts"]);
         let mut state = state(&json!({"friction": 1.0, "contacts": contacts}), &robot);
         for (number, config) in variant["configs"].as_array().expect("configurations").iter().enumerate() {
-            state.position = numbers(&config["q"]);
-            state.velocity = numbers(&config["v"]);
+            (state.position, state.velocity) = (parsed(&config["q"]), parsed(&config["v"]));
             let problem = problem::<Ball>(&robot, &state, 256).expect("a regular mass matrix");
-            let should = numbers::<Vec<Vec<f64>>>(&config["G"]).concat();
+            let should = parsed::<Vec<Vec<f64>>>(&config["G"]).concat();
             let found = nearest(problem.delassus.iter().flatten());
             // The reference is f64 itself.
             let place = format!("{folder}, configuration {number}");

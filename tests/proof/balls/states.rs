@@ -50,6 +50,9 @@ pub fn models() -> Vec<Model> {
     let legs = [("left_leg", end(-1.0), 0.0), ("right_leg", end(-1.0), 0.0)];
     let round = [("left_foot", end(0.0), 0.02815), ("right_foot", end(0.0), 0.02815)];
     let h1 = read("tests/proof/balls/h1_planar.urdf");
+    let [left, right] =
+        ["left_ankle_link", "right_ankle_link"].map(|ankle| [0.17, -0.06].map(|x| (ankle, [x, 0.0, -0.05], 0.0)));
+    let hand_and_knee = [("left_elbow_link", [0.3, 0.0, -0.01], 0.02), ("left_knee_link", [0.03, 0.0, -0.2], 0.02)];
     let solo = ["FL_LOWER_LEG", "FR_LOWER_LEG", "HL_LOWER_LEG", "HR_LOWER_LEG"].map(|leg| (leg, end(-0.16), 0.0));
     vec![
         model("minimalistic", &read("urdf/minimalistic.urdf"), 2, &legs),
@@ -74,28 +77,8 @@ pub fn models() -> Vec<Model> {
             &[("left_wheel_tire", end(0.0), 0.05), ("right_wheel_tire", end(0.0), 0.05)],
         ),
         model("solo8", &read("tests/data/robots/solo8/solo.urdf"), 4, &solo),
-        model(
-            "h1_planar",
-            &h1,
-            2,
-            &[
-                ("left_ankle_link", [0.17, 0.0, -0.05], 0.0),
-                ("right_ankle_link", [-0.06, 0.0, -0.05], 0.0),
-                ("left_elbow_link", [0.3, 0.0, -0.01], 0.02),
-                ("left_knee_link", [0.03, 0.0, -0.2], 0.02),
-            ],
-        ),
-        model(
-            "h1_flat",
-            &h1,
-            2,
-            &[
-                ("left_ankle_link", [0.17, 0.0, -0.05], 0.0),
-                ("left_ankle_link", [-0.06, 0.0, -0.05], 0.0),
-                ("right_ankle_link", [0.17, 0.0, -0.05], 0.0),
-                ("right_ankle_link", [-0.06, 0.0, -0.05], 0.0),
-            ],
-        ),
+        model("h1_planar", &h1, 2, &[left[0], right[1], hand_and_knee[0], hand_and_knee[1]]),
+        model("h1_flat", &h1, 2, &[left, right].concat()),
         // A body that stands on two corners, and has three ways to move for their four rows.
         model(
             "sled",

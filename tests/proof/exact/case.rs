@@ -19,13 +19,11 @@ pub struct Contact {
     pub radius: RBig,
 }
 
-/// A state of a tree; friction and restitution belong to links, so two contacts of a link share them.
+/// A state of a tree.
 pub struct Case {
     pub seed: u64,
     pub motions: Motions,
     pub contacts: Vec<Contact>,
-    pub friction: Vec<Friction>,
-    pub restitution: Vec<RBig>,
     pub mass_matrix: Matrix,
     /// Two rows (t, n) per contact.
     pub jacobian: Matrix,
@@ -63,11 +61,10 @@ impl Case {
         if rank(&delassus) < delassus.len() || velocity_before.iter().all(RBig::is_zero) {
             return None;
         }
-        let friction: Vec<Friction> = contacts.iter().map(|at| frictions[at.body].clone()).collect();
-        let restitution: Vec<RBig> = contacts.iter().map(|at| restitutions[at.body].clone()).collect();
-        let problem =
-            Problem { delassus, velocity_before, friction: friction.clone(), restitution: restitution.clone() };
-        Some(Self { seed, motions, contacts, friction, restitution, mass_matrix, jacobian, response, problem })
+        let friction = contacts.iter().map(|at| frictions[at.body].clone()).collect();
+        let restitution = contacts.iter().map(|at| restitutions[at.body].clone()).collect();
+        let problem = Problem { delassus, velocity_before, friction, restitution };
+        Some(Self { seed, motions, contacts, mass_matrix, jacobian, response, problem })
     }
 
     pub fn enumerate(&self) -> Enumeration {
@@ -101,9 +98,10 @@ impl Case {
             NamedContact { link: link(at), offset: [x, to_f64(&at.sideways), z], radius: to_f64(&at.radius) }
         };
         let links = || self.contacts.iter().map(link);
+        let Problem { friction, restitution, .. } = &self.problem;
         let scene = Scene {
-            friction: ByLink { default: None, links: links().zip(self.friction.iter().map(rounded)).collect() },
-            restitution: ByLink { default: None, links: links().zip(self.restitution.iter().map(to_f64)).collect() },
+            friction: ByLink { default: None, links: links().zip(friction.iter().map(rounded)).collect() },
+            restitution: ByLink { default: None, links: links().zip(restitution.iter().map(to_f64)).collect() },
             contacts: Some(self.contacts.iter().map(contact).collect()),
             ..Scene::default()
         };

@@ -5,114 +5,73 @@ mod enumeration;
 mod self_test;
 mod tree;
 
-use crate::support::answers::{self, answers};
+use crate::support::answers::{Answer, answers, named_velocity};
 use crate::support::command::place;
 use crate::support::parallel::{added, total};
 use crate::support::random::Random;
 use crate::support::rational::{self, ratio, to_f64};
+use crate::support::scaled::{largest, near};
 use case::{Case, rounded};
 use dashu::rational::RBig;
 use enumeration::{Combination, Enumeration, Friction, Problem, enumerate};
 use heelstrike::Robot;
 use heelstrike::dynamics::plan::Configuration;
-use heelstrike::impact::{self, Analysis, ContactProblem, Mode, Verdict};
+use heelstrike::impact::{self, Analysis, ContactProblem, Mode, Outcome, Verdict};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::state::State;
 use std::collections::BTreeMap;
 use tree::Tree;
 
-/// What is left of an outcome once names and formats are gone; contact vectors flat, [t, n] per contact.
-#[derive(Debug, Clone)]
-struct Answer {
-    impulse: Vec<f64>,
-    velocity_after: Vec<f64>,
-    index: Option<i64>,
-    margin: Option<f64>,
-    energy_loss: f64,
-}
-
-/// Answers by their modes.
-type Answers = BTreeMap<Vec<String>, Answer>;
-
-fn from_analysis(analysis: &Analysis) -> Answers {
-    let answer = |outcome: &impact::Outcome| Answer {
-        impulse: outcome.impulse.concat(),
-        velocity_after: outcome.velocity_after.concat(),
-        index: outcome.index.map(i64::from),
-        margin: Some(outcome.margin.expect("every combination has an inequality")),
-        energy_loss: outcome.energy_loss,
-    };
-    analysis.outcomes.iter().map(|outcome| (names(&outcome.modes), answer(outcome))).collect()
-}
-
-fn names(modes: &[Mode]) -> Vec<String> {
-    modes.iter().map(|mode| mode.to_string()).collect()
-}
-
-fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
-}
-
-/// Whether two lists are equal to 1e-9 of `scale`; a NaN is near nothing.
-fn near(a: &[f64], b: &[f64], scale: f64) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * scale)
-}
-
-/// Compares the crate's answers with all exact outcomes, or says what differs.
+/// Compares the crate's outcomes with all exact ones, or says what differs.
 ///
 /// All tolerances are those of the issue, 1e-9 of scale: eps times a condition, with numbers as short as these 3.5e-12
 /// was the worst seen. The margin is free of units; its scale is 1.
-fn compare(problem: &Problem, all: &Enumeration, verdict: &str, answers: &Answers, count: usize) -> Result<(), String> {
-    let expected: BTreeMap<Vec<String>, &Combination> = all.outcomes().map(|o| (names(&o.modes), o)).collect();
-    if !expected.keys().eq(answers.keys()) || count != expected.len() {
-        return Err(format!("{verdict}, outcomes {:?}\nnot {:?}", answers.keys(), expected.keys()));
+fn compare(problem: &Problem, all: &Enumeration, verdict: Verdict, outcomes: &[Outcome]) -> Result<(), String> {
+    let exact: BTreeMap<&Vec<Mode>, &Combination> = all.outcomes().map(|exact| (&exact.modes, exact)).collect();
+    let found: BTreeMap<&Vec<Mode>, &Outcome> = outcomes.iter().map(|found| (&found.modes, found)).collect();
+    if !exact.keys().eq(found.keys()) || outcomes.len() != exact.len() {
+        return Err(format!("{verdict}, outcomes {:?}\nnot {:?}", found.keys(), exact.keys()));
     }
-    let outcomes: Vec<&Combination> = expected.values().copied().collect();
-    let stays = outcomes[0].impulse.rounded().iter().all(|l| *l == 0.0);
-    let right = match outcomes.len() {
-        1 if stays => "no_impact",
-        1 => "unique",
-        _ => "ambiguous",
+    let before = numbers(&problem.velocity_before);
+    let after: Vec<Vec<f64>> = exact.values().map(|exact| exact.velocity_after.rounded()).collect();
+    let impulses: Vec<Vec<f64>> = exact.values().map(|exact| exact.impulse.rounded()).collect();
+    let (speed, push) = (largest(&before).max(largest(&after.concat())), largest(&impulses.concat()));
+    let right = match exact.len() {
+        1 if push == 0.0 => Verdict::NoImpact,
+        1 => Verdict::Unique,
+        _ => Verdict::Ambiguous,
     };
     if verdict != right {
         return Err(format!("verdict {verdict}, not {right}"));
     }
-    let before: Vec<f64> = problem.velocity_before.iter().map(to_f64).collect();
-    let after: Vec<Vec<f64>> = outcomes.iter().map(|outcome| outcome.velocity_after.rounded()).collect();
-    let impulses: Vec<Vec<f64>> = outcomes.iter().map(|outcome| outcome.impulse.rounded()).collect();
-    let speed = largest(before.iter().chain(after.iter().flatten()).copied());
-    let push = largest(impulses.iter().flatten().copied());
-    for (k, (modes, outcome)) in expected.iter().enumerate() {
-        let answer = &answers[modes];
-        if !near(&answer.velocity_after, &after[k], speed) {
-            return Err(format!("{modes:?}: velocity after {:?}, not {:?}", answer.velocity_after, after[k]));
-        }
-        if !near(&answer.impulse, &impulses[k], push) {
-            return Err(format!("{modes:?}: impulse {:?}, not {:?}", answer.impulse, impulses[k]));
-        }
-        if answer.index != Some(i64::from(outcome.index)) {
-            return Err(format!("{modes:?}: index {:?}, not {}", answer.index, outcome.index));
-        }
-        if let Some(margin) = answer.margin
-            && !near(&[margin], &[outcome.margin], outcome.margin.max(1.0))
-        {
-            return Err(format!("{modes:?}: margin {margin:e}, not {:e}", outcome.margin));
-        }
+    for (k, (exact, found)) in exact.values().zip(found.values()).enumerate() {
         let taken: f64 = (0..before.len()).map(|i| -0.5 * impulses[k][i] * (before[i] + after[k][i])).sum();
-        if !near(&[answer.energy_loss], &[taken], speed * push) {
-            return Err(format!("{modes:?}: energy loss {}, not {taken}", answer.energy_loss));
+        for (what, is, should, scale) in [
+            ("velocity after", found.velocity_after.as_flattened(), &*after[k], speed),
+            ("impulse", found.impulse.as_flattened(), &impulses[k], push),
+            ("index", &[found.index.map_or(f64::NAN, f64::from)], &[f64::from(exact.index)], 0.0),
+            ("margin", found.margin.as_slice(), &[exact.margin], exact.margin.max(1.0)),
+            ("energy loss", &[found.energy_loss], &[taken], speed * push),
+        ] {
+            if !near(is, should, 1e-9 * scale) {
+                return Err(format!("{:?}: {what} {is:?}, not {should:?}", exact.modes));
+            }
         }
     }
     Ok(())
 }
 
+fn numbers(values: &[RBig]) -> Vec<f64> {
+    values.iter().map(to_f64).collect()
+}
+
 /// The crate's analysis of a problem.
 fn analyse_problem(problem: &Problem, seed: u64) -> Analysis {
     let contact_problem = ContactProblem::new(
-        problem.delassus.iter().flatten().map(to_f64).collect(),
+        numbers(&problem.delassus.concat()),
         problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
         problem.friction.iter().map(rounded).collect(),
-        problem.restitution.iter().map(to_f64).collect(),
+        numbers(&problem.restitution),
     );
     let analysis = contact_problem.and_then(|problem| impact::analyse(&problem, false));
     analysis.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{problem:?}"))
@@ -151,10 +110,9 @@ fn matrices_have_exact_outcomes() {
             return [0, 0];
         }
         let analysis = analyse_problem(&problem, seed);
-        let answers = from_analysis(&analysis);
-        compare(&problem, &all, &analysis.verdict.to_string(), &answers, analysis.outcomes.len())
+        compare(&problem, &all, analysis.verdict, &analysis.outcomes)
             .unwrap_or_else(|difference| panic!("seed {seed}: {difference}\n{}", solve_json(&problem)));
-        [1, u64::from(answers.len() > 1)]
+        [1, u64::from(analysis.outcomes.len() > 1)]
     });
     assert!(compared > 7_000 && ambiguous > 300, "{compared} compared, {ambiguous} ambiguous");
 }
@@ -231,20 +189,15 @@ fn matrices_beside_borders_have_exact_outcomes() {
         let clear = |outcome: &Combination| outcome.margin > 0.0 && outcome.margin.is_finite();
         let index = |outcome: &Combination| (clear(outcome) && !frictionless).then_some(outcome.index);
         let expected: BTreeMap<_, _> = all.outcomes().map(|outcome| (&outcome.modes, index(outcome))).collect();
-        let index = |outcome: &impact::Outcome| outcome.index.filter(|_| !frictionless);
+        let index = |outcome: &Outcome| outcome.index.filter(|_| !frictionless);
         let found: BTreeMap<_, _> = analysis.outcomes.iter().map(|outcome| (&outcome.modes, index(outcome))).collect();
         let border = u64::from(!all.outcomes().all(clear));
         if analysis.verdict == Verdict::Undecided {
             assert!(!analysis.proven, "seed {seed}: undecided, but proven\n{}", solve_json(&problem));
             return [0, 0, 0, 1];
         }
-        assert_eq!(
-            (&found, found.len()),
-            (&expected, analysis.outcomes.len()),
-            "seed {seed}: {}\n{}",
-            analysis.verdict,
-            solve_json(&problem)
-        );
+        assert_eq!(found, expected, "seed {seed}: {}\n{}", analysis.verdict, solve_json(&problem));
+        assert_eq!(found.len(), analysis.outcomes.len(), "seed {seed}: {}", solve_json(&problem));
         let clearance = all.clearance();
         [1, border, u64::from(clearance > 0.0 && clearance < 1e-9), 0]
     });
@@ -255,7 +208,6 @@ fn matrices_beside_borders_have_exact_outcomes() {
 /// As `heelstrike solve` reads it.
 fn solve_json(problem: &Problem) -> serde_json::Value {
     let friction = |friction: &Friction| friction.as_ref().map_or("infinite".into(), |mu| to_f64(mu).into());
-    let numbers = |values: &[_]| values.iter().map(to_f64).collect::<Vec<f64>>();
     serde_json::json!({
         "delassus": problem.delassus.iter().map(|row| numbers(row)).collect::<Vec<_>>(),
         "velocity_before": problem.velocity_before.chunks(2).map(numbers).collect::<Vec<_>>(),
@@ -282,17 +234,16 @@ fn robot(number: u64) -> (Tree, Robot, Vec<(Case, Enumeration)>) {
 
 /// The crate's analysis of a case, from the cosines and sines of its angles.
 fn analyse(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
-    let numbers = |values: &[_]| values.iter().map(to_f64).collect::<Vec<f64>>();
     let configuration = Configuration {
         cos: numbers(&case.motions.cos),
         sin: numbers(&case.motions.sin),
         displacement: numbers(&case.motions.displacement),
     };
     let State { velocity, scene, .. } = case.state(robot);
-    let friction = case.friction.iter().map(rounded).collect();
+    let friction = case.problem.friction.iter().map(rounded).collect();
     let contacts = scene.contacts.unwrap_or_default();
     let mut pipeline = Pipeline::new(robot, Options::default());
-    let restitution = numbers(&case.restitution);
+    let restitution = numbers(&case.problem.restitution);
     impact::analyse(&pipeline.contact_problem(&configuration, &velocity, &contacts, friction, restitution)?, false)
 }
 
@@ -304,10 +255,9 @@ fn trees_have_exact_outcomes() {
         for (case, all) in &cases {
             let fail = |difference: &str| -> ! { panic!("{}", report(&tree, &robot, case, difference)) };
             let analysis = analyse(&robot, case).unwrap_or_else(|error| fail(&error.to_string()));
-            let answers = from_analysis(&analysis);
-            compare(&case.problem, all, &analysis.verdict.to_string(), &answers, analysis.outcomes.len())
+            compare(&case.problem, all, analysis.verdict, &analysis.outcomes)
                 .unwrap_or_else(|difference| fail(&difference));
-            counts = added(counts, [1, u64::from(answers.len() > 1), u64::from(case.contacts.len() > 2)]);
+            counts = added(counts, [true, analysis.outcomes.len() > 1, case.contacts.len() > 2].map(u64::from));
         }
         counts
     });
@@ -332,7 +282,6 @@ fn the_binary_has_exact_outcomes() {
         let states: Vec<_> = cases.iter().map(state).collect();
         let mut counts = [0, 0];
         for ((case, all), answer) in cases.iter().zip(answers(&["batch", &path, "-"], &states)) {
-            let answer = answer.unwrap_or_else(|error| panic!("{}", report(&tree, &robot, case, &error)));
             check_line(&tree, case, all, &answer)
                 .unwrap_or_else(|error| panic!("{}", report(&tree, &robot, case, &error)));
             counts = added(counts, [1, u64::from(answer.outcomes.len() > 1)]);
@@ -343,47 +292,31 @@ fn the_binary_has_exact_outcomes() {
 }
 
 /// Compares a line of the batch with the exact outcomes, coordinates by their names.
-fn check_line(tree: &Tree, case: &Case, all: &Enumeration, answer: &answers::Answer) -> Result<(), String> {
-    let answers = answer.outcomes.iter().map(|outcome| {
-        let numbers = Answer {
-            impulse: outcome.impulse.concat(),
-            velocity_after: outcome.velocity_after.concat(),
-            index: outcome.index,
-            margin: None,
-            energy_loss: outcome.energy_loss,
-        };
-        (outcome.modes.clone(), numbers)
-    });
-    let verdict = answer.verdict.as_ref().ok_or("no verdict")?;
-    compare(&case.problem, all, verdict, &answers.collect(), answer.outcomes.len())?;
-    if answer.index_sum != Some(1) || answer.rank != Some(case.problem.delassus.len()) {
-        return Err(format!("index sum {:?}, rank {:?}", answer.index_sum, answer.rank));
+fn check_line(tree: &Tree, case: &Case, all: &Enumeration, answer: &Answer) -> Result<(), String> {
+    let Answer { outcomes, report } = answer;
+    compare(&case.problem, all, report.verdict.ok_or("no verdict")?, outcomes)?;
+    if report.index_sum != Some(Some(1)) || report.rank != Some(case.problem.delassus.len()) {
+        return Err(format!("index sum {:?}, rank {:?}", report.index_sum, report.rank));
     }
     let energy = to_f64(&tree::kinetic_energy(&case.mass_matrix, &case.motions.velocity));
     // A sum of as many products as M has entries, without cancellation beyond that of M itself.
-    if !answer.kinetic_energy.is_some_and(|given| (given - energy).abs() <= 1e-12 * energy) {
-        return Err(format!("kinetic energy {:?}, not {energy}", answer.kinetic_energy));
+    if !near(report.kinetic_energy.as_slice(), &[energy], 1e-12 * energy) {
+        return Err(format!("kinetic energy {:?}, not {energy}", report.kinetic_energy));
     }
-    let found: Vec<String> = answer.contacts.iter().filter_map(|contact| contact.link.clone()).collect();
+    let found: Vec<&str> = report.contacts.iter().filter_map(|contact| contact.link.as_deref()).collect();
     let links: Vec<String> = case.contacts.iter().map(|contact| Tree::link(contact.body)).collect();
     if found != links {
         return Err(format!("contacts {found:?}, not {links:?}"));
     }
-    for outcome in &answer.outcomes {
-        let exact = all.outcomes().find(|exact| names(&exact.modes) == outcome.modes).ok_or("compared before")?;
-        let base = outcome.base_velocity_after.as_ref().ok_or("no velocity of the base")?;
-        let joints = outcome.joint_velocity_after.as_ref();
-        let moving = tree.moving();
-        let given: Option<Vec<f64>> = ["x", "z", "pitch"]
-            .iter()
-            .map(|name| base.get(*name).copied())
-            .chain(moving.iter().map(|&body| joints?.get(&Tree::joint(body)).copied()))
-            .collect();
-        let given = given.ok_or_else(|| format!("velocities {base:?}, {joints:?}"))?;
-        let after: Vec<f64> = case.velocity_after(&exact.impulse.exact()).iter().map(to_f64).collect();
-        let scale = largest(case.motions.velocity.iter().map(to_f64).chain(after.iter().copied()));
-        if !near(&given, &after, scale) {
-            return Err(format!("{:?}: velocities {given:?}", outcome.modes));
+    let joints = tree.moving().into_iter().map(Tree::joint);
+    let coordinates: Vec<String> = ["x", "z", "pitch"].map(String::from).into_iter().chain(joints).collect();
+    for outcome in outcomes {
+        let exact = all.outcomes().find(|exact| exact.modes == outcome.modes).ok_or("compared before")?;
+        let (names, given) = named_velocity(outcome);
+        let after = numbers(&case.velocity_after(&exact.impulse.exact()));
+        let scale = largest(&numbers(&case.motions.velocity)).max(largest(&after));
+        if names != coordinates || !near(&given, &after, 1e-9 * scale) {
+            return Err(format!("{:?}: velocities {names:?} {given:?}", outcome.modes));
         }
     }
     Ok(())
