@@ -1,7 +1,6 @@
 //! `accuracy`: tables for people with their times masked, the JSON's numbers, pictures, and what is refused.
 
 use super::{each, heelstrike, heelstrike_reads, list, place, read, result};
-use std::fs;
 
 const RAMONE: [&str; 5] = ["accuracy", "urdf/ramone.urdf", "examples/ramone.json", "--time", "0"];
 
@@ -113,15 +112,6 @@ fn a_picture_names_the_cases_or_explains_its_marks() {
     let many = drawn("friction");
     assert!(many.contains("each mark is one of 13 cases by one method"));
     assert!(!many.contains("RAMone"));
-}
-
-#[test]
-fn pictures_are_drawn_as_svg_and_png() {
-    for (name, start) in [("a.svg", b"<svg".as_slice()), ("a.png", b"\x89PNG".as_slice())] {
-        let path = place(name);
-        heelstrike(&[&RAMONE[..], &["--plot", &path]].concat()).well();
-        assert!(fs::read(&path).expect("written").starts_with(start), "{name}");
-    }
 }
 
 #[test]

@@ -167,20 +167,17 @@ fn a_problem_s_matrices_are_written_as_given() {
 
 #[test]
 fn every_example_is_answered() {
-    for (command, example) in [
-        (&["impact", RAMONE][..], "ramone"),
-        (&["impact", RAMONE], "ramone_measured"),
-        (&["impact", RAMONE], "ramone_measured_by_name"),
-        (&["impact", "urdf/ramone_paper.urdf"], "ramone_paper"),
-        (&["impact", WALKER], "minimalistic"),
-        (&["impact", "urdf/pdw.urdf"], "pdw"),
-        (&["impact", BLOCK], "block"),
-        (&["impact", BLOCK], "block_jams"),
-        (&["solve"], "problems/rod"),
-        (&["solve"], "problems/painleve_rod"),
-        (&["solve"], "problems/block_from_dynamics"),
+    for (command, examples) in [
+        (&["impact", RAMONE][..], &["ramone", "ramone_measured", "ramone_measured_by_name"][..]),
+        (&["impact", "urdf/ramone_paper.urdf"], &["ramone_paper"]),
+        (&["impact", WALKER], &["minimalistic"]),
+        (&["impact", "urdf/pdw.urdf"], &["pdw"]),
+        (&["impact", BLOCK], &["block", "block_jams"]),
+        (&["solve"], &["problems/rod", "problems/painleve_rod", "problems/block_from_dynamics"]),
     ] {
-        heelstrike(&[command, &[&format!("examples/{example}.json")]].concat()).text();
+        for example in examples {
+            heelstrike(&[command, &[&format!("examples/{example}.json")]].concat()).text();
+        }
     }
     let run = heelstrike(&["batch", WALKER, "examples/keyframes.ndjson", "--friction", "infinite"]).well();
     assert_eq!(each(&run.lines().into(), "verdict"), ["unique", "unique", "unique", "ambiguous"]);

@@ -124,10 +124,17 @@ fn an_unwritable_file_is_refused_before_the_work() {
 }
 
 #[test]
-fn a_png_is_drawn_as_well() {
-    let path = place("five_bar.png");
-    heelstrike(&["inspect", "urdf/five_bar.urdf", "--plot", &path]).well();
-    assert_eq!(&fs::read(path).expect("a PNG")[..8], b"\x89PNG\r\n\x1a\n");
+fn the_ending_names_the_form_of_a_picture() {
+    let accuracy = &["accuracy", RAMONE, "examples/ramone.json", "--time", "0"];
+    for (arguments, name, start) in [
+        (&["inspect", "urdf/five_bar.urdf"][..], "five_bar.png", &b"\x89PNG\r\n\x1a\n"[..]),
+        (accuracy, "accuracy.png", b"\x89PNG\r\n\x1a\n"),
+        (accuracy, "accuracy.svg", b"<svg"),
+    ] {
+        let path = place(name);
+        heelstrike(&[arguments, &["--plot", &path]].concat()).well();
+        assert!(fs::read(path).expect("a picture").starts_with(start), "{name}");
+    }
 }
 
 #[test]

@@ -4,9 +4,10 @@
 
 use std::collections::BTreeMap;
 
-use heelstrike::Mode;
+use heelstrike::write::Touchdown;
+use heelstrike::{Mode, Report};
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::support::answers::answers;
 use crate::support::command::{heelstrike, read};
@@ -61,9 +62,9 @@ struct Outcome {
 
 impl Expected {
     /// Whether it is this touchdown that was found: the same foot at the same row.
-    fn is(&self, found: &Value) -> bool {
-        let touchdown = &found["touchdown"];
-        touchdown["row"] == self.csv_row && touchdown["striking"].as_str().map(link) == Some(link(&self.striking))
+    fn is(&self, found: &Report) -> bool {
+        let same = |found: &Touchdown| found.row == self.csv_row && link(&found.striking) == link(&self.striking);
+        found.touchdown.as_ref().is_some_and(same)
     }
 }
 
@@ -113,11 +114,12 @@ impl Gait<'_> {
     }
 
     /// The touchdowns that `batch` finds in the table.
-    fn touchdowns(&self, table: &Table, options: &[&str]) -> Vec<Value> {
+    fn touchdowns(&self, table: &Table, options: &[&str]) -> Vec<Report<'static>> {
         let (robot, file) = (path(self.robot[0]), path(&format!("gaits/{}{}", self.name, table.ending)));
         let first = ["batch", &robot, &file, "--touchdowns", "--at", "row"];
         let arguments = [&first[..], &self.robot[1..], table.options, options].concat();
-        heelstrike(&arguments).well().lines()
+        let stdout = heelstrike(&arguments).well().stdout;
+        stdout.lines().map(|line| serde_json::from_str(line).expect("a result")).collect()
     }
 
     /// Every touchdown of the reference is found, and none beyond, with the same end of the same foot.
@@ -128,14 +130,14 @@ impl Gait<'_> {
         assert_eq!(found.len(), expected.len(), "{}{}", self.name, table.ending);
         for expected in expected.values() {
             let place = format!("{}{}: {} at row {}", self.name, table.ending, expected.striking, expected.csv_row);
-            let [touchdown] = found.iter().filter(|found| expected.is(found)).collect::<Vec<_>>()[..] else {
+            let [found] = found.iter().filter(|found| expected.is(found)).collect::<Vec<_>>()[..] else {
                 panic!("{place}")
             };
-            let shift_z = touchdown["touchdown"]["shift_z"].as_f64().expect("a shift");
+            let shift_z = found.touchdown.as_ref().expect("a touchdown").shift_z;
             // Tables in three dimensions have nine digits, of an x of 33 m, too.
             assert!((shift_z - expected.shift_z).abs() < 1e-8, "{place}: {shift_z} {}", expected.shift_z);
             // Heel and toe are 0.28 m apart.
-            let x = touchdown["contacts"][0]["point"][0].as_f64().expect("a point");
+            let x = found.contacts[0].point.expect("a point").x;
             let should = self.strikes_at(expected);
             assert!((x - should).abs() < 1e-7, "{place}: {x} {should}");
         }
@@ -158,21 +160,16 @@ impl Gait<'_> {
                 let found = self.touchdowns(table, &["--friction", friction, "--touching", touching]);
                 for expected in expected.iter().filter(|expected| expected.rule == rule) {
                     let place = format!("{}{}, {rule}, row {}", self.name, table.ending, expected.csv_row);
-                    let touchdown = found.iter().find(|found| expected.is(found)).unwrap_or_else(|| panic!("{place}"));
-                    let each = |list: &str, field: &str| -> Vec<Value> {
-                        let entries = touchdown[list].as_array().expect("a list");
-                        entries.iter().map(|entry| entry[field].clone()).collect()
-                    };
-                    let feet = each("contacts", "link");
-                    let mut feet: Vec<&str> = feet.iter().filter_map(Value::as_str).collect();
+                    let found = found.iter().find(|found| expected.is(found)).unwrap_or_else(|| panic!("{place}"));
+                    let mut feet: Vec<&str> = found.contacts.iter().filter_map(|foot| foot.link.as_deref()).collect();
                     let mut should: Vec<&str> = expected.touching.iter().map(|contact| link(contact)).collect();
                     feet.sort_unstable();
                     should.sort_unstable();
                     assert_eq!(feet, should, "{place}");
                     if table.has_velocities {
-                        let outcomes = &expected.by_friction[friction].outcomes;
-                        let should: Vec<Value> = outcomes.iter().map(|outcome| json!(outcome.modes)).collect();
-                        assert_eq!(each("outcomes", "modes"), should, "{place} at friction {friction}");
+                        let should = expected.by_friction[friction].outcomes.iter().map(|outcome| &outcome.modes);
+                        let found = found.outcomes.iter().flat_map(|all| all.iter()).map(|outcome| &outcome.modes);
+                        assert!(found.eq(should), "{place} at friction {friction}");
                     }
                 }
             }

@@ -17,15 +17,10 @@ const TOLERANCE: f64 = 1e-10;
 
 #[derive(Deserialize)]
 struct Variant {
-    base: Base,
+    base: Value,
     coordinates: Vec<String>,
     contacts: Vec<Contact>,
     configs: Vec<Config>,
-}
-
-#[derive(Deserialize)]
-struct Base {
-    mode: String,
 }
 
 /// A configuration with the values there; contact rows are x then z.
@@ -83,7 +78,7 @@ impl Robot {
 
     /// The coordinates x, z and pitch come first where the base floats; a joint may be named like them.
     fn base_dofs(&self) -> usize {
-        if self.variant.base.mode == "floating" { 3 } else { 0 }
+        if self.variant.base["mode"] == "floating" { 3 } else { 0 }
     }
 }
 

@@ -53,15 +53,14 @@ pub fn transposed(matrix: &Matrix) -> Matrix {
     (0..matrix[0].len()).map(|column| matrix.iter().map(|row| row[column].clone()).collect()).collect()
 }
 
-/// X with `matrix` X = `right`, by Gauss and Jordan; `None` if `matrix` is singular.
-pub fn solve(matrix: &Matrix, right: &Matrix) -> Option<Matrix> {
-    let n = matrix.len();
-    let mut rows: Matrix = matrix.iter().zip(right).map(|(a, b)| a.iter().chain(b).cloned().collect()).collect();
-    for column in 0..n {
-        let pivot = (column..n).find(|&row| !rows[row][column].is_zero())?;
-        rows.swap(column, pivot);
-        let divisor = rows[column][column].clone();
-        let pivot_row: Vec<RBig> = rows[column].iter().map(|entry| entry / &divisor).collect();
+/// Eliminates the first `columns` columns by Gauss and Jordan; their rank.
+fn eliminate(rows: &mut Matrix, columns: usize) -> usize {
+    let mut rank = 0;
+    for column in 0..columns {
+        let Some(pivot) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else { continue };
+        rows.swap(rank, pivot);
+        let divisor = rows[rank][column].clone();
+        let pivot_row: Vec<RBig> = rows[rank].iter().map(|entry| entry / &divisor).collect();
         for row in rows.iter_mut() {
             let factor = row[column].clone();
             if !factor.is_zero() {
@@ -70,9 +69,17 @@ pub fn solve(matrix: &Matrix, right: &Matrix) -> Option<Matrix> {
                 }
             }
         }
-        rows[column] = pivot_row;
+        rows[rank] = pivot_row;
+        rank += 1;
     }
-    Some(rows.into_iter().map(|row| row[n..].to_vec()).collect())
+    rank
+}
+
+/// X with `matrix` X = `right`; `None` if `matrix` is singular.
+pub fn solve(matrix: &Matrix, right: &Matrix) -> Option<Matrix> {
+    let n = matrix.len();
+    let mut rows: Matrix = matrix.iter().zip(right).map(|(a, b)| a.iter().chain(b).cloned().collect()).collect();
+    (eliminate(&mut rows, n) == n).then(|| rows.into_iter().map(|row| row[n..].to_vec()).collect())
 }
 
 /// M^-1 J^T and G = J M^-1 J^T; `None` if M is singular.
@@ -85,23 +92,8 @@ pub fn delassus(mass_matrix: &Matrix, jacobian: &Matrix) -> Option<[Matrix; 2]> 
     Some([response, delassus])
 }
 
-/// Rank of a matrix.
 pub fn rank(matrix: &Matrix) -> usize {
-    let mut rows = matrix.clone();
-    let mut rank = 0;
-    for column in 0..matrix.first().map_or(0, Vec::len) {
-        let Some(pivot) = (rank..rows.len()).find(|&row| !rows[row][column].is_zero()) else { continue };
-        rows.swap(rank, pivot);
-        let (above, below) = rows.split_at_mut(rank + 1);
-        for row in below {
-            let factor = &row[column] / &above[rank][column];
-            for (entry, over) in row.iter_mut().zip(&above[rank]) {
-                *entry -= &factor * over;
-            }
-        }
-        rank += 1;
-    }
-    rank
+    eliminate(&mut matrix.clone(), matrix.first().map_or(0, Vec::len))
 }
 
 /// The least whole number that makes whole numbers of all `values`.

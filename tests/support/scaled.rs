@@ -3,6 +3,9 @@
 use nalgebra::DMatrix;
 use std::borrow::Cow;
 
+/// A matrix of a report.
+type Rows<'a> = Option<Cow<'a, [Vec<f64>]>>;
+
 /// Every difference found so far.
 #[derive(Debug, Default)]
 pub struct Differences(Vec<String>);
@@ -32,13 +35,7 @@ impl Differences {
     }
 
     /// Compares two matrices to `factor` of the reference's largest entry; none is a difference.
-    pub fn compare_matrix(
-        &mut self,
-        place: &str,
-        is: &Option<Cow<'_, [Vec<f64>]>>,
-        should: &DMatrix<f64>,
-        factor: f64,
-    ) {
+    pub fn compare_matrix(&mut self, place: &str, is: &Rows<'_>, should: &DMatrix<f64>, factor: f64) {
         let is = is.as_deref().unwrap_or_default();
         if is.len() != should.nrows() || is.iter().any(|row| row.len() != should.ncols()) {
             return self.note(place, format!("not {} x {}: {is:?}", should.nrows(), should.ncols()));

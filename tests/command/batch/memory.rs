@@ -5,7 +5,6 @@ use super::*;
 /// The most memory that a batch of so many lines had resident \[kB\], by the kernel's own count.
 #[cfg(target_os = "linux")]
 fn peak(lines: usize, arguments: &[&str]) -> u64 {
-    use std::process::ChildStdin;
     let mut command = batching(&["-", "--friction", "0.5", "--threads", "4"]);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut child = command.spawn().expect("it runs");

@@ -4,7 +4,7 @@ use super::support::urdf;
 use super::{Run, file, heelstrike_reads, parsed, place, read};
 use serde_json::json;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 
 mod memory;
 mod refusals;
@@ -142,17 +142,18 @@ fn an_endless_line_is_refused_and_the_rest_goes_on() {
 
 // Ends.
 
-fn spawned(threads: &str, more: &[&str]) -> Child {
+fn spawned(threads: &str, more: &[&str]) -> (Child, ChildStdin) {
     let mut command = batching(&["-", "--friction", "1", "--threads", threads]);
     command.args(more).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.spawn().expect("it runs")
+    let mut child = command.spawn().expect("it runs");
+    let stdin = child.stdin.take().expect("piped");
+    (child, stdin)
 }
 
 #[test]
 fn an_answer_does_not_wait_for_the_next_line() {
     for threads in ["1", "2"] {
-        let mut child = spawned(threads, &[]);
-        let mut stdin = child.stdin.take().expect("piped");
+        let (mut child, mut stdin) = spawned(threads, &[]);
         let mut answers = BufReader::new(child.stdout.take().expect("piped")).lines();
         for id in 0..3 {
             stdin.write_all(strike(id, 0.0).as_bytes()).expect("it reads");
@@ -168,8 +169,7 @@ fn an_answer_does_not_wait_for_the_next_line() {
 #[test]
 fn a_closed_reader_ends_it_quietly() {
     for threads in ["1", "4"] {
-        let mut child = spawned(threads, &[]);
-        let mut stdin = child.stdin.take().expect("piped");
+        let (mut child, mut stdin) = spawned(threads, &[]);
         // A closed pipe stops the writer, too.
         let writer = std::thread::spawn(move || while stdin.write_all(strike(1, 0.0).as_bytes()).is_ok() {});
         let mut first = [0; 1000];
@@ -200,11 +200,10 @@ fn a_full_disk_is_reported_with_what_was_written() {
 #[test]
 fn a_closed_reader_ends_it_while_the_input_is_silent() {
     for threads in ["1", "4"] {
-        let mut child = spawned(threads, &[]);
+        let (mut child, mut stdin) = spawned(threads, &[]);
         drop(child.stdout.take());
         // Processes that other tests are just starting hold the pipe for a moment.
         std::thread::sleep(std::time::Duration::from_millis(300));
-        let mut stdin = child.stdin.take().expect("piped");
         stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
         assert_eq!(ended(&mut child), (Some(0), String::new()), "{threads} threads");
         drop(stdin);
@@ -232,8 +231,7 @@ fn ended(child: &mut Child) -> (Option<i32>, String) {
 #[test]
 fn a_failed_output_ends_it_while_the_input_is_silent() {
     for threads in ["1", "4"] {
-        let mut child = spawned(threads, &["-o", "/dev/full"]);
-        let mut stdin = child.stdin.take().expect("piped");
+        let (mut child, mut stdin) = spawned(threads, &["-o", "/dev/full"]);
         stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
         let (status, stderr) = ended(&mut child);
         assert_eq!(status, Some(1), "{threads} threads");

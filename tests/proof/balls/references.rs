@@ -5,6 +5,7 @@ use crate::balls::dynamics::problem;
 use crate::balls::number::{Ball, Number};
 use crate::balls::oracle::{Index, answer};
 use crate::support::command::read;
+use crate::support::impact::robot;
 use crate::support::paper::{MODELS, REFERENCE};
 use crate::support::robots::{Contact, robot_and_reference};
 use crate::support::scaled::{Differences, largest};
@@ -20,10 +21,6 @@ fn nearest<'a>(balls: impl IntoIterator<Item = &'a Ball>) -> Vec<f64> {
     balls.into_iter().map(nearest).collect()
 }
 
-fn robot(path: &str) -> Robot {
-    Robot::from_urdf(&read(path)).expect("a robot")
-}
-
 fn state(value: &Value, robot: &Robot) -> State {
     State::from_json(&value.to_string(), robot, &Defaults::default()).unwrap_or_else(|error| panic!("{error}\n{value}"))
 }
@@ -37,7 +34,7 @@ fn the_papers_outcomes_are_found() {
     let mut differences = Differences::default();
     let mut compared = 0;
     for model in MODELS.iter().filter(|model| model.inertia.is_none()) {
-        let robot = robot(&format!("urdf/{}.urdf", model.urdf));
+        let robot = robot(&read(&format!("urdf/{}.urdf", model.urdf)));
         let [offset, radius] = if model.kneed { [0.0, 0.02815] } else { [-1.0, 0.0] };
         let contacts = model.feet().map(|link| json!({"link": link, "offset": [0, 0, offset], "radius": radius}));
         for (alpha, at) in &REFERENCE[model.name].at {
@@ -73,7 +70,7 @@ fn matrices_are_those_of_pinocchio() {
     let mut differences = Differences::default();
     for folder in ["rabbit", "upkie", "solo8"] {
         let (urdf, variant): (String, Value) = robot_and_reference((folder, "default"));
-        let robot = robot(&urdf);
+        let robot = robot(&read(&urdf));
         let contacts: Vec<Contact> = parsed(&variant["contacts"]);
         let mut state = state(&json!({"friction": 1.0, "contacts": contacts}), &robot);
         for (number, config) in variant["configs"].as_array().expect("configurations").iter().enumerate() {
@@ -93,7 +90,7 @@ fn matrices_are_those_of_pinocchio() {
 /// L.
 #[test]
 fn exact_borders_are_found() {
-    let robot = robot("urdf/block.urdf");
+    let robot = robot(&read("urdf/block.urdf"));
     let outcomes = |friction: Value, [x, z]: [f64; 2]| {
         let value = json!({
             "velocity": {"base": {"x": x, "z": z}},
