@@ -1,8 +1,7 @@
 //! States from tables and results as tables: what is read, what is refused and where, and what is written.
 
-use crate::support::impact::{outcomes, robot, velocities_after};
+use crate::support::impact::{outcomes, reduced, robot, velocities_after};
 use crate::support::urdf::{self, Axis, HINGE, POINT, collision, joint, link};
-use heelstrike::description::Description;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::read::table::{Header, Rates};
 use heelstrike::robot::{Base, Reduction};
@@ -89,8 +88,7 @@ fn shown(error: &Error) -> String {
 
 #[test]
 fn headers_that_do_not_fit_are_refused_with_their_place() {
-    let bolted = Reduction { base: Some(Base::Fixed), ..Reduction::default() };
-    let bolted = Robot::reduce(&Description::from_urdf(&leg_urdf()).unwrap(), &bolted).unwrap();
+    let bolted = reduced(&leg_urdf(), &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
     let with_rates: [&[u8]; 12] = [
         b"q_kne,v_knee",
         b"id,\"a,b\",v_base_y",

@@ -51,8 +51,14 @@ fn outcomes(area: &Area) -> Vec<Vec<Mode>> {
 }
 
 /// Random points of the ranges lie within exactly one area, and have its regime but for a thin seam at its curves.
-fn points_lie_in_their_areas(urdf: &str, study: &Value) {
-    with_map(urdf, study, |model, map| {
+#[test]
+fn points_lie_in_the_area_of_their_outcomes() {
+    // Where many areas meet.
+    let mut many = straight(None);
+    many["parameters"] = json!({"alpha": {"from": 0, "to": "pi/2", "steps": 20},
+        "mu": {"from": 0, "to": 2, "steps": 20}});
+    many["state"]["friction"] = json!("mu");
+    let check = |model: &RobotStudy, map: &Map| {
         let mut solver = Solver::new(model);
         let [first, second] = model.study.parameters() else { panic!("two parameters") };
         let (mut random, mut wrong, count) = (Random::new(0), 0, 4_000);
@@ -65,21 +71,9 @@ fn points_lie_in_their_areas(urdf: &str, study: &Value) {
         }
         // Curves are straight between points at most a sixty-fourth of the ranges apart.
         assert!(wrong * 500 < count, "{wrong} of {count} points are not in the area of their outcomes");
-    });
-}
-
-#[test]
-fn points_lie_in_the_area_of_their_outcomes() {
-    points_lie_in_their_areas(PDW, &inertia(0.4));
-}
-
-#[test]
-fn points_lie_in_the_area_of_their_outcomes_where_many_areas_meet() {
-    let mut study = straight(None);
-    study["parameters"] = json!({"alpha": {"from": 0, "to": "pi/2", "steps": 20},
-        "mu": {"from": 0, "to": 2, "steps": 20}});
-    study["state"]["friction"] = json!("mu");
-    points_lie_in_their_areas(MINIMALISTIC, &study);
+    };
+    with_map(PDW, &inertia(0.4), check);
+    with_map(MINIMALISTIC, &many, check);
 }
 
 /// The paper: both bands close where the leg's center of percussion, with the hip as pivot, is the foot.
@@ -146,7 +140,7 @@ fn a_map_is_the_same_for_any_number_of_threads() {
 }
 
 #[test]
-fn curves_and_areas_are_labelled_with_what_turns_and_what_holds() {
+fn curves_and_areas_have_what_turns_and_what_holds() {
     with_map(PDW, &inertia(0.4), |model, map| {
         let mut solver = Solver::new(model);
         for area in &map.areas {

@@ -67,6 +67,18 @@ impl Parts {
             restitution: (0..contacts).map(|_| restitution(random)).collect(),
         }
     }
+
+    /// One contact that strikes; half of them without coupling between the tangential and the normal direction.
+    fn single(random: &mut Random) -> Self {
+        let (a, b, c) = (gauss(random), gauss(random), gauss(random));
+        let coupling = if random.once_in(2) { 0.0 } else { a * b };
+        Self {
+            delassus: vec![vec![a * a + 0.1, coupling], vec![coupling, b * b + 0.1 + c * c]],
+            velocity_before: vec![[gauss(random), -0.1 - gauss(random).abs()]],
+            friction: vec![random.pick(&[Friction::ZERO, Friction::Finite(0.7), Friction::Infinite])],
+            restitution: vec![0.0],
+        }
+    }
 }
 
 /// Box and Muller.
@@ -238,18 +250,4 @@ fn uncoupled_contacts_are_decided_one_by_one() {
         [1]
     });
     assert_eq!(decided, 2_000);
-}
-
-impl Parts {
-    /// One contact that strikes; half of them without coupling between the tangential and the normal direction.
-    fn single(random: &mut Random) -> Self {
-        let (a, b, c) = (gauss(random), gauss(random), gauss(random));
-        let coupling = if random.once_in(2) { 0.0 } else { a * b };
-        Self {
-            delassus: vec![vec![a * a + 0.1, coupling], vec![coupling, b * b + 0.1 + c * c]],
-            velocity_before: vec![[gauss(random), -0.1 - gauss(random).abs()]],
-            friction: vec![random.pick(&[Friction::ZERO, Friction::Finite(0.7), Friction::Infinite])],
-            restitution: vec![0.0],
-        }
-    }
 }

@@ -84,44 +84,41 @@ fn analysis(impact: &Impact) -> &Analysis {
     impact.analysis.as_ref().expect("at most three contacts")
 }
 
-/// How the numbers of another view follow from the first one's.
-struct View<'a> {
-    /// -1 in a mirror.
+/// Panics unless `other` is struck as `model`, whose impact is `impact`, seen another way: tangential numbers times
+/// `side` (-1 in a mirror), impulses and contact velocities in these units, and v as `first` takes it from that of
+/// `other`. Another view rounds every number once more; with conditions of G up to some 1e5 that moves an answer by
+/// some 1e-11 of its largest entry.
+fn assert_seen(
+    [model, other]: [&Model; 2],
+    impact: &Impact,
     side: f64,
-    /// Of impulses and of contact velocities.
     units: [f64; 2],
-    /// v of the first view from v of the other one.
-    velocity: &'a dyn Fn(&[f64]) -> Vec<f64>,
-}
-
-impl View<'_> {
-    /// Panics unless `other` is struck as the first view says: `model` and its `impact`. Another view rounds every
-    /// number once more; with conditions of G up to some 1e5 that moves an answer by some 1e-11 of its largest entry.
-    fn check(&self, model: &Model, impact: &Impact, other: &Model, context: &dyn Fn() -> String) {
-        let other = &other.impact();
-        let (analysis, others) = (analysis(impact), analysis(other));
-        assert_eq!(analysis.verdict, others.verdict, "{}", context());
-        assert_eq!(analysis.outcomes.len(), others.outcomes.len(), "{}", context());
-        assert_eq!(analysis.index_sum, others.index_sum, "{}", context());
-        for (outcome, velocity) in analysis.outcomes.iter().zip(&velocities_after(impact)) {
-            let modes = outcome.modes.iter().map(|&mode| if self.side < 0.0 { mirror(mode) } else { mode });
-            let modes: Vec<Mode> = modes.collect();
-            let place = others.outcomes.iter().position(|other| other.modes == modes);
-            let place = place.unwrap_or_else(|| panic!("no {modes:?} among {:?}\n{}", others.outcomes, context()));
-            let twin = &others.outcomes[place];
-            assert_eq!(outcome.index, twin.index, "{}", context());
-            assert_near(&[outcome.margin.expect("one")], &[twin.margin.expect("one")], 1.0, "margin", context);
-            let seen = |values: &[[f64; 2]], unit: f64| -> Vec<f64> {
-                values.iter().flat_map(|[t, n]| [self.side * unit * t, unit * n]).collect()
-            };
-            let [push, speed] = self.units;
-            assert_near(&seen(&outcome.impulse, push), &twin.impulse.concat(), 0.0, "impulse", context);
-            let before = largest(&seen(&impact.velocity_before, speed));
-            let after = seen(&outcome.velocity_after, speed);
-            assert_near(&after, &twin.velocity_after.concat(), before, "velocity after", context);
-            let other = (self.velocity)(&velocities_after(other)[place]);
-            assert_near(velocity, &other, largest(&model.v), "v after", context);
-        }
+    first: &dyn Fn(&[f64]) -> Vec<f64>,
+    context: &dyn Fn() -> String,
+) {
+    let other = &other.impact();
+    let (analysis, others) = (analysis(impact), analysis(other));
+    assert_eq!(analysis.verdict, others.verdict, "{}", context());
+    assert_eq!(analysis.outcomes.len(), others.outcomes.len(), "{}", context());
+    assert_eq!(analysis.index_sum, others.index_sum, "{}", context());
+    for (outcome, velocity) in analysis.outcomes.iter().zip(&velocities_after(impact)) {
+        let modes = outcome.modes.iter().map(|&mode| if side < 0.0 { mirror(mode) } else { mode });
+        let modes: Vec<Mode> = modes.collect();
+        let place = others.outcomes.iter().position(|other| other.modes == modes);
+        let place = place.unwrap_or_else(|| panic!("no {modes:?} among {:?}\n{}", others.outcomes, context()));
+        let twin = &others.outcomes[place];
+        assert_eq!(outcome.index, twin.index, "{}", context());
+        assert_near(&[outcome.margin.expect("one")], &[twin.margin.expect("one")], 1.0, "margin", context);
+        let seen = |values: &[[f64; 2]], unit: f64| -> Vec<f64> {
+            values.iter().flat_map(|[t, n]| [side * unit * t, unit * n]).collect()
+        };
+        let [push, speed] = units;
+        assert_near(&seen(&outcome.impulse, push), &twin.impulse.concat(), 0.0, "impulse", context);
+        let before = largest(&seen(&impact.velocity_before, speed));
+        let after = seen(&outcome.velocity_after, speed);
+        assert_near(&after, &twin.velocity_after.concat(), before, "velocity after", context);
+        let other = first(&velocities_after(other)[place]);
+        assert_near(velocity, &other, largest(&model.v), "v after", context);
     }
 }
 
@@ -133,8 +130,7 @@ fn assert_near(a: &[f64], b: &[f64], scale: f64, what: &str, context: &dyn Fn() 
 
 /// Runs `check` on every model that is decided; most must be.
 fn for_every_model(check: impl Fn(u64, &Model, &Impact)) {
-    let mut ambiguous = 0;
-    let mut decided = 0;
+    let (mut ambiguous, mut decided) = (0, 0);
     for seed in 0..MODELS {
         let model = Model::random(seed);
         let impact = model.impact();
@@ -162,17 +158,15 @@ fn a_mirrored_robot_slides_the_other_way() {
         }
         let seen = |v: &[f64]| [&[-v[0], v[1], -v[2]], &v[3..]].concat();
         (mirrored.q, mirrored.v) = (seen(&model.q), seen(&model.v));
-        let view = View { side: -1.0, units: [1.0; 2], velocity: &seen };
-        view.check(model, impact, &mirrored, &|| model.report(seed));
+        assert_seen([model, &mirrored], impact, -1.0, [1.0; 2], &seen, &|| model.report(seed));
     });
 }
 
 #[test]
 fn units_change_no_verdict_and_no_margin_of_a_robot() {
     for_every_model(|seed, model, impact| {
-        let one = [1.0; 3];
         for (k, factor) in [0, 1, 2].into_iter().flat_map(|k| [(k, 1e6), (k, 1e-6)]) {
-            let mut units = one;
+            let mut units = [1.0; 3];
             units[k] = factor;
             let [mass, length, time] = units;
             let mut scaled = model.clone();
@@ -187,15 +181,14 @@ fn units_change_no_verdict_and_no_margin_of_a_robot() {
             scaled.q.iter_mut().enumerate().for_each(|(k, q)| *q *= unit(k));
             scaled.v.iter_mut().enumerate().for_each(|(k, v)| *v *= unit(k) / time);
             let seen = |v: &[f64]| v.iter().enumerate().map(|(k, v)| v * time / unit(k)).collect();
-            let view = View { side: 1.0, units: [mass * length / time, length / time], velocity: &seen };
-            let units = format!("units of mass {mass}, length {length}, time {time}");
-            view.check(model, impact, &scaled, &|| format!("{units}, {}", model.report(seed)));
+            let context = || format!("units of mass {mass}, length {length}, time {time}, {}", model.report(seed));
+            assert_seen([model, &scaled], impact, 1.0, [mass * length / time, length / time], &seen, &context);
         }
     });
 }
 
 #[test]
-fn a_flipped_axis_with_its_coordinate_negated_is_the_same_joint() {
+fn a_flipped_axis_is_the_same_joint() {
     for_every_model(|seed, model, impact| {
         let sign = |k: usize| if k > 2 && (seed as usize + k).is_multiple_of(2) { -1.0 } else { 1.0 };
         let seen = |v: &[f64]| v.iter().enumerate().map(|(k, v)| sign(k) * v).collect::<Vec<f64>>();
@@ -208,8 +201,7 @@ fn a_flipped_axis_with_its_coordinate_negated_is_the_same_joint() {
             }
         }
         (flipped.q, flipped.v) = (seen(&model.q), seen(&model.v));
-        let view = View { side: 1.0, units: [1.0; 2], velocity: &seen };
-        view.check(model, impact, &flipped, &|| model.report(seed));
+        assert_seen([model, &flipped], impact, 1.0, [1.0; 2], &seen, &|| model.report(seed));
     });
 }
 
@@ -244,7 +236,6 @@ fn a_slope_is_level_ground_seen_askew() {
         askew.q[2] -= slope;
         askew.v[..2].copy_from_slice(&turn([model.v[0], model.v[1]], sin));
         let seen = |v: &[f64]| [&turn([v[0], v[1]], -sin)[..], &v[2..]].concat();
-        let view = View { side: 1.0, units: [1.0; 2], velocity: &seen };
-        view.check(model, impact, &askew, &|| model.report(seed));
+        assert_seen([model, &askew], impact, 1.0, [1.0; 2], &seen, &|| model.report(seed));
     });
 }

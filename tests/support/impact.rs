@@ -1,12 +1,18 @@
 //! Impacts of robots and what their outcomes do, as lists with an entry per outcome.
 
+use heelstrike::description::Description;
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::robot::Reduction;
 use heelstrike::{Defaults, Friction, Outcome, Result, Robot, State};
 use std::fmt::Display;
 
 pub fn robot(urdf: &str) -> Robot {
     Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{error}\n{urdf}"))
+}
+
+pub fn reduced(urdf: &str, reduction: &Reduction) -> Robot {
+    Robot::reduce(&Description::from_urdf(urdf).expect("a description"), reduction).expect("a robot")
 }
 
 /// The answer to a state in JSON; friction is 0.5 unless it is given.

@@ -40,12 +40,6 @@ pub enum Axis {
 /// About the plane's normal.
 pub const HINGE: Axis = Axis::Revolute(1.0);
 
-impl Axis {
-    pub fn slides(self) -> bool {
-        matches!(self, Self::Prismatic(_))
-    }
-}
-
 /// A joint, with `more` of its elements.
 pub fn joint(name: impl Display, axis: Axis, ends: [&str; 2], [x, z]: [f64; 2], more: &str) -> String {
     let (kind, axis) = match axis {

@@ -12,9 +12,8 @@
 //! crank's moment about its pivot, m l^2 / 3 dq' = l f . d, gives f_x.
 
 use crate::constraints::{impact, matrices};
-use crate::support::impact::{loop_impulses, velocities_after};
+use crate::support::impact::{loop_impulses, reduced, velocities_after};
 use crate::support::mechanism::{Kind, Mechanism, Point, point};
-use heelstrike::description::Description;
 use heelstrike::impact::Mode;
 use heelstrike::pipeline::Impact;
 use heelstrike::robot::{Base, Reduction, Robot};
@@ -40,8 +39,7 @@ pub fn parallelogram(cranks: &[(&str, f64)]) -> Mechanism {
 }
 
 pub fn bolted(mechanism: &Mechanism) -> Robot {
-    let description = Description::from_urdf(&mechanism.urdf(0)).expect("a description");
-    Robot::reduce(&description, &Reduction { base: Some(Base::Fixed), ..Reduction::default() }).expect("a robot")
+    reduced(&mechanism.urdf(0), &Reduction { base: Some(Base::Fixed), ..Reduction::default() })
 }
 
 /// All cranks at q and q', the coupler level; a foot below the coupler's middle.
@@ -111,7 +109,7 @@ fn a_parallelogram_strikes_the_ground_as_on_paper() {
 }
 
 #[test]
-fn a_rod_pinned_to_the_ground_by_a_loop_is_a_pendulum() {
+fn a_rod_pinned_by_a_loop_is_a_pendulum() {
     // Its joint is free to slide in the tree; the loop holds its upper end to the root. G at the free end, at the angle
     // q: l^2 d d' / (m l^2 / 3), d as above.
     let mechanism = Mechanism::of(1.0, [0.0; 2], 1.0)

@@ -12,7 +12,7 @@ fn assert_normal(found: &Impact, [x, z]: [f64; 2]) {
 }
 
 #[test]
-fn corners_on_corners_push_along_the_middle_of_what_both_allow() {
+fn corners_push_along_the_middle_of_what_both_allow() {
     // A point on the edge of a step: halfway between tread and riser.
     let edge = [[-2.0, 0.0], [0.0, 0.0], [1e-9, -2.0], [2.0, -2.0]];
     let s = FRAC_1_SQRT_2;
@@ -38,7 +38,7 @@ fn a_spot_touches_once() {
     // or in the tread: two contacts with the tread's normal.
     for overhang in [-1e-3, -1e-7, -1e-9, -1e-15, 0.0, 1e-15, 1e-9, 1e-7, 1e-3] {
         for height in [-1e-9, -1e-16, 0.0, 1e-16, 1e-9] {
-            let text = state([-0.2 + overhang, 0.1 + height, 0.0], FALLING, 1, &step_down(0.0, 0.5));
+            let text = state([-0.2 + overhang, 0.1 + height, 0.0], FALLING, 1, &step(0.0, -0.5));
             let found = impact(&sole(), &text);
             assert_eq!(found.contacts.len(), 2, "{overhang} {height}: {:?}", touches(&found));
             for contact in &found.contacts {
@@ -53,24 +53,19 @@ fn a_spot_touches_once() {
 fn a_plate_without_thickness_lies_on_an_edge() {
     let plate = body(r#"<geometry><box size="0.4 0.1 0"/></geometry>"#);
     for height in [-1e-9, 0.0, 1e-9] {
-        let found = impact(&plate, &state([0.0, height, 0.2], FALLING, 1, &step_down(0.0, 0.5)));
+        let found = impact(&plate, &state([0.0, height, 0.2], FALLING, 1, &step(0.0, -0.5)));
         assert_eq!(found.contacts.len(), 1, "{height}");
         assert_close(&found.contacts[0].normal().components(), &[0.2_f64.sin(), 0.2_f64.cos()]);
     }
 }
 
-/// A cylinder of radius 0.2 m and 0.5 m long whose axis is `yaw` off the plane's normal, toward x: its ends are
-/// ellipses, 0.2 cos(yaw) by 0.2 m, at 0.25 sin(yaw) before and behind the CoG.
-fn oblique(yaw: f64) -> Robot {
-    body(&format!(
-        r#"<origin rpy="1.5707963267948966 0 {yaw:?}"/><geometry><cylinder radius="0.2" length="0.5"/></geometry>"#
-    ))
-}
-
+/// A cylinder of radius 0.2 m and 0.5 m long whose axis is 0.7 rad off the plane's normal, toward x: its ends are
+/// ellipses, 0.2 cos 0.7 by 0.2 m, at 0.25 sin 0.7 before and behind the CoG.
 #[test]
 fn an_oblique_cylinder_meets_segments_and_corners() {
-    let yaw = 0.7_f64;
-    let (robot, half, reach) = (oblique(yaw), 0.2 * yaw.cos(), 0.25 * yaw.sin());
+    let cylinder = r#"<geometry><cylinder radius="0.2" length="0.5"/></geometry>"#;
+    let robot = body(&format!(r#"<origin rpy="1.5707963267948966 0 0.7"/>{cylinder}"#));
+    let (half, reach) = (0.2 * 0.7_f64.cos(), 0.25 * 0.7_f64.sin());
     let near = |place: [f64; 3], profile: &[[f64; 2]], expected: &[[[f64; 2]; 2]]| {
         let found = touches(&impact(&robot, &state(place, FALLING, 1, profile)));
         let numbers = found.as_flattened().iter().zip(expected.as_flattened());
@@ -79,8 +74,8 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     };
     // Flat on a tread, and with its middle on an edge.
     let up = [0.0, 1.0];
-    near([-1.0, 0.2, 0.0], &step_down(0.0, 1.0), &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]]);
-    near([0.0, 0.2, 0.0], &step_down(0.0, 1.0), &[[[-reach, 0.0], up], [[0.0, 0.0], up]]);
+    near([-1.0, 0.2, 0.0], &step(0.0, -1.0), &[[[-1.0 - reach, 0.0], up], [[-1.0 + reach, 0.0], up]]);
+    near([0.0, 0.2, 0.0], &step(0.0, -1.0), &[[[-reach, 0.0], up], [[0.0, 0.0], up]]);
     // The front end at 45 degrees of its ellipse, (half cos s, 0.2 sin s) with s = -pi/4, on a ridge: its normal there
     // is along (cos s / half, sin s / 0.2).
     let s = FRAC_1_SQRT_2;
@@ -98,7 +93,7 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     // Sunk: by as much as it is too low.
     let sunk = |[x, z]: [f64; 2], profile: &[[f64; 2]]| depth(&robot, &state([x, z, 0.0], [0.0; 3], 1, profile));
     let depths =
-        [sunk([-1.0, 0.15], &step_down(0.0, 1.0)), sunk([0.0, 0.15], &ridge), sunk([-1.0, -0.3], &step_down(0.0, 1.0))];
+        [sunk([-1.0, 0.15], &step(0.0, -1.0)), sunk([0.0, 0.15], &ridge), sunk([-1.0, -0.3], &step(0.0, -1.0))];
     for (found, expected) in depths.into_iter().zip([0.05, 0.05, 0.5]) {
         assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
     }
@@ -129,12 +124,12 @@ fn contacts_named_by_hand_take_the_nearest_ground() {
 }
 
 #[test]
-fn a_circle_whose_lowest_point_is_exactly_a_corner_of_the_ground_touches_there() {
+fn a_circle_on_a_corner_of_the_ground_touches_it() {
     let down = [[-2.0, 0.0], [0.0, 0.0], [2.0, -0.4]];
     let on = |profile: &[[f64; 2]], x: f64| impact(&disc(), &state([x, 0.5, 0.0], FALLING, 0.5, profile));
     // At the edge of a step, where a slope begins, and at both ends of the ground; the normal is that of the level
     // segment.
-    for (profile, x) in [(&step_down(0.0, 1.0)[..], 0.0), (&down, 0.0), (&[[-2.0, 0.0], [0.25, 0.0]], 0.25)] {
+    for (profile, x) in [(&step(0.0, -1.0)[..], 0.0), (&down, 0.0), (&[[-2.0, 0.0], [0.25, 0.0]], 0.25)] {
         assert_touches(&on(profile, x), &[[[x, 0.0], [0.0, 1.0]]]);
     }
     assert_touches(&on(&[[0.25, 0.0], [2.0, 0.0]], 0.25), &[[[0.25, 0.0], [0.0, 1.0]]]);

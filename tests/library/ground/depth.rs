@@ -24,13 +24,13 @@ fn over_a_gap_and_beyond_an_end_there_is_nothing() {
 fn a_foot_in_the_ground_is_refused_with_its_depth() {
     let level = [0.0; 3];
     for (what, robot, [x, z], profile, expected) in [
-        ("toe in the riser", sole(), [0.02, 0.1], &step_up(0.2, 0.5)[..], 0.02),
-        ("in the tread", sole(), [-1.0, 0.05], &step_up(0.2, 0.5), 0.05),
-        ("as a whole far below the tread", sole(), [-1.0, -0.9], &step_up(0.2, 0.5), 1.0),
+        ("toe in the riser", sole(), [0.02, 0.1], &step(0.2, 0.5)[..], 0.02),
+        ("in the tread", sole(), [-1.0, 0.05], &step(0.2, 0.5), 0.05),
+        ("as a whole far below the tread", sole(), [-1.0, -0.9], &step(0.2, 0.5), 1.0),
         // Where a lower one would still be far beneath.
-        ("below the upper tread", sole(), [-1.0, -0.2], &step_down(0.5, 3.0), 0.3),
-        ("disc, its middle above the ground", disc(), [-1.0, 0.4], &step_up(0.2, 0.5), 0.1),
-        ("disc, its middle below the ground", disc(), [-1.0, -0.3], &step_up(0.2, 0.5), 0.8),
+        ("below the upper tread", sole(), [-1.0, -0.2], &step(0.5, -3.0), 0.3),
+        ("disc, its middle above the ground", disc(), [-1.0, 0.4], &step(0.2, 0.5), 0.1),
+        ("disc, its middle below the ground", disc(), [-1.0, -0.3], &step(0.2, 0.5), 0.8),
         ("a ridge pokes between free corners", sole(), [0.0, 0.1], &[[-1.0, -5.0], [0.0, 0.03], [1.0, -5.0]], 0.03),
     ] {
         let found = depth(&robot, &state([x, z, 0.0], level, 1, profile));
@@ -44,7 +44,7 @@ fn a_foot_in_the_ground_is_refused_with_its_depth() {
 
 #[test]
 fn a_greater_tolerance_accepts_what_is_as_deep() {
-    let text = state([0.0, 0.099, 0.0], FALLING, 0.5, &step_down(0.1, 0.2));
+    let text = state([0.0, 0.099, 0.0], FALLING, 0.5, &step(0.1, -0.2));
     assert!(try_impact(&sole(), Options::default(), &text).is_err());
     let wide = Options { contact_tolerance: Some(2e-3), ..Options::default() };
     let found = try_impact(&sole(), wide, &text).expect("within the tolerance");

@@ -79,14 +79,9 @@ fn depth(robot: &Robot, state: &Value) -> f64 {
     *depth
 }
 
-/// A step down of `height` at x = `edge`, its riser 1e-6 m wide.
-fn step_down(edge: f64, height: f64) -> [[f64; 2]; 4] {
-    [[-2.0, 0.0], [edge, 0.0], [edge + 1e-6, -height], [2.0, -height]]
-}
-
-/// A step up.
-fn step_up(edge: f64, height: f64) -> [[f64; 2]; 4] {
-    [[-2.0, 0.0], [edge, 0.0], [edge + 1e-6, height], [2.0, height]]
+/// A step of this rise at x = `edge`, its riser 1e-6 m wide.
+fn step(edge: f64, rise: f64) -> [[f64; 2]; 4] {
+    [[-2.0, 0.0], [edge, 0.0], [edge + 1e-6, rise], [2.0, rise]]
 }
 
 #[track_caller]

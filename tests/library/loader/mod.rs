@@ -3,7 +3,7 @@
 //! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
 
 use crate::support::command::read;
-use crate::support::impact::robot as load;
+use crate::support::impact::{reduced as reduce, robot as load};
 use crate::support::robots::{ROBOTS, robot_and_reference};
 use crate::support::urdf::{self, HINGE, joint, link};
 use heelstrike::description::Description;
@@ -27,10 +27,6 @@ fn disc(link: &Link) -> ([f64; 2], f64) {
         (&[center], Rim::Circle { radius }) => (center.components(), radius),
         other => panic!("{other:?} is no disc"),
     }
-}
-
-fn reduce(text: &str, reduction: &Reduction) -> Robot {
-    Robot::reduce(&Description::from_urdf(text).expect("a description"), reduction).expect("a robot")
 }
 
 /// With these joints held at values.

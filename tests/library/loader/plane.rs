@@ -12,7 +12,7 @@ fn still<'a>(robot: &'a Robot, joint: &str) -> &'a FreezeReason {
 }
 
 #[test]
-fn the_common_direction_of_all_hinges_gives_the_plane() {
+fn the_common_direction_of_hinges_gives_the_plane() {
     for (axis, plane, sign) in [
         ("0 1 0", Plane::XZ, 1.0),
         ("0 -1 5e-4", Plane::XZ, -1.0),
@@ -29,7 +29,7 @@ fn the_common_direction_of_all_hinges_gives_the_plane() {
 }
 
 #[test]
-fn without_a_common_direction_the_plane_is_x_z_and_a_better_one_is_named() {
+fn without_a_common_direction_the_plane_is_x_z() {
     let robot = load(&massive(&[("continuous", "1 0 0"), ROLL, PITCH]));
     assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::XZ, PlaneReason::Usual));
     assert_eq!((robot.reading.better_plane, names(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
@@ -110,10 +110,7 @@ fn frozen_joints_keep_their_values() {
     // A joint of the plane can be held as well, and then gives no plane.
     let robot = holding(&massive(&[ROLL, YAW]), &[(0, 0.0)]);
     assert_eq!((robot.reading.plane, names(&robot)), (Plane::XY, vec!["k"]));
-}
 
-#[test]
-fn a_frozen_pitch_turns_all_that_depends_on_it() {
     // j dips the nose by a: what hung down points backward by sin a.
     let robot = holding(&massive(&[PITCH, PITCH]), &[(0, 0.3)]);
     assert_at(robot.joints[0].origin, [-0.3_f64.sin(), -1.0 - 0.3_f64.cos()]);
@@ -121,20 +118,19 @@ fn a_frozen_pitch_turns_all_that_depends_on_it() {
 
 #[test]
 fn what_cannot_be_held_is_refused() {
-    let refused = |text: &str, hold: &[(usize, f64)]| {
+    let text = massive(&[("fixed", "0 1 0"), PITCH, ("floating", "0 1 0")]);
+    let mimic = with_mimic(&text.replace("fixed", "revolute"), "j", "joint=\"k\"");
+    for (text, hold, refusal) in [
+        (&text, &[(0, 0.0)][..], "6:1: joint \"j\": it cannot be held at a value: it is fixed"),
+        (&text, &[(2, 0.0)], "8:1: joint \"l\": it cannot be held at a value: it is floating"),
+        (&text, &[(1, 0.0), (1, 1.0)], "7:1: joint \"k\": held joint \"k\" is given twice"),
+        (&text, &[(1, f64::NAN)], "7:1: joint \"k\": the value at which it is held must be a finite number, not NaN"),
+        (&mimic, &[(0, 0.0)], "6:1: joint \"j\": it cannot be held by itself: it follows joint \"k\""),
+    ] {
         let description = Description::from_urdf(text).expect("a description");
         let reduction = Reduction { hold: hold.to_vec(), ..Reduction::default() };
-        Robot::reduce(&description, &reduction).expect_err("a refusal").to_string()
-    };
-    let text = massive(&[("fixed", "0 1 0"), PITCH, ("floating", "0 1 0")]);
-    assert_eq!(refused(&text, &[(0, 0.0)]), "6:1: joint \"j\": it cannot be held at a value: it is fixed");
-    assert_eq!(refused(&text, &[(2, 0.0)]), "8:1: joint \"l\": it cannot be held at a value: it is floating");
-    assert_eq!(refused(&text, &[(1, 0.0), (1, 1.0)]), "7:1: joint \"k\": held joint \"k\" is given twice");
-    let value = "7:1: joint \"k\": the value at which it is held must be a finite number, not NaN";
-    assert_eq!(refused(&text, &[(1, f64::NAN)]), value);
-    let mimic = with_mimic(&text.replace("fixed", "revolute"), "j", "joint=\"k\"");
-    let error = "6:1: joint \"j\": it cannot be held by itself: it follows joint \"k\"";
-    assert_eq!(refused(&mimic, &[(0, 0.0)]), error);
+        assert_eq!(Robot::reduce(&description, &reduction).expect_err("a refusal").to_string(), refusal);
+    }
 }
 
 #[test]
@@ -225,7 +221,7 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
 // Whatever the order and the names.
 
 #[test]
-fn names_change_nothing() {
+fn names_and_order_in_the_file_change_nothing_else() {
     let text = massive(&[PITCH, ROLL, ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
     // Each letter the one that stands opposite in the alphabet, so that their order turns round; joints named like
     // links.
@@ -233,20 +229,15 @@ fn names_change_nothing() {
     let renamed: String = "abcdejklm".chars().fold(text.clone(), |text, letter| {
         text.replace(&format!("\"{letter}\""), &format!("\"*{}\"", opposite(letter)))
     });
-    let (robot, renamed) = (load(&text), load(&renamed.replace('*', "a name ü ")));
+    let (forward, renamed) = (load(&text), load(&renamed.replace('*', "a name ü ")));
     assert_eq!(renamed.joints[0].name, "a name ü q");
     let numbers = |robot: &Robot| {
         let bodies: Vec<_> = robot.bodies.iter().map(|body| (body.mass, body.com, body.moment, body.joint)).collect();
         let joints: Vec<_> = robot.joints.iter().map(|joint| (joint.parent, joint.origin, joint.axis)).collect();
         (bodies, joints)
     };
-    assert_eq!(numbers(&robot), numbers(&renamed));
-}
+    assert_eq!(numbers(&forward), numbers(&renamed));
 
-#[test]
-fn order_in_the_file_changes_only_the_order() {
-    let text = massive(&[PITCH, ROLL, ("prismatic", "0 0 1"), ("revolute", "0 -1 0")]);
-    let forward = load(&text);
     let elements = text.lines().rev().filter(|line| line.starts_with("<link") || line.starts_with("<joint"));
     let backward = load(&robot(&elements.collect::<String>()));
     assert_eq!(forward.bodies.len(), backward.bodies.len());

@@ -1,9 +1,8 @@
 //! Two answers to one question.
 
-use crate::support::impact::{outcomes, try_impact};
+use crate::support::impact::{outcomes, reduced, try_impact};
 use crate::support::scaled::{largest, near};
 use heelstrike::Robot;
-use heelstrike::description::Description;
 use heelstrike::impact::Outcome;
 use heelstrike::pipeline::{Impact, Options};
 use heelstrike::reductions::Reductions;
@@ -23,16 +22,10 @@ pub const FEWER: [Reductions; 7] = [
     Reductions { lone: false, ..Reductions::ALL },
 ];
 
-/// A description as a robot.
-pub fn robot(description: &Description, reductions: Reductions) -> Robot {
-    Robot::reduce(description, &Reduction { reductions, ..Reduction::default() }).expect("a good robot")
-}
-
 /// A mechanism's URDF as a robot that floats in the x-z plane, whatever its joints suggest.
 pub fn floating(urdf: &str, reductions: Reductions) -> Robot {
-    let description = Description::from_urdf(urdf).expect("a good file");
     let (plane, base) = (Some(Plane::XZ), Some(Base::Floating));
-    Robot::reduce(&description, &Reduction { plane, base, reductions, ..Reduction::default() }).expect("a good robot")
+    reduced(urdf, &Reduction { plane, base, reductions, ..Reduction::default() })
 }
 
 /// The answer to a state of a robot, with its matrices.

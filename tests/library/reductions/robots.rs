@@ -3,12 +3,13 @@
 use crate::support::command::read;
 use crate::support::parallel::total;
 use crate::support::robots::{Contact, ROBOTS, by_name, robot_and_reference};
-use heelstrike::description::Description;
 use heelstrike::reductions::Reductions;
+use heelstrike::robot::Reduction;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::comparison::{FEWER, answer, difference, largest_rate, robot};
+use super::comparison::{FEWER, answer, difference, largest_rate};
+use crate::support::impact;
 
 #[derive(Deserialize)]
 struct Variant {
@@ -46,8 +47,9 @@ fn states(variant: &Variant, base: usize, joints: &[String]) -> Vec<Value> {
 
 fn compare(name: &str, variant: &str) {
     let (urdf, variant) = robot_and_reference::<Variant>((name, variant));
-    let description = Description::from_urdf(&read(&urdf)).expect("a good file");
-    let reduced = robot(&description, Reductions::ALL);
+    let text = read(&urdf);
+    let robot = |reductions| impact::reduced(&text, &Reduction { reductions, ..Reduction::default() });
+    let reduced = robot(Reductions::ALL);
     let joints: Vec<String> = reduced.joints.iter().map(|joint| joint.name.clone()).collect();
     let mut states = states(&variant, reduced.base_dofs(), &joints);
     // Feet that are found: each link with shapes stands once.
@@ -65,7 +67,7 @@ fn compare(name: &str, variant: &str) {
     }
     let (mut compared, mut differences) = (0, Vec::new());
     for (fewer, reductions) in FEWER.into_iter().enumerate() {
-        let unreduced = robot(&description, reductions);
+        let unreduced = robot(reductions);
         for state in &states {
             match (answer(&reduced, state, Reductions::ALL), answer(&unreduced, state, reductions)) {
                 (Ok(one), Ok(other)) => {

@@ -125,7 +125,7 @@ proptest! {
     /// Infinite friction has no cone to test: the pair (a, b) = (1, 0) of a L_n >= b |L_t| asks for pressure alone. No
     /// unreduced computation would be another; a huge finite coefficient must lead to the same modes.
     #[test]
-    fn huge_friction_leads_to_the_modes_of_infinite_friction(case in case()) {
+    fn huge_friction_has_the_modes_of_infinite_friction(case in case()) {
         let robot = floating(&case.mechanism.urdf(0), Reductions::ALL);
         let outcomes = |friction| {
             let mut state = case.state(0);
