@@ -27,33 +27,21 @@ fn a_sole_with_its_weight_beyond_the_edge_tips() {
 }
 
 #[test]
-fn a_tilted_sole_on_an_edge_has_its_own_normal() {
-    // The middle of the sole on the edge, the nose 0.3 rad down beyond it.
-    let (sin, cos) = 0.3_f64.sin_cos();
-    let place = [0.1 * sin, 0.1 * cos, 0.3];
-    let found = impact(&sole(), &state(place, FALLING, "infinite", &step(0.0, -1.0)));
-    assert_touches(&found, &[[[0.0, 0.0], [sin, cos]]]);
-    // Seen along t = (cos, -sin) and n = (sin, cos): c = (sin, -cos). The normal goes through the CoG, 0.1 m away:
-    // L_n = m cos, L_t = -sin / (1 / m + 0.1^2 / I) = -sin / 0.52; the point at -0.1 n turns it by I w = -0.1 L_t.
-    let (impulse, after) = only_outcome(&found);
-    let [t, n] = [-sin / 0.52, 2.0 * cos];
-    assert_close(&impulse[0], &[t, n]);
-    assert_close(&after, &[(t * cos + n * sin) / 2.0, -1.0 + (n * cos - t * sin) / 2.0, -0.1 * t / 0.5]);
-}
-
-#[test]
-fn a_disc_on_a_corner_is_struck_toward_its_center() {
-    for angle in [-0.7, -0.2, 0.4, 1.2] {
+fn a_sole_or_disc_on_a_corner_is_struck_toward_its_middle() {
+    // The middle of a sole on an edge, the nose 0.3 rad down beyond it: its own normal. A ridge too steep for the disc
+    // to touch beside its top: the line to its center.
+    let (edge, ridge) = (step(0.0, -1.0), [[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]]);
+    let discs = [-0.7, -0.2, 0.4, 1.2].map(|angle| (disc(), 0.5, angle, 0.0, &ridge[..]));
+    for (robot, r, angle, pitch, profile) in [(sole(), 0.1, 0.3, 0.3, &edge[..])].into_iter().chain(discs) {
         let (sin, cos) = f64::sin_cos(angle);
-        // A ridge too steep for the disc to touch beside its top.
-        let ridge = [[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]];
-        let found = impact(&disc(), &state([0.5 * sin, 0.5 * cos, 0.0], FALLING, "infinite", &ridge));
+        let found = impact(&robot, &state([r * sin, r * cos, pitch], FALLING, "infinite", profile));
         assert_touches(&found, &[[[0.0, 0.0], [sin, cos]]]);
-        // c = (sin, -cos); G_tt = 1 / m + r^2 / I = 0.5 + 0.25 / 0.5.
+        // Seen along t = (cos, -sin) and n = (sin, cos): c = (sin, -cos). The normal goes through the CoG, r away: L_n =
+        // m cos, L_t = -sin / (1 / m + r^2 / I); the point at -r n turns it by I w = -r L_t.
         let (impulse, after) = only_outcome(&found);
-        let [t, n] = [-sin, 2.0 * cos];
+        let [t, n] = [-sin / (0.5 + r * r / 0.5), 2.0 * cos];
         assert_close(&impulse[0], &[t, n]);
-        assert_close(&after, &[(t * cos + n * sin) / 2.0, -1.0 + (n * cos - t * sin) / 2.0, -0.5 * t / 0.5]);
+        assert_close(&after, &[(t * cos + n * sin) / 2.0, -1.0 + (n * cos - t * sin) / 2.0, -r * t / 0.5]);
     }
 }
 

@@ -24,7 +24,9 @@ fn world(text: &str) -> String {
 fn the_root_floats_or_is_bolted_by_its_mass_and_joints() {
     let mass = "the root has mass";
     let alone = "the root is massless and joint \"j\" alone carries the robot";
+    let several = "the root is massless, but several joints carry the robot";
     let fixed = chain(&[0.0, 1.0, 1.0], &[FIXED, PITCH]);
+    let forked = chain(&[0.0, 1.0, 1.0], &[PITCH, PITCH]).replace("<parent link=\"b\"/>", "<parent link=\"a\"/>");
     for (text, expected, kg, because) in [
         // However little it weighs.
         (chain(&[0.001, 1.0], &[PITCH]), (Base::Floating, "a", vec!["j"]), 1.001, Some(mass)),
@@ -34,6 +36,7 @@ fn the_root_floats_or_is_bolted_by_its_mass_and_joints() {
         // A rail, a single hinge, two of them.
         (chain(&[0.0, 1.0, 1.0], &[X, PITCH]), (Base::Fixed, "a", vec!["j", "k"]), 2.0, Some(alone)),
         (chain(&[0.0, 1.0], &[PITCH]), (Base::Fixed, "a", vec!["j"]), 1.0, Some(alone)),
+        (forked, (Base::Floating, "a", vec!["j", "k"]), 2.0, Some(several)),
         // Incomplete: no pitch, two slides along one line, mass on the way.
         (chain(&[0.0, 0.0, 1.0], &[X, Z]), (Base::Fixed, "a", vec!["j", "k"]), 1.0, Some(alone)),
         (chain(&[0.0, 0.0, 0.0, 1.0], &[X, X, PITCH]), (Base::Fixed, "a", vec!["j", "k", "l"]), 1.0, Some(alone)),
@@ -117,16 +120,6 @@ fn the_world_has_no_mass_no_feet_and_needs_no_definition() {
     let robot = load(&world(&chain(&[0.0, 1.0], &[PITCH]).replace("<link name=\"a\"></link>", "")));
     assert_eq!(found(&robot), (Base::Fixed, "world", vec!["j"]));
     assert_eq!(robot.links.iter().map(|link| link.name.as_str()).collect::<Vec<_>>(), ["b", "world"]);
-}
-
-#[test]
-fn a_massless_root_between_several_joints_floats() {
-    let leg = |name: &str| link(name, 1.0, [0.0, -0.5], 0.1, "");
-    let hinge = |name: &str, leg: &str| joint(name, HINGE, ["hip", leg], [0.0; 2], "");
-    let elements = ["<link name=\"hip\"/>".to_owned(), leg("l"), leg("r"), hinge("i", "l"), hinge("j", "r")];
-    let robot = load(&urdf::robot(&elements));
-    assert_eq!(found(&robot), (Base::Floating, "hip", vec!["i", "j"]));
-    assert_eq!(robot.reading.base_because, "the root is massless, but several joints carry the robot");
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn ramone_keeps_the_digits_of_table_1() {
 }
 
 #[test]
-fn walkers_hang_from_the_hip_with_point_feet() {
+fn walkers_and_the_block_have_points_for_feet() {
     for (name, along, moment) in [("minimalistic", 0.5, 0.0), ("pdw", 0.4, 0.04)] {
         let walker = model(name);
         assert_eq!(walker.coordinates().collect::<Vec<_>>(), ["x", "z", "pitch", "hip"]);
@@ -155,10 +155,6 @@ fn walkers_hang_from_the_hip_with_point_feet() {
         assert!(walker.links.iter().all(|link| disc(link) == ([0.0, -1.0], 0.0)));
         assert_eq!(walker.left_out, []);
     }
-}
-
-#[test]
-fn block_is_one_body_on_one_point() {
     let block = model("block");
     assert_eq!((block.bodies.len(), block.dofs()), (1, 3));
     assert_eq!((block.bodies[0].mass, block.bodies[0].com, block.bodies[0].moment), (1.0, Vector::new(-1.0, 1.0), 1.0));

@@ -55,14 +55,11 @@ fn compare(name: &str, variant: &str) {
     // Feet that are found: each link with shapes stands once.
     for link in reduced.links.iter().filter(|link| !link.shapes.is_empty() && reduced.base_dofs() > 0).take(6) {
         let mut standing = states[2].clone();
-        let fields = standing.as_object_mut().expect("an object");
-        fields.remove("contacts");
+        standing.as_object_mut().expect("an object").remove("contacts");
         for part in ["position", "velocity"] {
-            let base = fields[part]["base"].as_object_mut().expect("it floats");
-            base.remove("x");
-            base.remove("z");
+            standing[part]["base"] = json!({"pitch": standing[part]["base"]["pitch"]});
         }
-        fields.insert("stance".into(), json!(link.name));
+        standing["stance"] = json!(link.name);
         states.push(standing);
     }
     let (mut compared, mut differences) = (0, Vec::new());

@@ -102,16 +102,11 @@ pub fn straight(inertia: Option<f64>) -> Value {
 
 /// RAMone: knees at a right angle, the main body upright.
 pub fn kneed() -> Value {
-    json!({
-        "parameters": {"alpha": {"from": RANGE[0], "to": RANGE[1], "steps": 50}},
-        "constants": {"upper": 0.2, "lower": 0.2385, "knee": "-pi/2", "bend": "atan2(lower, upper)"},
-        "state": {
-            "position": {"joints": {
-                "left_hip": "bend + alpha", "left_knee": "knee", "right_hip": "bend - alpha", "right_knee": "knee",
-            }},
-            "velocity": {"base": {"pitch": -1}},
-            "stance": "left_foot",
-            "friction": "infinite",
-        },
-    })
+    let mut study = straight(None);
+    study["constants"] = json!({"upper": 0.2, "lower": 0.2385, "knee": "-pi/2", "bend": "atan2(lower, upper)"});
+    study["state"]["position"] = json!({"joints": {
+        "left_hip": "bend + alpha", "left_knee": "knee", "right_hip": "bend - alpha", "right_knee": "knee",
+    }});
+    study["state"]["stance"] = json!("left_foot");
+    study
 }

@@ -37,7 +37,7 @@ fn a_rescaled_parameter_has_the_same_regions() {
 }
 
 #[test]
-fn a_reversed_parameter_has_the_same_regions_from_the_other_end() {
+fn a_reversed_parameter_has_the_regions_reversed() {
     let mut study = renamed(&kneed(), "alpha", "(-beta)");
     let [from, to] = RANGE;
     study["parameters"] = json!({"beta": {"from": -to, "to": -from, "steps": 50}});
@@ -64,7 +64,7 @@ fn names_of_constants_do_not_matter() {
 
 /// Seen from behind, each angle and each tangential direction turns.
 #[test]
-fn a_mirrored_robot_slides_the_other_way_at_the_same_places() {
+fn a_mirrored_robot_slides_the_other_way() {
     let mut study = straight(None);
     study["state"]["friction"] = json!(1);
     let mut mirrored = study.clone();

@@ -54,7 +54,7 @@ fn within_range<const N: usize>(begins: [(f64, &'static str); N]) -> Vec<(f64, &
 /// The band of sliding closes at j = k, where its borders, of two different inequalities, cross; its width is about
 /// 1.25 (k - j).
 #[test]
-fn a_band_between_two_crossing_inequalities_is_found_however_thin() {
+fn a_band_between_crossing_inequalities_is_found() {
     for off in [1e-2, 1e-3, 1e-4, 4e-6, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
         let j = K - off;
         let [first, last] = lift_off_ends(j).expect("it ends and begins again");

@@ -19,7 +19,7 @@ fn turn(contact: &str, inequality: &str, modes: &str, valid: &str) -> Turn {
 /// friction's limit has c_t+ of one sign and L_t of the other. c_n+ of lift-off and L_t of the slide turn together, and
 /// L_n of the stop and c_t+ of the slide.
 #[test]
-fn the_borders_of_the_minimalistic_biped_turn_by_the_trailing_foot() {
+fn borders_of_the_biped_turn_by_the_trailing_foot() {
     let sweep = sweep("urdf/minimalistic.urdf", &straight(None));
     let expected = [
         (1.0, ("normal_velocity", "separate/stick", "below"), ("tangential_impulse", "slide-/stick", "above")),

@@ -97,10 +97,8 @@ fn a_refused_row_stays_in_its_place_and_a_circle_has_no_heading() {
 
 #[test]
 fn recorded_robots_are_where_the_reduced_tables_have_them() {
-    for (gait, urdf, at_x) in
-        [("a1_walk", "a1/a1.urdf", 5e-9), ("h1_walk", "h1/h1.urdf", 5e-9), ("h1_run", "h1/h1.urdf", 5e-8)]
-    {
-        let robot = robot(&read(&format!("tests/data/robots/{urdf}")));
+    for (name, gait, at_x) in [("a1", "a1_walk", 5e-9), ("h1", "h1_walk", 5e-9), ("h1", "h1_run", 5e-8)] {
+        let robot = robot(&read(&format!("tests/data/robots/{name}/{name}.urdf")));
         let (found, _) = projected(&read(&format!("tests/data/gaits/{gait}.3d.csv")), &robot);
         let planar = samples(&read(&format!("tests/data/gaits/{gait}.csv")), &robot, Rates::Columns);
         assert_eq!(found.len(), planar.len());
