@@ -156,11 +156,13 @@ impl<T: Real> Rotation<T> {
     }
 
     /// `vector`, given in the turned frame, in the axes it was turned from.
+    #[inline]
     pub fn apply(self, Vector { x, z }: Vector<T>) -> Vector<T> {
         Vector { x: self.cos * x + self.sin * z, z: self.cos * z - self.sin * x }
     }
 
     /// The rotation by the sum of both angles.
+    #[inline]
     pub fn then(self, other: Self) -> Self {
         Self { cos: self.cos * other.cos - self.sin * other.sin, sin: self.sin * other.cos + self.cos * other.sin }
     }

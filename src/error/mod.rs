@@ -220,6 +220,7 @@ fn brief(value: f64) -> String {
 }
 
 /// `value`, unless it is NaN or infinite; `what` it is.
+#[inline]
 pub(crate) fn finite(value: f64, what: impl FnOnce() -> String) -> Result<f64> {
     if value.is_finite() { Ok(value) } else { Err(Reason::NotFinite { what: what(), value }.into()) }
 }

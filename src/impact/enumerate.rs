@@ -242,11 +242,14 @@ pub struct Labels {
 impl Labels {
     /// Visits every list of a leaf's `modes`; `shares` is whether modes with the same impulses are visited as one.
     pub fn visit(&mut self, modes: &[Mode], laws: &[Law], shares: bool, mut visit: impl FnMut(&[Mode])) {
+        if !shares {
+            return visit(modes);
+        }
         modes.clone_into(&mut self.modes);
         self.open.clear();
         let group = |(contact, (mode, law)): (usize, (&Mode, &Law))| {
             let group = law.modes().iter().find(|group| group[0] == *mode)?;
-            (shares && group.len() > 1).then_some((contact, *group))
+            (group.len() > 1).then_some((contact, *group))
         };
         self.open.extend(modes.iter().zip(laws).enumerate().filter_map(group));
         loop {
