@@ -95,7 +95,7 @@ fn assert_energy(name: &str, robot: &Robot, state: &State) -> Impact {
 }
 
 #[test]
-fn velocities_of_base_and_joints_keep_their_digits_in_chains() {
+fn velocities_keep_their_digits_in_chains() {
     for case in cases().expect("read").into_iter().filter(|case| case.name.starts_with("chain of 100 links")) {
         let CaseSubject::State(subject) = &case.subject else { panic!("a state") };
         let impact = assert_energy(&case.name, &subject.0, &subject.1);

@@ -96,7 +96,7 @@ fn an_impulse_of_a_light_contact_keeps_its_digits() {
 }
 
 #[test]
-fn contacts_that_can_squeeze_each_other_at_rest_are_on_no_border() {
+fn contacts_that_squeeze_at_rest_are_on_no_border() {
     // L = s (1, 2) is admissible for every s: the normal impulse is not forced to zero.
     let found = solve(&[4., -2., -2., 1.], [[0., 0.]], [mu(2.0)], [0.0]);
     assert_eq!((found.verdict, found.outcomes[0].index, found.index_sum), (Verdict::NoImpact, Some(1), Some(1)));
@@ -124,7 +124,7 @@ fn an_ill_conditioned_matrix_that_is_given_keeps_its_digits() {
 }
 
 #[test]
-fn a_sign_that_rounding_hides_in_given_numbers_is_read_exactly() {
+fn a_sign_that_rounding_hides_is_read_exactly() {
     // The cone's edge is at 4/5; 0.8 as f64 lies 4e-17 above it.
     let rod = |mu: f64| solve(&[2., 1., 1., 2.], [[0.5, -1.0]], [Friction::Finite(mu)], [0.0]);
     assert_eq!(modes(&rod(0.8)), [[Stick]]);

@@ -11,7 +11,7 @@ fn impact(robot: &str, state: &Value, arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn every_sample_is_the_result_of_impact_for_the_same_numbers() {
+fn every_sample_is_the_result_of_impact() {
     for arguments in [&[][..], &["--explain", "--matrices"], &["--brief"]] {
         let mut study = kneed();
         study["parameters"]["alpha"]["steps"] = json!(7);

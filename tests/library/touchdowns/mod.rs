@@ -172,7 +172,7 @@ fn the_command_prints_row_and_foot_of_a_touchdown() {
 }
 
 #[test]
-fn the_command_writes_touchdowns_as_a_table_and_carries_the_time() {
+fn the_command_writes_touchdowns_as_a_table() {
     let table = batch(&["--touching", "strike", "--output-format", "csv"]);
     let rows: Vec<BTreeMap<String, String>> =
         csv::Reader::from_reader(table.as_bytes()).deserialize().map(Result::unwrap).collect();

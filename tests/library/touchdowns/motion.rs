@@ -206,7 +206,7 @@ fn a_point_that_the_foot_keeps_up_does_not_strike() {
 }
 
 #[test]
-fn a_touchdown_comes_from_above_down_to_the_ground_in_one_clip() {
+fn a_touchdown_comes_down_from_above_in_one_clip() {
     let slowly: Vec<f64> = (0..100).map(|row| 0.04 - 0.0004 * f64::from(row)).collect();
     let clips = |start: f64| -> Vec<[f64; 3]> {
         let stands = (0..4).map(|row| [start + f64::from(row) * 0.01, 0.0, 0.0]);

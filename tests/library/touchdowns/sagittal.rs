@@ -75,7 +75,7 @@ fn each_clip_has_a_heading_of_its_own() {
 }
 
 #[test]
-fn a_refused_row_stays_in_its_place_and_a_circle_has_no_heading() {
+fn refused_rows_stay_and_a_circle_has_no_heading() {
     let rows: Vec<Row> = (0..3).map(|row| [0.1 * f64::from(row), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]).collect();
     let robot = body();
     let broken = table(&rows).replacen("0.1,0,0,1,", "0.1,0,0,0.5,", 1);

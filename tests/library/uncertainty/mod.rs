@@ -82,7 +82,7 @@ fn results_for_all_half_widths_are_true() {
 }
 
 #[test]
-fn stances_slopes_restitution_rotors_and_held_joints_take_part() {
+fn all_that_a_state_may_have_takes_part() {
     let shares = Shares::of(200, &ramone(), walking);
     assert!(shares.holds >= 100 && 10 * shares.unknown <= 200, "{shares}");
 }
