@@ -127,9 +127,12 @@ impl<'t> Documents<'t> {
 mod tests {
     use super::*;
 
+    /// Texts with their lines and columns.
+    type Places = &'static [(&'static str, usize, usize)];
+
     #[test]
     fn a_text_is_split_into_its_objects() {
-        let cases: [(&str, &[(&str, usize, usize)]); 10] = [
+        let cases: [(&str, Places); 10] = [
             (" {} {\n}\n\n{}\n", &[("{}", 1, 2), ("{\n}", 1, 5), ("{}", 4, 1)]),
             ("  \n", &[]),
             ("[\n{\"a\": 1},\n {}]\n", &[("{\"a\": 1}", 2, 1), ("{}", 3, 2)]),
