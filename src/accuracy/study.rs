@@ -117,7 +117,7 @@ pub enum Work {
     Outcome,
 }
 
-/// Largest errors, free of units (see [`Reference`]).
+/// Largest errors against the reference, free of units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MethodErrors {

@@ -42,7 +42,7 @@ const VERDICTS: [(Verdict, &str); 6] = [
     (Verdict::NoContact, "without contact"),
 ];
 
-/// How many states have which of [`VERDICTS`]; written as an object.
+/// How many states have which verdict; written as an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verdicts([u64; 6]);
 
