@@ -16,18 +16,18 @@ fn corners_push_along_the_middle_of_what_both_allow() {
     // A point on the edge of a step: halfway between tread and riser.
     let edge = [[-2.0, 0.0], [0.0, 0.0], [1e-9, -2.0], [2.0, -2.0]];
     let s = FRAC_1_SQRT_2;
-    assert_normal(&impact(&point(), &state([0.0; 3], FALLING, 1, &edge)), [s, s]);
+    assert_normal(&impact(&point(), state([0.0; 3], FALLING, 1, &edge)), [s, s]);
     // A level sole whose toe ends at the edge: it lies flat, so the tread's normal. Its heel on the edge, the rest over
     // the void: all of the quarter between riser and tread.
-    let flat = impact(&sole(), &state([-0.2, 0.1, 0.0], FALLING, 1, &edge));
+    let flat = impact(&sole(), state([-0.2, 0.1, 0.0], FALLING, 1, &edge));
     assert_touches(&flat, &[[[-0.4, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0]]]);
-    assert_normal(&impact(&sole(), &state([0.2, 0.1, 0.0], FALLING, 1, &edge)), [s, s]);
+    assert_normal(&impact(&sole(), state([0.2, 0.1, 0.0], FALLING, 1, &edge)), [s, s]);
     // The heel of a sole that is pitched by -0.4 (nose up) allows -0.4 to pi/2 - 0.4 from upright toward +x; the edge 0
     // to pi/2. The middle of both is pi/4 - 0.2.
     let (sin, cos) = 0.4_f64.sin_cos();
     // The heel at (-0.2, -0.1) of the body, turned: (cos x + sin' z, cos z - sin' x) with sin' = sin(-0.4).
     let heel = [-0.2 * cos + 0.1 * sin, -0.1 * cos - 0.2 * sin];
-    let tilted = impact(&sole(), &state([-heel[0], -heel[1], -0.4], FALLING, 1, &edge));
+    let tilted = impact(&sole(), state([-heel[0], -heel[1], -0.4], FALLING, 1, &edge));
     let angle = std::f64::consts::FRAC_PI_4 - 0.2;
     assert_normal(&tilted, [angle.sin(), angle.cos()]);
 }
@@ -53,7 +53,7 @@ fn a_spot_touches_once() {
 fn a_plate_without_thickness_lies_on_an_edge() {
     let plate = body(r#"<geometry><box size="0.4 0.1 0"/></geometry>"#);
     for height in [-1e-9, 0.0, 1e-9] {
-        let found = impact(&plate, &state([0.0, height, 0.2], FALLING, 1, &step(0.0, -0.5)));
+        let found = impact(&plate, state([0.0, height, 0.2], FALLING, 1, &step(0.0, -0.5)));
         assert_eq!(found.contacts.len(), 1, "{height}");
         assert_close(&found.contacts[0].normal().components(), &[0.2_f64.sin(), 0.2_f64.cos()]);
     }
@@ -67,7 +67,7 @@ fn an_oblique_cylinder_meets_segments_and_corners() {
     let robot = body(&format!(r#"<origin rpy="1.5707963267948966 0 0.7"/>{cylinder}"#));
     let (half, reach) = (0.2 * 0.7_f64.cos(), 0.25 * 0.7_f64.sin());
     let near = |place: [f64; 3], profile: &[[f64; 2]], expected: &[[[f64; 2]; 2]]| {
-        let found = touches(&impact(&robot, &state(place, FALLING, 1, profile)));
+        let found = touches(&impact(&robot, state(place, FALLING, 1, profile)));
         let numbers = found.as_flattened().iter().zip(expected.as_flattened());
         let near = numbers.flat_map(|(a, b)| a.iter().zip(b)).all(|(a, b)| (a - b).abs() < 1e-12);
         assert!(found.len() == expected.len() && near, "{found:?}");
@@ -126,7 +126,7 @@ fn contacts_named_by_hand_take_the_nearest_ground() {
 #[test]
 fn a_circle_on_a_corner_of_the_ground_touches_it() {
     let down = [[-2.0, 0.0], [0.0, 0.0], [2.0, -0.4]];
-    let on = |profile: &[[f64; 2]], x: f64| impact(&disc(), &state([x, 0.5, 0.0], FALLING, 0.5, profile));
+    let on = |profile: &[[f64; 2]], x: f64| impact(&disc(), state([x, 0.5, 0.0], FALLING, 0.5, profile));
     // At the edge of a step, where a slope begins, and at both ends of the ground; the normal is that of the level
     // segment.
     for (profile, x) in [(&step(0.0, -1.0)[..], 0.0), (&down, 0.0), (&[[-2.0, 0.0], [0.25, 0.0]], 0.25)] {

@@ -5,18 +5,18 @@ use super::*;
 #[test]
 fn over_a_gap_and_beyond_an_end_there_is_nothing() {
     let gap = [[-1.0, 0.0], [-0.1, 0.0], [-0.1 + 1e-6, -5.0], [0.1 - 1e-6, -5.0], [0.1, 0.0], [1.0, 0.0]];
-    let over = impact(&point(), &state([0.0; 3], FALLING, 1, &gap));
+    let over = impact(&point(), state([0.0; 3], FALLING, 1, &gap));
     assert!(over.contacts.is_empty());
     assert_eq!(over.analysis.unwrap().verdict, Verdict::NoContact);
     assert_eq!(over.notes.len(), 1);
     assert!(over.notes[0].contains("the nearest foot, body, is 0.09999"), "{:?}", over.notes);
     // A sole bridges it: both edges carry.
-    let bridge = impact(&sole(), &state([0.0, 0.1, 0.0], FALLING, 1, &gap));
+    let bridge = impact(&sole(), state([0.0, 0.1, 0.0], FALLING, 1, &gap));
     assert_eq!(bridge.contacts.len(), 4);
-    let beyond = impact(&sole(), &state([1.1, 0.1, 0.0], FALLING, 1, &gap));
+    let beyond = impact(&sole(), state([1.1, 0.1, 0.0], FALLING, 1, &gap));
     assert_touches(&beyond, &[[[0.9, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 1.0]]]);
     assert_eq!(beyond.notes, ["body reaches beyond the end of the ground's profile at x = 1.0 m: there is no ground"]);
-    let above = impact(&sole(), &state([1.1, 0.2, 0.0], FALLING, 1, &gap));
+    let above = impact(&sole(), state([1.1, 0.2, 0.0], FALLING, 1, &gap));
     assert!(above.contacts.is_empty() && above.notes.len() == 1, "{:?}", above.notes);
 }
 

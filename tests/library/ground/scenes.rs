@@ -70,15 +70,15 @@ fn a_stance_stands_on_the_profile_at_x_0() {
     let state = |profile: &str, more: &str| {
         format!(r#"{{"stance": "body", "friction": 1{more}, "ground": {{"profile": {profile}}}}}"#)
     };
-    let raised = impact(&robot, &state("[[-1, 0.25], [1, 0.75]]", r#", "position": {"base": {"pitch": 0.1}}"#));
+    let raised = impact(&robot, state("[[-1, 0.25], [1, 0.75]]", r#", "position": {"base": {"pitch": 0.1}}"#));
     assert_close(&raised.contacts[0].point.components(), &[0.0, 0.5]);
     assert_eq!(raised.velocity_before, [[0.0; 2]]);
     // Of the two segments at the foot of a riser it is the tread; the rear end stands there, and the rest is in the
     // step.
     let error =
-        try_impact(&robot, Options::default(), &state("[[-1, 0], [0, 0], [1e-6, 0.15], [1, 0.15]]", "")).unwrap_err();
+        try_impact(&robot, Options::default(), state("[[-1, 0], [0, 0], [1e-6, 0.15], [1, 0.15]]", "")).unwrap_err();
     assert!(matches!(error.reason(), Reason::Penetration { depth, .. } if (depth - 0.15).abs() < 1e-6), "{error}");
-    let error = try_impact(&robot, Options::default(), &state("[[1, 0], [2, 0]]", "")).unwrap_err();
+    let error = try_impact(&robot, Options::default(), state("[[1, 0], [2, 0]]", "")).unwrap_err();
     assert_eq!(error.place(), Some("stance"));
     assert!(error.remedy().is_some_and(|remedy| remedy.contains("shift the profile")));
 }
