@@ -24,7 +24,7 @@ pub(crate) const FORMAT: &str = include_str!("../format.json");
 
 /// The way from a parent to a node.
 #[derive(Debug, Clone, Copy)]
-enum Way<'n> {
+enum PathStep<'n> {
     Root { text: &'n str, names: Option<&'n Names> },
     Field { parent: &'n Node<'n>, key: &'n str },
     Entry { parent: &'n Node<'n>, index: usize },
@@ -34,19 +34,19 @@ enum Way<'n> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node<'n> {
     value: &'n Value<'n>,
-    way: Way<'n>,
+    way: PathStep<'n>,
 }
 
 impl<'n> Node<'n> {
     /// The root of the tree that was read from `text`; with `names` any number may be an expression of them.
     pub(crate) fn root(value: &'n Value<'n>, text: &'n str, names: Option<&'n Names>) -> Self {
-        Self { value, way: Way::Root { text, names } }
+        Self { value, way: PathStep::Root { text, names } }
     }
 
     /// The key under which the value stands; empty for the root and for entries of lists.
     pub(crate) fn key(&self) -> &'n str {
         match self.way {
-            Way::Field { key, .. } => key,
+            PathStep::Field { key, .. } => key,
             _ => "",
         }
     }
@@ -54,7 +54,7 @@ impl<'n> Node<'n> {
     /// The fields of an object in their order, no key twice; `what` names what the keys stand for.
     pub(crate) fn fields(&'n self, what: &'static str) -> Result<impl Iterator<Item = Node<'n>> + Clone> {
         let Value::Object(fields) = self.value else { return Err(self.expected("an object")) };
-        let field = |key, value| Node { value, way: Way::Field { parent: self, key } };
+        let field = |key, value| Node { value, way: PathStep::Field { parent: self, key } };
         if let Some(second) = second_of_its_name(fields) {
             let name = second.to_owned();
             return Err(field(second, self.value).refuse_name(second, Reason::Duplicate { what, name }));
@@ -83,7 +83,7 @@ impl<'n> Node<'n> {
     pub(crate) fn entries(&'n self) -> Result<impl ExactSizeIterator<Item = Node<'n>>> {
         let Value::List(entries) = self.value else { return Err(self.expected("a list")) };
         let entries = entries.iter().enumerate();
-        Ok(entries.map(move |(index, value)| Node { value, way: Way::Entry { parent: self, index } }))
+        Ok(entries.map(move |(index, value)| Node { value, way: PathStep::Entry { parent: self, index } }))
     }
 
     /// The list of exactly `N` numbers, described by `expected`.
@@ -143,8 +143,8 @@ impl<'n> Node<'n> {
     /// What expressions are made of, where a string may be one.
     pub(crate) fn names(&self) -> Option<&'n Names> {
         match self.way {
-            Way::Root { names, .. } => names,
-            Way::Field { parent, .. } | Way::Entry { parent, .. } => parent.names(),
+            PathStep::Root { names, .. } => names,
+            PathStep::Field { parent, .. } | PathStep::Entry { parent, .. } => parent.names(),
         }
     }
 
@@ -242,9 +242,9 @@ impl<'n> Node<'n> {
     /// The keys and indices from the root on, as in `contacts[0].offset`.
     fn place(&self) -> String {
         match self.way {
-            Way::Root { .. } => String::new(),
-            Way::Entry { parent, index } => format!("{}[{index}]", parent.place()),
-            Way::Field { parent, key } => match parent.place() {
+            PathStep::Root { .. } => String::new(),
+            PathStep::Entry { parent, index } => format!("{}[{index}]", parent.place()),
+            PathStep::Field { parent, key } => match parent.place() {
                 outer if outer.is_empty() => key.to_owned(),
                 outer => format!("{outer}.{key}"),
             },
@@ -256,12 +256,12 @@ impl<'n> Node<'n> {
         let (mut key, mut way) = (None, self.way);
         let text = loop {
             way = match way {
-                Way::Root { text, .. } => break text,
-                Way::Field { parent, key: nearer } => {
+                PathStep::Root { text, .. } => break text,
+                PathStep::Field { parent, key: nearer } => {
                     key = key.or(Some(nearer));
                     parent.way
                 }
-                Way::Entry { parent, .. } => parent.way,
+                PathStep::Entry { parent, .. } => parent.way,
             };
         };
         let offset = [Some(name), key].into_iter().flatten().find_map(|anchor| offset_in(text, anchor));
