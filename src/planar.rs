@@ -190,11 +190,13 @@ pub struct Inertia<T> {
 
 impl<T: Real> Inertia<T> {
     /// The inertia in the axes that the body is turned from.
+    #[inline]
     pub fn turned(self, turn: Rotation<T>) -> Self {
         Self { first: turn.apply(self.first), ..self }
     }
 
     /// The same body about a point from which the old one is seen at `arm`.
+    #[inline]
     pub fn seen_from(self, arm: Vector<T>) -> Self {
         let shifted = self.first + arm * self.mass;
         // I + 2 h.d + m d.d, with the new first moment h + m d in place of one h.
@@ -202,6 +204,7 @@ impl<T: Real> Inertia<T> {
     }
 
     /// Both bodies as one; they must be given about the same point.
+    #[inline]
     pub fn with(self, other: Self) -> Self {
         Self { mass: self.mass + other.mass, first: self.first + other.first, second: self.second + other.second }
     }

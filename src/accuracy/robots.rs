@@ -100,7 +100,7 @@ pub fn resized(robot: &Robot, mass: f64, length: f64) -> Robot {
     robot
 }
 
-/// `robot` with the mass and moment of some bodies, told by a part of their name, times `factor`.
+/// `robot` with the mass and moment of the bodies with `part` in their name times `factor`.
 pub fn with_heavier(mut robot: Robot, part: &str, factor: f64) -> Robot {
     for body in robot.bodies.iter_mut().filter(|body| body.name.contains(part)) {
         body.mass *= factor;

@@ -52,20 +52,26 @@ pub struct RefusedRecord {
     pub excerpt: Option<Excerpt>,
 }
 
-/// Takes the answers in the order of the input. A sink that cannot write ends the process: a source may wait for ever.
+/// Takes the answers in the order of the input.
 pub trait Sink {
     /// Takes the next answers.
-    fn block(&mut self, block: Block);
+    ///
+    /// # Errors
+    /// Those of writing; this is not called again then.
+    fn block(&mut self, block: Block) -> Result<()>;
 
     /// Writes what is buffered: everything read so far is answered, and the input pauses or has ended.
-    fn idle(&mut self);
+    ///
+    /// # Errors
+    /// As above.
+    fn idle(&mut self) -> Result<()>;
 }
 
 /// Answers all tasks of `source` in `threads` threads, each with what `answerer` makes; with one thread none is
 /// started. If fewer threads can be started, these do the work.
 ///
 /// # Errors
-/// Those of the source; what came before is answered.
+/// Those of the source, with all before it answered, and of the sink, once the source's current call of `next` returns.
 pub fn run<S: TaskSource, F: FnMut(S::Task) -> Block>(
     source: S,
     threads: usize,
@@ -81,13 +87,12 @@ pub fn run<S: TaskSource, F: FnMut(S::Task) -> Block>(
 
 fn alone<S: TaskSource>(mut source: S, mut answer: impl FnMut(S::Task) -> Block, sink: &mut impl Sink) -> Result<()> {
     while let Some(task) = source.next()? {
-        sink.block(answer(task));
+        sink.block(answer(task))?;
         if source.keeps_waiting() {
-            sink.idle();
+            sink.idle()?;
         }
     }
-    sink.idle();
-    Ok(())
+    sink.idle()
 }
 
 /// Starts thread `k` by `builder(k)`, of which 0 reads.
@@ -111,7 +116,7 @@ fn in_threads<S: TaskSource, F: FnMut(S::Task) -> Block>(
                 let (block, place) = sync_channel(1);
                 let task = task.map(|task| jobs.send((task, block)));
                 let ended = task.is_err();
-                // A send fails if the sink has panicked.
+                // A send fails if the sink has failed.
                 if places.send(task.map(|_| place)).is_err() || ended {
                     break;
                 }
@@ -143,19 +148,17 @@ fn in_threads<S: TaskSource, F: FnMut(S::Task) -> Block>(
 /// Gives the sink the blocks in the order of their places.
 fn hand_on(ordered: Receiver<Result<Receiver<Block>>>, sink: &mut impl Sink) -> Result<()> {
     loop {
-        let place = ordered.try_recv().or_else(|error| {
-            if error == TryRecvError::Empty {
-                sink.idle();
+        let place = match ordered.try_recv() {
+            Err(TryRecvError::Empty) => {
+                sink.idle()?;
+                ordered.recv().ok()
             }
-            ordered.recv()
-        });
-        let Ok(place) = place else {
-            sink.idle();
-            return Ok(());
+            place => place.ok(),
         };
+        let Some(place) = place else { return sink.idle() };
         // A thread whose block is missing has panicked, which the end of the scope passes on.
         let Ok(block) = place?.recv() else { return Ok(()) };
-        sink.block(block);
+        sink.block(block)?;
     }
 }
 
@@ -176,11 +179,14 @@ mod tests {
     }
 
     impl Sink for Vec<u8> {
-        fn block(&mut self, block: Block) {
+        fn block(&mut self, block: Block) -> Result<()> {
             self.extend(block.out);
+            Ok(())
         }
 
-        fn idle(&mut self) {}
+        fn idle(&mut self) -> Result<()> {
+            Ok(())
+        }
     }
 
     #[test]

@@ -3,13 +3,13 @@
 use super::Failure;
 use super::input::InputFile;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use heelstrike::Detail;
 use heelstrike::Robot;
 use heelstrike::law::Friction;
 use heelstrike::pipeline;
 use heelstrike::read::loops_from_json;
 use heelstrike::reductions::Reductions;
 use heelstrike::state::{Defaults, NamedContact, NamedLoop};
-use heelstrike::write::Detail;
 use std::path::PathBuf;
 use std::thread::available_parallelism;
 

@@ -72,15 +72,17 @@ impl<'a, W: Write> OutputSink<'a, W> {
 }
 
 impl<W: Write> Sink for OutputSink<'_, W> {
-    fn block(&mut self, block: Block) {
+    fn block(&mut self, block: Block) -> heelstrike::Result<()> {
         self.write(&block.out).unwrap_or_else(|error| self.end(error));
         // On a terminal the answers come before the errors.
         block.refused.into_iter().for_each(|refused| self.report(refused));
         self.summary.merge(block.summary);
         block.keyframes.into_iter().for_each(|keyframe| self.gait.push(keyframe));
+        Ok(())
     }
 
-    fn idle(&mut self) {
+    fn idle(&mut self) -> heelstrike::Result<()> {
         self.output.flush().unwrap_or_else(|error| self.end(error));
+        Ok(())
     }
 }

@@ -4,7 +4,7 @@ use super::Contact;
 use super::feet::Feet;
 use super::placement::Placement;
 use super::point::{Point, Touch, points};
-use super::surface::{Sunk, Surface};
+use super::surface::{Surface, Touching};
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
 use crate::robot::Robot;
@@ -113,10 +113,10 @@ impl Footing<'_> {
         }
         let tolerance = tolerance + rounding;
         let mut contacts: Vec<Contact> = Vec::new();
-        let mut deepest: Option<(usize, Sunk)> = None;
+        let mut deepest: Option<(usize, f64, String)> = None;
         for foot in feet.iter() {
             match surface.touching(foot, placement, tolerance, rounding)? {
-                Ok(touches) => {
+                Touching::At(touches) => {
                     for touch in touches {
                         let contact = Contact::of_touch(foot.link, placement, touch);
                         // Shapes of a link may share a corner; it is one point all the same.
@@ -125,13 +125,13 @@ impl Footing<'_> {
                         }
                     }
                 }
-                Err(sunk) if deepest.as_ref().is_none_or(|(_, other)| sunk.depth > other.depth) => {
-                    deepest = Some((foot.link, sunk));
+                Touching::Sunk { depth, remedy } if deepest.as_ref().is_none_or(|(_, other, _)| depth > *other) => {
+                    deepest = Some((foot.link, depth, remedy));
                 }
-                Err(_) => {}
+                Touching::Sunk { .. } => {}
             }
         }
-        if let Some((link, Sunk { depth, remedy })) = deepest {
+        if let Some((link, depth, remedy)) = deepest {
             let link = self.name(link).to_owned();
             return Err(Error::new(Reason::Penetration { link, depth, tolerance }).hint(remedy));
         }

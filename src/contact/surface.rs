@@ -19,10 +19,12 @@ pub(crate) enum Surface {
     Profile(Terrain),
 }
 
-/// What a foot is refused with that is too deep: by how much \[m\], and what to do.
-pub(super) struct Sunk {
-    pub depth: f64,
-    pub remedy: String,
+/// How a foot meets the ground.
+pub(super) enum Touching {
+    /// Where it is within the tolerance.
+    At(Vec<Touch>),
+    /// It is too deep: by how much \[m\], and what to do.
+    Sunk { depth: f64, remedy: String },
 }
 
 impl Surface {
@@ -71,15 +73,15 @@ impl Surface {
         }
     }
 
-    /// Where a foot is within `tolerance` of the ground, given `rounding` \[m\]. The outer error is for shapes that
-    /// parry does not serve, the inner one for a foot deeper than the tolerance.
+    /// Where a foot is within `tolerance` of the ground, given `rounding` \[m\]; an error for shapes that parry does not
+    /// serve.
     pub(super) fn touching(
         &self,
         foot: &Foot,
         placement: &Placement,
         tolerance: f64,
         rounding: f64,
-    ) -> Result<std::result::Result<Vec<Touch>, Sunk>> {
+    ) -> Result<Touching> {
         let (found, how) = match self {
             Self::HalfPlane(plane) => {
                 let touches = plane.touching(foot, placement, tolerance)?;
@@ -90,11 +92,14 @@ impl Surface {
                 (profile::touching(terrain, foot, placement, (tolerance, rounding)), "move the base or the profile")
             }
         };
-        Ok(found.map_err(|depth| {
-            let remedy =
-                format!("{how} by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
-            Sunk { depth, remedy }
-        }))
+        Ok(found.map_or_else(
+            |depth| {
+                let remedy =
+                    format!("{how} by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
+                Touching::Sunk { depth, remedy }
+            },
+            Touching::At,
+        ))
     }
 
     /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.

@@ -117,7 +117,7 @@ pub(super) fn copy_origin(parent: Node<'_, '_>, strict: &mut String) -> Result<(
     let Some(origin) = xml::child(parent, "origin")? else { return Ok(()) };
     if origin.has_attribute("quat_xyzw") {
         let reason = "quat_xyzw of <origin> is not handled".into();
-        return Err(xml::refuse(origin, Reason::Unsupported(reason)).hint("give the turn as rpy"));
+        return Err(xml::refuse(origin, Reason::Unsupported(reason)).hint("give the rotation as rpy"));
     }
     strict.push_str("<origin");
     copy(origin, "xyz", 3, ANY, strict)?;

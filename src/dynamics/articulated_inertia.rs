@@ -21,6 +21,7 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 
     /// Force for the linear acceleration `along`.
+    #[inline]
     pub(super) fn stretch(&self, along: Vector<T>) -> Vector<T> {
         let [xx, xz, zz] = self.linear;
         Vector { x: Vector::new(xx, xz).dot(along), z: Vector::new(xz, zz).dot(along) }
@@ -28,6 +29,7 @@ impl<T: Real> ArticulatedInertia<T> {
 
     /// What a revolute joint of pivot D leaves to the parent = moment + rotor. Always u (u / D), never u u (1 / D): the
     /// latter underflows for small masses.
+    #[inline]
     pub(super) fn without_turn(&self, rotor: T, pivot: T) -> Self {
         let kept = rotor / pivot;
         let [xx, xz, zz] = self.linear;
@@ -42,6 +44,7 @@ impl<T: Real> ArticulatedInertia<T> {
 
     /// What a prismatic joint along `along` of pivot D leaves to the parent. Components along and across the joint are
     /// kept apart, so that what the joint does not pass on cancels before rounding.
+    #[inline]
     pub(super) fn without_slide(&self, along: Vector<T>, rotor: T, pivot: T) -> Self {
         let across = along.perpendicular();
         let (pulled, pushed) = (self.stretch(along), self.stretch(across));
@@ -67,6 +70,7 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 
     /// The same inertia about a point from which the old one is seen at `arm`.
+    #[inline]
     pub(super) fn seen_from(self, arm: Vector<T>) -> Self {
         let lever = arm.perpendicular();
         let shifted = self.coupling + self.stretch(lever);
@@ -75,6 +79,7 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 
     /// Both inertias as one; they must be given about the same point.
+    #[inline]
     pub(super) fn with(self, other: Self) -> Self {
         let [[a, b, c], [d, e, f]] = [self.linear, other.linear];
         Self {
@@ -93,11 +98,13 @@ pub(super) struct Wrench<T> {
 }
 
 impl<T: Real> Wrench<T> {
+    #[inline]
     pub fn at(arm: Vector<T>, linear: Vector<T>) -> Self {
         Self { moment: arm.perpendicular().dot(linear), linear }
     }
 
     /// The same about a point from which the old one is seen at `arm`.
+    #[inline]
     pub fn seen_from(self, arm: Vector<T>) -> Self {
         Self { moment: self.moment + arm.perpendicular().dot(self.linear), linear: self.linear }
     }

@@ -46,6 +46,7 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
     use proptest::sample::Index;
+    use std::cmp::Ordering;
 
     fn point() -> impl Strategy<Value = [f64; 2]> {
         prop::array::uniform2(-1.0..1.0f64)
@@ -175,6 +176,16 @@ mod tests {
             let column = by_column(&plan, &case.velocity);
             let by_matrix = 0.5 * column.dot(&(dense(&plan, &workspace.mass_matrix) * &column));
             let by_bodies = kinetic_energy(&plan, &case.velocity, &workspace);
+            let factor = &workspace.factor;
+            let lower = DMatrix::from_fn(plan.columns(), plan.columns(), |row, column| match row.cmp(&column) {
+                Ordering::Greater => factor.entry(row, column),
+                Ordering::Equal => 1.0,
+                Ordering::Less => 0.0,
+            });
+            let diagonal = DMatrix::from_diagonal(&DVector::from_fn(plan.columns(), |k, _| factor.pivot(k)));
+            let mass = dense(&plan, &workspace.mass_matrix);
+            let product = lower.transpose() * diagonal * lower;
+            prop_assert!((&product - &mass).amax() <= 1e3 * f64::EPSILON * mass.amax(), "{product} {mass}");
             // Both sum up to some hundred terms of the energy's own size.
             prop_assert!((by_matrix - by_bodies).abs() <= 1e3 * f64::EPSILON * by_bodies.max(1.0), "{by_matrix} {by_bodies}");
         }

@@ -263,7 +263,7 @@ mod tests {
     use crate::law::Friction;
 
     #[test]
-    fn border_leads_to_the_modes_beside_it() {
+    fn border_leads_to_its_neighboring_modes() {
         use Inequality::{FrictionCone, NormalImpulse};
         let laws = [Friction::Finite(0.5), Friction::ZERO].map(Law::from);
         for (tangential, at_zero, expected, neighbours) in [

@@ -59,7 +59,9 @@ impl<T: Real> Law<T> {
     pub fn modes(&self) -> &'static [&'static [Mode]] {
         match self {
             Self::Frictionless => &[&[Mode::Separate], &[Mode::Stick, Mode::SlidePlus, Mode::SlideMinus]],
-            _ => &[&[Mode::Separate], &[Mode::Stick], &[Mode::SlidePlus], &[Mode::SlideMinus]],
+            Self::Coulomb(_) | Self::Unbounded => {
+                &[&[Mode::Separate], &[Mode::Stick], &[Mode::SlidePlus], &[Mode::SlideMinus]]
+            }
         }
     }
 
@@ -89,11 +91,14 @@ impl<T: Real> Law<T> {
             (Self::Unbounded, Mode::SlidePlus | Mode::SlideMinus) => {
                 ask(Inequality::TangentialImpulse, Function::Second);
             }
-            _ => ask(Inequality::NormalImpulse, Function::Second),
-        }
-        if let (Self::Coulomb(mu), Mode::Stick) = (*self, mode) {
-            ask(Inequality::FrictionCone, Function::ConeMinus(mu));
-            ask(Inequality::FrictionCone, Function::ConePlus(mu));
+            (Self::Coulomb(mu), Mode::Stick) => {
+                ask(Inequality::NormalImpulse, Function::Second);
+                ask(Inequality::FrictionCone, Function::ConeMinus(mu));
+                ask(Inequality::FrictionCone, Function::ConePlus(mu));
+            }
+            (Self::Frictionless | Self::Coulomb(_) | Self::Unbounded, _) => {
+                ask(Inequality::NormalImpulse, Function::Second);
+            }
         }
         match mode {
             Mode::Separate => ask(Inequality::NormalVelocity, Function::Second),

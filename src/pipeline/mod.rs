@@ -13,7 +13,6 @@ pub mod robust;
 use self::assembly::{Assembly, Elimination};
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::Unsolved;
-use self::prepared::check_length;
 use crate::contact::{Contact, Feet, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{ContactPoint, RoundingBounds, articulated_inertias};
@@ -25,7 +24,7 @@ use crate::law::{Friction, Law, Mode};
 use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
-use crate::state::{Named, NamedContact, Scene, State};
+use crate::state::{Named, NamedContact, Scene, State, check_length};
 use std::sync::Arc;
 
 /// What the pipeline is asked for in addition to the outcomes; [`Pipeline`] has an example.

@@ -17,7 +17,7 @@ use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
-use crate::state::{Ground, Scene, State};
+use crate::state::{Ground, Scene, State, check_length};
 
 /// A state's contact problem, not yet analysed.
 #[derive(Debug, Clone)]
@@ -344,15 +344,6 @@ impl Pipeline<'_> {
 /// What G of a robot loses to rounding, relative to its rows' own scale: measured below 3e-15 against 640 bits on
 /// chains, straight legs and extreme mass ratios. It is no bound, and used only if none is asked for.
 const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// Refuses a list that is too short or too long for the robot.
-pub(super) fn check_length(place: &'static str, found: usize, wanted: usize) -> Result<()> {
-    if found == wanted {
-        return Ok(());
-    }
-    let reason = Reason::Inconsistent(format!("the robot needs {wanted} entries here, but {found} are given"));
-    Err(Error::new(reason).at(place).hint("begin with State::zero, which has an entry per coordinate"))
-}
 
 /// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {

@@ -191,6 +191,7 @@ impl Robot {
         }
     }
 
+    /// Number of coordinates: those of the base and one per joint.
     pub fn dofs(&self) -> usize {
         self.base_dofs() + self.joints.len()
     }
@@ -229,6 +230,7 @@ impl Robot {
         (0..self.bodies.len()).filter(|&body| self.moves(body)).map(|body| self.bodies[body].mass).sum()
     }
 
+    /// The index in [`Robot::links`] of the link of this name.
     pub fn link(&self, name: &str) -> Option<usize> {
         self.links.iter().position(|link| link.name == name)
     }

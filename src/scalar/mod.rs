@@ -186,7 +186,7 @@ pub trait Midpoint: Real {
 
 #[cfg(test)]
 mod tests {
-    //! What all numbers promise; what only one of them does is tested beside it.
+    //! What all numbers promise; what only one of them does is tested in its file.
 
     use super::*;
     use dashu::rational::RBig;

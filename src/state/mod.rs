@@ -24,6 +24,8 @@ use crate::robot::Robot;
 /// state.set_position(&robot, "hip", -0.6)?;
 /// state.set_velocity(&robot, "pitch", -1.0)?;
 /// assert!(state.set_position(&robot, "knee", 0.1).is_err());
+/// state.velocity.truncate(2);
+/// assert!(state.set_velocity(&robot, "hip", 0.1).is_err());
 /// # Ok(())
 /// # }
 /// ```
@@ -50,25 +52,38 @@ impl State {
     /// Sets a coordinate by its name: x, z or pitch of the base \[m, rad\], or a joint \[rad, m\].
     ///
     /// # Errors
-    /// [`Reason::UnknownName`] for a name that is none of [`Robot::coordinates`].
+    /// [`Reason::UnknownName`] for a name that is none of [`Robot::coordinates`], [`Reason::Inconsistent`] for a list that
+    /// is neither empty nor as long as the robot has coordinates.
     pub fn set_position(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
-        set(&mut self.position, robot, name, value)
+        set(&mut self.position, "position", robot, name, value)
     }
 
     /// Sets the rate of a coordinate by its name \[m/s, rad/s\], as [`State::set_position`].
     pub fn set_velocity(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
-        set(&mut self.velocity, robot, name, value)
+        set(&mut self.velocity, "velocity", robot, name, value)
     }
 }
 
-fn set(list: &mut Vec<f64>, robot: &Robot, name: &str, value: f64) -> Result<()> {
+fn set(list: &mut Vec<f64>, what: &'static str, robot: &Robot, name: &str, value: f64) -> Result<()> {
     let place = robot.coordinates().position(|known| known == name).ok_or_else(|| {
         let unknown = Reason::UnknownName { what: "coordinate", name: name.to_owned() };
         Error::new(unknown).did_you_mean(name, robot.coordinates())
     })?;
-    list.resize(robot.dofs(), 0.0);
+    if list.is_empty() {
+        list.resize(robot.dofs(), 0.0);
+    }
+    check_length(what, list.len(), robot.dofs())?;
     list[place] = value;
     Ok(())
+}
+
+/// Refuses a list that is too short or too long for the robot.
+pub(crate) fn check_length(place: &'static str, found: usize, wanted: usize) -> Result<()> {
+    if found == wanted {
+        return Ok(());
+    }
+    let reason = Reason::Inconsistent(format!("the robot needs {wanted} entries here, but {found} are given"));
+    Err(Error::new(reason).at(place).hint("begin with State::zero, which has an entry per coordinate"))
 }
 
 /// Half-widths: each number of the state may be anything within its half-width of what is given. All are finite and not

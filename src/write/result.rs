@@ -28,7 +28,7 @@ use std::fmt::{self, Display};
 ///                "stance": "left_leg", "friction": "infinite"}"#;
 /// let state = State::from_json(text, &robot, &Defaults::default())?;
 /// let impact = Pipeline::new(&robot, Options { explain_up_to: 2, ..Options::default() }).impact(&state)?;
-/// let report = heelstrike::Report::of_state(&robot, &state, &impact, heelstrike::write::Detail::default())?;
+/// let report = heelstrike::Report::of_state(&robot, &state, &impact, heelstrike::Detail::default())?;
 /// assert_eq!(report.verdict, Some(heelstrike::Verdict::Unique));
 /// assert_eq!(heelstrike::Inspection::new(&robot, &[]).joints.len(), 1);
 /// # Ok(())

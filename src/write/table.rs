@@ -93,7 +93,7 @@ pub(crate) fn scale(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().fold(0.0, |largest, number| largest.max(number.abs()))
 }
 
-/// Whether `value` is what rounding left of a zero, beside numbers of the size `scale`.
+/// Whether `value` is what rounding left of a zero, next to numbers of the size `scale`.
 pub(crate) fn is_residue(value: f64, scale: f64) -> bool {
     value != 0.0 && value.abs() < 1e-13 * scale
 }
@@ -122,7 +122,7 @@ fn within(value: f64, largest: f64) -> String {
     }
     let magnitude = libm::log10(largest).floor() as i32;
     let decimals = DIGITS - 1 - magnitude;
-    // Too small beside the largest to be seen with its decimals.
+    // Too small next to the largest to be seen with its decimals.
     let vanishes = value.abs() < 0.5 * 10f64.powi(2 - decimals);
     if !(-4..DIGITS).contains(&magnitude) || vanishes {
         return format!("{value:.3e}");

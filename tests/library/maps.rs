@@ -50,7 +50,7 @@ fn outcomes(area: &Area) -> Vec<Vec<Mode>> {
     area.regime.outcomes().map(<[_]>::to_vec).unwrap_or_default()
 }
 
-/// Random points of the ranges lie within exactly one area, and have its regime but for a thin seam at its curves.
+/// Random points of the ranges lie within exactly one area, and have its regime except in a thin seam at its curves.
 #[test]
 fn points_lie_in_the_area_of_their_outcomes() {
     // Where many areas meet.

@@ -110,7 +110,7 @@ impl Inspection<'_> {
         let (fixed, base) = (frozen(FreezeReason::Fixed), frozen(FreezeReason::Base));
         let parts = [
             (self.joints.len(), "kept"),
-            (self.followers.len(), "kept as followers"),
+            (self.followers.len(), "kept as mimic joints"),
             (self.held.len() - fixed - base, "held"),
             (base, "part of the base"),
             (fixed, "fixed"),

@@ -85,7 +85,7 @@ fn variants(sample: &Value) -> Vec<Value> {
     variants
 }
 
-/// Checks that schema and reader agree about every variant of the sample, but for what only the reader can know.
+/// Checks that schema and reader agree about every variant of the sample, except for what only the reader can know.
 fn assert_agreement<T>(
     schema: &Value,
     sample: &Value,

@@ -1,4 +1,4 @@
-//! Profiles beside what else a scene has: contacts by name, slopes, a stance, uncertainty.
+//! Profiles with what else a scene has: contacts by name, slopes, a stance, uncertainty.
 
 use super::*;
 use crate::support::impact::modes;

@@ -138,7 +138,7 @@ pub fn in_the_box(robot: &Robot, state: &State, mut place: impl FnMut() -> f64) 
     other
 }
 
-/// The other state must lie in the first one's box, but for a rounding of the ends.
+/// The other state must lie in the first one's box, up to a rounding of its ends.
 pub fn assert_in_the_box(state: &State, other: &State) {
     let known = state.uncertainty.as_ref().expect("an uncertain state");
     let within = |a: &[f64], b: &[f64], widths: &[f64]| {
