@@ -205,7 +205,7 @@ operators!([const N: usize] Affine<N>);
 mod tests {
     use super::super::tests::{exact, magnitude};
     use super::*;
-    use dashu::rational::RBig;
+    use dashu_ratio::RBig;
     use proptest::prelude::*;
 
     type Number = Affine<3>;

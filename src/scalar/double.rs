@@ -136,7 +136,7 @@ operators!([] DoubleDouble);
 mod tests {
     use super::super::tests::{exact, magnitude};
     use super::*;
-    use dashu::rational::RBig;
+    use dashu_ratio::RBig;
     use proptest::prelude::*;
 
     fn rational(value: DoubleDouble) -> RBig {

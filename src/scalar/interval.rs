@@ -396,7 +396,7 @@ operators!(@ [] Magnitude, Div div over);
 mod tests {
     use super::super::tests::{Bounded, exact};
     use super::*;
-    use dashu::rational::RBig;
+    use dashu_ratio::RBig;
 
     impl Bounded for Interval {
         fn bounds(self) -> Option<[RBig; 2]> {

@@ -189,7 +189,7 @@ mod tests {
     //! What all numbers promise; what only one of them does is tested in its file.
 
     use super::*;
-    use dashu::rational::RBig;
+    use dashu_ratio::RBig;
     use proptest::prelude::*;
 
     pub fn exact(value: f64) -> RBig {

@@ -260,8 +260,8 @@ operators!([] Residue);
 mod tests {
     use super::super::tests::exact;
     use super::*;
-    use dashu::integer::fast_div::ConstDivisor;
-    use dashu::rational::RBig;
+    use dashu_int::fast_div::ConstDivisor;
+    use dashu_ratio::RBig;
     use proptest::prelude::*;
 
     /// The test of Miller and Rabin, which these bases decide below 2^64.

@@ -5,7 +5,7 @@ use crate::choices::Choices;
 use crate::open;
 use crate::support::rational::{self, to_f64};
 use crate::watch::watched;
-use dashu::rational::RBig;
+use dashu_ratio::RBig;
 use heelstrike::Error;
 use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
 use heelstrike::read::Problem;

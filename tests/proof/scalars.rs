@@ -1,7 +1,7 @@
 //! One core, many numbers: kinematics, mass matrix, factorization, Jacobian, Delassus matrix and the numbers of all
 //! combinations run on exact rationals, balls and lanes without a change, and agree with f64.
 
-use dashu::rational::RBig;
+use dashu_ratio::RBig;
 use heelstrike::Robot;
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{ContactPoint, Workspace, contact_jacobian, delassus, factorize, kinematics, mass_matrix};

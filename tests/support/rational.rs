@@ -1,8 +1,8 @@
 //! Rational numbers and exact linear algebra: Gauss on rationals, Bareiss on whole numbers.
 
-use dashu::base::{Gcd, Sign};
-use dashu::integer::{IBig, UBig};
-use dashu::rational::{RBig, Relaxed};
+use dashu_base::{Gcd, Sign};
+use dashu_int::{IBig, UBig};
+use dashu_ratio::{RBig, Relaxed};
 
 /// Rows of rationals.
 pub type Matrix = Vec<Vec<RBig>>;

@@ -4,7 +4,7 @@ use super::enumeration::{Enumeration, Friction, Problem, enumerate};
 use super::tree::{Motions, Point, Tree, kinetic_energy};
 use crate::support::random::Random;
 use crate::support::rational::{Matrix, delassus, dot, rank, ratio, times, to_f64};
-use dashu::rational::RBig;
+use dashu_ratio::RBig;
 use heelstrike::Robot;
 use heelstrike::impact;
 use heelstrike::state::{ByLink, NamedContact, Scene, State};

@@ -1,9 +1,9 @@
 //! All outcomes of a contact problem in exact arithmetic, one list of modes after the other.
 
 use crate::support::rational::{Matrix, common_denominator, cramer, quotient, rank, sign, to_f64, whole};
-use dashu::base::Abs;
-use dashu::integer::{IBig, UBig};
-use dashu::rational::RBig;
+use dashu_base::Abs;
+use dashu_int::{IBig, UBig};
+use dashu_ratio::RBig;
 use heelstrike::impact::Mode;
 
 /// Coulomb's coefficient; none stands for infinite friction.

@@ -12,7 +12,7 @@ use crate::support::random::Random;
 use crate::support::rational::{self, ratio, to_f64};
 use crate::support::scaled::{largest, near};
 use case::{Case, rounded};
-use dashu::rational::RBig;
+use dashu_ratio::RBig;
 use enumeration::{Combination, Enumeration, Friction, Problem, enumerate};
 use heelstrike::Robot;
 use heelstrike::dynamics::plan::Configuration;

@@ -6,8 +6,8 @@ use super::tree::{Body, Motion, Motions, Tree};
 use crate::support::random::Random;
 use crate::support::rational::{Matrix, cramer, delassus, dot, ratio, times, to_f64};
 use crate::support::scaled::near;
-use dashu::integer::IBig;
-use dashu::rational::RBig;
+use dashu_int::IBig;
+use dashu_ratio::RBig;
 use heelstrike::impact::Mode;
 
 fn matrix(rows: &[&[i64]]) -> Matrix {

@@ -7,7 +7,7 @@
 use crate::support::random::Random;
 use crate::support::rational::{Matrix, dot, ratio, times, to_f64, zeros};
 use crate::support::urdf::{self, Axis};
-use dashu::rational::RBig;
+use dashu_ratio::RBig;
 
 /// [x, z].
 pub type Point = [RBig; 2];
