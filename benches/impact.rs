@@ -6,8 +6,8 @@ use divan::{Bencher, black_box};
 use heelstrike::Robot;
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{
-    ContactPoint, Workspace, add_articulated_impulse, articulated_inertias, contact_jacobian, delassus, factorize,
-    kinematics, mass_matrix,
+    ContactPoint, PointImpulse, Workspace, add_articulated_impulse, articulated_inertias, contact_jacobian, delassus,
+    factorize, kinematics, mass_matrix,
 };
 use heelstrike::impact::enumerate::{Leaf, Tableau};
 use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Scratch};
@@ -89,15 +89,9 @@ fn velocity_after(bencher: Bencher) {
         let mut after = black_box(&state.velocity).clone();
         articulated_inertias(&plan, &mut workspace);
         for point in &points {
-            let at = (point.body, point.arm(&workspace));
-            add_articulated_impulse(
-                &plan,
-                &workspace,
-                at,
-                Vector::new(0.1, 0.2),
-                (&mut rates, &mut motions),
-                &mut after,
-            );
+            let (arm, vector) = (point.arm(&workspace), Vector::new(0.1, 0.2));
+            let impulse = PointImpulse { body: point.body, arm, vector };
+            add_articulated_impulse(&plan, &workspace, impulse, &mut rates, &mut motions, &mut after);
         }
         after
     });
@@ -125,7 +119,7 @@ fn analysis(bencher: Bencher) {
     let robot = ramone();
     let problem = problem(&robot, &state(&robot));
     let mut scratch = Scratch::default();
-    bencher.bench_local(move || scratch.analyse(black_box(&problem), black_box(&problem), AnalysisOptions::default()));
+    bencher.bench_local(move || scratch.analyze(black_box(&problem), black_box(&problem), AnalysisOptions::default()));
 }
 
 /// A state as numbers to its whole answer.

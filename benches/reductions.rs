@@ -77,7 +77,7 @@ fn analysis(bencher: Bencher, files: Files, contacts: usize, friction: Friction,
     let (friction, restitution) = (vec![friction; contacts], vec![0.0; contacts]);
     let problem = ContactProblem::new(delassus, impact.velocity_before, friction, restitution).expect("a good problem");
     let (mut scratch, asked) = (Scratch::default(), AnalysisOptions { reductions, ..AnalysisOptions::default() });
-    bencher.bench_local(|| scratch.analyse(black_box(&problem), black_box(&problem), asked));
+    bencher.bench_local(|| scratch.analyze(black_box(&problem), black_box(&problem), asked));
 }
 
 /// Upkie, 34 of whose joints are fixed, on a wheel.

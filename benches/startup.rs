@@ -29,12 +29,6 @@ fn impact(bencher: Bencher) {
     bencher.bench_local(|| run(&["impact", "urdf/ramone.urdf", "examples/ramone.json"]));
 }
 
-/// The robot, all threads and no line.
-#[divan::bench]
-fn empty_batch(bencher: Bencher) {
-    bencher.bench_local(|| run(&["batch", "urdf/ramone.urdf", "-", "--friction", "0.8"]));
-}
-
 /// All threads and a few lines.
 #[divan::bench]
 fn short_batch(bencher: Bencher) {

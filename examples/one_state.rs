@@ -10,7 +10,7 @@ fn main() -> Result<()> {
 
     let mut pipeline = Pipeline::new(&robot, Options::default());
     let impact = pipeline.impact(&state)?;
-    let analysis = impact.analysed()?;
+    let analysis = impact.analyzed()?;
 
     println!("{:?}", analysis.verdict);
     for outcome in &analysis.outcomes {

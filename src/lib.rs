@@ -123,7 +123,7 @@ pub mod batch;
 pub use contact::Contact;
 pub use description::Description;
 pub use error::{Error, Reason, Result};
-pub use impact::{Analysis, ContactProblem, Outcome, Rejection, Verdict, analyse};
+pub use impact::{Analysis, ContactProblem, Outcome, Rejection, Verdict, analyze};
 pub use law::{Friction, Inequality, Mode};
 pub use pipeline::{Impact, Options, Pipeline};
 pub use read::Study;

@@ -1,7 +1,7 @@
 //! What a scene does not need and so does not pay for: each reduction with its own switch.
 //!
 //! ```text
-//!     file  --weld, massless-->  bodies  --held-->  columns  --reach-->  contacts  --frictionless-->  combinations
+//!     file  --weld, massless-->  bodies  --held-->  columns  --reach, merge-->  contacts  --frictionless-->  combinations
 //! ```
 //!
 //! With or without a reduction the outcomes, velocities and impulses are the same to 1e-12 of scale;
@@ -21,6 +21,9 @@ pub struct Reductions {
     pub held: bool,
     /// Skips shapes whose bounding circle is too high. Without it the lowest points of every shape are computed.
     pub reach: bool,
+    /// Lets the outer two of a body's detected points on a straight ground act for those between them. Without it each
+    /// point is a contact.
+    pub merge: bool,
     /// Shares one elimination between the modes of a closed contact without friction, which differ only in the sign of
     /// its velocity. Without it each is solved by itself.
     pub frictionless: bool,
@@ -31,11 +34,19 @@ pub struct Reductions {
 
 impl Reductions {
     /// Every reduction.
-    pub const ALL: Self = Self { weld: true, massless: true, held: true, reach: true, frictionless: true, lone: true };
+    pub const ALL: Self =
+        Self { weld: true, massless: true, held: true, reach: true, merge: true, frictionless: true, lone: true };
 
     /// No reduction: everything is computed as if the scene needed it.
-    pub const NONE: Self =
-        Self { weld: false, massless: false, held: false, reach: false, frictionless: false, lone: false };
+    pub const NONE: Self = Self {
+        weld: false,
+        massless: false,
+        held: false,
+        reach: false,
+        merge: false,
+        frictionless: false,
+        lone: false,
+    };
 }
 
 impl Default for Reductions {

@@ -7,7 +7,7 @@
 
 use heelstrike::Result;
 use heelstrike::accuracy::compliant::{NEAR, NearestOutcome, SoftGround, landing, run};
-use heelstrike::impact::{Analysis, ContactProblem, Friction, Mode, analyse};
+use heelstrike::impact::{Analysis, ContactProblem, Friction, ListedRejections, Mode, analyze};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::planar::Pair;
 use heelstrike::robot::Robot;
@@ -81,7 +81,7 @@ impl Biped {
 
     fn land(&self, speed: f64, ratio: f64) -> Result<(Analysis, Option<NearestOutcome>)> {
         let problem = self.struck(speed)?;
-        let analysis = analyse(&problem, false)?;
+        let analysis = analyze(&problem, ListedRejections::Nothing)?;
         let ground = SoftGround { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: ratio };
         let run = run(&problem, ground, TOLERANCE)?;
         let landing = landing(&problem, &analysis.outcomes, self.energy(&problem), &run);

@@ -134,7 +134,7 @@ impl Found {
     /// Where something else was found, or none could be.
     pub fn analysis(&self) -> Result<&Analysis, String> {
         match self {
-            Self::Outcomes(found) => found.1.analysed().map_err(|error| error.to_string()),
+            Self::Outcomes(found) => found.1.analyzed().map_err(|error| error.to_string()),
             Self::Regions(_) => Err("this is no state".into()),
         }
     }

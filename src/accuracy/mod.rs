@@ -21,4 +21,5 @@ pub mod compliant;
 pub use computation::Factorization;
 pub use study::{AnswerSummary, CaseStudy, ConditionNumbers, Method, MethodErrors, Work, of_problem, of_state, study};
 pub use suite::{Case, CaseSubject, Expected, cases};
+pub(crate) use timing::quantile;
 pub use timing::{Budget, Spread};

@@ -118,7 +118,7 @@ pub fn with_moments(mut robot: Robot, factor: f64) -> Robot {
 }
 
 fn hinge(name: String, parent: usize, child: usize, origin: Vector<f64>) -> Joint {
-    Joint { name, parent, child, origin, axis: Axis::Revolute { sign: -1.0 } }
+    Joint { name, parent, child, origin, axis: Axis::Revolute { sign: -1.0 }, limits: None }
 }
 
 /// A link that is its body and touches the ground with a point.
@@ -129,5 +129,6 @@ fn point_foot(name: String, body: usize, center: Vector<f64>) -> Link {
         pose: [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
         shapes: vec![FootShape::disc(center, 0.0)],
         has_inertial: true,
+        line: None,
     }
 }

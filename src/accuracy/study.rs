@@ -148,7 +148,7 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
     };
     let exact = pipeline.exact(state, &prepared);
     study.contacts = impact.contacts.len();
-    let analysis = match impact.analysed() {
+    let analysis = match impact.analyzed() {
         Ok(analysis) => study.answered(analysis),
         Err(error) => {
             study = study.refuse(error);
@@ -186,9 +186,9 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
     let mut study = CaseStudy::of(name, None);
     study.contacts = problem.contacts();
     let mut scratch = Scratch::default();
-    let mut analyse =
-        |prove| scratch.analyse(problem, problem, AnalysisOptions { prove, ..AnalysisOptions::default() });
-    let analysis = match analyse(prove) {
+    let mut analyze =
+        |prove| scratch.analyze(problem, problem, AnalysisOptions { prove, ..AnalysisOptions::default() });
+    let analysis = match analyze(prove) {
         Ok(analysis) => analysis,
         Err(error) => return study.refuse(error),
     };
@@ -205,7 +205,7 @@ pub fn of_problem(name: &str, problem: &ContactProblem, prove: bool, budget: Bud
     });
     for (number, proves) in answers(prove) {
         let whole = time(budget, || {
-            std::hint::black_box(&analyse(proves));
+            std::hint::black_box(&analyze(proves));
         });
         study.methods.push(Method::new(number, Work::Answer, Some(whole)));
     }

@@ -23,7 +23,7 @@ pub struct Case {
     pub end: Expected,
 }
 
-/// What is analysed.
+/// What is analyzed.
 #[derive(Debug, Clone)]
 pub enum CaseSubject {
     /// A robot's state.
@@ -98,7 +98,7 @@ impl Suite {
             self.ending(format!("a leg's point mass {name} its hinge"), robot, state, end);
         }
         let robot = robots::with_massless_feet()?;
-        let feet = State { scene: Scene { held: vec![1, 2], ..standing(&robot, 2) }, ..with_feet(&robot) };
+        let feet = State { scene: Scene { braked: vec![1, 2], ..standing(&robot, 2) }, ..with_feet(&robot) };
         self.state("massless feet, held", robot.clone(), feet);
         let scene = Scene { rotor_inertia: vec![0.0, 1e-6, 1e-6], ..standing(&robot, 2) };
         self.state("massless feet with rotors", robot.clone(), State { scene, ..with_feet(&robot) });
@@ -128,8 +128,8 @@ impl Suite {
     fn sizes(&mut self) -> Result<()> {
         let ramone_mass = robots::ramone()?.mass();
         for (weight, kilograms) in [("a milligram", 1e-6), ("RAMone's weight", ramone_mass), ("a kiloton", 1e6)] {
-            for (length, metres) in [("millimetres", 1e-3), ("metres", 1.0), ("kilometres", 1e3)] {
-                let robot = robots::resized(&robots::ramone()?, kilograms / ramone_mass, metres);
+            for (length, meters) in [("millimeters", 1e-3), ("meters", 1.0), ("kilometers", 1e3)] {
+                let robot = robots::resized(&robots::ramone()?, kilograms / ramone_mass, meters);
                 let state = ramone(&robot, 0.5);
                 self.state(format!("{weight}, {length}"), robot, state);
             }

@@ -32,6 +32,24 @@ pub struct Spread {
     pub samples: usize,
 }
 
+impl Spread {
+    /// The quartiles of `samples` in ascending order; NaN of none.
+    pub fn of_sorted(samples: &[f64]) -> Self {
+        let [lower_quartile, median, upper_quartile] = [0.25, 0.5, 0.75].map(|share| quantile(samples, share));
+        Self { lower_quartile, median, upper_quartile, samples: samples.len() }
+    }
+}
+
+/// The value that a `share` of all lies below, of values in ascending order; NaN of none. Between two values it is
+/// linear, so that the median of an even number is the mean of the middle two.
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * sorted.len().saturating_sub(1) as f64;
+    let at = |place: f64| sorted.get(place as usize).copied().unwrap_or(f64::NAN);
+    let [below, above] = [place.floor(), place.ceil()].map(at);
+    // Two infinite values have no difference.
+    if below == above { below } else { below + (above - below) * place.fract() }
+}
+
 /// A sample takes at least so long, in as many runs as that needs: the clock's own steps are some 30 ns.
 const SAMPLE: Duration = Duration::from_micros(20);
 
@@ -61,8 +79,7 @@ pub fn time(budget: Budget, mut work: impl FnMut()) -> Spread {
 /// The quartiles of at least one sample.
 fn spread(samples: &mut [f64]) -> Spread {
     samples.sort_by(f64::total_cmp);
-    let at = |quarter: usize| samples[(samples.len() - 1) * quarter / 4];
-    Spread { lower_quartile: at(1), median: at(2), upper_quartile: at(3), samples: samples.len() }
+    Spread::of_sorted(samples)
 }
 
 #[cfg(test)]
@@ -70,9 +87,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quartiles_are_samples() {
-        let spread = spread(&mut [5.0, 1.0, 4.0, 2.0, 3.0]);
-        assert_eq!((spread.lower_quartile, spread.median, spread.upper_quartile), (2.0, 3.0, 4.0));
+    fn quartiles_lie_between_neighbors() {
+        for (mut samples, expected) in
+            [(vec![5.0, 1.0, 4.0, 2.0, 3.0], (2.0, 3.0, 4.0)), (vec![8.0, 1.0, 4.0, 2.0], (1.75, 3.0, 5.0))]
+        {
+            let spread = spread(&mut samples);
+            assert_eq!((spread.lower_quartile, spread.median, spread.upper_quartile), expected);
+        }
+        assert_eq!(quantile(&[1.0, f64::INFINITY, f64::INFINITY], 0.75), f64::INFINITY);
+        assert!(quantile(&[], 0.5).is_nan());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Cuts a stream into chunks of whole records.
 
 use super::run::TaskSource;
-use crate::read::table::Quotes;
+use crate::read::table::{Quotes, Quoting, swallows_rows};
 use crate::{Error, Reason, Result};
 use memchr::memchr;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
@@ -26,11 +26,20 @@ pub struct Chunk {
 }
 
 /// Cuts an input into chunks, and never waits for more input while it has a whole record.
+///
+/// A line of a table whose quote is not closed, is closed only before text, or has whole rows before its end is a
+/// record of its own: the lines behind it are read again.
 #[derive(Debug)]
 pub struct Chunks<R> {
     input: BufReader<R>,
+    /// Lines that were read and are read again, and how many of these bytes already were.
+    again: (Vec<u8>, usize),
     /// Where a line break may stand within a record.
     quotes: Option<Quotes>,
+    /// How many columns the table has, if that is known.
+    columns: Option<usize>,
+    /// Before this line an open quote is known to find no end.
+    hopeless: usize,
     line: usize,
     /// Nothing was read yet.
     fresh: bool,
@@ -39,12 +48,18 @@ pub struct Chunks<R> {
 impl<R: Read + Send> Chunks<R> {
     /// An input with one record per line.
     pub fn of_lines(input: R) -> Self {
-        Self { input: BufReader::with_capacity(READ, input), quotes: None, line: 1, fresh: true }
+        let input = BufReader::with_capacity(READ, input);
+        Self { input, again: (Vec::new(), 0), quotes: None, columns: None, hopeless: 0, line: 1, fresh: true }
     }
 
     /// An input as CSV.
     pub fn of_table(input: R) -> Self {
         Self { quotes: Some(Quotes::default()), ..Self::of_lines(input) }
+    }
+
+    /// Says how many columns the table has, so that a quote around several rows is seen.
+    pub fn expect_columns(&mut self, columns: usize) {
+        self.columns = Some(columns);
     }
 
     /// Whether it is read as CSV.
@@ -78,9 +93,32 @@ impl<R: Read + Send> Chunks<R> {
         Ok(None)
     }
 
+    /// Whether nothing but blank lines is left.
+    pub fn is_empty(&mut self) -> Result<bool> {
+        loop {
+            let ready = self.fill()?;
+            let blank = ready.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+            if blank < ready.len() || ready.is_empty() {
+                return Ok(ready.is_empty());
+            }
+            self.line += ready.iter().filter(|&&byte| byte == b'\n').count();
+            self.consume(blank);
+        }
+    }
+
     /// The next record alone; `None` at the end of the input.
     pub fn record(&mut self) -> Result<Option<Chunk>> {
         self.records(1)
+    }
+
+    /// Drops the next `count` records that are not blank.
+    pub fn skip(&mut self, mut count: usize) -> Result<()> {
+        while count > 0 {
+            let Some(chunk) = self.record()? else { break };
+            let blank = |(_, record): (usize, &[u8])| record.trim_ascii().is_empty();
+            count -= usize::from(chunk.too_long.is_some() || !chunk.records().all(blank));
+        }
+        Ok(())
     }
 
     /// Up to `most` records, fewer if the input would have to be waited for.
@@ -93,35 +131,79 @@ impl<R: Read + Send> Chunks<R> {
             let newline = memchr(b'\n', ready);
             let taken = newline.map_or(ready.len(), |newline| newline + 1);
             length += taken;
-            if length <= RECORD_LIMIT {
+            let too_long = length > RECORD_LIMIT;
+            if !too_long {
                 chunk.bytes.extend_from_slice(&ready[..taken]);
             }
-            self.input.consume(taken);
-            self.line += usize::from(newline.is_some());
             let at_end = taken == 0;
+            if too_long && line_start > start {
+                self.end_with_line(&mut chunk, (start, first), self.line);
+                return Ok(Some(chunk));
+            }
+            self.consume(taken);
+            self.line += usize::from(newline.is_some());
             if !at_end && newline.is_none() {
                 continue;
             }
-            if length > RECORD_LIMIT {
+            if too_long {
                 chunk.bytes.truncate(start);
                 chunk.too_long = Some(first);
-                self.quotes = self.quotes.map(|_| Quotes::default());
                 return Ok(Some(chunk));
             }
-            let closed = self.quotes.as_mut().is_none_or(|quotes| quotes.closed_after(&chunk.bytes[line_start..]));
-            line_start = chunk.bytes.len();
-            if (closed || at_end) && line_start > start {
-                chunk.ends.push((first, line_start));
-                (start, first, length) = (line_start, self.line, 0);
+            let line = &chunk.bytes[line_start..];
+            match self.quotes.as_mut().map_or(Quoting::Closed, |quotes| quotes.after(line)) {
+                Quoting::Open if !at_end && self.line > self.hopeless => {
+                    line_start = chunk.bytes.len();
+                    continue;
+                }
+                Quoting::Open => self.end_with_line(&mut chunk, (start, first), self.line),
+                Quoting::Misplaced => self.end_with_line(&mut chunk, (start, first), self.line - 1),
+                Quoting::Closed
+                    if line_start > start
+                        && self.columns.is_some_and(|columns| swallows_rows(&chunk.bytes[start..], columns)) =>
+                {
+                    self.end_with_line(&mut chunk, (start, first), self.line - 1);
+                }
+                Quoting::Closed if chunk.bytes.len() > start => chunk.ends.push((first, chunk.bytes.len())),
+                Quoting::Closed => {}
             }
-            if at_end || chunk.ends.len() == most || (start == line_start && self.keeps_waiting()) {
+            (start, line_start, first, length) = (chunk.bytes.len(), chunk.bytes.len(), self.line, 0);
+            if at_end || chunk.ends.len() == most || self.keeps_waiting() {
                 return Ok((!chunk.ends.is_empty()).then_some(chunk));
             }
         }
     }
 
+    /// Ends the record that begins at `start` on line `first` behind that line; the lines behind it are read again.
+    /// Before line `hopeless` no quote that is open at the end of a line is closed as it should be, so none of these
+    /// lines is read a third time.
+    fn end_with_line(&mut self, chunk: &mut Chunk, (start, first): (usize, usize), hopeless: usize) {
+        self.hopeless = self.hopeless.max(hopeless);
+        self.quotes = Some(Quotes::default());
+        let lines = &chunk.bytes[start..];
+        let end = start + memchr(b'\n', lines).map_or(lines.len(), |newline| newline + 1);
+        let mut rest = chunk.bytes.split_off(end);
+        chunk.ends.push((first, end));
+        if !rest.is_empty() {
+            rest.extend_from_slice(&self.again.0[self.again.1..]);
+            (self.again, self.line) = ((rest, 0), first + 1);
+        }
+    }
+
+    /// Drops the first bytes of [`Self::fill`].
+    fn consume(&mut self, count: usize) {
+        match self.again.1 < self.again.0.len() {
+            true => self.again.1 += count,
+            false => self.input.consume(count),
+        }
+    }
+
     /// The buffered bytes, at least one unless the input has ended; without a byte order mark.
     fn fill(&mut self) -> Result<&[u8]> {
+        if self.again.1 < self.again.0.len() {
+            return Ok(&self.again.0[self.again.1..]);
+        }
+        self.again = (Vec::new(), 0);
         loop {
             match self.input.fill_buf() {
                 Ok(ready) if std::mem::take(&mut self.fresh) && ready.starts_with(b"\xEF\xBB\xBF") => {
@@ -151,7 +233,8 @@ impl<R: Read + Send> TaskSource for Chunks<R> {
 
     /// Whether no whole line is buffered.
     fn keeps_waiting(&self) -> bool {
-        memchr(b'\n', self.input.buffer()).is_none()
+        let again = &self.again.0[self.again.1..];
+        memchr(b'\n', again).is_none() && memchr(b'\n', self.input.buffer()).is_none()
     }
 }
 
@@ -182,9 +265,9 @@ mod tests {
     use super::*;
 
     /// Gives one part after the other.
-    struct Parts(Vec<&'static [u8]>);
+    struct Parts<'p>(Vec<&'p [u8]>);
 
-    impl Read for Parts {
+    impl Read for Parts<'_> {
         fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
             if self.0.is_empty() { Ok(0) } else { self.0.remove(0).read(into) }
         }
@@ -222,6 +305,39 @@ mod tests {
     fn a_record_of_a_table_may_have_line_breaks() {
         let table = chunks(Chunks::of_table(Parts(vec![b"a\n\"b", b"\nc\"\n", b"d\n\"e\n"])));
         assert_eq!(table, [r"1:a\n", r#"2:\"b\nc\"\n"#, r#"4:d\n 5:\"e\n"#]);
+    }
+
+    #[test]
+    fn a_line_whose_quote_stays_open_swallows_no_other() {
+        for (text, expected) in [
+            // Never closed, and closed before text.
+            ("a\n\"b\nc\nd", "1:a 2:\"b 3:c 4:d"),
+            ("\"a\nb\nc\"d\ne\n", "1:\"a 2:b 3:c\"d 4:e"),
+            ("x,\"a\nb\nx,\"c\nd\n", "1:x,\"a 2:b 3:x,\"c 4:d"),
+            // The line at which the first quote fails begins a record of two lines.
+            ("\"a\nb\n\"c\nd\"\ne\n", "1:\"a 2:b 3:\"c;d\" 5:e"),
+            ("\"a\n\n\"b\"c\n\"d\"\n", "1:\"a 2: 3:\"b\"c 4:\"d\""),
+        ] {
+            for size in [1, 3, 100] {
+                let parts = text.as_bytes().chunks(size).collect();
+                let found = chunks(Chunks::of_table(Parts(parts))).join(" ");
+                assert_eq!(
+                    found.replace(r"\n ", " ").trim_end_matches(r"\n").replace(r"\n", ";").replace('\\', ""),
+                    expected
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn each_line_is_read_twice_at_most() {
+        // Read from its beginning each line opens a quote; read in quotes, none of them is closed before text.
+        let line = "a\",\"b\n";
+        let count = RECORD_LIMIT / line.len() + 100_000;
+        let text = line.repeat(count);
+        let mut chunks = Chunks::of_table(text.as_bytes());
+        let records = std::iter::from_fn(|| chunks.records(RECORDS).unwrap());
+        assert_eq!(records.map(|chunk| chunk.ends.len()).sum::<usize>(), count);
     }
 
     #[test]

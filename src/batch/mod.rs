@@ -35,10 +35,13 @@ use serde_json::Value;
 /// What is computed for every state of a batch, and in which form it is written.
 #[derive(Debug, Clone)]
 pub struct Question<'r> {
+    /// The robot of all states.
     pub robot: &'r Robot,
     /// How contacts are found and what is computed.
     pub options: Options,
+    /// What states take that do not state it.
     pub defaults: Defaults,
+    /// What records contain.
     pub detail: Detail,
     /// The columns of the input table; `None` for lines of JSON.
     pub header: Option<&'r Header>,
@@ -174,6 +177,8 @@ impl<'q> Batch<'q> {
     /// Appends the result of a state.
     fn result(&mut self, state: &mut State, around: Around<'_>, block: &mut Block) -> Result<()> {
         let Question { robot, detail, header, columns, .. } = *self.question;
+        let given = self.question.defaults.friction;
+        block.summary.own_friction += u64::from(given.is_some() && state.scene.friction.default != given);
         let impact = self.pipeline.impact(state).map_err(|error| match error.reason() {
             Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {
                 error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
@@ -181,14 +186,9 @@ impl<'q> Batch<'q> {
             _ => error,
         })?;
         let mut report = Report::of_state(robot, state, &impact, detail)?;
-        report.touchdown = around.landing.zip(around.time).map(|(landing, time)| Touchdown {
-            row: landing.row,
-            time,
-            striking: (&landing.striking).into(),
-            shift_z: landing.shift_z,
-            at: landing.at.name().into(),
-            touching: landing.touching.to_string(),
-        });
+        report.line = Some(around.line);
+        let landing = around.landing.zip(around.time);
+        report.touchdown = landing.and_then(|(landing, time)| Touchdown::of(robot, state, landing, around.line, time));
         if let Some(columns) = columns {
             columns.append_result(&report, around.carried, &mut block.out)?;
         } else {
@@ -200,7 +200,7 @@ impl<'q> Batch<'q> {
         self.keep(state.id.as_ref(), around, block, || {
             Keyframe::of_impact(robot, &self.question.options.feet, state, &impact)
         });
-        match impact.analysed() {
+        match impact.analyzed() {
             Ok(analysis) => {
                 let needed = self.friction_needed(state, analysis);
                 let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };

@@ -1,8 +1,10 @@
 //! The summary of a whole batch.
 
+use crate::error::visible;
 use crate::impact::{Analysis, Outcome, Verdict};
 use crate::law::Mode;
 use crate::pipeline::Impact;
+use crate::write::words;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
@@ -26,10 +28,18 @@ pub struct Summary {
     pub smallest_margins: Vec<Nearest>,
     /// States in which feet slide because friction is too small.
     pub more_friction: MoreFriction,
+    /// States with contacts that were taken as exactly at rest, because they are slow (`resting_speed`).
+    pub resting: u64,
     /// The modes of the contacts, in the order of their first appearance, at most 1,000 different lists.
     pub modes: Vec<ModeCount>,
     /// Outcomes with further lists of modes.
     pub other_modes: u64,
+    /// States with friction of their own, where another one is given for states without.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub own_friction: u64,
+    /// Columns of coordinates that the table of states does not have, which are 0 in all of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub missing_columns: Vec<String>,
 }
 
 /// The verdicts in their order, in the words of the text.
@@ -55,6 +65,7 @@ impl Serialize for Verdicts {
 /// A state of the batch, and its smallest margin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Nearest {
+    /// Which state it is.
     #[serde(flatten)]
     pub state: StateRef,
     /// The margin of its outcomes that is nearest to zero, free of units.
@@ -78,6 +89,7 @@ pub struct StateRef {
 /// such outcomes, the one that needs least.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MoreFriction {
+    /// How many there are.
     pub states: u64,
     /// The one that needs most; of equal ones the first.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -87,6 +99,7 @@ pub struct MoreFriction {
 /// A state of the batch, and the friction that it needs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Needed {
+    /// Which state it is.
     #[serde(flatten)]
     pub state: StateRef,
     /// The coefficient, or "infinite" if a contact sticks without a normal impulse.
@@ -97,8 +110,10 @@ pub struct Needed {
 /// How often a list of modes occurs among the outcomes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ModeCount {
+    /// The names of the contacts.
     pub contacts: Vec<String>,
     pub modes: Vec<Mode>,
+    /// How many outcomes have these modes.
     pub outcomes: u64,
 }
 
@@ -115,6 +130,7 @@ impl Summary {
         for ((verdict, _), count) in VERDICTS.iter().zip(&mut self.verdicts.0) {
             *count += u64::from(*verdict == analysis.verdict);
         }
+        self.resting += u64::from(impact.resting.contains(&true));
         self.near(&state, &analysis.outcomes);
         if let Some(friction) = friction_needed {
             self.more_friction.add(MoreFriction { states: 1, greatest: Some(Needed { state: state(), friction }) });
@@ -144,6 +160,7 @@ impl Summary {
             self.insert(near);
         }
         self.more_friction.add(following.more_friction);
+        self.resting += following.resting;
         for list in following.modes {
             let known = |known: &&mut ModeCount| known.modes == list.modes && known.contacts == list.contacts;
             // The limit holds only here: applied to parts, the result would depend on them.
@@ -155,6 +172,7 @@ impl Summary {
             }
         }
         self.other_modes += following.other_modes;
+        self.own_friction += following.own_friction;
     }
 
     fn near(&mut self, state: impl Fn() -> StateRef, outcomes: &[Outcome]) {
@@ -190,6 +208,10 @@ impl MoreFriction {
     }
 }
 
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 fn coefficient<S: Serializer>(friction: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     if friction.is_finite() { serializer.serialize_f64(*friction) } else { serializer.serialize_str("infinite") }
 }
@@ -199,8 +221,7 @@ impl fmt::Display for StateRef {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let line = self.line;
         match &self.id {
-            Some(Value::String(id)) => write!(f, "{id} (line {line})"),
-            Some(id) => write!(f, "{id} (line {line})"),
+            Some(id) => write!(f, "{} (line {line})", visible(&words::id(id))),
             None => write!(f, "line {line}"),
         }
     }
@@ -235,10 +256,15 @@ impl fmt::Display for Summary {
                 "all outcomes slide because friction is too small: {states}; most is needed by {state}: {friction}"
             )?;
         }
+        if self.resting > 0 {
+            let states = self.resting;
+            writeln!(f, "slow contacts are taken as exactly at rest: {states}; `resting_speed: 0` takes none so")?;
+        }
         let mut lists: Vec<&ModeCount> = self.modes.iter().filter(|list| !list.modes.is_empty()).collect();
         lists.sort_by_key(|list| std::cmp::Reverse(list.outcomes));
         for list in lists.iter().take(SHOWN) {
-            let ends = list.contacts.iter().zip(&list.modes).map(|(contact, mode)| format!("{contact} {mode}"));
+            let ends =
+                list.contacts.iter().zip(&list.modes).map(|(contact, mode)| format!("{} {mode}", visible(contact)));
             writeln!(f, "{:>8} x {}", list.outcomes, ends.collect::<Vec<_>>().join(", "))?;
         }
         let rest: u64 = lists.iter().skip(SHOWN).map(|list| list.outcomes).sum::<u64>() + self.other_modes;

@@ -6,11 +6,11 @@ use super::output::OutputOptions;
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::stream::only_document;
-use super::{Completion, Failure};
+use super::{Completion, Failure, input};
 use heelstrike::accuracy::compliant::compare;
 use heelstrike::accuracy::{Budget, Case, CaseStudy, CaseSubject, cases, of_state, study};
 use heelstrike::pipeline::Options;
-use heelstrike::state::State;
+use heelstrike::state::{Defaults, State};
 use heelstrike::write::{Accuracy, Compliant, titled};
 use heelstrike::{Error, Reason, Robot};
 use std::path::{Path, PathBuf};
@@ -33,6 +33,9 @@ pub struct Args {
     /// Run only the cases of the suite whose name contains this text
     #[arg(long, value_name = "TEXT")]
     case: Option<String>,
+    /// List the names of the suite's cases, and run none
+    #[arg(long, conflicts_with_all = ["robot", "case", "plot"])]
+    list: bool,
     /// How long each method is timed, in milliseconds
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 20)]
     time: u64,
@@ -50,6 +53,11 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Completion {
+    args.output.check_ending()?;
+    if args.list {
+        let names: Vec<String> = cases()?.into_iter().map(|case| case.name).collect();
+        return args.output.write(&names, |_| names.iter().flat_map(|name| [name, "\n"]).collect());
+    }
     let budget = Budget { time: Duration::from_millis(args.time), ..Budget::default() };
     args.plot.claim(&[args.robot.as_ref(), args.state.as_ref()], args.output.path())?;
     let accuracy = match (&args.robot, &args.state) {
@@ -60,7 +68,10 @@ pub(super) fn run(args: &Args) -> Completion {
     let written = args.output.write(&accuracy, |palette| accuracy.text(palette))?;
     // The suite contains refused cases on purpose; a user's own state does not.
     match accuracy.studies.as_slice() {
-        [CaseStudy { refused: Some(error), .. }] if args.robot.is_some() => Err(error.clone().into()),
+        [CaseStudy { refused: Some(error), .. }] if args.robot.is_some() => {
+            let state = args.state.as_deref().map_or_else(String::new, input::name);
+            Err(error.clone().in_file(state).into())
+        }
         _ => Ok(written),
     }
 }
@@ -69,11 +80,13 @@ fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accura
     let robot = RobotOptions { robot: robot.to_owned(), ..RobotOptions::default() }.load()?;
     let input = InputFile::read(state, InputFile::LARGE)?;
     let document = only_document(&input)?;
-    let state = State::from_json(document.text, &robot, &args.scene.defaults());
+    let defaults = Defaults { place_lowest: args.contacts.place_lowest(&robot)?, ..args.scene.defaults() };
+    let state = State::from_json(document.text, &robot, &defaults);
     let state = state.map_err(|error| input.refuse(document.locate(error)))?;
     let options = Options {
         contact_tolerance: args.contacts.contact_tolerance,
         resting_speed: args.contacts.resting_speed,
+        strict_limits: args.contacts.strict_limits,
         no_proof: args.no_proof,
         ..Options::default()
     };
@@ -93,7 +106,7 @@ fn suite(part: &str, no_proof: bool, budget: Budget) -> Result<Accuracy, Failure
     let chosen: Vec<Case> = cases()?.into_iter().filter(|case| case.name.contains(part)).collect();
     if chosen.is_empty() {
         let reason = Reason::UnknownName { what: "case", name: part.to_owned() };
-        let hint = "`heelstrike accuracy --time 0` shows the names of all cases";
+        let hint = "`heelstrike accuracy --list` shows the names of all cases";
         return Err(Failure::Usage(Error::new(reason).at("--case").hint(hint)));
     }
     let options = Options { no_proof, ..Options::default() };

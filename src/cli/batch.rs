@@ -1,23 +1,24 @@
 //! `heelstrike batch`: the answers to many states, in order.
 
-use super::diagnostic::note;
+use super::diagnostic::{is_quiet, note, note_own_friction, with_flags};
 use super::options::{
-    Choices, ContactOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, choice, from_zero,
+    Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, choice, from_zero,
     pipeline_options,
 };
-use super::output::{apart, create, named, spare};
+use super::output::{NewFile, Target, apart, check_ending, spare, writable};
 use super::picture::PlotOptions;
+use super::resume::{BatchOutput, Continued};
 use super::robot::RobotOptions;
-use super::sink::OutputSink;
+use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
 use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Chunks, Question, Recording};
 use heelstrike::error::Location;
 use heelstrike::error::excerpt::Excerpt;
-use heelstrike::gait::{self, At, Difference, Dropped, Thresholds, Touching};
+use heelstrike::gait::{self, At, Difference, Dropped, Heights, Thresholds, Touching};
 use heelstrike::read::table::{Header, Rates};
 use heelstrike::state::Defaults;
-use heelstrike::write::{self, Columns};
+use heelstrike::write::{self, Columns, RowKind};
 use heelstrike::{Error, Reason, Robot};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -42,6 +43,9 @@ pub struct Args {
     /// The format of the input [default: csv if its name ends in .csv, else ndjson]
     #[arg(long, value_name = "FORMAT", value_enum)]
     input_format: Option<RecordFormat>,
+    /// Copy this column of a table to the results although its name resembles that of a coordinate [repeatable]
+    #[arg(long, value_name = "NAME")]
+    foreign: Vec<String>,
     #[command(flatten)]
     scene: SceneOptions,
     #[command(flatten)]
@@ -55,9 +59,17 @@ pub struct Args {
     /// Write to this file, which is replaced
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
+    /// Continue what an interrupted run has written to the output, which has the ending .part until it is whole
+    ///
+    /// Input and options must be those of that run. Without one, this is an ordinary run. With --summary or --plot all
+    /// states are answered again, and what is there is only compared.
+    #[arg(long, requires = "output", help_heading = "Output")]
+    resume: bool,
     /// The format of the results [default: csv if the output's name ends in .csv, else ndjson]
     #[arg(long, alias = "format", value_name = "FORMAT", value_enum, help_heading = "Output")]
     output_format: Option<RecordFormat>,
+    #[command(flatten)]
+    csv: CsvOptions,
     /// Also write the summary to this file, as JSON
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     summary: Option<PathBuf>,
@@ -81,8 +93,13 @@ struct RecordingOptions {
     /// smaller than 0.25 m these thresholds shrink in proportion; the size is the greatest distance from the root's
     /// origin to a foot or center of gravity with all joints at zero. The base is then shifted so that the foot is at z
     /// = 0.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "place")]
     touchdowns: bool,
+    /// Take the heights of a simulation at their word: the ground is z = 0, and a foot touches down when it crosses that
+    ///
+    /// The moment is where its height is zero as the up to six rows before it go on. For recordings without noise.
+    #[arg(long, requires = "touchdowns", conflicts_with = "ground_height")]
+    simulated: bool,
     /// Which state of a touchdown is analyzed
     #[arg(long, value_parser = choice(ROWS), default_value = "crossing", requires = "touchdowns")]
     at: At,
@@ -93,10 +110,10 @@ struct RecordingOptions {
     /// speed.
     #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
     touching: Touching,
-    /// How far a foot must have descended, in metres [default: 0.012, less for robots below 0.25 m]
+    /// How far a foot must have descended, in meters [default: 0.012, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
     drop: Option<f64>,
-    /// How far above z = 0 a foot may stop, in metres [default: 0.02, less for robots below 0.25 m]
+    /// How far above z = 0 a foot may stop, in meters [default: 0.02, less for robots below 0.25 m]
     #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
     ground_height: Option<f64>,
     /// Compute velocities from the positions and the column "time"
@@ -135,6 +152,12 @@ impl RecordFormat {
 
 pub(super) fn run(args: &Args) -> Completion {
     let (output, summary) = (args.output.as_deref(), args.summary.as_deref());
+    if args.output_format.is_none() {
+        check_ending(output, &["csv"], "results are written as .ndjson or .csv", "--output-format")?;
+    }
+    if args.input_format.is_none() {
+        check_ending(Some(&args.states), &["csv"], "states are read as .ndjson or .csv", "--input-format")?;
+    }
     let inputs = [Some(&args.robot.robot), Some(&args.states), args.loops.loops.as_ref()];
     args.plot.claim(&inputs, output)?;
     if let Some(summary) = summary {
@@ -159,14 +182,22 @@ pub(super) fn run(args: &Args) -> Completion {
     };
     chunks.check_format().map_err(in_input)?;
     let header = args.header(&robot, &mut chunks)?;
+    if chunks.is_empty().map_err(in_input)? {
+        let hint = if header.is_some() { "the table has a header and no rows" } else { "the input is empty" };
+        return Err(in_input(Error::new(Reason::Missing("a state".into()))).hint(hint).into());
+    }
+    if let Some(header) = &header {
+        note_missing(header);
+    }
     let output_format = args.output_format.unwrap_or_else(|| output.map_or(RecordFormat::Ndjson, RecordFormat::of));
+    args.csv.check(output_format == RecordFormat::Csv)?;
     let detail = args.detail.detail();
     if output_format == RecordFormat::Csv && (detail.explain || detail.matrices || detail.brief) {
         let reason = "a table has a row per outcome and no room for --explain, --matrices or --brief".to_owned();
         let hint = "write JSON: --output-format ndjson, or -o with that ending";
         return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
     }
-    let RecordingOptions { touchdowns, at, touching, drop: least, ground_height, velocity } = args.recording;
+    let RecordingOptions { touchdowns, simulated, at, touching, drop: least, ground_height, velocity } = args.recording;
     let usual = Thresholds::of(&robot, &feet);
     let (least, ground) = (least.unwrap_or(usual.drop), ground_height.unwrap_or(usual.ground));
     let thresholds = Thresholds { drop: least, ground, ..usual };
@@ -176,24 +207,39 @@ pub(super) fn run(args: &Args) -> Completion {
         let refused = gait::find(none, &robot, &feet, at, touching).err();
         refused.map_or(Ok(()), |error| Err(error.in_file(input::name(&args.robot.robot))))?;
     }
-    let columns = || Columns::new(&robot, &feet, header.as_ref(), touchdowns);
+    let kind = if touchdowns { RowKind::Touchdown } else { RowKind::State };
+    let columns = || args.csv.columns(Columns::new(&robot, &feet, header.as_ref(), kind));
     let columns = (output_format == RecordFormat::Csv).then(columns);
     let question = Question {
         robot: &robot,
         options: pipeline_options(&args.contacts, feet, args.detail, &args.robot.reductions),
-        defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
+        defaults: Defaults {
+            loops: args.loops.load(&robot)?,
+            place_lowest: args.contacts.place_lowest(&robot)?,
+            ..args.scene.defaults()
+        },
         detail,
         header: header.as_ref(),
         columns: columns.as_ref(),
         keyframes: args.plot.path().is_some(),
     };
-    // Created before the work, which would otherwise be lost.
-    let summary_file = create(summary)?;
-    let mut sink = OutputSink::new(open(output)?, &name, &progress);
+    // Tried before the work, which would otherwise be lost.
+    writable(summary)?;
+    let mut head = Vec::new();
     if let Some(columns) = &columns {
-        let mut line = Vec::new();
-        columns.append_header(&mut line);
-        sink.write(&line)?;
+        columns.append_header(&mut head);
+    }
+    // Summaries and pictures are of all states.
+    let all = summary.is_some() || args.plot.path().is_some();
+    let continued = output.filter(|_| args.resume).map(|path| Continued::open(path, &head, all)).transpose()?.flatten();
+    let (answered, refused) = continued.as_ref().map_or((0, 0), |begun| (begun.answered, begun.refused));
+    let (begun, output) = match continued {
+        Some(mut continued) => (continued.is_empty()?, BatchOutput::Continued(continued)),
+        None => (true, BatchOutput::New(Target::open(output, true, standard_output)?)),
+    };
+    let mut sink = OutputSink::new(output, &name, &progress);
+    if begun {
+        sink.write(&head)?;
     }
 
     let dropped = Mutex::new(Dropped::default());
@@ -210,8 +256,11 @@ pub(super) fn run(args: &Args) -> Completion {
                 samples = Box::new(gait::rates(samples, difference));
             }
             if touchdowns {
-                samples = Box::new(gait::find(samples, &robot, &question.options.feet, at, touching)?.with(thresholds));
+                let heights = if simulated { Heights::True } else { Heights::Recorded };
+                let found = gait::find(samples, &robot, &question.options.feet, at, touching)?;
+                samples = Box::new(found.with(thresholds).meaning(heights));
             }
+            samples = Box::new(samples.skip(answered));
             let answerer = || {
                 let mut batch = batch();
                 move |samples| batch.samples(samples)
@@ -219,6 +268,7 @@ pub(super) fn run(args: &Args) -> Completion {
             batch::run(Recording::new(samples), threads, answerer, &mut sink)
         }
         None => {
+            chunks.skip(answered).map_err(in_input)?;
             let answerer = || {
                 let mut batch = batch();
                 move |chunk| batch.records(&chunk)
@@ -226,34 +276,47 @@ pub(super) fn run(args: &Args) -> Completion {
             batch::run(chunks, threads, answerer, &mut sink)
         }
     }
-    .map_err(in_input)?;
-    let OutputSink { summary: counts, gait, .. } = sink;
+    .map_err(in_input)
+    .inspect_err(|_| note_part(&sink.output))?;
+    let OutputSink { output, summary: mut counts, gait, .. } = sink;
+    let useful = answered > 0 || counts.refused < counts.states || counts.states == 0 || args.refused == Answered::All;
+    output.finish(useful)?;
+    counts.missing_columns = header.as_ref().map_or(Vec::new(), |header| header.missing().to_vec());
     progress.finish_and_clear();
 
     if let Some(header) = &header {
         note_columns(header, &dropped);
     }
+    note_own_friction(counts.own_friction, "state");
+    if answered > 0 {
+        note(&format!("{answered} states were answered by an earlier run, and the summary is of the others"));
+    }
     // A failure to write to standard error cannot be reported anywhere.
     let _ = match counts.states {
-        0 if touchdowns => writeln!(
+        0 if simulated && !is_quiet() => writeln!(
+            io::stderr(),
+            "no touchdown found: a foot must descend {least:.4} m or more and cross z = 0 (see --drop)"
+        ),
+        0 if touchdowns && !is_quiet() => writeln!(
             io::stderr(),
             "no touchdown found: a foot must descend {least:.4} m or more, faster than {:.4} m/s, to at most \
              {ground:.4} m above the ground (see --drop, --ground-height)",
             thresholds.slow
         ),
         0 | 1 if summary.is_none() => Ok(()),
-        _ => write!(io::stderr(), "{counts}"),
+        _ if is_quiet() => Ok(()),
+        _ => write!(io::stderr(), "{}", with_flags(&counts.to_string())),
     };
-    if let (Some(mut file), Some(path)) = (summary_file, summary) {
+    if let Some(path) = summary {
         let mut line = Vec::new();
         write::append_line(&mut line, &counts);
-        file.write_all(&line).map_err(|error| named(path, error))?;
+        NewFile::write(path, &line)?;
     }
     if args.plot.path().is_some() {
         let page = |rendered| gait.page(&robot.name, rendered);
         args.plot.draw_or_page(&gait.picture(&robot.name), "the input holds no states", page)?;
     }
-    Ok(if counts.refused == 0 { Answered::All } else { args.refused })
+    Ok(if counts.refused + refused == 0 { Answered::All } else { args.refused })
 }
 
 impl RecordingOptions {
@@ -268,10 +331,10 @@ impl Args {
     fn header(&self, robot: &Robot, chunks: &mut Chunks<impl Read + Send>) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();
         if !chunks.is_table() {
-            if in_order {
-                let reason = "touchdowns and velocities over time need a table".to_owned();
-                let hint = "give CSV with a column time, or say --input-format csv";
-                return Err(Failure::Usage(Error::new(Reason::Inconsistent(reason)).hint(hint)));
+            if in_order || !self.foreign.is_empty() {
+                let what = if in_order { "touchdowns and velocities over time need" } else { "--foreign needs" };
+                let error = Error::new(Reason::Inconsistent(format!("{what} a table")));
+                return Err(Failure::Usage(error.hint("give CSV with a header, or say --input-format csv")));
             }
             return Ok(None);
         }
@@ -279,17 +342,27 @@ impl Args {
         // A table without any line has no states, like lines of JSON.
         let Some((line, record)) = chunks.first().map_err(|error| error.in_file(&name))? else { return Ok(None) };
         let rates = if self.recording.velocity.is_some() { Rates::Time } else { Rates::Columns };
-        let header = Header::read(&record, robot, rates).map_err(|error| {
+        let header = Header::read(&record, robot, rates, &self.foreign).map_err(|error| {
             let place = error.location().unwrap_or(Location { line: 1, column: 1 });
             let place = Location { line: line + place.line - 1, ..place };
             let excerpt = Excerpt::around(&record, line, place);
             Failure::Refused(error.on(place.line, place.column).in_file(&name), excerpt)
         })?;
+        chunks.expect_columns(header.count());
         if in_order && !header.has_time() {
             let missing = Error::new(Reason::Missing("a column \"time\"".into())).on(line, 1);
             return Err(missing.in_file(name).hint("touchdowns need the time of each row").into());
         }
         Ok(Some(header))
+    }
+}
+
+/// Notes which coordinates have no column.
+fn note_missing(header: &Header) {
+    match header.missing() {
+        [] => {}
+        [only] => note(&format!("a column is missing, and taken as 0: {only}")),
+        missing => note(&format!("{} columns are missing, and taken as 0: {}", missing.len(), missing.join(", "))),
     }
 }
 
@@ -308,12 +381,9 @@ fn note_columns(header: &Header, dropped: &Mutex<Dropped>) {
     }
 }
 
-/// Opens the output without a buffer; blocks of results are large enough, and std's line buffer would hide how much
+/// Standard output without a buffer; blocks of results are large enough, and std's line buffer would hide how much
 /// reached a full disk.
-fn open(path: Option<&Path>) -> io::Result<Box<dyn Write>> {
-    if let Some(file) = create(path)? {
-        return Ok(Box::new(file));
-    }
+fn standard_output() -> io::Result<Box<dyn Write>> {
     #[cfg(unix)]
     {
         let standard_output = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;

@@ -2,20 +2,27 @@
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, normalize_untrusted_str};
 use heelstrike::Error;
-use heelstrike::error::Location;
 use heelstrike::error::excerpt::Excerpt;
+use heelstrike::error::{Location, visible};
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The library's settings, as its hints name them, and their options.
-const FLAGS: [(&str, &str); 10] = [
+const FLAGS: &[(&str, &str)] = &[
     ("base", "--base"),
     ("plane", "--plane"),
+    ("all", "--all"),
     ("hold", "--hold"),
+    ("axis_tolerance", "--axis-tolerance"),
     ("feet", "--contact"),
     ("contact_tolerance", "--contact-tolerance"),
+    ("package_path", "--package-path"),
+    ("place", "--place"),
+    ("strict_limits", "--strict-limits"),
     ("resting_speed", "--resting-speed"),
     ("friction", "--friction"),
     ("velocity", "--velocity"),
+    ("foreign", "--foreign"),
     ("input_format", "--input-format"),
     ("format", "--format"),
 ];
@@ -68,9 +75,23 @@ pub(super) fn report_with(error: &Error, excerpt: Option<&Excerpt>) {
     write(&groups);
 }
 
-/// Writes `note: ` and the text.
+/// Whether only errors are written.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+pub(super) fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+pub(super) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Writes `note: ` and the text, unless only errors are wanted.
 pub(super) fn note(text: &str) {
-    write(&[Group::with_title(Level::NOTE.primary_title(with_flags(text)))]);
+    if is_quiet() {
+        return;
+    }
+    write(&[Group::with_title(Level::NOTE.primary_title(visible(&with_flags(text))))]);
 }
 
 fn hint(error: &Error) -> Option<Group<'_>> {
@@ -82,6 +103,15 @@ fn write(groups: &[Group<'_>]) {
     let text = Renderer::styled().render(groups);
     // A failure to write to standard error cannot be reported anywhere.
     let _ = writeln!(anstream::stderr().lock(), "{text}");
+}
+
+/// Notes how many inputs have friction of their own, so that the one of the command line is not theirs.
+pub(super) fn note_own_friction(count: u64, what: &str) {
+    match count {
+        0 => {}
+        1 => note(&format!("`friction` is not used where a {what} has its own, as one does here")),
+        _ => note(&format!("`friction` is not used where a {what} has its own, as {count} do here")),
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
-use super::diagnostic::note;
+use super::diagnostic::{note, note_own_friction};
 use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Format, OutputOptions};
 use super::picture::PlotOptions;
@@ -43,6 +43,7 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Completion {
+    args.output.check_ending()?;
     let inputs = [Some(&args.robot.robot), Some(&args.state), args.loops.loops.as_ref()];
     args.plot.claim(&inputs, args.output.path())?;
     let robot = args.robot.load()?;
@@ -55,22 +56,28 @@ pub(super) fn run(args: &Args) -> Completion {
         // The text sums up why the other combinations fail even if it does not list them.
         options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
     }
-    let defaults = Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() };
+    let defaults = Defaults {
+        loops: args.loops.load(&robot)?,
+        place_lowest: args.contacts.place_lowest(&robot)?,
+        ..args.scene.defaults()
+    };
     let plotted = args.plot.path().is_some();
     let several = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
     let several = Failure::Usage(Error::new(several).at("--plot").hint("give the states one by one"));
     let several = if plotted { Err(several) } else { Ok(()) };
-    let (mut pipeline, mut drawn) = (Pipeline::new(&robot, options), None);
+    let (mut pipeline, mut drawn, mut own_friction) = (Pipeline::new(&robot, options), None, 0);
     let answered = answer_all("state", &args.state, format, &args.output, several, |state, palette, out| {
         let state = State::from_json(state, &robot, &defaults)?;
+        own_friction += u64::from(defaults.friction.is_some() && state.scene.friction.default != defaults.friction);
         let impact = pipeline.impact(&state)?;
         if plotted {
             drawn = picture::impact(&robot, &feet, &state, &impact);
         }
         let report = Report::of_state(&robot, &state, &impact, detail)?;
         append(&report, &Subject::of_state(&robot, &state, &impact), detail, palette, out);
-        Ok(impact.analysed().err())
+        Ok(impact.analyzed().err())
     })?;
+    note_own_friction(own_friction, "state");
     match &drawn {
         Some(picture) => args.plot.draw(picture, "the state has no place in the plane")?,
         None if plotted => note("no picture is drawn of a state that is refused"),

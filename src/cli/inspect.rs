@@ -17,6 +17,9 @@ Examples:
 pub struct Args {
     #[command(flatten)]
     robot: RobotOptions,
+    /// Show every body, joint and part that was left out, however many
+    #[arg(long)]
+    all: bool,
     #[command(flatten)]
     plot: PlotOptions<false>,
     #[command(flatten)]
@@ -24,6 +27,7 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Completion {
+    args.output.check_ending()?;
     args.plot.claim(&[Some(&args.robot.robot)], args.output.path())?;
     // Its cautions are part of the output.
     let (_, _, mut robot) = args.robot.described()?;
@@ -33,5 +37,5 @@ pub(super) fn run(args: &Args) -> Completion {
     if args.plot.path().is_some() {
         args.plot.draw(&drawing::picture::robot(&robot, &feet), "the robot has no place in the plane")?;
     }
-    args.output.write(&inspection, |palette| with_flags(&inspection.text(palette)))
+    args.output.write(&inspection, |palette| with_flags(&inspection.text(palette, args.all)))
 }

@@ -1,6 +1,7 @@
 //! Names of mesh files in a URDF -> files.
 //!
 //! ```text
+//!     package:///path        from the folder of the URDF file, or from a --package-path DIR or the folders after it
 //!     package://NAME/rest    rest in the folder of package NAME, which is the first that is there of
 //!                              DIR/NAME, or DIR itself if it is the package    for each --package-path DIR,
 //!                              the same for each folder of ROS_PACKAGE_PATH,
@@ -12,11 +13,10 @@
 //!
 //! A folder is a package if its own name or its package.xml says so. `model://` (Gazebo) means the same as
 //! `package://`, backslashes the same as slashes, and `%20` a space unless a file has the percent sign in its name.
-//! Only regular files are opened. A path that leaves its package is refused.
+//! Only regular files are opened, and none outside its package.
 
 use super::input::InputFile;
 use heelstrike::description::Fetched;
-use heelstrike::{Error, Reason, Result};
 use percent_encoding::percent_decode_str;
 use std::path::{Component, Path, PathBuf};
 
@@ -40,18 +40,16 @@ impl Meshes {
         Self { folder, roots }
     }
 
-    /// The file that a URDF calls `name`. A path that leaves its package is refused.
-    pub fn fetch(&self, name: &str) -> Result<Fetched> {
+    /// The file that a URDF calls `name`.
+    pub fn fetch(&self, name: &str) -> Fetched {
         let as_written = name.replace('\\', "/");
         let decoded = percent_decode_str(&as_written).decode_utf8_lossy().into_owned();
-        for name in [&as_written, &decoded] {
-            refuse_leaving(name)?;
+        if [&as_written, &decoded].into_iter().any(|name| leaves(name)) {
+            return Err("its name leaves its package, as no name may".into());
         }
         let found = [&as_written, &decoded].into_iter().find_map(|name| self.find(name));
-        let Some(path) = found else { return Ok(Err(self.missing(&decoded))) };
-        Ok(InputFile::read(&path, InputFile::LARGE)
-            .map(|input| input.bytes)
-            .map_err(|error| error.reason().to_string()))
+        let path = found.ok_or_else(|| self.missing(&decoded))?;
+        InputFile::read(&path, InputFile::LARGE).map(|input| input.bytes).map_err(|error| error.reason().to_string())
     }
 
     fn find(&self, name: &str) -> Option<PathBuf> {
@@ -63,7 +61,11 @@ impl Meshes {
 
     /// The folders of a package.
     fn packages<'a>(&'a self, name: &'a str) -> impl Iterator<Item = PathBuf> + 'a {
+        // The folder of the file is a root, too.
         let inside = move |root: &PathBuf| {
+            if name.is_empty() {
+                return Some(root.clone());
+            }
             let below = root.join(name);
             if below.is_dir() { Some(below) } else { is_package(root, name).then(|| root.clone()) }
         };
@@ -72,6 +74,7 @@ impl Meshes {
 
     fn missing(&self, name: &str) -> String {
         match package_and_path(name) {
+            Some(("", _)) => "no such file, and its name has no package".to_owned(),
             Some((package, _)) if self.packages(package).next().is_none() => {
                 format!("package {package} is not here: name the folder that holds it by --package-path")
             }
@@ -95,20 +98,16 @@ fn package_and_path(name: &str) -> Option<(&str, &str)> {
     Some((package, path.trim_start_matches('/')))
 }
 
-/// Refuses a path that leads out of its package on the way.
-fn refuse_leaving(name: &str) -> Result<()> {
-    let Some((package, path)) = package_and_path(name) else { return Ok(()) };
+/// Whether a name leads out of its package on the way.
+fn leaves(name: &str) -> bool {
+    let Some((package, path)) = package_and_path(name) else { return false };
     let depth = Path::new(path).components().try_fold(0_usize, |depth, component| match component {
         Component::Normal(_) => Some(depth + 1),
         Component::CurDir => Some(depth),
         Component::ParentDir => depth.checked_sub(1),
         Component::RootDir | Component::Prefix(_) => None,
     });
-    if depth.is_some() && !matches!(package, "" | "." | "..") {
-        return Ok(());
-    }
-    let error = Error::new(Reason::Unsupported(format!("the mesh \"{name}\" leaves its package")));
-    Err(error.hint("name a file inside the package, as in package://NAME/meshes/foot.stl"))
+    depth.is_none() || matches!(package, "." | "..")
 }
 
 /// Whether `folder` is the package of that name.

@@ -12,6 +12,7 @@ mod options;
 mod meshes;
 mod robot;
 mod stream;
+mod resume;
 mod sink;
 mod inspect;
 mod impact;
@@ -21,9 +22,11 @@ mod sweep;
 mod accuracy;
 mod reference;
 
+use anstream::ColorChoice;
 use clap::{Parser, Subcommand};
 use diagnostic::{report, report_with};
 use heelstrike::error::excerpt::Excerpt;
+use options::{Choices, choice};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -38,7 +41,20 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("HEELSTRIKE_COMMIT
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Write no notes, no summary and no progress to standard error, only errors
+    #[arg(long, global = true, help_heading = "Messages")]
+    quiet: bool,
+    /// When text is colored; the variable NO_COLOR also turns colors off
+    #[arg(long, value_name = "WHEN", value_parser = choice(COLORS), default_value = "auto", global = true)]
+    #[arg(help_heading = "Messages")]
+    color: ColorChoice,
 }
+
+const COLORS: Choices<ColorChoice> = &[
+    ("auto", "On a terminal", ColorChoice::Auto),
+    ("always", "Everywhere", ColorChoice::Always),
+    ("never", "Nowhere", ColorChoice::Never),
+];
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -50,7 +66,6 @@ enum Command {
     Accuracy(accuracy::Args),
     Schema(reference::SchemaArgs),
     Completions(reference::CompletionsArgs),
-    #[command(hide = true)]
     Man(reference::ManArgs),
 }
 
@@ -88,6 +103,8 @@ enum Answered {
 
 /// Runs the command and returns the exit status.
 pub fn run(cli: Cli) -> ExitCode {
+    cli.color.write_global();
+    diagnostic::set_quiet(cli.quiet);
     let completion = match cli.command {
         Command::Inspect(args) => inspect::run(&args),
         Command::Impact(args) => impact::run(&args),

@@ -3,13 +3,14 @@
 use super::Failure;
 use super::input::InputFile;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use heelstrike::Detail;
-use heelstrike::Robot;
 use heelstrike::law::Friction;
 use heelstrike::pipeline;
 use heelstrike::read::loops_from_json;
 use heelstrike::reductions::Reductions;
+use heelstrike::robot::Base;
 use heelstrike::state::{Defaults, NamedContact, NamedLoop};
+use heelstrike::write::Columns;
+use heelstrike::{Detail, Error, Reason, Robot};
 use std::path::PathBuf;
 use std::thread::available_parallelism;
 
@@ -50,12 +51,69 @@ impl LoopOptions {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Scene")]
 pub(super) struct ContactOptions {
-    /// How far from the ground a foot may be and still touch it, in metres [default: 1e-6 of the robot's size]
+    /// How far from the ground a foot may be and still touch it, in meters [default: 1e-6 of the robot's size]
     #[arg(long, value_name = "DISTANCE", value_parser = from_zero, allow_hyphen_values = true)]
     pub contact_tolerance: Option<f64>,
-    /// Treat contacts slower than this before the impact, in m/s, as exactly at rest
-    #[arg(long, value_name = "SPEED", value_parser = from_zero, allow_hyphen_values = true, default_value_t = 0.0)]
-    pub resting_speed: f64,
+    /// Refuse states with joints outside the limits of the robot's file; otherwise they are noted
+    #[arg(long)]
+    pub strict_limits: bool,
+    /// Where the base is along z, unless the state says so
+    #[arg(long, value_name = "WHERE", value_parser = choice(PLACES), default_value = "given")]
+    place: PlaceLowest,
+    /// Treat contacts slower than this before the impact, in m/s, as exactly at rest; 0 takes every velocity at its word
+    /// [default: the rounding of each, and half a unit in the last place of numbers with 6 to 15 digits]
+    #[arg(long, value_name = "SPEED", value_parser = from_zero, allow_hyphen_values = true)]
+    pub resting_speed: Option<f64>,
+}
+
+/// Whether the lowest foot is put on the ground.
+type PlaceLowest = bool;
+
+const PLACES: Choices<PlaceLowest> = &[
+    ("given", "Where the state puts it", false),
+    ("lowest", "Such that the lowest foot is on the ground; the foot moves as it does", true),
+];
+
+impl ContactOptions {
+    /// Whether the lowest foot of `robot` is put on the ground.
+    pub fn place_lowest(&self, robot: &Robot) -> Result<bool, Failure> {
+        if self.place && robot.base == Base::Fixed {
+            let bolted = Reason::Inconsistent("the robot is bolted to the world, it cannot be placed".into());
+            let error = Error::new(bolted).at("--place").hint("leave it out, or give `base: floating`");
+            return Err(Failure::Usage(error));
+        }
+        Ok(self.place)
+    }
+}
+
+/// How tables are written.
+#[derive(Debug, Clone, Copy, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct CsvOptions {
+    /// Put an apostrophe before CSV cells of text that a spreadsheet would take as a formula
+    ///
+    /// These begin with =, +, -, @, a tab or a carriage return, as an id or a name of the input may. Numbers are
+    /// written as ever.
+    #[arg(long)]
+    csv_safe: bool,
+}
+
+impl CsvOptions {
+    /// Refuses the option where `is_csv` says that no table is written.
+    pub fn check(self, is_csv: bool) -> Result<(), Failure> {
+        if !self.csv_safe || is_csv {
+            return Ok(());
+        }
+        let reason = Reason::Inconsistent("it is for CSV, and the output is something else".into());
+        Err(Failure::Usage(
+            Error::new(reason).at("--csv-safe").hint("write to a file that ends in .csv, or leave it out"),
+        ))
+    }
+
+    /// The columns as they are to be written.
+    pub fn columns(self, columns: Columns) -> Columns {
+        if self.csv_safe { columns.guarded() } else { columns }
+    }
 }
 
 /// How much of each result is shown.
@@ -85,17 +143,18 @@ impl DetailOptions {
 /// Which computations are skipped if the scene does not need them.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct ReductionOptions {
-    /// Skip no computation that the scene does not need, or only these not; the outcomes are the same
+    /// Run also the computations that the scene does not need, all or these; the outcomes are the same
     #[arg(long, value_name = "WHICH", value_parser = choice(REDUCTIONS), num_args = 0.., require_equals = true)]
     #[arg(value_delimiter = ',')]
     no_reduction: Option<Vec<fn(&mut Reductions)>>,
 }
 
 const REDUCTIONS: Choices<fn(&mut Reductions)> = &[
-    ("weld", "Links on fixed and held joints are merged into their parents", |all| all.weld = false),
+    ("weld", "Links on fixed and frozen joints are merged into their parents", |all| all.weld = false),
     ("massless", "Massless links without shapes on such joints vanish", |all| all.massless = false),
-    ("held", "Joints that a state holds have no column", |all| all.held = false),
+    ("held", "Joints that a state brakes have no column", |all| all.held = false),
     ("reach", "Shapes too high to reach the ground are skipped", |all| all.reach = false),
+    ("merge", "Points between the outer two of a body act through these", |all| all.merge = false),
     ("frictionless", "The modes of a contact without friction share one elimination", |all| all.frictionless = false),
     ("lone", "The condition of a lone contact is taken in closed form", |all| all.lone = false),
 ];
@@ -151,6 +210,7 @@ pub(super) fn pipeline_options(
         feet,
         contact_tolerance: contacts.contact_tolerance,
         resting_speed: contacts.resting_speed,
+        strict_limits: contacts.strict_limits,
         explain_up_to: if detail.explain { usize::MAX } else { 0 },
         matrices: detail.matrices,
         no_proof: detail.no_proof,

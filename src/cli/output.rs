@@ -1,11 +1,12 @@
 //! Standard output or a file, as text or JSON.
 
+use super::diagnostic::note;
 use super::{Answered, Completion, Failure};
 use anstream::{AutoStream, ColorChoice};
 use heelstrike::write::{self, Palette};
 use heelstrike::{Error, Reason};
 use serde::Serialize;
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -41,6 +42,12 @@ impl OutputOptions {
         self.format.or_else(|| self.output.as_ref().and_then(by_ending))
     }
 
+    /// Refuses an output whose ending means a format that is not written here, unless the form is said.
+    pub fn check_ending(&self) -> Result<(), Failure> {
+        let written = "a result is written as .json, .ndjson or .txt";
+        if self.format.is_some() { Ok(()) } else { check_ending(self.path(), &[], written, "--format") }
+    }
+
     /// The file; `None` for standard output.
     pub fn path(&self) -> Option<&Path> {
         self.output.as_deref()
@@ -56,6 +63,29 @@ impl OutputOptions {
         }
         output.finish(&bytes)
     }
+}
+
+/// Endings of formats of which a command reads or writes a few.
+const FORMATS: [&str; 18] = [
+    "csv", "h5", "hdf5", "html", "mat", "npy", "npz", "parquet", "pdf", "pickle", "png", "svg", "toml", "tsv", "xlsx",
+    "xml", "yaml", "yml",
+];
+
+/// Refuses a file whose ending means a format that is not `known`, for the `reason`; `option` overrules the ending.
+pub(super) fn check_ending(
+    path: Option<&Path>,
+    known: &[&str],
+    reason: &'static str,
+    option: &str,
+) -> Result<(), Failure> {
+    let ending = path.and_then(Path::extension).and_then(|ending| ending.to_str()).unwrap_or_default();
+    let ending = ending.to_ascii_lowercase();
+    if known.contains(&&*ending) || !FORMATS.contains(&&*ending) {
+        return Ok(());
+    }
+    let error = Error::new(Reason::Unsupported(reason.to_owned()));
+    let error = path.map_or(error.clone(), |path| error.in_file(path.display().to_string()));
+    Err(Failure::Usage(error.hint(format!("name a file with one of these endings, or say {option}"))))
 }
 
 /// Refuses an `output` that is one of the `inputs`, even under another name; `-` and `None` are standard input and
@@ -115,15 +145,168 @@ fn file_of<S>(path: &Path, _standard: S) -> Option<PathBuf> {
     path.canonicalize().ok().filter(|path| path.is_file())
 }
 
-/// Creates the file of that path; `None` for standard output.
-pub(super) fn create(path: Option<&Path>) -> io::Result<Option<File>> {
-    let path = path.filter(|path| *path != Path::new("-"));
-    path.map(|path| File::create(path).map_err(|error| named(path, error))).transpose()
+/// A file that takes its name once it is whole: until then it is written next to its place, with the ending `.part`.
+/// Devices and pipes are written in place.
+#[derive(Debug)]
+pub(super) struct NewFile {
+    pub file: File,
+    /// The name that was given.
+    path: PathBuf,
+    /// The names while it is written and at last; `None` if they are one, or it has taken its name.
+    places: Option<[PathBuf; 2]>,
+    /// Whether it stays if it is not finished.
+    pub keep: bool,
+}
+
+impl NewFile {
+    /// Creates the file; one of the same name stays until [`Self::finish`].
+    pub fn create(path: &Path) -> io::Result<Self> {
+        Self::open(path).map_err(|error| named(path, error))
+    }
+
+    fn open(path: &Path) -> io::Result<Self> {
+        let known = std::fs::metadata(path).ok();
+        let new = |file, places| Self { file, path: path.to_owned(), places, keep: false };
+        if known.as_ref().is_some_and(|known| !known.is_file()) {
+            return Ok(new(File::create(path)?, None));
+        }
+        if known.is_some() {
+            // Refuses a file that may not be written.
+            OpenOptions::new().append(true).open(path)?;
+        }
+        let [part, last] = Self::places(path);
+        let file = OpenOptions::new().write(true).create(true).truncate(false).open(&part)?;
+        lock(&file)?;
+        file.set_len(0)?;
+        Ok(new(file, Some([part, last])))
+    }
+
+    /// Creates the file with these bytes.
+    pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut new = Self::create(path)?;
+        new.file.write_all(bytes).map_err(|error| named(path, error))?;
+        new.finish()
+    }
+
+    /// Opens what an earlier run left of the file: its part, or else the file itself, which is then continued in place.
+    pub fn reopen(path: &Path) -> io::Result<Option<Self>> {
+        let [part, last] = Self::places(path);
+        let places = part.is_file().then(|| [part, last.clone()]);
+        let present = places.as_ref().map_or(&last, |[part, _]| part);
+        if !present.is_file() {
+            return Ok(None);
+        }
+        let file = OpenOptions::new().read(true).write(true).open(present).map_err(|error| named(present, error))?;
+        lock(&file).map_err(|error| named(present, error))?;
+        Ok(Some(Self { file, path: path.to_owned(), places, keep: true }))
+    }
+
+    /// The names while the file is written and at last.
+    fn places(path: &Path) -> [PathBuf; 2] {
+        // The file that a link names is replaced, not the link.
+        let last = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let mut part = last.clone().into_os_string();
+        part.push(".part");
+        [part.into(), last]
+    }
+
+    /// The name of what is written so far, if the file has not taken its own yet.
+    pub fn part(&self) -> Option<&Path> {
+        self.places.as_ref().map(|[part, _]| part.as_path())
+    }
+
+    /// Whether a file of that name is there already.
+    pub fn replaces(&self) -> bool {
+        self.places.as_ref().is_some_and(|[_, last]| last.is_file())
+    }
+
+    /// Gives the file its name.
+    pub fn finish(mut self) -> io::Result<()> {
+        let Some([part, last]) = self.places.take() else { return Ok(()) };
+        let renamed = || {
+            self.file.sync_all()?;
+            if let Ok(known) = std::fs::metadata(&last) {
+                std::fs::set_permissions(&part, known.permissions())?;
+            }
+            std::fs::rename(&part, &last)
+        };
+        renamed().map_err(|error| named(&self.path, error))
+    }
+}
+
+impl Drop for NewFile {
+    fn drop(&mut self) {
+        if let (Some([part, _]), false) = (&self.places, self.keep) {
+            // There is no one to tell that a useless file stays.
+            let _ = std::fs::remove_file(part);
+        }
+    }
+}
+
+/// Refuses a file that another run is writing; not all file systems know.
+fn lock(file: &File) -> io::Result<()> {
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(io::Error::other("another run is writing it")),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
+    }
+}
+
+/// Where results go.
+pub(super) enum Target {
+    Standard(Box<dyn Write>),
+    File(NewFile),
+}
+
+impl Target {
+    /// The file at `path`, or `standard` output; with `keep`, a file that is not finished stays.
+    pub fn open(
+        path: Option<&Path>,
+        keep: bool,
+        standard: impl FnOnce() -> io::Result<Box<dyn Write>>,
+    ) -> io::Result<Self> {
+        match path.filter(|path| *path != Path::new("-")) {
+            Some(path) => {
+                let mut file = NewFile::create(path)?;
+                file.keep = keep;
+                Ok(Self::File(file))
+            }
+            None => standard().map(Self::Standard),
+        }
+    }
+
+    /// Ends the output; a file that is there already is replaced only if something was `answered`.
+    pub fn finish(self, answered: bool) -> io::Result<()> {
+        match self {
+            Self::Standard(mut output) => output.flush(),
+            Self::File(mut file) if !answered && file.replaces() => {
+                note(&format!("nothing was answered, and {} stays as it was", file.path.display()));
+                file.keep = false;
+                Ok(())
+            }
+            Self::File(file) => file.finish(),
+        }
+    }
+}
+
+impl Write for Target {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Standard(output) => output.write(bytes),
+            Self::File(file) => file.file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Standard(output) => output.flush(),
+            Self::File(file) => file.file.flush(),
+        }
+    }
 }
 
 /// A buffered output; standard output is colored if it is a terminal that wants colors.
 pub(super) struct Output {
-    pub writer: BufWriter<Box<dyn Write>>,
+    pub writer: BufWriter<Target>,
     /// How text is marked here.
     pub palette: Palette,
 }
@@ -131,19 +314,24 @@ pub(super) struct Output {
 impl Output {
     /// Opens `path`, or standard output.
     pub fn open(path: Option<&Path>) -> io::Result<Self> {
-        let (writer, palette): (Box<dyn Write>, _) = match (create(path)?, AutoStream::choice(&io::stdout())) {
-            (Some(file), _) => (Box::new(file), Palette::default()),
-            (None, ColorChoice::Never) => (Box::new(io::stdout().lock()), Palette::default()),
-            (None, _) => (Box::new(io::stdout().lock()), COLORS),
+        let target = Target::open(path, false, || Ok(Box::new(io::stdout().lock())))?;
+        let palette = match (&target, AutoStream::choice(&io::stdout())) {
+            (Target::File(_), _) | (_, ColorChoice::Never) => Palette::default(),
+            (Target::Standard(_), _) => COLORS,
         };
-        Ok(Self { writer: BufWriter::with_capacity(1 << 16, writer), palette })
+        Ok(Self { writer: BufWriter::with_capacity(1 << 16, target), palette })
     }
 
     /// Writes `bytes` and closes the output.
     pub fn finish(mut self, bytes: &[u8]) -> Completion {
         self.writer.write_all(bytes)?;
-        self.writer.flush()?;
+        self.close(true)?;
         Ok(Answered::All)
+    }
+
+    /// Closes the output; a file that is there already is replaced only if something was `answered`.
+    pub fn close(self, answered: bool) -> io::Result<()> {
+        self.writer.into_inner().map_err(|error| error.into_error())?.finish(answered)
     }
 }
 

@@ -1,7 +1,7 @@
 //! `--plot`: pictures as SVG or PNG, and interactive pages.
 
 use super::Failure;
-use super::output::{apart, named, spare, writable};
+use super::output::{NewFile, apart, spare, writable};
 use heelstrike::draw::Picture;
 use heelstrike::draw::page::Page;
 use heelstrike::draw::plot::Rendered;
@@ -63,7 +63,8 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         self.ending().as_deref() == Some("html")
     }
 
-    /// Draws the picture, if one is asked for; one without anything to draw is refused, for the reason `why_empty`.
+    /// Draws the picture, if one is asked for; one without anything to draw, or without a scale, is refused, for the
+    /// reason `why_empty`.
     pub fn draw(&self, picture: &Picture, why_empty: &'static str) -> Result<(), Failure> {
         let bytes = match self.ending().as_deref() {
             None => return Ok(()),
@@ -88,8 +89,9 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
 
     fn write(&self, bytes: Option<Vec<u8>>, why_empty: &'static str) -> Result<(), Failure> {
         let Some(path) = self.path() else { return Ok(()) };
-        let nothing = || Error::new(Reason::Unsupported("there is nothing to draw".into())).at("--plot");
+        let nothing =
+            || Error::new(Reason::Unsupported("there is nothing to draw, or not to scale".into())).at("--plot");
         let bytes = bytes.ok_or_else(|| nothing().hint(why_empty))?;
-        std::fs::write(path, bytes).map_err(|error| Failure::Output(named(path, error)))
+        Ok(NewFile::write(path, &bytes)?)
     }
 }

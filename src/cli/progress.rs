@@ -1,5 +1,6 @@
 //! A progress bar for long inputs and sweeps, shown on a terminal.
 
+use super::diagnostic::is_quiet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::path::Path;
@@ -19,7 +20,9 @@ pub(super) fn of(pieces: usize) -> ProgressBar {
 
 /// It is removed when the last handle to it is dropped.
 fn bar(length: Option<u64>, parts: &str) -> ProgressBar {
-    let Some(length) = length.filter(|_| io::stderr().is_terminal()) else { return ProgressBar::hidden() };
+    let Some(length) = length.filter(|_| io::stderr().is_terminal() && !is_quiet()) else {
+        return ProgressBar::hidden();
+    };
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
     let bar = bar.with_finish(ProgressFinish::AndClear);
     bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))

@@ -4,7 +4,7 @@ use super::Failure;
 use super::diagnostic::note;
 use super::input::InputFile;
 use super::meshes::Meshes;
-use super::options::{Choices, ReductionOptions, choice};
+use super::options::{Choices, ReductionOptions, choice, from_zero};
 use heelstrike::description::Description;
 use heelstrike::robot::{Base, Plane, Reduction};
 use heelstrike::state::NamedContact;
@@ -26,6 +26,9 @@ pub(super) struct RobotOptions {
     /// Whether the root link moves freely or is fixed to the world [default: as masses and joints suggest]
     #[arg(long, value_parser = choice(BASES), help_heading = "Robot")]
     pub base: Option<Base>,
+    /// How far the axis of a joint may be off the plane's normal, in rad, and count as normal to it [default: 0.001]
+    #[arg(long, value_name = "ANGLE", value_parser = from_zero, allow_hyphen_values = true, help_heading = "Robot")]
+    pub axis_tolerance: Option<f64>,
     /// A folder that holds packages, or is one, for meshes named by package:// [repeatable]
     #[arg(long, value_name = "DIR", help_heading = "Robot")]
     pub package_path: Vec<PathBuf>,
@@ -41,7 +44,7 @@ pub(super) struct RobotOptions {
 type ChosenPlane = Option<Plane>;
 
 const PLANES: Choices<ChosenPlane> = &[
-    ("auto", "The one in which all revolute joints turn, else x-z", None),
+    ("auto", "The one in which all revolute joints turn, else the one in which most of the legs turn", None),
     ("xz", "x forward, z up", Some(Plane::XZ)),
     ("yz", "y forward, z up", Some(Plane::YZ)),
     ("xy", "x forward, y up", Some(Plane::XY)),
@@ -109,11 +112,12 @@ impl RobotOptions {
         let refuse = |error: Error| input.refuse(error);
         let mut description = Description::from_urdf(text).map_err(refuse)?;
         let meshes = Meshes::of(&self.robot, &self.package_path);
-        description.read_meshes(|name| meshes.fetch(name)).map_err(refuse)?;
+        description.read_meshes(|name| meshes.fetch(name));
         let reduction = Reduction {
             plane: self.plane,
             hold: self.held(&description)?,
             base: self.base,
+            axis_tolerance: self.axis_tolerance,
             reductions: self.reductions.reductions(),
         };
         let robot = Robot::reduce(&description, &reduction).map_err(refuse)?;

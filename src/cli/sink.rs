@@ -1,6 +1,7 @@
 //! The sink of a batch: results go to the output, refusals to standard error, counts to the summary.
 
 use super::diagnostic::{note, report_with};
+use super::resume::BatchOutput;
 use super::{Failure, status};
 use heelstrike::batch::{Block, RefusedRecord, Sink, Summary};
 use heelstrike::draw::page::Gait;
@@ -11,8 +12,8 @@ use std::io::{self, ErrorKind, Write};
 const REPORTED: u64 = 20;
 
 /// Writes the answers in their order.
-pub(super) struct OutputSink<'a, W> {
-    output: W,
+pub(super) struct OutputSink<'a> {
+    pub output: BatchOutput,
     /// The name of the input in messages.
     input: &'a str,
     progress: &'a ProgressBar,
@@ -25,9 +26,9 @@ pub(super) struct OutputSink<'a, W> {
     lines: usize,
 }
 
-impl<'a, W: Write> OutputSink<'a, W> {
+impl<'a> OutputSink<'a> {
     /// Answers to `input` go to `output`, which must not buffer, so that the number of written lines is known.
-    pub fn new(output: W, input: &'a str, progress: &'a ProgressBar) -> Self {
+    pub fn new(output: BatchOutput, input: &'a str, progress: &'a ProgressBar) -> Self {
         Self { output, input, progress, summary: Summary::default(), gait: Gait::default(), refused: 0, lines: 0 }
     }
 
@@ -48,6 +49,9 @@ impl<'a, W: Write> OutputSink<'a, W> {
     }
 
     fn ended(&self, error: io::Error) -> io::Error {
+        if error.kind() == ErrorKind::InvalidData {
+            return error;
+        }
         let lines = self.lines;
         io::Error::new(
             error.kind(),
@@ -67,11 +71,20 @@ impl<'a, W: Write> OutputSink<'a, W> {
     /// Ends the process: the input may stay silent for ever, and waiting for more of it is of no use.
     fn end(&self, error: io::Error) -> ! {
         self.progress.finish_and_clear();
-        std::process::exit(status(Failure::Output(error)).into())
+        let status = status(Failure::Output(error));
+        note_part(&self.output);
+        std::process::exit(status.into())
     }
 }
 
-impl<W: Write> Sink for OutputSink<'_, W> {
+/// Notes where answers are that did not reach the output.
+pub(super) fn note_part(output: &BatchOutput) {
+    if let Some(part) = output.part() {
+        note(&format!("{} holds the answers so far; --resume continues them", part.display()));
+    }
+}
+
+impl Sink for OutputSink<'_> {
     fn block(&mut self, block: Block) -> heelstrike::Result<()> {
         self.write(&block.out).unwrap_or_else(|error| self.end(error));
         // On a terminal the answers come before the errors.

@@ -1,5 +1,6 @@
 //! `heelstrike solve`: every outcome of a contact problem that is given as matrices.
 
+use super::diagnostic::note_own_friction;
 use super::options::{DetailOptions, ReductionOptions, SceneOptions};
 use super::output::{Format, OutputOptions, spare};
 use super::stream::{SUMMED_UP, answer_all, append};
@@ -30,22 +31,28 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Completion {
+    args.output.check_ending()?;
     spare(args.output.path(), &[Some(&args.problem)])?;
     let to_a_file_or_lines = args.output.path().is_some() || input::is_ndjson(&args.problem);
     let otherwise = if to_a_file_or_lines { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(otherwise);
     let (defaults, detail, mut scratch) = (args.scene.defaults(), args.detail.detail(), Scratch::default());
-    answer_all("problem", &args.problem, format, &args.output, Ok(()), |problem, palette, out| {
+    let mut own_friction = 0;
+    let answered = answer_all("problem", &args.problem, format, &args.output, Ok(()), |problem, palette, out| {
         let problem = Problem::from_json(problem, &defaults)?;
+        let unlike = |given| problem.contact.friction().any(|own| own != given);
+        own_friction += u64::from(defaults.friction.is_some_and(unlike));
         let summed_up = palette.is_some() && !detail.brief && problem.contact.contacts() <= SUMMED_UP;
         let asked = AnalysisOptions {
             rejections: (detail.explain || summed_up).into(),
             prove: !args.detail.no_proof,
             reductions: args.reductions.reductions(),
         };
-        let analysis = scratch.analyse(&problem.contact, &problem, asked)?;
+        let analysis = scratch.analyze(&problem.contact, &problem, asked)?;
         let report = Report::of_problem(&problem, &analysis, detail);
         append(&report, &Subject::of_problem(&problem, &analysis), detail, palette, out);
         Ok(None)
-    })
+    })?;
+    note_own_friction(own_friction, "problem");
+    Ok(answered)
 }

@@ -58,17 +58,18 @@ pub(super) fn answer_all(
     let input = InputFile::read(path, InputFile::MANY)?;
     let name = &input.name;
     let whole = input.text().map_err(|error| error.in_file(name))?;
-    if whole.trim_ascii().is_empty() {
+    if documents(whole).next().is_none() {
         return Err(Error::new(Reason::Missing(format!("a {what}"))).in_file(name).hint("the input is empty").into());
     }
     if documents(whole).nth(1).is_some() {
         several?;
     }
-    let Output { mut writer, palette } = Output::open(output.path())?;
-    let mut refused = 0;
+    let mut output = Output::open(output.path())?;
+    let (mut refused, mut count) = (0, 0);
     for (at, document) in documents(whole).enumerate() {
+        count += 1;
         let mut out = Vec::new();
-        let answer = answer(document.text, (format == Format::Text).then_some(&palette), &mut out);
+        let answer = answer(document.text, (format == Format::Text).then_some(&output.palette), &mut out);
         match (&answer, format) {
             (Ok(_), Format::Text) if at > 0 => out.insert(0, b'\n'),
             (Err(error), Format::Json) => {
@@ -76,10 +77,10 @@ pub(super) fn answer_all(
             }
             _ => {}
         }
-        writer.write_all(&out)?;
+        output.writer.write_all(&out)?;
         if let Err(error) | Ok(Some(error)) = answer {
             // On a terminal the answers so far come before the error.
-            writer.flush()?;
+            output.writer.flush()?;
             let error = document.locate(error).in_file(name);
             if refused < SHOWN {
                 let excerpt = error.location().and_then(|place| Excerpt::around(whole.as_bytes(), 1, place));
@@ -90,7 +91,7 @@ pub(super) fn answer_all(
             refused += 1;
         }
     }
-    writer.flush()?;
+    output.close(refused < count)?;
     if refused > REPORTED {
         note(&format!("{} more were refused", refused - REPORTED));
     }

@@ -2,7 +2,9 @@
 
 use super::diagnostic::{note, report};
 use super::input::InputFile;
-use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, pipeline_options};
+use super::options::{
+    ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, pipeline_options,
+};
 use super::output::{Output, writable};
 use super::picture::PlotOptions;
 use super::progress;
@@ -52,6 +54,8 @@ pub struct Args {
     #[arg(long, value_enum, help_heading = "Output")]
     format: Option<SweepFormat>,
     #[command(flatten)]
+    csv: CsvOptions,
+    #[command(flatten)]
     threads: ThreadOptions,
 }
 
@@ -93,6 +97,7 @@ pub(super) fn run(args: &Args) -> Completion {
     args.plot.claim(&inputs, args.output.as_deref())?;
     writable(args.output.as_deref())?;
     let format = SweepFormat::of(args)?;
+    args.csv.check(format == SweepFormat::Csv)?;
     let (description, reduction, robot) = args.robot.described()?;
     caution(&robot);
     let feet = args.robot.feet(&robot)?;
@@ -105,7 +110,11 @@ pub(super) fn run(args: &Args) -> Completion {
         reduction: &reduction,
         robot: &robot,
         options: pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions),
-        defaults: Defaults { loops: args.loops.load(&robot)?, ..args.scene.defaults() },
+        defaults: Defaults {
+            loops: args.loops.load(&robot)?,
+            place_lowest: args.contacts.place_lowest(&robot)?,
+            ..args.scene.defaults()
+        },
     };
     model.readable().map_err(refuse)?;
     for name in study.unused() {
@@ -126,11 +135,12 @@ pub(super) fn run(args: &Args) -> Completion {
         let page = |rendered| Page::of_study(&model, &findings, &stops, rendered, workers);
         args.plot.draw_or_page(&picture, "no region was found", page)?;
     }
-    let Output { mut writer, palette } = Output::open(args.output.as_deref())?;
+    let mut output = Output::open(args.output.as_deref())?;
+    let writer = &mut output.writer;
     let mut head = Vec::new();
     let refused = match format {
         SweepFormat::Text => {
-            writer.write_all(regions.text(&robot.name, &palette).as_bytes())?;
+            writer.write_all(regions.text(&robot.name, &output.palette).as_bytes())?;
             0
         }
         SweepFormat::Json => {
@@ -138,7 +148,7 @@ pub(super) fn run(args: &Args) -> Completion {
             // The samples are the last field of the object.
             writer.write_all(head.strip_suffix(b"}\n").unwrap_or(&head))?;
             writer.write_all(b",\"samples\":[")?;
-            let refused = samples(&mut writer, &model, workers, |solver, sample, out| {
+            let refused = samples(writer, &model, workers, |solver, sample, out| {
                 out.extend(if sample.index == 0 { "" } else { "," }.bytes());
                 sample.append_json(solver, args.detail.detail(), out)
             })?;
@@ -147,20 +157,18 @@ pub(super) fn run(args: &Args) -> Completion {
         }
         SweepFormat::Csv => {
             let contacts = regimes.iter().flat_map(|(regime, ..)| regime.contacts()).map(String::as_str);
-            let columns = columns(&model, &feet, contacts);
+            let columns = args.csv.columns(columns(&model, &feet, contacts));
             columns.append_header(&mut head);
             writer.write_all(&head)?;
             let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
             let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
-            samples(&mut writer, &model, workers, |solver, sample, out| {
-                sample.append_rows(solver, &columns, letter, out)
-            })?
+            samples(writer, &model, workers, |solver, sample, out| sample.append_rows(solver, &columns, letter, out))?
         }
     };
-    writer.flush()?;
+    output.close(true)?;
     progress.finish_and_clear();
     let refusals: Vec<&Error> = regimes.iter().filter_map(|(_, _, refused)| *refused).collect();
-    refusals.iter().for_each(|error| report(error));
+    refusals.iter().for_each(|&error| report(&error.clone().in_file(&input.name)));
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }
 

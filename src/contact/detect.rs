@@ -2,16 +2,18 @@
 
 use super::Contact;
 use super::feet::Feet;
+use super::merge::{Merged, merge};
 use super::placement::Placement;
-use super::point::{Point, Touch, points};
+use super::point::{Point, Touch};
+use super::profile::Closeness;
 use super::surface::{Surface, Touching};
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
 use crate::robot::Robot;
-use crate::state::NamedContact;
+use crate::state::{NamedContact, Scene};
 
 impl Contact {
-    fn of_touch(link: usize, placement: &Placement, Touch { circle, ground, gap }: Touch) -> Self {
+    pub(super) fn of_touch(link: usize, placement: &Placement, Touch { circle, ground, gap }: Touch) -> Self {
         let mut contact = Self {
             link,
             name: String::new(),
@@ -32,7 +34,7 @@ impl Contact {
 pub(crate) struct Stance {
     /// The standing point, with the root at zero.
     pub foot: Contact,
-    /// The root's origin that puts it on the ground at x = 0 \[m\].
+    /// The root's origin that puts it at x = 0, and the lowest point of its link on the ground \[m\].
     pub base: Vector<f64>,
 }
 
@@ -40,8 +42,7 @@ pub(crate) struct Stance {
 pub(crate) struct Footing<'a> {
     pub robot: &'a Robot,
     pub feet: &'a Feet,
-    /// The points that may touch in place of the feet.
-    pub named: Option<&'a [NamedContact]>,
+    pub scene: &'a Scene,
     pub placement: &'a Placement,
     pub surface: &'a Surface,
 }
@@ -51,48 +52,72 @@ impl Footing<'_> {
         &self.robot.links[link].name
     }
 
-    /// The point of the link that stands, with the root at zero: its lowest along the ground's normal at x = 0, of
-    /// several within `tolerance` \[m\] the one with the smallest t; of the named contacts, if there are any.
+    /// The points that may touch in place of the feet.
+    pub(super) fn named(&self) -> Option<&[NamedContact]> {
+        self.scene.contacts.as_deref()
+    }
+
+    /// The point of the link that stands, with the root at zero: of those that touch with this `tolerance` \[m\] once
+    /// the lowest is on the ground, the lowest, and of several within `flat` \[m\] the one with the smallest t; of the
+    /// named contacts, if there are any.
     ///
     /// # Errors
     /// [`Reason::Missing`] where the link has no foot, [`Reason::Inconsistent`] where there is no ground at x = 0.
-    pub fn stance(&self, link: usize, tolerance: f64) -> Result<Stance> {
-        let (plane, place) = self.surface.stance()?;
-        let candidates: Vec<Point> = match self.named {
+    pub fn stance(&self, link: usize, tolerance: f64, flat: f64) -> Result<Stance> {
+        let Self { placement, surface, .. } = self;
+        let (plane, place) = surface.stance()?;
+        let rounding = surface.rounding(placement, self.feet.size());
+        let feet = || self.feet.iter().filter(|foot| foot.link == link);
+        let lowest = feet().map(|foot| plane.clearance(foot, placement)).fold(f64::INFINITY, f64::min);
+        let candidates: Vec<Point> = match self.named() {
             Some(named) => {
                 let own = named.iter().filter(|contact| contact.link == link);
                 own.map(|contact| Point::named(self.robot, contact)).collect()
             }
-            None => self.feet.iter().filter(|foot| foot.link == link).flat_map(points).collect(),
+            None => feet().flat_map(|foot| plane.sole(foot, placement, lowest + tolerance + rounding)).collect(),
         };
-        let height = |point: Point| plane.height(self.placement, point);
-        let lowest = candidates.iter().map(|&point| height(point)).fold(f64::INFINITY, f64::min);
-        let along = |point: Point| plane.along(plane.lowest(self.placement, point));
-        let standing = candidates.into_iter().filter(|&point| height(point) <= lowest + tolerance);
+        let height = |point: Point| plane.height(placement, point);
+        let least = candidates.iter().map(|&point| height(point)).fold(f64::INFINITY, f64::min);
+        let along = |point: Point| plane.along(plane.lowest(placement, point));
+        let standing = candidates.into_iter().filter(|&point| height(point) <= least + flat);
         let standing = standing.min_by(|&a, &b| along(a).total_cmp(&along(b))).ok_or_else(|| {
             let what = format!("a collision shape or named contact of link \"{}\"", self.name(link));
             Error::new(Reason::Missing(what))
                 .at("stance")
                 .hint("name a link with a foot, or give its point in `contacts`")
         })?;
-        let foot = Contact::of_touch(link, self.placement, plane.touch(self.placement, standing));
-        Ok(Stance { base: place - foot.point, foot })
+        let foot = Contact::of_touch(link, placement, plane.touch(placement, standing));
+        let above = height(standing) - lowest;
+        let lift = if self.named().is_none() && above > rounding { foot.normal() * above } else { Vector::zero() };
+        Ok(Stance { base: place - foot.point + lift, foot })
     }
 
-    /// All closed contacts: the named ones whatever their height, else every point of a foot within `tolerance` \[m\]
-    /// of the ground, in the order of the links and within a link along t of a plane, along x of a profile. A contact
-    /// is named after its link, and numbered where the link has several.
+    /// All closed contacts: the named ones whatever their height, else the outer two of every foot within `tolerance`
+    /// \[m\] of the ground, in the order of the links and within a link along t of a plane, along x of a profile. A
+    /// contact is named after its link, and numbered where the link has several. With `merges`, those between the outer
+    /// two of a body are left out, but not the `standing` one.
     ///
     /// # Errors
     /// [`Reason::Penetration`] for the deepest of the feet that are deeper than the tolerance.
-    pub fn contacts(&self, tolerance: f64) -> Result<Vec<Contact>> {
-        let mut contacts = match self.named {
+    pub fn contacts(
+        &self,
+        tolerance: f64,
+        merges: bool,
+        standing: Option<&Contact>,
+    ) -> Result<(Vec<Contact>, Vec<Merged>)> {
+        let mut merged = Vec::new();
+        let mut contacts = match self.named() {
             Some(named) => {
                 let touch = |contact| self.surface.touch(self.placement, Point::named(self.robot, contact), tolerance);
                 named.iter().map(|contact| Contact::of_touch(contact.link, self.placement, touch(contact))).collect()
             }
             None => self.detected(tolerance)?,
         };
+        if merges && self.named().is_none() {
+            let stays = |contact: &Contact| standing.is_some_and(|foot| foot.has_circle_of(contact));
+            let rounding = self.surface.rounding(self.placement, self.feet.size());
+            merged = merge(&mut contacts, |a, b| self.acts_as(a, b, rounding), stays, rounding);
+        }
         let mut counts = vec![(0, 0); self.robot.links.len()];
         contacts.iter().for_each(|contact: &Contact| counts[contact.link].0 += 1);
         for contact in &mut contacts {
@@ -100,7 +125,19 @@ impl Footing<'_> {
             contact.name = if *all == 1 { name.to_owned() } else { format!("{name}/{next}") };
             *next += 1;
         }
-        Ok(contacts)
+        Ok((contacts, merged))
+    }
+
+    /// Whether two contacts are of one rigid body, on one line of ground up to `rounding` \[m\], under one law.
+    fn acts_as(&self, a: &Contact, b: &Contact, rounding: f64) -> bool {
+        let Scene { friction, restitution, .. } = self.scene;
+        let body = |contact: &Contact| self.robot.rigid_body(contact.body);
+        let bounce = |contact: &Contact| restitution.of(contact.link).unwrap_or(0.0);
+        body(a) == body(b)
+            && a.ground == b.ground
+            && (a.normal().dot(a.point - b.point) - (a.gap - b.gap)).abs() <= 4.0 * rounding
+            && friction.of(a.link) == friction.of(b.link)
+            && bounce(a) == bounce(b)
     }
 
     fn detected(&self, tolerance: f64) -> Result<Vec<Contact>> {
@@ -115,7 +152,7 @@ impl Footing<'_> {
         let mut contacts: Vec<Contact> = Vec::new();
         let mut deepest: Option<(usize, f64, String)> = None;
         for foot in feet.iter() {
-            match surface.touching(foot, placement, tolerance, rounding)? {
+            match surface.touching(foot, placement, Closeness { tolerance, rounding }) {
                 Touching::At(touches) => {
                     for touch in touches {
                         let contact = Contact::of_touch(foot.link, placement, touch);
@@ -133,7 +170,7 @@ impl Footing<'_> {
         }
         if let Some((link, depth, remedy)) = deepest {
             let link = self.name(link).to_owned();
-            return Err(Error::new(Reason::Penetration { link, depth, tolerance }).hint(remedy));
+            return Err(Error::new(Reason::Penetration { link, depth, tolerance, velocity: None }).hint(remedy));
         }
         contacts.sort_by(|a, b| a.link.cmp(&b.link).then(surface.along(a.point).total_cmp(&surface.along(b.point))));
         Ok(contacts)
@@ -143,13 +180,6 @@ impl Footing<'_> {
     pub fn out_of_reach(&self, tolerance: f64) -> usize {
         let tolerance = tolerance + self.surface.rounding(self.placement, self.feet.size());
         self.feet.iter().filter(|foot| self.surface.is_out_of_reach(foot, self.placement, tolerance)).count()
-    }
-
-    /// The foot nearest to the ground, and its distance from it \[m\]; `None` if the robot has no feet.
-    pub fn nearest(&self) -> Option<(&str, f64)> {
-        let distances = self.feet.iter().map(|foot| (foot.link, self.surface.clearance(foot, self.placement)));
-        let (link, distance) = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some((self.name(link), distance))
     }
 
     /// The links of feet that reach beyond an end of the ground, at most `tolerance` above it, and the end's x \[m\].

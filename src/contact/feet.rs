@@ -17,7 +17,12 @@ pub struct Foot {
     pub offset: Option<[f64; 3]>,
     /// Centre and radius of a circle about its outline, in the body's frame \[m\].
     pub bounding_circle: (Vector<f64>, f64),
+    /// How far above its lowest corner the rest of an almost level sole may be \[m\]; 0 for an outline that is exact.
+    pub bumps: f64,
 }
+
+/// [`Foot::bumps`] of a mesh, as part of the robot's size.
+const BUMPS: f64 = 1e-4;
 
 /// All shapes that may touch, in the order of the robot's links, and the robot's size.
 #[derive(Debug, Clone)]
@@ -38,11 +43,18 @@ impl Feet {
             let outlines = link.shapes.iter().map(|shape| (shape.clone(), None)).chain(own);
             feet.extend(outlines.map(|(outline, offset)| {
                 let bounding_circle = outline.bounding_circle();
-                Foot { link: index, body: link.body, outline, offset, bounding_circle }
+                Foot { link: index, body: link.body, outline, offset, bounding_circle, bumps: 0.0 }
             }));
         }
         let size = size(robot, &feet);
         Self { feet, size }
+    }
+
+    /// The same feet with soles of meshes that may be a little uneven, because their vertices are rounded.
+    pub fn uneven(mut self) -> Self {
+        let bumps = BUMPS * self.size;
+        self.feet.iter_mut().filter(|foot| foot.outline.mesh.is_some()).for_each(|foot| foot.bumps = bumps);
+        self
     }
 
     /// The same feet, each of which reaches everywhere: none is passed over for its height.

@@ -9,14 +9,18 @@ mod feet;
 mod point;
 mod placement;
 mod outline;
+mod sole;
 mod plane;
 mod terrain;
 mod profile;
 mod surface;
+mod merge;
 mod detect;
+mod nearest;
 
 pub(crate) use detect::Footing;
 pub use feet::{Feet, Foot};
+pub use merge::Merged;
 pub use placement::Placement;
 pub(crate) use plane::HalfPlane;
 pub(crate) use point::{Circle, Point, points};

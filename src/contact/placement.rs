@@ -5,7 +5,6 @@ use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{Workspace, kinematics};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Rim, Robot};
-use parry2d::math::{Pose, Vector as ParryVector};
 
 #[derive(Debug, Clone)]
 pub struct Placement {
@@ -36,6 +35,12 @@ impl Placement {
             _ => Vector::zero(),
         };
         Self::new(&plan, &workspace, base)
+    }
+
+    /// All bodies, higher by `rise` along z \[m\].
+    pub(super) fn raised(&self, rise: f64) -> Self {
+        let raised = |&Vector { x, z }: &Vector<f64>| Vector::new(x, z + rise);
+        Self { origins: self.origins.iter().map(raised).collect(), turns: self.turns.clone() }
     }
 
     /// The root's origin in the world \[m\].
@@ -70,13 +75,5 @@ impl Placement {
                 Circle { body, center: center + rim.support(down), offset, radius: 0.0 }
             }
         }
-    }
-
-    /// The body's frame for parry.
-    pub(super) fn pose(&self, body: usize) -> Pose {
-        let Rotation { cos, sin } = self.turns[body];
-        let Vector { x, z } = self.origins[body];
-        // parry turns counter-clockwise, a positive pitch clockwise.
-        Pose::new(ParryVector::new(x, z), libm::atan2(-sin, cos))
     }
 }

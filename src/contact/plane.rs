@@ -1,21 +1,16 @@
 //! Feet against a line through the world's origin, level or sloped.
 //!
 //! ```text
-//!     bounding circle --reaches the ground?--> polygon without its rim --parry--> corners within reach of the ground
+//!     bounding circle --reaches the ground?--> corners with their rims --sole--> the outer two
 //! ```
 //!
-//! parry's contact manifolds (ground as half space first, the order in which they are right) say which corners of a
-//! polygon are near; the rim reaches equally far from each. The point that touches, its gap and its velocity are those
-//! of the exact material point, not parry's.
+//! The point that touches, its gap and its velocity are those of the exact material point.
 
 use super::feet::Foot;
 use super::placement::Placement;
 use super::point::{Circle, Point, Touch, points};
-use crate::error::{Error, Reason, Result};
+use super::sole::{Reach, sole};
 use crate::planar::{Rotation, Vector};
-use parry2d::math::Vector as ParryVector;
-use parry2d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
-use parry2d::shape::HalfSpace;
 
 /// Solid ground below a line through the world's origin.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +31,7 @@ impl HalfPlane {
         Self { ground }
     }
 
-    fn normal(&self) -> Vector<f64> {
+    pub(super) fn normal(&self) -> Vector<f64> {
         self.ground.apply(Vector::new(0.0, 1.0))
     }
 
@@ -73,38 +68,45 @@ impl HalfPlane {
 
     /// Whether a foot is so high that none of its points can be within `tolerance` \[m\] of the ground.
     pub(super) fn is_out_of_reach(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> bool {
-        let (center, radius) = foot.bounding_circle;
-        self.normal().dot(placement.world(foot.body, center)) - radius > tolerance
+        self.least_gap(foot, placement) > tolerance
     }
 
-    /// The points of a foot within `tolerance` \[m\] of the ground or below it: at most two, the ends of the side that
-    /// faces it. An error is for a pair of shapes that parry does not serve; none of ours is.
-    pub(super) fn touching(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Touch>> {
-        let touch = |point: Point| self.touch(placement, point);
+    /// A height \[m\] that no point of a foot is below.
+    pub(super) fn least_gap(&self, foot: &Foot, placement: &Placement) -> f64 {
+        let (center, radius) = foot.bounding_circle;
+        self.normal().dot(placement.world(foot.body, center)) - radius
+    }
+
+    /// The rearmost and the foremost corner on which a foot stands, if what is at most `highest` \[m\] above the plane
+    /// is on it.
+    pub(super) fn sole(&self, foot: &Foot, placement: &Placement, highest: f64) -> Vec<Point> {
+        let corners: Vec<Point> = points(foot).collect();
+        let place = |&point: &Point| {
+            let lowest = self.lowest(placement, point);
+            Vector::new(self.along(lowest), self.normal().dot(lowest))
+        };
+        let standing = sole(&corners.iter().map(place).collect::<Vec<_>>(), Reach { highest, bumps: foot.bumps });
+        match standing[..] {
+            [rear, .., front] => vec![corners[rear], corners[front]],
+            _ => standing.into_iter().map(|at| corners[at]).collect(),
+        }
+    }
+
+    /// The contacts of a foot within `tolerance` \[m\] of the ground, at most two, or the depth of a foot that is
+    /// deeper.
+    pub(super) fn touching(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Touch>, f64> {
         if self.is_out_of_reach(foot, placement, tolerance) {
             return Ok(Vec::new());
         }
-        let Some(polygon) = foot.outline.polygon() else {
-            return Ok(points(foot).map(touch).filter(|touch| touch.gap <= tolerance).collect());
-        };
-        let Vector { x, z } = self.normal();
-        let ground = HalfSpace::new(ParryVector::new(x, z));
-        let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
-        let down = placement.turned_back(foot.body, Vector::new(-x, -z));
-        let prediction = tolerance + foot.outline.rim.reach(down);
-        let pose = placement.pose(foot.body);
-        DefaultQueryDispatcher
-            .contact_manifolds(&pose, &ground, &*polygon.0, prediction, &mut manifolds, &mut None)
-            .map_err(|unsupported| {
-                Error::new(Reason::Unsupported(format!("a foot against the ground: {unsupported}")))
-            })?;
-        let mut touching: Vec<Point> = Vec::new();
-        let near = manifolds.iter().flat_map(|manifold| &manifold.points).filter(|near| near.dist <= prediction);
-        for at in near.map(|near| near.local_p2) {
-            let far = |point: &Point| libm::hypot(point.center.x - at.x, point.center.z - at.y);
-            let nearest = points(foot).min_by(|a, b| far(a).total_cmp(&far(b)));
-            touching.extend(nearest.filter(|point| !touching.contains(point)));
+        let depth = -self.clearance(foot, placement);
+        if depth > tolerance {
+            return Err(depth);
         }
-        Ok(touching.into_iter().map(touch).collect())
+        Ok(self.sole(foot, placement, tolerance).into_iter().map(|point| self.touch(placement, point)).collect())
+    }
+
+    /// How far a foot is above the ground \[m\].
+    pub(super) fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
+        points(foot).map(|point| self.height(placement, point)).fold(f64::INFINITY, f64::min)
     }
 }

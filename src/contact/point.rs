@@ -2,7 +2,7 @@
 
 use super::Contact;
 use super::feet::Foot;
-use crate::dynamics::ContactPoint;
+use crate::dynamics::{Arm, ContactPoint};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Rim, Robot};
 use crate::scalar::Real;
@@ -57,8 +57,14 @@ impl Contact {
         self.ground.apply(Vector::new(0.0, 1.0))
     }
 
+    /// The material point in touch, as the dynamics take it.
     pub fn point_of(&self) -> ContactPoint {
         ContactPoint { body: self.body, center: self.center, radius: self.radius, ground: self.ground }
+    }
+
+    /// Whether it is the same circle of the same body as another, whatever the normals.
+    pub fn has_circle_of(&self, other: &Self) -> bool {
+        (self.link, self.body, self.center, self.radius) == (other.link, other.body, other.center, other.radius)
     }
 
     /// The same in numbers of any kind, a named point from the digits that it was named with.
@@ -70,15 +76,15 @@ impl Contact {
         ContactPoint { body: self.body, center, radius: T::from_f64(self.radius), ground }
     }
 
+    /// Its arm for bounds of rounding.
+    pub fn arm(&self, robot: &Robot) -> Arm {
+        Arm { body: self.body, length: self.stretch(robot) + self.radius }
+    }
+
     /// What the center's coordinates were added up from, by magnitude \[m\].
-    pub fn stretch(&self, robot: &Robot) -> f64 {
+    fn stretch(&self, robot: &Robot) -> f64 {
         match self.offset {
-            Some(offset) => {
-                let pose = robot.links[self.link].pose.iter();
-                pose.flat_map(|row| row.iter().zip([offset[0], offset[1], offset[2], 1.0]))
-                    .map(|(a, b)| (a * b).abs())
-                    .sum()
-            }
+            Some(offset) => robot.links[self.link].stretch(offset),
             None => self.center.x.abs() + self.center.z.abs(),
         }
     }

@@ -16,38 +16,47 @@ use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
 use super::point::Touch;
+use super::sole::{Reach, sole};
 use super::terrain::Terrain;
 use crate::planar::Vector;
 
 /// What is touching, and how exactly that is known.
 #[derive(Debug, Clone, Copy)]
-struct Closeness {
+pub(super) struct Closeness {
     /// What counts as touching \[m\].
-    tolerance: f64,
+    pub tolerance: f64,
     /// What counts as the same place \[m\]: the rounding of positions.
-    rounding: f64,
+    pub rounding: f64,
 }
 
-/// The contacts of a foot within `tolerance` of the ground, ascending in x, or the depth of a foot that is deeper;
-/// positions are known up to `rounding` \[m\].
+/// The contacts of a foot that is `close` to the ground, ascending in x, or the depth of a foot that is deeper.
 pub(super) fn touching(
     terrain: &Terrain,
     foot: &Foot,
     placement: &Placement,
-    (tolerance, rounding): (f64, f64),
+    close: Closeness,
 ) -> Result<Vec<Touch>, f64> {
+    let Closeness { tolerance, rounding } = close;
     let outline = Outline::new(foot, placement);
     let near = within_reach(terrain, foot, &outline, tolerance);
     let deepest = depth(terrain, &outline, &near);
     if deepest > tolerance {
         return Err(deepest);
     }
-    let close = Closeness { tolerance, rounding };
     let mut touches: Vec<Touch> = Vec::new();
     for &segment in &near {
-        for corner in 0..outline.corners.len() {
-            touches.extend(on_segment(terrain, segment, &outline, corner, close));
-        }
+        let face = terrain.face(segment);
+        let place_of = |corner| {
+            let lowest = outline.lowest(corner, face.normal);
+            Vector::new(face.past_begin(lowest), face.height(lowest))
+        };
+        let places: Vec<Vector<f64>> = (0..outline.corners.len()).map(place_of).collect();
+        let standing = sole(&places, Reach { highest: tolerance, bumps: foot.bumps });
+        let found = (0..places.len()).filter_map(|corner| {
+            let height = if standing.contains(&corner) { places[corner].z } else { tolerance };
+            on_segment(terrain, segment, &outline, corner, Closeness { tolerance: tolerance.max(height), rounding })
+        });
+        touches.extend(outer(found.collect(), |touch| face.tangent.dot(place(placement, touch))));
     }
     let on_segments = touches.len();
     for corner in corners_of(&near).filter(|&corner| terrain.is_convex(corner)) {
@@ -67,6 +76,17 @@ pub(super) fn touching(
     }
     touches.sort_by(|a, b| place(placement, a).x.total_cmp(&place(placement, b).x));
     Ok(touches)
+}
+
+/// The rearmost and the foremost of a foot's contacts on one segment; of several at one end the lowest.
+fn outer(touches: Vec<Touch>, along: impl Fn(&Touch) -> f64) -> Vec<Touch> {
+    let lower = |a: &&Touch, b: &&Touch| a.gap.total_cmp(&b.gap);
+    let end = |way: f64| touches.iter().min_by(|a, b| (way * along(a)).total_cmp(&(way * along(b))).then(lower(a, b)));
+    match (end(1.0), end(-1.0)) {
+        (Some(rear), Some(front)) if rear == front => vec![*rear],
+        (Some(&rear), Some(&front)) => vec![rear, front],
+        _ => touches,
+    }
 }
 
 /// The segments that a foot may touch, ascending; all of them for a foot that reaches everywhere.

@@ -6,8 +6,8 @@ use super::feet::Foot;
 use super::outline::Outline;
 use super::placement::Placement;
 use super::plane::HalfPlane;
-use super::point::{Point, Touch, points};
-use super::profile;
+use super::point::{Point, Touch};
+use super::profile::{self, Closeness};
 use super::terrain::Terrain;
 use crate::error::{Error, Reason, Result};
 use crate::planar::Vector;
@@ -73,33 +73,22 @@ impl Surface {
         }
     }
 
-    /// Where a foot is within `tolerance` of the ground, given `rounding` \[m\]; an error for shapes that parry does not
-    /// serve.
-    pub(super) fn touching(
-        &self,
-        foot: &Foot,
-        placement: &Placement,
-        tolerance: f64,
-        rounding: f64,
-    ) -> Result<Touching> {
+    /// Where a foot is `close` to the ground.
+    pub(super) fn touching(&self, foot: &Foot, placement: &Placement, close: Closeness) -> Touching {
         let (found, how) = match self {
-            Self::HalfPlane(plane) => {
-                let touches = plane.touching(foot, placement, tolerance)?;
-                let deep = touches.iter().map(|touch| -touch.gap).find(|&depth| depth > tolerance);
-                (deep.map_or(Ok(touches), Err), "raise the base")
-            }
+            Self::HalfPlane(plane) => (plane.touching(foot, placement, close.tolerance), "raise the base"),
             Self::Profile(terrain) => {
-                (profile::touching(terrain, foot, placement, (tolerance, rounding)), "move the base or the profile")
+                (profile::touching(terrain, foot, placement, close), "move the base or the profile")
             }
         };
-        Ok(found.map_or_else(
+        found.map_or_else(
             |depth| {
                 let remedy =
                     format!("{how} by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
                 Touching::Sunk { depth, remedy }
             },
             Touching::At,
-        ))
+        )
     }
 
     /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.
@@ -143,9 +132,7 @@ impl Surface {
     /// How far a foot is from the ground \[m\].
     pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {
-            Self::HalfPlane(plane) => {
-                points(foot).map(|point| plane.height(placement, point)).fold(f64::INFINITY, f64::min)
-            }
+            Self::HalfPlane(plane) => plane.clearance(foot, placement),
             Self::Profile(terrain) => profile::clearance(terrain, &Outline::new(foot, placement)),
         }
     }

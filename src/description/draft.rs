@@ -82,7 +82,7 @@ fn read_document(document: &Document<'_>) -> Result<Description> {
         location,
     }));
     for &(name, element, location) in &joints.elements {
-        let joint = read_joint((name, element, location), &links, &joints, &mut ignored);
+        let joint = read_joint(name, element, location, &links, &joints, &mut ignored);
         description.joints.push(joint.map_err(|error| error.at(joint_place(name)))?);
     }
     Ok(Description { ignored: ignored.kinds, ..description })
@@ -179,7 +179,9 @@ fn read_link(name: &str, element: Node<'_, '_>, location: Location, ignored: &mu
 }
 
 fn read_joint(
-    (name, element, location): (&str, Node<'_, '_>, Location),
+    name: &str,
+    element: Node<'_, '_>,
+    location: Location,
     links: &ByName,
     joints: &ByName,
     ignored: &mut IgnoredCount,
@@ -190,9 +192,11 @@ fn read_joint(
     let mut strict = format!("<joint name=\"\" type=\"{}\">", kind.name());
     copy_origin(element, &mut strict)?;
     strict.push_str("<parent link=\"\"/><child link=\"\"/>");
-    if let Some(axis) = xml::child(element, "axis")? {
+    let given = xml::child(element, "axis")?;
+    if let Some(axis) = given {
         copy_axis(axis, kind, &mut strict)?;
     }
+    let has_axis = given.is_some_and(|axis| axis.has_attribute("xyz"));
     let mut mimicked = None;
     if let Some(mimic) = xml::child(element, "mimic")? {
         mimicked = Some(joints.find(mimic, "joint")?);
@@ -216,7 +220,18 @@ fn read_joint(
         offset: values.offset.unwrap_or(0.0),
     });
     let (origin, axis) = (pose(&values.origin), values.axis.xyz.0);
-    Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, mimic, location })
+    let limits = limits(element).filter(|_| matches!(kind, JointKind::Revolute | JointKind::Prismatic));
+    Ok(UrdfJoint { name: name.into(), kind, parent, child, origin, axis, has_axis, mimic, limits, location })
+}
+
+/// The ends of a joint's `<limit>`, of which one that is not given is 0. They are no part of the mechanics, so that
+/// what cannot be read is no limit.
+fn limits(element: Node<'_, '_>) -> Option<[f64; 2]> {
+    let limit = element.children().find(|&child| tag(element, child) == Some("limit"))?;
+    let [lower, upper] =
+        ["lower", "upper"].map(|end| limit.attribute(end).map_or(Some(0.0), |text| text.trim().parse().ok()));
+    let limits: [f64; 2] = [lower?, upper?];
+    (limits[0] < limits[1] && limits.iter().all(|end| end.is_finite())).then_some(limits)
 }
 
 /// The joint's type.

@@ -53,6 +53,7 @@ pub struct Description {
 /// A link of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UrdfLink {
+    /// Its name, which no other link has.
     pub name: String,
     /// Its inertia; `None` if the file has no `<inertial>`, which differs from a mass of zero.
     pub inertial: Option<Inertial>,
@@ -81,6 +82,7 @@ pub struct Inertial {
 pub struct Collision {
     /// The shape's frame in the link's frame.
     pub origin: Pose,
+    /// The shape itself.
     pub geometry: Geometry,
 }
 
@@ -105,7 +107,9 @@ pub enum Geometry {
 /// A joint of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UrdfJoint {
+    /// Its name, which no other joint has.
     pub name: String,
+    /// How it moves.
     pub kind: JointKind,
     /// Its parent link (an index into [`Description::links`]).
     pub parent: usize,
@@ -116,8 +120,12 @@ pub struct UrdfJoint {
     /// Its axis in the joint's frame, of any length; not zero where `kind` has an axis. (1, 0, 0) where the file has
     /// none.
     pub axis: [f64; 3],
+    /// Whether the file has an axis.
+    pub has_axis: bool,
     /// The joint that it mimics, if any.
     pub mimic: Option<Mimic>,
+    /// The least and the greatest coordinate \[rad or m\]; `None` if the file has none, or none that leave room.
+    pub limits: Option<[f64; 2]>,
     /// Where its element begins.
     pub location: Location,
 }
@@ -170,8 +178,11 @@ pub struct Mimic {
 /// Elements of one tag that were ignored, below elements of the tag `parent`: `robot`, `link` or `joint`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
+    /// The tag of the element around them.
     pub parent: &'static str,
+    /// Their own tag.
     pub tag: String,
+    /// How many there are.
     pub count: usize,
 }
 

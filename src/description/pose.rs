@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn each_angle_turns_about_its_own_axis_by_the_right_hand() {
+    fn angles_follow_the_right_hand() {
         for (k, axis) in IDENTITY.into_iter().enumerate() {
             let by = |angle| rotation([0, 1, 2].map(|at| if at == k { angle } else { 0.0 }));
             assert_close(apply(&by(FRAC_PI_2), IDENTITY[(k + 1) % 3]), IDENTITY[(k + 2) % 3]);

@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_declaration_becomes_blanks_wherever_and_however_it_is_written() {
+    fn declaration_becomes_blanks() {
         for (text, repaired) in [
             ("<?xml verison=\"1.0\"?>\n<robot/>", "                     \n<robot/>"),
             ("<?xml version=\"1.0\">\n<robot/>", "                    \n<robot/>"),
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn declared_prefixes_stand_at_the_end_of_the_roots_tag_and_move_no_place() {
+    fn declared_prefixes_move_no_place() {
         let text = "<!-- <a> -->\n<robot name=\"a > b\"><x:y/><z:y/></robot>";
         let repaired = Repaired::new(text).declaring("x").and_then(|repaired| repaired.declaring("z")).expect("a root");
         let tag = "<robot name=\"a > b\" xmlns:x=\"undeclared:x\" xmlns:z=\"undeclared:z\">";

@@ -68,8 +68,10 @@ pub(super) fn copy_collision<'a, 'input: 'a>(
     strict.push_str("<collision>");
     copy_origin(element, strict)?;
     let geometry = xml::required_child(element, "geometry")?;
-    let mut shapes = geometry.children().filter(Node::is_element);
-    let shape = shapes.next().ok_or_else(|| xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into())))?;
+    // Beside a shape of URDF elements of other programs may stand, such as <drake:declare_convex>.
+    let (mut shapes, foreign) = (xml::children(geometry), || geometry.children().find(Node::is_element));
+    let missing = || xml::refuse(geometry, Reason::Missing("a shape in <geometry>".into()));
+    let shape = shapes.next().or_else(foreign).ok_or_else(missing)?;
     if let Some(second) = shapes.next() {
         let reason = format!("<{}> is a second shape in one <geometry>", second.tag_name().name());
         return Err(xml::refuse(second, Reason::Inconsistent(reason)).hint("give each shape a <collision> of its own"));

@@ -60,8 +60,27 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
             syntax().hint(format!("declare the prefix: <robot xmlns:{prefix}=\"...\">"))
         }
         Xml::UnclosedRootNode | Xml::UnexpectedEndOfStream => syntax().hint("the text ends too early: is it whole?"),
+        Xml::InvalidComment(_) => {
+            let error = refused(Reason::Syntax("a comment holds --, which XML does not allow".into()));
+            let hyphens = hyphens_in_comment(text).map(|offset| Cursor::new(text).locate(offset));
+            let located = hyphens.into_iter().fold(error, |error, Location { line, column }| error.on(line, column));
+            located.hint("remove one of the hyphens, or the comment")
+        }
         _ if !text.trim_start().starts_with('<') => syntax().hint(NO_URDF),
         _ => syntax(),
+    }
+}
+
+/// Where the first `--` is that is inside a comment.
+fn hyphens_in_comment(text: &str) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        let inside = at + text[at..].find("<!--")? + 4;
+        let hyphens = inside + text[inside..].find("--")?;
+        if !text[hyphens..].starts_with("-->") {
+            return Some(hyphens);
+        }
+        at = hyphens + 3;
     }
 }
 

@@ -49,7 +49,7 @@ pub struct ListedKeyframe {
 impl Keyframe {
     /// A state and its impact; `feet` are those in addition to the robot's own shapes.
     pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
-        let answer = impact.analysed().map(|analysis| KeyframeAnswer {
+        let answer = impact.analyzed().map(|analysis| KeyframeAnswer {
             verdict: analysis.verdict,
             proven: analysis.proven,
             outcomes: analysis.outcomes.clone(),

@@ -12,6 +12,7 @@
 //! 2008, sections 7.2 and 7.3. Cost: O(nb + n depth), and O(n^2) per shared joint for G.
 
 use super::articulated_inertia::{ArticulatedInertia, Wrench};
+use super::delassus::PointImpulse;
 use super::jacobian::ContactPoint;
 use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan, PlanBody};
@@ -101,19 +102,20 @@ pub fn articulated_delassus<T: Real>(plan: &Plan<T>, contacts: &[ContactPoint<T>
     workspace.half_by_d = half_by_d;
 }
 
-/// Adds to `velocity` (dq/dt by coordinate) what `impulse` \[N s\] at a point does to it: M^-1 J^T p. The point lies at
-/// `arm` from the origin of `body`, both vectors in the world's axes; `rates` and `motions` are scratch.
+/// Adds to `velocity` (dq/dt by coordinate) what an impulse p does to it: M^-1 J^T p; `rates` and `motions` are
+/// scratch.
 pub fn add_articulated_impulse<T: Real>(
     plan: &Plan<T>,
     workspace: &Workspace<T>,
-    (body, arm): (usize, Vector<T>),
-    impulse: Vector<T>,
-    (rates, motions): (&mut Vec<T>, &mut Vec<(T, Vector<T>)>),
+    impulse: PointImpulse<T>,
+    rates: &mut Vec<T>,
+    motions: &mut Vec<(T, Vector<T>)>,
     velocity: &mut [T],
 ) {
     rates.clear();
     rates.resize(plan.columns(), T::zero());
-    to_root(plan, workspace, body, Wrench::at(arm, impulse), |column, _, by_d| rates[column] = by_d);
+    let PointImpulse { body, arm, vector } = impulse;
+    to_root(plan, workspace, body, Wrench::at(arm, vector), |column, _, by_d| rates[column] = by_d);
     motions.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
         let own = &workspace.articulated[index];

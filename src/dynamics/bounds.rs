@@ -31,6 +31,9 @@ const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 const ENTRY: f64 = 96.0;
 /// Divided by the roundoff, it covers the underflow of a few products.
 const UNDERFLOW: f64 = 1e20 * f64::MIN_POSITIVE;
+/// How many roundings there likely are in place of `ENTRY` per level, body and column. Over 1,500 trees and chains of
+/// ten links with masses of 1e-4 to 1e4 kg the error of G was at most 2.7 of them, that of c 2.4.
+const LIKELY: f64 = 3.0;
 /// Beyond this the terms of second order are no longer covered.
 const SMALL: f64 = 0.1;
 
@@ -42,6 +45,17 @@ pub struct Arm {
     pub length: f64,
 }
 
+/// What moves one end of a loop against the other, with every arm stretched.
+#[derive(Debug, Clone, Default)]
+pub struct Reach {
+    /// Speed for a unit rate of each column \[m/s\].
+    pub columns: Vec<f64>,
+    /// The shortest arm by which a joint turns it \[m\]; infinite if none does.
+    pub shortest: f64,
+    /// The longest arm \[m\].
+    pub longest: f64,
+}
+
 /// Error bounds of one state, in memory that is reused.
 #[derive(Debug, Clone, Default)]
 pub struct RoundingBounds {
@@ -49,6 +63,8 @@ pub struct RoundingBounds {
     pub delassus: f64,
     /// Of c, per contact \[m/s\].
     pub velocity: Vec<Pair<f64>>,
+    /// What part of the bounds of G and of c the errors are likely to reach; see `LIKELY`.
+    pub likely: [f64; 2],
     bodies: Vec<Stretched>,
     contacts: Vec<Arm>,
     /// sqrt((M^-1)_ii) per column.
@@ -107,41 +123,66 @@ impl RoundingBounds {
         }
     }
 
-    /// Relative error of an entry of M or J against its stretched magnitude.
-    fn entry_error(&self, plan: &Plan) -> f64 {
+    /// How many roundings an entry of M or J may have, against its stretched magnitude.
+    fn entry_roundings(&self, plan: &Plan) -> f64 {
         let depth = self.bodies.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
         // Where columns are shared, an entry may have a term for every body and every level.
         let terms = if plan.has_mimics { (depth + 1) * (self.bodies.len() + 1) } else { depth + self.bodies.len() };
-        ENTRY * terms as f64 * UNIT_ROUNDOFF
+        ENTRY * terms as f64
     }
 
     /// Bounds c = J v. The foot of a `stance` gives the base's velocity; the contacts that `rests` names are at rest.
     pub fn velocities(&mut self, plan: &Plan, velocity: &[f64], stance: Option<Arm>, rests: impl Fn(usize) -> bool) {
         let mut bounds = std::mem::take(&mut self.velocity);
-        let eta = self.entry_error(plan);
-        let stretched = |contact: Arm| {
-            let mut sum = 0.0;
-            self.walk(plan, contact, |_, coordinate, arm| {
-                if velocity[coordinate] != 0.0 {
-                    // A product may underflow, and is off by that at most.
-                    sum += arm * velocity[coordinate].abs() + UNDERFLOW;
-                }
-            });
-            sum
-        };
-        let base = stance.map_or(0.0, |foot| 2.0 * stretched(foot));
+        let roundings = self.entry_roundings(plan);
+        let eta = roundings * UNIT_ROUNDOFF;
+        // The bound of G counts every column, and doubles twice.
+        self.likely = [LIKELY / (4.0 * plan.columns().max(1) as f64 * roundings), LIKELY / roundings];
+        let base = stance.map_or(0.0, |foot| 2.0 * self.speed(plan, foot, velocity));
         bounds.clear();
         bounds.extend(self.contacts.iter().enumerate().map(|(index, &contact)| {
-            let bound = if rests(index) { 0.0 } else { eta * (stretched(contact) + base) };
+            let bound = if rests(index) { 0.0 } else { eta * (self.speed(plan, contact, velocity) + base) };
             [bound; 2]
         }));
         self.velocity = bounds;
     }
 
+    /// The speed that a contact would have if no two terms of J v canceled each other \[m/s\].
+    pub fn speed(&self, plan: &Plan, contact: Arm, velocity: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.walk(plan, contact, |_, coordinate, arm| {
+            if velocity[coordinate] != 0.0 {
+                // A product may underflow, and is off by that at most.
+                sum += arm * velocity[coordinate].abs() + UNDERFLOW;
+            }
+        });
+        sum
+    }
+
+    /// What moves `end` against a point of the body `other`: joints on its way to the root that are not on the other's.
+    pub fn reach(&self, plan: &Plan, end: Arm, other: usize) -> Reach {
+        let mut reach = Reach { columns: vec![0.0; plan.columns()], shortest: f64::INFINITY, longest: end.length };
+        let is_shared = |index: usize| plan.way_to_root(other).any(|(shared, _)| shared == index);
+        for (index, body) in plan.way_to_root(end.body).take_while(|&(index, _)| !is_shared(index)) {
+            match (body.motion, body.column) {
+                (JointMotion::Revolute { rate, .. }, Some(column)) => {
+                    reach.columns[column] += reach.longest * rate.abs();
+                    if reach.longest > 0.0 {
+                        reach.shortest = reach.shortest.min(reach.longest);
+                    }
+                }
+                (JointMotion::Prismatic { rate, .. }, Some(column)) => reach.columns[column] += rate.length(),
+                _ => {}
+            }
+            reach.longest += self.bodies[index].arm;
+        }
+        reach
+    }
+
     /// Bounds G, from the factorized mass matrix and the Delassus matrix.
     pub fn delassus(&mut self, plan: &Plan, workspace: &Workspace) {
         let nv = plan.columns();
-        let (eta, gamma) = (self.entry_error(plan), 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
+        let (eta, gamma) = (self.entry_roundings(plan) * UNIT_ROUNDOFF, 2.0 * (nv + 2) as f64 * UNIT_ROUNDOFF);
         self.ease.clear();
         self.ease.extend((0..nv).map(|column| squared_ease(plan, workspace, column, &mut self.scratch).sqrt()));
         self.roots.clear();

@@ -14,12 +14,13 @@
 //! before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT form).
 //! Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
 
+use super::bounds::Reach;
 use super::delassus::from_half;
 use super::jacobian::{ContactPoint, point_velocity, walk};
 use super::workspace::{LoopRows, Workspace};
 use crate::dynamics::plan::Plan;
 use crate::planar::Vector;
-use crate::scalar::{Real, dot};
+use crate::scalar::{Ordered, Real, Sign, dot};
 use std::ops::Add;
 
 /// Two material points that stay together; impulses act on `a` and, reversed, on `b`.
@@ -78,12 +79,12 @@ impl<T: Real> Loop<T> {
         a - b
     }
 
-    /// A row of K (nv); of one end alone its row of J.
-    fn row(&self, plan: &Plan<T>, axis: usize, ends: &[usize], workspace: &Workspace<T>) -> Vec<T> {
+    /// A row of K (nv).
+    fn row(&self, plan: &Plan<T>, axis: usize, workspace: &Workspace<T>) -> Vec<T> {
         let (arms, still) = (self.arms(workspace), still(plan));
         let mut row = vec![T::zero(); plan.columns()];
-        for &end in ends {
-            walk(plan, self.bodies[end], arms[end], &still, workspace, |column, unit| {
+        for (end, arm) in arms.into_iter().enumerate() {
+            walk(plan, self.bodies[end], arm, &still, workspace, |column, unit| {
                 let part = unit.components()[axis];
                 row[column] = if end == 0 { row[column] + part } else { row[column] - part };
             });
@@ -92,55 +93,81 @@ impl<T: Real> Loop<T> {
     }
 }
 
-/// Chooses the rows of K that do not follow from others, the most independent first: of each more than `tolerance` is
-/// left, as a part of the squared motions of its two points, after its part along those before it is taken away.
+/// Chooses the rows of K that do not follow from others, the most independent first, each with its share: what is left
+/// of the row, after its part along those before it is taken away, as a part of its squared reach. All others have no
+/// more than `tolerance` left.
 ///
-/// Masses do not enter: what a loop holds is a matter of geometry, and a light link would hide it. Every column but a
-/// `kept` one counts by the greatest motion that it gives to an end of a loop, which makes the choice free of units.
+/// `reaches` are those of each loop's ends. They scale a column by the greatest motion that it could give to an end of a
+/// loop, so that the choice is free of units, and an entry that is zero except for the rounding of the pose stays
+/// small. What moves both ends alike counts nothing, and neither does a `kept` column. Masses do not enter: what a loop
+/// holds is a matter of geometry, and a light link would hide it.
 pub fn independent_rows(
     plan: &Plan,
     loops: &[Loop],
     kept: &[usize],
+    reaches: &[[Reach; 2]],
     tolerance: f64,
     workspace: &Workspace,
-) -> Vec<usize> {
-    let rows = |ends: &[usize]| -> Vec<Vec<f64>> {
-        (0..2 * loops.len()).map(|row| loops[row / 2].row(plan, row % 2, ends, workspace)).collect()
-    };
-    let [a, b] = [rows(&[0]), rows(&[1])];
-    let mut greatest = vec![0.0_f64; plan.columns()];
-    for (most, entry) in a.iter().chain(&b).flat_map(|row| row.iter().enumerate()) {
-        greatest[most] = greatest[most].max(entry.abs());
-    }
-    for (most, coordinate) in greatest.iter_mut().zip(&plan.coordinates) {
-        if kept.contains(coordinate) {
-            *most = 0.0;
-        }
-    }
-    let scaled = |row: &[f64]| -> Vec<f64> {
-        row.iter().zip(&greatest).map(|(entry, &most)| if most > 0.0 { entry / most } else { 0.0 }).collect()
-    };
+) -> Vec<(usize, f64)> {
+    let reach = |own: &[Reach; 2], column: usize| own[0].columns[column].max(own[1].columns[column]);
+    let greatest: Vec<f64> = (0..plan.columns())
+        .map(|column| match kept.contains(&plan.coordinates[column]) {
+            true => 0.0,
+            false => reaches.iter().fold(0.0, |most, own| f64::max(most, reach(own, column))),
+        })
+        .collect();
+    let scaled = |(column, entry): (usize, f64)| if greatest[column] > 0.0 { entry / greatest[column] } else { 0.0 };
     let square = |row: &[f64]| dot(row, row);
-    let mut rest: Vec<(usize, f64, Vec<f64>)> = rows(&[0, 1])
-        .iter()
-        .enumerate()
-        .map(|(row, both)| (row, square(&scaled(&a[row])) + square(&scaled(&b[row])), scaled(both)))
+    let mut rest: Vec<(usize, f64, Vec<f64>)> = (0..2 * loops.len())
+        .map(|row| {
+            let (own, reaches) = (loops[row / 2].row(plan, row % 2, workspace), &reaches[row / 2]);
+            let reach: Vec<f64> = (0..own.len()).map(|column| scaled((column, reach(reaches, column)))).collect();
+            (row, square(&reach), own.into_iter().enumerate().map(scaled).collect())
+        })
         .collect();
     let mut chosen = Vec::new();
     loop {
         // Of equals the first, so that the choice does not depend on how a maximum is sought.
-        let share = |motion: f64, left: &[f64]| if motion > 0.0 { square(left) / motion } else { 0.0 };
-        let shares = rest.iter().enumerate().map(|(place, (_, motion, left))| (share(*motion, left), place));
+        let share = |reach: f64, left: &[f64]| if reach > 0.0 { square(left) / reach } else { 0.0 };
+        let shares = rest.iter().enumerate().map(|(place, (_, reach, left))| (share(*reach, left), place));
         let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
-        let Some((_, place)) = best.filter(|(share, _)| *share > tolerance) else { return chosen };
+        let Some((share, place)) = best.filter(|(share, _)| *share > tolerance) else { return chosen };
         let (row, _, own) = rest.remove(place);
-        let own_square = square(&own);
         for (_, _, left) in &mut rest {
-            let along = dot(left, &own) / own_square;
-            subtract(left, &own, along);
+            subtract_along(left, &own);
         }
-        chosen.push(row);
+        chosen.push((row, share));
     }
+}
+
+/// Whether the loops are closed exactly, and all rows of K but those of the `constraints` follow from these exactly.
+pub fn follow_exactly<T: Ordered>(
+    plan: &Plan<T>,
+    loops: &[Loop<T>],
+    constraints: Constraints,
+    workspace: &Workspace<T>,
+) -> bool {
+    let is_zero = |entry: &T| entry.sign() == Sign::Zero;
+    let Constraints { kept, rows } = constraints;
+    let row = |row: usize| {
+        let mut all = loops[row / 2].row(plan, row % 2, workspace);
+        for (entry, _) in all.iter_mut().zip(&plan.coordinates).filter(|(_, coordinate)| kept.contains(coordinate)) {
+            *entry = T::zero();
+        }
+        all
+    };
+    let mut basis: Vec<Vec<T>> = Vec::new();
+    let rest = |basis: &[Vec<T>], mut left: Vec<T>| {
+        basis.iter().for_each(|own| subtract_along(&mut left, own));
+        left
+    };
+    for &own in rows {
+        let left = rest(&basis, row(own));
+        basis.push(left);
+    }
+    let mut others = (0..2 * loops.len()).filter(|own| !rows.contains(own));
+    loops.iter().all(|own| own.gap(plan, workspace).components().iter().all(is_zero))
+        && others.all(|own| rest(&basis, row(own)).iter().all(is_zero))
 }
 
 /// Makes the rows of these constraints orthogonal, and behind them those of a `foot` that is to stay at rest where
@@ -148,19 +175,20 @@ pub fn independent_rows(
 pub fn orthogonalize<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
-    (kept, foot): (Constraints, Option<ContactPoint<T>>),
+    constraints: Constraints,
+    foot: Option<ContactPoint<T>>,
     workspace: &mut Workspace<T>,
 ) {
-    let mut constraints = std::mem::take(&mut workspace.loops);
-    let LoopRows { kept: coordinates, rows: order, basis, basis_by_d, squares, coupling } = &mut constraints;
-    let Constraints { kept, rows } = kept;
+    let mut prepared = std::mem::take(&mut workspace.loops);
+    let LoopRows { kept: coordinates, rows: order, basis, basis_by_d, squares, coupling } = &mut prepared;
+    let Constraints { kept, rows } = constraints;
     let nv = plan.columns();
     kept.clone_into(coordinates);
     rows.clone_into(order);
     let one_at = |coordinate| move |&own: &usize| if own == coordinate { T::one() } else { T::zero() };
     let unit_row = |&coordinate: &usize| plan.coordinates.iter().map(one_at(coordinate)).collect();
     let mut all: Vec<Vec<T>> = kept.iter().map(unit_row).collect();
-    all.extend(rows.iter().map(|row| loops[row / 2].row(plan, row % 2, &[0, 1], workspace)));
+    all.extend(rows.iter().map(|row| loops[row / 2].row(plan, row % 2, workspace)));
     all.extend(foot.into_iter().flat_map(|foot| {
         let (arm, still, workspace) = (foot.arm(workspace), still(plan), &*workspace);
         foot.axes().map(|axis| {
@@ -187,20 +215,20 @@ pub fn orthogonalize<T: Real>(
         basis.extend(y);
         basis_by_d.extend(y_by_d);
     }
-    workspace.loops = constraints;
+    workspace.loops = prepared;
 }
 
 /// Takes from Y, D^-1 Y and G what the constraints do not let move: G becomes G'.
 pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     let nv = plan.columns();
-    let Workspace { factor, half, half_by_d, delassus, loops, contact_velocity, .. } = workspace;
+    let Workspace { half, loops, .. } = &mut *workspace;
     for y in half.chunks_exact_mut(nv.max(1)) {
         for k in 0..loops.kept.len() + loops.rows.len() {
             let along = dot(y, &loops.basis_by_d[k * nv..(k + 1) * nv]) / loops.squares[k];
             subtract(y, &loops.basis[k * nv..(k + 1) * nv], along);
         }
     }
-    from_half(nv, 2 * contact_velocity.len(), factor, (half, half_by_d), delassus);
+    from_half(plan, workspace);
 }
 
 /// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. Gives
@@ -273,6 +301,11 @@ pub fn spent_energy(amplitudes: &[f64], workspace: &Workspace) -> f64 {
 /// No velocity, for walks that need the motions only.
 fn still<T: Real>(plan: &Plan<T>) -> Vec<T> {
     vec![T::zero(); plan.places]
+}
+
+/// Takes its part along another row from `left`.
+fn subtract_along<T: Real>(left: &mut [T], own: &[T]) {
+    subtract(left, own, dot(left, own) / dot(own, own));
 }
 
 /// y := y - factor z.

@@ -17,19 +17,20 @@ mod kinematics;
 mod crba;
 mod jacobian;
 mod delassus;
+mod bounds;
 mod loops;
 mod articulated;
-mod bounds;
 
 pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
 pub use articulated_inertia::ArticulatedInertia;
-pub use bounds::{Arm, RoundingBounds};
+pub use bounds::{Arm, Reach, RoundingBounds};
 pub use crba::{factorize, mass_matrix};
-pub use delassus::{add_impulse, delassus};
+pub use delassus::{PointImpulse, add_impulse, delassus};
 pub use jacobian::{ContactPoint, contact_jacobian, kinetic_energy, point_velocity};
 pub use kinematics::kinematics;
 pub use loops::{
-    Closed, Constraints, Loop, close, eliminate_loops, independent_rows, loop_impulse, orthogonalize, spent_energy,
+    Closed, Constraints, Loop, close, eliminate_loops, follow_exactly, independent_rows, loop_impulse, orthogonalize,
+    spent_energy,
 };
 pub use ltl::LtlFactor;
 pub use workspace::{LoopRows, Workspace};
@@ -66,7 +67,7 @@ mod tests {
                 true => Axis::Prismatic { direction: Vector::new(angle.cos(), angle.sin()) },
                 false => Axis::Revolute { sign: angle.signum() },
             };
-            let joint = Joint { name: String::new(), parent: 0, child: 0, origin: origin.into(), axis };
+            let joint = Joint { name: String::new(), parent: 0, child: 0, origin: origin.into(), axis, limits: None };
             (parent, joint, Body { name: String::new(), joint: None, mass, com: com.into(), moment })
         }
     }
@@ -170,7 +171,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn mass_matrix_gives_the_kinetic_energy_of_the_bodies(case in case(true)) {
+        fn mass_matrix_gives_bodies_kinetic_energy(case in case(true)) {
             let plan = Plan::new(&case.robot, &[], &vec![0.25; case.robot.joints.len()]);
             let workspace = case.computed(&plan, &[]);
             let column = by_column(&plan, &case.velocity);
@@ -209,7 +210,8 @@ mod tests {
                 let contact = contacts[row / 2];
                 let (axis, arm) = (contact.axes()[row % 2], contact.arm(&workspace));
                 let mut change = vec![0.0; case.velocity.len()];
-                add_impulse(&plan, &workspace, (contact.body, arm), axis, &mut Vec::new(), &mut change);
+                let impulse = PointImpulse { body: contact.body, arm, vector: axis };
+                add_impulse(&plan, &workspace, impulse, &mut Vec::new(), &mut change);
                 let at = point_velocity(&plan, contact.body, arm, &change, &workspace);
                 prop_assert!((axis.dot(at) - found[(row, row)]).abs() <= tolerance);
                 // A sum of at most eleven products of order ten.
@@ -218,10 +220,10 @@ mod tests {
         }
 
         #[test]
-        fn articulated_bodies_give_the_delassus_matrix_without_the_mass_matrix(
+        fn articulated_bodies_give_delassus(
             mut case in case(false),
             massless in any::<Index>(),
-            held in prop::option::weighted(0.3, any::<Index>()),
+            braked in prop::option::weighted(0.3, any::<Index>()),
             rotor in prop_oneof![Just(0.0), 0.01..1.0f64],
             impulse in point(),
         ) {
@@ -234,8 +236,8 @@ mod tests {
                 let body = &mut case.robot.bodies[massless];
                 (body.mass, body.moment) = (0.0, 0.0);
             }
-            let held: Vec<usize> = held.iter().map(|held| held.index(case.robot.joints.len())).collect();
-            let plan = Plan::new(&case.robot, &held, &vec![rotor; case.robot.joints.len()]);
+            let braked: Vec<usize> = braked.iter().map(|braked| braked.index(case.robot.joints.len())).collect();
+            let plan = Plan::new(&case.robot, &braked, &vec![rotor; case.robot.joints.len()]);
             let contacts = case.points(0.1, Rotation::by(0.3));
             let by_mass = case.computed(&plan, &contacts);
             let mut workspace = by_mass.clone();
@@ -255,16 +257,15 @@ mod tests {
             prop_assert!(near(&by_mass.half, &workspace.half));
             prop_assert!(near(&diagonal, &workspace.pivots), "{diagonal:?} {:?}", workspace.pivots);
 
-            let point = (contacts[0].body, contacts[0].arm(&workspace));
+            let impulse = PointImpulse { body: contacts[0].body, arm: contacts[0].arm(&workspace), vector: impulse.into() };
             let (mut expected, mut found) = (case.velocity.clone(), case.velocity.clone());
-            add_impulse(&plan, &by_mass, point, impulse.into(), &mut Vec::new(), &mut expected);
-            let scratch = (&mut Vec::new(), &mut Vec::new());
-            add_articulated_impulse(&plan, &workspace, point, impulse.into(), scratch, &mut found);
+            add_impulse(&plan, &by_mass, impulse, &mut Vec::new(), &mut expected);
+            add_articulated_impulse(&plan, &workspace, impulse, &mut Vec::new(), &mut Vec::new(), &mut found);
             prop_assert!(near(&expected, &found), "{expected:?} {found:?}");
         }
 
         #[test]
-        fn no_f64_number_is_farther_from_the_exact_one_than_its_bound(case in case(true)) {
+        fn f64_numbers_keep_within_their_bounds(case in case(true)) {
             type Exact = Ball<DoubleDouble>;
             let (plan, contacts) = (Plan::new(&case.robot, &[], &[]), case.points(0.0, Rotation::identity()));
             let workspace = case.computed(&plan, &contacts);

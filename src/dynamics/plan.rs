@@ -137,12 +137,12 @@ impl MimicRatio {
 }
 
 impl<T: Real> Plan<T> {
-    /// Compiles `robot` with the joints `held` (indices into [`Robot::joints`]) kept at their rate, and `rotor_inertia`
-    /// per joint and then per mimic joint (empty for none) \[kg m^2\].
+    /// Compiles `robot` with the joints `braked` (indices into [`Robot::joints`]) kept at their rate, and
+    /// `rotor_inertia` per joint and then per mimic joint (empty for none) \[kg m^2\].
     ///
     /// A joint that mimics a braked one does not move either. A rotor at a mimic joint turns at that joint's rate, so
     /// that it adds multiplier^2 of its inertia to the mimicked joint's coordinate.
-    pub fn new(robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Self {
+    pub fn new(robot: &Robot, braked: &[usize], rotor_inertia: &[f64]) -> Self {
         let base = robot.base_dofs();
         let floating = robot.base == Base::Floating;
         let mut plan = Self {
@@ -187,7 +187,7 @@ impl<T: Real> Plan<T> {
                 ParentJoint::Fixed { .. } => (None, None),
             };
             let (parent, origin, axis) = robot.hinge(mover);
-            let column = moved.filter(|(index, _)| !held.contains(index));
+            let column = moved.filter(|(index, _)| !braked.contains(index));
             let column = column.map(|(index, _)| plan.column(&mut columns[index], base + index));
             greatest.push(match column {
                 Some(column) => plan.join_branch(column, parent, greatest[parent]),

@@ -1,6 +1,7 @@
 //! The line that a refusal is about, to be shown with the place marked; of a long one what is near the place.
 
 use crate::error::Location;
+use crate::error::visible::is_obeyed;
 use std::ops::Range;
 
 /// The most bytes of a line that is shown whole.
@@ -26,8 +27,9 @@ pub struct Excerpt {
 }
 
 impl Excerpt {
-    /// The line of `text` that holds `place`, where `text` begins on line `first`; bytes that are no UTF-8 are
-    /// replaced. `None` if there is no such line, or if it is empty.
+    /// The line of `text` that holds `place`, where `text` begins on line `first`; bytes that are no UTF-8 and
+    /// characters that a terminal would obey are replaced, one for one. `None` if there is no such line, or if it is
+    /// empty.
     pub fn around(text: &[u8], first: usize, place: Location) -> Option<Self> {
         let line = text.split(|&byte| byte == b'\n').nth(place.line.checked_sub(first)?)?;
         let line = line.strip_suffix(b"\r").unwrap_or(line);
@@ -38,7 +40,8 @@ impl Excerpt {
         let ahead = place.column.saturating_sub(1);
         let kept = if line.len() <= WHOLE { 0..line.len() } else { near(line, ahead) };
         let left = line[..kept.start].iter().filter(|&&byte| begins(byte)).count();
-        let middle = String::from_utf8_lossy(&line[kept.clone()]);
+        let shown = |letter: char| if letter != '\t' && is_obeyed(letter) { '\u{fffd}' } else { letter };
+        let middle: String = String::from_utf8_lossy(&line[kept.clone()]).chars().map(shown).collect();
         let (before, after) = (if kept.start > 0 { CUT } else { "" }, if kept.end < line.len() { CUT } else { "" });
         let marked = token(&middle, ahead.saturating_sub(left));
         let mark = before.len() + marked.start..before.len() + marked.end;

@@ -3,7 +3,10 @@
 //! Physics is a value, refusal is an error: "no outcome" or "on the border" are data, and an [`Error`] always means
 //! that an input was not accepted. Every error names its place and, where one is known, the remedy.
 
+mod visible;
 pub mod excerpt;
+
+pub use visible::visible;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -34,10 +37,10 @@ pub enum Reason {
     #[error("{} is missing", short(.0))]
     Missing(String),
     /// A number that is NaN or infinite.
-    #[error("{what} must be a finite number, not {value}")]
+    #[error("{} must be a finite number, not {value}", short(.what))]
     NotFinite { what: String, value: f64 },
     /// A number outside its range, which is `allowed`, as in `between 0 and 1`.
-    #[error("{what} must be {allowed}, not {}", brief(*.value))]
+    #[error("{} must be {allowed}, not {}", short(.what), brief(*.value))]
     OutOfRange { what: String, allowed: &'static str, value: f64 },
     /// Two inputs that contradict each other, or an array of the wrong shape.
     #[error("{}", short(.0))]
@@ -51,12 +54,14 @@ pub enum Reason {
     /// A coordinate without inertia, so that the mass matrix is singular.
     #[error("the mass matrix is singular: nothing resists a motion of {}", short(.0))]
     Singular(String),
-    /// A shape of a URDF link that is deeper in the ground than the tolerance, both in m.
+    /// A shape of a URDF link that is deeper in the ground than the tolerance, both in m, and how its lowest point
+    /// moves, `[tangential, normal]` in m/s, if that is known.
     #[error(
-        "link \"{}\" is {depth:.3e} m deep in the ground, more than the contact tolerance of {tolerance:.3e} m",
-        short(.link)
+        "link \"{}\" is {depth:.3e} m deep in the ground, more than the contact tolerance of {tolerance:.3e} m{}",
+        short(.link),
+        velocity.map_or(String::new(), |velocity| format!(", and {}", along_normal(velocity)))
     )]
-    Penetration { link: String, depth: f64, tolerance: f64 },
+    Penetration { link: String, depth: f64, tolerance: f64, velocity: Option<[f64; 2]> },
     /// More closed contacts than the enumeration of all modes serves.
     #[error("{contacts} contacts are closed, and every combination of modes is tried for {limit} at most")]
     TooManyContacts { contacts: usize, limit: usize },
@@ -67,14 +72,16 @@ pub enum Reason {
     #[error("more than {limit} {what} are not accepted")]
     TooMany { what: &'static str, limit: usize },
     /// A file that could not be read or written.
-    #[error("{0}")]
+    #[error("{}", visible(.0))]
     Io(String),
 }
 
 /// A line and a column of a text \[characters\], both counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Location {
+    /// The line.
     pub line: usize,
+    /// The character in that line.
     pub column: usize,
 }
 
@@ -122,7 +129,7 @@ impl Error {
 
     /// Names the file.
     pub fn in_file(mut self, file: impl Into<String>) -> Self {
-        self.0.file = Some(file.into());
+        self.0.file = Some(visible(&file.into()).into_owned());
         self
     }
 
@@ -200,17 +207,26 @@ fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&
     near.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, candidate)| candidate)
 }
 
-/// The text, without its middle if a hostile name makes it long: a refusal of a line of 1 MB stays short.
+/// The text as people read it, without its middle if a hostile name makes it long: a refusal of a line of 1 MB stays
+/// short.
 fn short(text: &str) -> Cow<'_, str> {
     const LONGEST: usize = 400;
     const HEAD: usize = 80;
     const TAIL: usize = 40;
     if text.len() <= LONGEST {
-        return Cow::Borrowed(text);
+        return visible(text);
     }
     let head: String = text.chars().take(HEAD).collect();
     let tail = text.char_indices().nth_back(TAIL - 1).map_or(text, |(start, _)| &text[start..]);
-    Cow::Owned(format!("{head}...{tail}"))
+    Cow::Owned(visible(&format!("{head}...{tail}")).into_owned())
+}
+
+/// How what has the velocity `[tangential, normal]` \[m/s\] moves toward the ground or away from it.
+pub(crate) fn along_normal([_, normal]: [f64; 2]) -> String {
+    if normal == 0.0 {
+        return "does not move toward it".to_owned();
+    }
+    format!("moves {} it at {:.3e} m/s", if normal < 0.0 { "toward" } else { "away from" }, normal.abs())
 }
 
 /// The number in the shorter of its two forms: 0.5 and 1e-300.

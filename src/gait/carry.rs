@@ -46,6 +46,35 @@ impl Onward {
     }
 }
 
+/// How the values at some moments, or rather their polynomial, give that at another.
+#[derive(Debug, Clone)]
+pub(super) struct Interpolation {
+    /// Of each moment in the value, and in its rate \[1/s\].
+    weights: Vec<(f64, f64)>,
+}
+
+impl Interpolation {
+    /// At `time`, from values at different `times`: Lagrange's polynomial.
+    pub fn at(time: f64, times: &[f64]) -> Self {
+        let others = |own: usize| (0..times.len()).filter(move |&other| other != own);
+        let weights = (0..times.len()).map(|own| {
+            let factor = |other: usize| (time - times[other]) / (times[own] - times[other]);
+            let without = |left: usize| others(own).filter(move |&other| other != left).map(factor).product::<f64>();
+            let rate = others(own).map(|other| without(other) / (times[own] - times[other])).sum();
+            (others(own).map(factor).product(), rate)
+        });
+        Self { weights: weights.collect() }
+    }
+
+    pub fn value(&self, value: impl Fn(usize) -> f64) -> f64 {
+        self.weights.iter().enumerate().map(|(at, (weight, _))| weight * value(at)).sum()
+    }
+
+    pub fn rate(&self, value: impl Fn(usize) -> f64) -> f64 {
+        self.weights.iter().enumerate().map(|(at, (_, weight))| weight * value(at)).sum()
+    }
+}
+
 /// The value at `time` on the line through two others, each behind its time; the later one where that is too far away.
 pub(super) fn on_line([(from, start), (to, end)]: [(f64, f64); 2], time: f64) -> f64 {
     if to > from && time - to <= REACH * (to - from) { end + (time - to) / (to - from) * (end - start) } else { end }
@@ -66,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn two_rows_carry_on_a_line_and_one_or_a_long_way_nothing() {
+    fn two_near_rows_carry_on_a_line() {
         let onward = Onward::from(&[1.0, 0.5], 1.0).unwrap();
         let falling = |row: usize| [2.0, 3.0][row];
         assert_eq!((onward.value(falling, 0.5), onward.down_to(0.0, falling)), (1.0, Some(1.0)));

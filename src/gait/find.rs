@@ -1,9 +1,11 @@
 //! Finds the touchdowns of a recording, sample by sample, in memory for the last moments alone.
 
-use super::carry::{Onward, on_line};
+use super::carry::{Interpolation, Onward, on_line};
 use super::clip::{Clock, ClockStep};
 use super::points::Points;
-use super::{At, Landing, Sample, Sampled, Thresholds, Touching};
+use super::{At, Heights, Landing, Sample, Sampled, Thresholds, Touching};
+use crate::contact::Feet;
+use crate::pipeline::CONTACT_TOLERANCE;
 use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::NamedContact;
@@ -34,8 +36,11 @@ pub fn find<'r, S: Clone, I: Iterator<Item = Sampled<S>>>(
         thresholds: Thresholds::of(robot, feet),
         at,
         touching,
+        heights: Heights::default(),
+        level: CONTACT_TOLERANCE * Feet::new(robot, feet).size(),
         clock: Clock::default(),
         counted: 0,
+        last: None,
         window: VecDeque::new(),
         descents: Vec::new(),
         ready: VecDeque::new(),
@@ -50,7 +55,12 @@ pub struct Touchdowns<'r, S, I> {
     thresholds: Thresholds,
     at: At,
     touching: Touching,
+    heights: Heights,
+    /// A point that stops no higher is on the ground, where heights are true \[m\].
+    level: f64,
     clock: Clock,
+    /// The row before the last touchdown.
+    last: Option<usize>,
     /// Samples so far, refused ones too.
     counted: usize,
     /// The last samples of the clip: as far back as a descent that ends now can have been above its end, and some more.
@@ -92,6 +102,10 @@ struct Strike {
 
 /// So many rows before the moment of contact are used for the state at it.
 const BEFORE: usize = 3;
+/// The same where heights are true.
+const SIMULATED: usize = 6;
+/// A moment between two rows is halved until it is known to 2^-44 of their distance.
+const HALVINGS: usize = 44;
 
 impl<S: Clone, I: Iterator<Item = Sampled<S>>> Iterator for Touchdowns<'_, S, I> {
     type Item = Sampled<S>;
@@ -124,6 +138,11 @@ impl<S, I> Touchdowns<'_, S, I> {
     pub fn with(self, thresholds: Thresholds) -> Self {
         Self { thresholds, ..self }
     }
+
+    /// The touchdowns of a recording whose heights are meant so.
+    pub fn meaning(self, heights: Heights) -> Self {
+        Self { heights, ..self }
+    }
 }
 
 impl<S: Clone, I> Touchdowns<'_, S, I> {
@@ -137,14 +156,66 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             ClockStep::Impact => {
                 self.window.back_mut().into_iter().for_each(|last| last.before_impact = true);
             }
-            ClockStep::Later(passed) => self.follow(&places, passed),
+            ClockStep::Later(passed) if self.heights == Heights::Recorded => self.follow(&places, passed),
+            ClockStep::Later(_) => {}
         }
         // A point that falls at `slow` or faster was `above` its level no longer ago than this; twice that is kept.
         let oldest = sample.time - 2.0 * self.thresholds.above / self.thresholds.slow;
-        while self.window.get(BEFORE).is_some_and(|frame| frame.sample.time < oldest) {
+        let kept = if self.heights == Heights::True { SIMULATED + 1 } else { BEFORE };
+        while self.window.get(kept).is_some_and(|frame| frame.sample.time < oldest) {
             self.window.pop_front();
         }
         self.window.push_back(Frame { sample, row: self.counted, places, before_impact: false });
+        if self.heights == Heights::True {
+            self.reach_ground();
+        }
+    }
+
+    /// Follows every point to the last row of the window, where heights are true.
+    fn reach_ground(&mut self) {
+        let Some(row) = self.window.len().checked_sub(2) else { return };
+        let mut strikes = Vec::new();
+        for point in 0..self.descents.len() {
+            let Descent { from, falling } = self.descents[point];
+            let [last, height] = [row, row + 1].map(|row| self.height(point, row));
+            let strike = Strike { point, row, height: Some(0.0), smooth: row };
+            if from - last.min(height) >= self.thresholds.drop && last > 0.0 {
+                if height <= 0.0 {
+                    strikes.push(strike);
+                } else if falling && height >= last {
+                    // It stops a rounding above the ground, or has bounced since the row before or the one before that.
+                    let bounced = [row.checked_sub(1), Some(row)].into_iter().flatten();
+                    let bounced = bounced.filter(|&row| self.onward_height(point, row) <= 0.0).min();
+                    let stops = (last <= self.level).then_some(Strike { height: None, ..strike });
+                    strikes.extend(stops.or(bounced.map(|row| Strike { row, smooth: row, ..strike })));
+                }
+            }
+            let falling = height < last;
+            let from = if falling && height > 0.0 { from } else { height };
+            self.descents[point] = Descent { from, falling };
+        }
+        self.strike(strikes);
+    }
+
+    /// The rows from which the motion goes on after `row`, the last one first: none from before an impact.
+    fn smooth_rows(&self, row: usize) -> Vec<usize> {
+        let is_after_impact = |row: usize| self.last.is_some_and(|last| self.window[row].row <= last);
+        let before = (0..row).rev().take_while(|&row| !(self.window[row].before_impact || is_after_impact(row)));
+        std::iter::once(row).chain(before).take(SIMULATED).collect()
+    }
+
+    /// q at `time` if the motion of these rows goes on.
+    fn onward_position(&self, rows: &[usize], time: f64) -> Vec<f64> {
+        let times: Vec<f64> = rows.iter().map(|&row| self.window[row].sample.time).collect();
+        let interpolation = Interpolation::at(time, &times);
+        let position = |at: usize| &self.window[rows[at]].sample.state.position;
+        (0..position(0).len()).map(|entry| interpolation.value(|at| position(at)[entry])).collect()
+    }
+
+    /// How high a point would be at the row after `row` \[m\].
+    fn onward_height(&mut self, point: usize, row: usize) -> f64 {
+        let position = self.onward_position(&self.smooth_rows(row), self.window[row + 1].sample.time);
+        self.points.at(&position)[point].z
     }
 
     /// Follows every point to its next place, `passed` \[s\] after the last.
@@ -173,6 +244,9 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
 
     /// Ends the clip: a point that is still falling has reached the ground if it is at z = 0.
     fn end_clip(&mut self) {
+        if self.heights == Heights::True {
+            self.descents.clear();
+        }
         let Thresholds { drop, above, .. } = self.thresholds;
         let end = self.window.len().saturating_sub(1);
         // Of two rows with the same time the first.
@@ -191,6 +265,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
         self.strike(self.descents.iter().enumerate().filter_map(strike).collect());
         self.window.clear();
         self.descents.clear();
+        self.last = None;
     }
 
     fn height(&self, point: usize, row: usize) -> f64 {
@@ -210,6 +285,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     fn strike(&mut self, mut strikes: Vec<Strike>) {
         let (together, at, touching) = (self.thresholds.together, self.at, self.touching);
         strikes.retain(|strike| self.points.is_free(strike.point, &self.window[strike.row].places, together));
+        let last = strikes.iter().map(|strike| self.window[strike.row].row).max();
         while !strikes.is_empty() {
             let first = strikes.remove(0);
             let (also, later): (Vec<_>, Vec<_>) = strikes.into_iter().partition(|other| self.together(&first, other));
@@ -226,6 +302,7 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
                 Err((sample.source, Error::new(Reason::Inconsistent(reason))))
             });
         }
+        self.last = last.or(self.last);
     }
 
     /// Whether two points strike at the same moment.
@@ -240,12 +317,18 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
     }
 
     /// The sample at the moment of a strike; its row and source are those of the row before.
-    fn sample(&self, &Strike { point, row, height, smooth }: &Strike) -> Sample<S> {
+    fn sample(&mut self, &Strike { point, row, height, smooth }: &Strike) -> Sample<S> {
+        if self.heights == Heights::True {
+            return self.simulated(point, row, height.is_some());
+        }
         let mut sample = self.window[row].sample.clone();
+        let first = (0..row).rfind(|&row| self.window[row].before_impact).map_or(0, |impact| impact + 1);
         let (At::Crossing, Some(height), Some(next)) = (self.at, height, self.window.get(row + 1)) else {
+            if sample.rate_over[1] > self.window[smooth.max(row)].sample.time {
+                self.velocity(first, smooth.max(row), sample.time, &mut sample.state.velocity);
+            }
             return sample;
         };
-        let first = (0..row).rfind(|&row| self.window[row].before_impact).map_or(0, |impact| impact + 1);
         let onward = if smooth > row { None } else { self.onward(point, first, row, height) };
         if let Some((onward, later)) = onward {
             sample.time += later;
@@ -261,6 +344,45 @@ impl<S: Clone, I> Touchdowns<'_, S, I> {
             }
         }
         self.velocity(first, smooth, sample.time, &mut sample.state.velocity);
+        sample
+    }
+
+    /// The sample of `row`, the last one above the ground, at the moment at which `point` is at height zero, if it
+    /// `crosses` that before the next row.
+    fn simulated(&mut self, point: usize, row: usize, crosses: bool) -> Sample<S> {
+        let mut sample = self.window[row].sample.clone();
+        let rows = self.smooth_rows(row);
+        if crosses && self.at == At::Crossing {
+            let [start, end] = [row, row + 1].map(|row| self.window[row].sample.time);
+            if self.onward_height(point, row) <= self.level {
+                let (mut above, mut below) = (start, end);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (above + below);
+                    let position = self.onward_position(&rows, middle);
+                    *(if self.points.at(&position)[point].z > 0.0 { &mut above } else { &mut below }) = middle;
+                }
+                (sample.time, sample.state.position) = (below, self.onward_position(&rows, below));
+            } else {
+                let [from, to] = [row, row + 1].map(|row| self.height(point, row));
+                let part = (from / (from - to)).clamp(0.0, 1.0);
+                sample.time += part * (end - start);
+                let next = &self.window[row + 1].sample.state.position;
+                for (own, next) in sample.state.position.iter_mut().zip(next) {
+                    *own += part * (next - *own);
+                }
+            }
+        }
+        if rows.len() > 1 {
+            let times: Vec<f64> = rows.iter().map(|&row| self.window[row].sample.time).collect();
+            let interpolation = Interpolation::at(sample.time, &times);
+            let state = |at: usize| &self.window[rows[at]].sample.state;
+            for (entry, own) in sample.state.velocity.iter_mut().enumerate() {
+                *own = match sample.rate_over[0] < sample.rate_over[1] {
+                    true => interpolation.rate(|at| state(at).position[entry]),
+                    false => interpolation.value(|at| state(at).velocity[entry]),
+                };
+            }
+        }
         sample
     }
 

@@ -5,7 +5,7 @@
 //!     touchdowns: time, state, Landing (row, striking contact)
 //! ```
 //!
-//! Recorded feet do not reach z = 0: they float or sink by centimetres, sink slowly while they stand, and may be
+//! Recorded feet do not reach z = 0: they float or sink by centimeters, sink slowly while they stand, and may be
 //! scuffed over the ground. So a touchdown is recognized by motion: the height of every point that can touch (a
 //! circle's lowest, a polygon's corners) is followed. A *descent* is a run of rows in which it falls faster than
 //! [`Thresholds::slow`]. It is a touchdown if the point has come down by [`Thresholds::drop`] or more since it was last
@@ -39,6 +39,13 @@
 //! taken as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
 //! [`Thresholds::above`] of z = 0; if it is below, the moment is the one at which it crosses z = 0. In every case the
 //! base is then shifted along z so that the striking point is at z = 0 (a base that is fixed to the world is not).
+//!
+//! A simulation without noise can be taken at its word ([`Heights::True`]): a point touches the ground when it crosses z
+//! = 0, or stops within a millionth of the robot's size of it, after a descent of [`Thresholds::drop`] or more. The
+//! moment is where its height is zero if all coordinates go on as the polynomial through up to six rows before it, none
+//! of them from before the last touchdown or from before two rows of one time. Velocities go on as recorded; differences
+//! are replaced by the rates of the polynomial. If that does not reach the ground before the next row, time and
+//! positions lie on the line between both rows. A clip that ends aloft ends without a touchdown.
 //!
 //! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
 //! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order of the ends of
@@ -122,6 +129,16 @@ pub struct Landing {
     pub at: At,
     /// Which other points were taken to touch the ground.
     pub touching: Touching,
+}
+
+/// How recorded heights are meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Heights {
+    /// Feet float and sink: the ground is where a descent ends.
+    #[default]
+    Recorded,
+    /// As a simulator has them: the ground is z = 0.
+    True,
 }
 
 /// Which state of a touchdown is taken.

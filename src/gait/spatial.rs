@@ -35,7 +35,7 @@ pub struct Spatial {
     pub roll: f64,
 }
 
-/// The pitch \[rad\] of a base at x and y `origin` \[m\] with the quaternion `[w, x, y, z]`, which is normalised, and
+/// The pitch \[rad\] of a base at x and y `origin` \[m\] with the quaternion `[w, x, y, z]`, which is normalized, and
 /// the rest.
 ///
 /// # Errors
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_in_another_plane_stands_on_the_worlds_floor_all_the_same() {
+    fn robot_in_another_plane_keeps_the_floor() {
         // One that faces its own y axis dips its nose about -x, and heads along the world's y.
         let (pitch, spatial) = turned([0.0, 0.0, -0.3], Plane::YZ);
         close(pitch, 0.3);
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn rounded_quaternions_are_normalised_and_others_refused() {
+    fn rounded_quaternions_are_normalized() {
         let of = |quaternion: [f64; 4]| project([0.0; 2], quaternion, Plane::XZ);
         for factor in [0.995, -1.0] {
             close(of(quaternion([0.0, 0.7, 0.0]).map(|part| factor * part)).unwrap().0, 0.7);

@@ -9,16 +9,18 @@
 //! every sign in an answer was shown, and nothing is guessed.
 
 use super::bound::LeafBounds;
-use super::collected::{AnalysisOptions, Collected, ListedRejections};
+use super::collected::{AnalysisOptions, Collected, Findings, FoundFamilies, ListedRejections};
 use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
+use super::families::FamiliesPass;
 use super::outcome::{Analysis, Outcome, Verdict};
-use super::passes::{CoarsePass, F64Pass, UndecidedPass};
+use super::passes::{F64Pass, UndecidedPass};
 use super::problem::{ContactProblem, Precision, Source, escalate};
 use super::rank::{rank_and_condition, shows_regular};
 use super::slack::Scale;
 use crate::error::{Error, Reason, Result};
 use crate::law::{Impulse, Mode};
+use std::collections::BTreeMap;
 
 /// All combinations are tried up to this many contacts (4^10 is a million).
 pub const CONTACT_LIMIT: usize = 10;
@@ -37,19 +39,19 @@ pub struct Scratch {
     labels: Labels,
 }
 
-/// Every outcome of a `problem` given as matrices, whose digits are taken exactly; with `explain` also every rejected
-/// combination and the paper's section 4 for each contact.
+/// Every outcome of a `problem` given as matrices, whose digits are taken exactly; with the `rejections`
+/// asked for.
 ///
 /// # Errors
 /// [`Reason::TooManyContacts`] beyond [`CONTACT_LIMIT`].
-pub fn analyse(problem: &ContactProblem, explain: bool) -> Result<Analysis> {
-    let options = AnalysisOptions { rejections: explain.into(), ..AnalysisOptions::default() };
-    Scratch::default().analyse(problem, problem, options)
+pub fn analyze(problem: &ContactProblem, rejections: ListedRejections<'_>) -> Result<Analysis> {
+    let options = AnalysisOptions { rejections, ..AnalysisOptions::default() };
+    Scratch::default().analyze(problem, problem, options)
 }
 
 impl Scratch {
-    /// As [`analyse`], with memory that is kept, of a `problem` that was rounded from a `source`.
-    pub fn analyse<S: Source>(
+    /// As [`analyze`], with memory that is kept, of a `problem` that was rounded from a `source`.
+    pub fn analyze<S: Source>(
         &mut self,
         problem: &ContactProblem,
         source: &S,
@@ -73,37 +75,38 @@ impl Scratch {
                 && problem.laws().iter().any(|law| law.modes().iter().any(|group| group.len() > 1)),
             regular: contacts == 0,
             undecided: Vec::new(),
-            coarse: Vec::new(),
             collected: Collected::new(problem, &self.scale, options, &name),
         };
         self.tableau.visit(&mut pass);
-        let F64Pass { mut regular, undecided, mut coarse, mut collected, .. } = pass;
+        let F64Pass { mut regular, undecided, mut collected, .. } = pass;
         if problem.laws().iter().any(|law| law.impulse(Mode::Stick) != Impulse::Free) {
             regular = regular || shows_regular(&mut self.tableau, &mut self.bounds, contacts);
         }
         if !undecided.is_empty() {
-            let mut pass = UndecidedPass { undecided, coarse, collected: &mut collected };
+            let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), collected: &mut collected };
             escalate(source, Precision::Ball, &mut pass);
-            coarse = pass.coarse;
-            for pending in pass.undecided {
-                collected.add_undecided(pending);
-            }
+            pass.finish();
         }
-        if !coarse.is_empty() {
-            escalate(source, Precision::DoubleDouble, &mut CoarsePass { coarse, collected: &mut collected });
+        if !collected.pending_families.is_empty() {
+            let pending = std::mem::take(&mut collected.pending_families);
+            let mut pass = FamiliesPass { pending, collected: &collected, found: FoundFamilies::default() };
+            escalate(source, Precision::Ball, &mut pass);
+            let found = pass.found;
+            collected.add_families(found);
         }
-        let (outcomes, rejected, effort) = collected.finish();
+        let Findings { outcomes, families, rejected, effort } = collected.finish();
         let (rank, condition) = rank_and_condition(problem, source, &self.scale, regular, options.reductions);
         let is_explained = options.rejections == ListedRejections::Everything && rank == 2 * contacts;
         Ok(Analysis {
             verdict: verdict(contacts, &outcomes),
-            proven: options.prove && outcomes.iter().all(|outcome| outcome.decided),
+            proven: options.prove && outcomes.iter().all(|outcome| outcome.proven),
             index_sum: outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum(),
             rank,
             condition,
             no_slip_consistent: no_slip_consistent(&outcomes),
             explanation: if is_explained { explanation(problem, &self.scale) } else { None },
             outcomes,
+            families,
             rejected,
             effort,
         })
@@ -119,8 +122,6 @@ fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
     }
     match outcomes {
         [] => Verdict::None,
-        // A family whose ends are the same in f64 is still one.
-        [only] if only.family => Verdict::Ambiguous,
         [only] if only.impulse.iter().flatten().all(|&entry| entry == 0.0) => Verdict::NoImpact,
         [_] => Verdict::Unique,
         _ => Verdict::Ambiguous,
@@ -147,7 +148,7 @@ mod tests {
         let identity = (0..rows * rows).map(|k| f64::from(u8::from(k % (rows + 1) == 0))).collect();
         let (friction, restitution) = (vec![Friction::Infinite; contacts], vec![0.0; contacts]);
         let problem = ContactProblem::new(identity, vec![[0.0, -1.0]; contacts], friction, restitution).unwrap();
-        let refused = analyse(&problem, false).unwrap_err();
+        let refused = analyze(&problem, ListedRejections::Nothing).unwrap_err();
         assert_eq!(refused.reason(), &Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT });
     }
 }

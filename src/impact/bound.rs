@@ -18,6 +18,8 @@ use crate::law::Impulse;
 use crate::planar::Pair;
 
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+/// What a few operations lose, in the scale.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// Covers the roundings of the bounds themselves, a few dozen operations per contact.
 const SLACK: f64 = 1.0 + 1e-6;
 
@@ -113,9 +115,10 @@ impl Bound {
         self
     }
 
-    /// How many times the errors of single roundings the leaf's numbers may be off by.
-    pub fn growth(&self) -> f64 {
-        self.velocity_constant.error.max(self.impulse_constant.error) / (self.given + 16.0 * f64::EPSILON)
+    /// How far a scaled number is likely to be off, if the problem's own errors are the likely ones of `scale`.
+    pub fn likely_error(&self, scale: &Scale) -> f64 {
+        let growth = self.velocity_constant.error.max(self.impulse_constant.error) / (self.given + ROUNDINGS);
+        growth * (scale.likely_noise + scale.likely_rounding + ROUNDINGS)
     }
 
     /// How far a scaled velocity (or its constant's slack) may be off.
@@ -260,7 +263,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_number_is_farther_from_the_exact_one_than_its_bound(
+        fn numbers_keep_within_their_bounds(
             mut rows in prop::collection::vec(prop::collection::vec(-1.0..1.0f64, 7), 6),
             before in prop::collection::vec(prop::array::uniform2(-1.0..1.0f64), 3),
             friction in prop::collection::vec(

@@ -1,14 +1,15 @@
 //! What the passes over all combinations have found so far.
 
 use super::combination::Solved;
-use super::outcome::{AtZero, Border, Effort, Motion, Outcome, Rejection, RejectionReason};
+use super::digits::Numbers;
+use super::outcome::{AtZero, Border, Effort, Family, Motion, Outcome, Rejection};
 use super::problem::ContactProblem;
 use super::reading::CombinationReading;
 use super::singular::{SingularCase, SingularOutcome};
 use super::slack::Scale;
 use crate::law::{Inequality, Law, Mode};
+use crate::planar::Pair;
 use crate::reductions::Reductions;
-use crate::scalar::Sign;
 use std::cmp::Ordering;
 
 /// Which rejected combinations an analysis lists.
@@ -21,6 +22,7 @@ pub enum ListedRejections<'a> {
 }
 
 impl ListedRejections<'_> {
+    /// Whether a rejected combination is listed.
     pub fn contain(self, modes: &[Mode]) -> bool {
         match self {
             Self::Nothing => false,
@@ -36,8 +38,10 @@ impl From<bool> for ListedRejections<'_> {
     }
 }
 
+/// What is computed of a contact problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnalysisOptions<'a> {
+    /// Which rejected combinations are listed.
     pub rejections: ListedRejections<'a>,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
@@ -61,9 +65,33 @@ pub struct Pending {
 /// An outcome and the combination that led to it.
 struct Numbered {
     number: usize,
-    /// An end of a family whose own modes are not those of the combination.
-    on_rim: bool,
     outcome: Outcome,
+}
+
+/// The families of a problem, each with its dimension and its corners by their place in `corners`.
+#[derive(Default)]
+pub struct FoundFamilies {
+    pub families: Vec<(Pending, usize, Vec<usize>)>,
+    pub corners: Vec<Corner>,
+    /// Combinations whose corners are too many or not known.
+    pub open: Vec<Pending>,
+}
+
+/// A corner of families.
+pub enum Corner {
+    /// The outcome at this place, whose velocity is the only one of its modes.
+    Isolated(usize),
+    /// One of many velocities of a combination of this number.
+    OfFamily(usize, SingularOutcome),
+}
+
+/// All that was found, in the order of the combinations.
+pub struct Findings {
+    pub outcomes: Vec<Outcome>,
+    pub families: Vec<Family>,
+    /// As far as they are to be listed.
+    pub rejected: Vec<Rejection>,
+    pub effort: Effort,
 }
 
 /// Outcomes and rejected combinations of a problem.
@@ -75,6 +103,10 @@ pub struct Collected<'a> {
     pub total: usize,
     pub effort: Effort,
     outcomes: Vec<Numbered>,
+    /// Combinations whose velocities form a set.
+    pub pending_families: Vec<Pending>,
+    /// Corners are still in the order in which they were found.
+    families: Vec<(usize, Family)>,
     rejected: Vec<(usize, Rejection)>,
 }
 
@@ -85,65 +117,61 @@ impl<'a> Collected<'a> {
         options: AnalysisOptions<'a>,
         name: &'a dyn Fn(usize) -> String,
     ) -> Self {
-        let (outcomes, rejected) = (Vec::new(), Vec::new());
-        Self { problem, scale, options, name, total: 0, effort: Effort::default(), outcomes, rejected }
+        Self {
+            problem,
+            scale,
+            options,
+            name,
+            total: 0,
+            effort: Effort::default(),
+            outcomes: Vec::new(),
+            pending_families: Vec::new(),
+            families: Vec::new(),
+            rejected: Vec::new(),
+        }
     }
 
     /// Adds a combination that was solved with more digits than f64 has.
-    pub fn add(&mut self, Pending { number, modes }: &Pending, solved: Solved) {
-        let number = *number;
+    pub fn add(&mut self, pending: &Pending, solved: Solved) {
+        let &Pending { number, ref modes } = pending;
         match solved {
-            Solved::Regular { reading, index, motion, .. } => {
-                self.add_regular(number, modes, reading, index, || motion);
+            Solved::Regular { reading, index, numbers } => self.add_regular(number, modes, reading, index, numbers),
+            Solved::Rejected(rejection) | Solved::Singular(SingularCase::Rejected(rejection)) => {
+                self.reject(number, modes, || rejection);
             }
-            Solved::Singular(SingularCase::Rejected(rejection)) => self.reject(number, modes, || rejection),
             Solved::Singular(SingularCase::Valid(own)) => {
                 let outcome = self.singular_outcome(own);
                 self.push(number, outcome);
             }
-            Solved::Singular(SingularCase::Family(ends)) => {
-                for end in ends {
-                    let on_rim = end.modes != *modes;
-                    let outcome = Outcome { family: true, ..self.singular_outcome(end) };
-                    self.outcomes.push(Numbered { number, on_rim, outcome });
-                }
-            }
+            Solved::Singular(SingularCase::Family(())) => self.pending_families.push(pending.clone()),
         }
     }
 
-    /// Adds a combination whose equations have one solution.
+    /// Adds an outcome whose equations have one solution.
     pub fn add_regular(
         &mut self,
         number: usize,
         modes: &[Mode],
         reading: CombinationReading,
         index: i8,
-        motion: impl FnOnce() -> Motion,
+        numbers: Numbers,
     ) {
-        if reading.sign == Sign::Negative {
-            let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
-            self.reject(number, modes, || Rejection {
-                margin: reading.margin,
-                motion: solved.then(motion),
-                ..Rejection::of(modes, reading.because)
-            });
-            return;
-        }
-        let mut outcome = self.outcome(modes.to_vec(), motion(), &reading.at_zero);
+        let mut outcome = self.outcome(modes.to_vec(), numbers, &reading.at_zero);
         outcome.index = reading.at_zero.is_empty().then_some(index);
         outcome.margin = reading.margin.map(|margin| margin + 0.0);
         self.push(number, outcome);
     }
 
     fn push(&mut self, number: usize, outcome: Outcome) {
-        self.outcomes.push(Numbered { number, on_rim: false, outcome });
+        self.outcomes.push(Numbered { number, outcome });
     }
 
     /// Adds a combination that no precision decided, with zeros for the impulses that are not known.
     pub fn add_undecided(&mut self, Pending { number, modes }: Pending) {
         let velocity_after = self.problem.velocity_free().to_vec();
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
-        let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, motion, &[]) };
+        let numbers = Numbers::of_motion(motion, &modes, self.problem);
+        let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, numbers, &[]) };
         self.push(number, outcome);
     }
 
@@ -157,18 +185,56 @@ impl<'a> Collected<'a> {
         }
     }
 
-    pub fn remove(&mut self, number: usize) {
-        self.outcomes.retain(|own| own.number != number);
+    /// The place of the decided outcome with these modes.
+    pub fn place_of(&self, modes: &[Mode]) -> Option<usize> {
+        self.outcomes.iter().position(|own| own.outcome.decided && own.outcome.modes == modes)
     }
 
-    /// All outcomes and the listed rejections in the order of the combinations.
-    pub fn finish(mut self) -> (Vec<Outcome>, Vec<Rejection>, Effort) {
-        self.join_families();
-        self.outcomes.sort_by_key(|own| own.number);
-        self.rejected.sort_by_key(|(number, _)| *number);
+    /// Adds families and their corners, once all other outcomes are known.
+    pub fn add_families(&mut self, found: FoundFamilies) {
+        let mut places = Vec::new();
+        for corner in found.corners {
+            let place = match corner {
+                Corner::Isolated(place) => place,
+                Corner::OfFamily(number, own) => {
+                    let outcome = self.singular_outcome(own);
+                    self.push(number, outcome);
+                    self.outcomes.len() - 1
+                }
+            };
+            let outcome = &mut self.outcomes[place].outcome;
+            (outcome.family, outcome.index) = (true, None);
+            places.push(place);
+        }
+        for (Pending { number, modes }, dimension, corners) in found.families {
+            let corners = corners.into_iter().map(|corner| places[corner]).collect();
+            self.families.push((number, Family { modes, dimension, corners }));
+        }
+        for pending in found.open {
+            self.add_undecided(pending);
+        }
+    }
+
+    pub fn finish(mut self) -> Findings {
         self.effort.bound = self.total - self.effort.ball - self.effort.double_double - self.effort.precise;
-        let outcomes = self.outcomes.into_iter().map(|own| own.outcome).collect();
-        (outcomes, self.rejected.into_iter().map(|(_, rejection)| rejection).collect(), self.effort)
+        let mut outcomes: Vec<(usize, Numbered)> = self.outcomes.into_iter().enumerate().collect();
+        outcomes.sort_by_key(|(_, own)| own.number);
+        let mut places = vec![0; outcomes.len()];
+        for (place, (found, _)) in outcomes.iter().enumerate() {
+            places[*found] = place;
+        }
+        for (_, family) in &mut self.families {
+            family.corners.iter_mut().for_each(|corner| *corner = places[*corner]);
+            family.corners.sort_unstable();
+        }
+        self.families.sort_by_key(|(number, _)| *number);
+        self.rejected.sort_by_key(|(number, _)| *number);
+        Findings {
+            outcomes: outcomes.into_iter().map(|(_, own)| own.outcome).collect(),
+            families: self.families.into_iter().map(|(_, family)| family).collect(),
+            rejected: self.rejected.into_iter().map(|(_, rejection)| rejection).collect(),
+            effort: self.effort,
+        }
     }
 
     fn singular_outcome(&self, own: SingularOutcome) -> Outcome {
@@ -177,54 +243,33 @@ impl<'a> Collected<'a> {
             margin: own.margin,
             impulse_unique: own.range.is_none(),
             impulse_range: own.range,
-            ..self.outcome(own.modes, own.motion, &own.at_zero)
+            ..self.outcome(own.modes, own.numbers, &own.at_zero)
         }
     }
 
     /// A decided outcome with a unique impulse; the caller sets index and margin.
-    fn outcome(&self, modes: Vec<Mode>, motion: Motion, at_zero: &[(usize, Inequality)]) -> Outcome {
+    fn outcome(&self, modes: Vec<Mode>, numbers: Numbers, at_zero: &[(usize, Inequality)]) -> Outcome {
+        let Numbers { motion, energy_loss, friction_needed, are_sharp } = numbers;
         let border = border(&modes, self.problem.laws(), at_zero, &motion, self.name);
-        let mut outcome = Outcome {
+        // Adding zero turns a negative zero into the one that people expect to read.
+        let unsigned = |list: Vec<Pair<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
+        Outcome {
             modes,
-            impulse: Vec::new(),
-            velocity_after: Vec::new(),
+            impulse: unsigned(motion.impulse),
+            velocity_after: unsigned(motion.velocity_after),
             base_velocity_after: None,
             joint_velocity_after: None,
             loop_impulse: None,
-            energy_loss: 0.0,
+            energy_loss: energy_loss + 0.0,
             impulse_unique: true,
             impulse_range: None,
-            friction_needed: Vec::new(),
+            friction_needed,
             index: None,
             margin: None,
             border,
             family: false,
-            proven: self.options.prove,
+            proven: self.options.prove && are_sharp,
             decided: true,
-        };
-        outcome.set_motion(motion, self.problem.velocity_before());
-        outcome
-    }
-
-    /// An end of a family on its rim is the outcome, or the end, of other modes, and is listed once, as theirs.
-    fn join_families(&mut self) {
-        let same = |a: &Outcome, b: &Outcome| {
-            a.modes == b.modes && self.scale.same_velocity(&a.velocity_after, &b.velocity_after)
-        };
-        let mut index = 0;
-        while index < self.outcomes.len() {
-            let end = &self.outcomes[index];
-            let twin = self.outcomes.iter().enumerate().position(|(other, own)| {
-                let again = end.on_rim || own.number == end.number;
-                end.outcome.family && other != index && again && same(&own.outcome, &end.outcome)
-            });
-            if let Some(twin) = twin {
-                let outcome = &mut self.outcomes[twin].outcome;
-                (outcome.family, outcome.index) = (true, None);
-                self.outcomes.remove(index);
-            } else {
-                index += 1;
-            }
         }
     }
 }

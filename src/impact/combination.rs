@@ -1,55 +1,59 @@
 //! One combination of modes, solved in numbers that know their own signs.
 
+use super::digits::{DIGITS, Numbers};
 use super::enumerate::Tableau;
 use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
-use super::problem::ContactProblem;
+use super::problem::{ContactProblem, Errors};
 use super::reading::{CombinationReading, motion, read_signed};
-use super::singular::{SingularCase, solve_singular};
-use super::slack::Scale;
+use super::singular::{Equations, SingularCase};
+use super::slack::{Scale, slacks};
 use crate::law::Mode;
+use crate::planar::Pair;
 use crate::scalar::{Ordered, Sign};
 
 /// The solution of a combination.
 #[derive(Debug)]
 pub enum Solved {
-    /// Its equations have one solution.
+    /// It is no outcome.
+    Rejected(Rejection),
+    /// Its equations have one solution, an outcome.
     Regular {
         reading: CombinationReading,
         /// Sign of det A.
         index: i8,
-        motion: Motion,
-        /// How far it may be off, in the scale of margins.
-        error: f64,
+        numbers: Numbers,
     },
     Singular(SingularCase),
 }
 
 impl Solved {
-    /// How far an outcome's numbers may be off, in the scale of margins; `None` of a rejected combination.
-    pub fn error(&self) -> Option<f64> {
+    /// Whether the numbers of its outcome, if it has one yet, have the digits that are promised.
+    pub fn is_sharp(&self) -> bool {
         match self {
-            Self::Regular { reading, error, .. } => (reading.sign != Sign::Negative).then_some(*error),
-            Self::Singular(SingularCase::Valid(own)) => Some(own.error),
-            Self::Singular(SingularCase::Family([one, other])) => Some(one.error.max(other.error)),
-            Self::Singular(SingularCase::Rejected(_)) => None,
+            Self::Regular { numbers, .. } => numbers.are_sharp,
+            Self::Singular(SingularCase::Valid(own)) => own.numbers.are_sharp,
+            Self::Rejected(_) | Self::Singular(SingularCase::Family(()) | SingularCase::Rejected(_)) => true,
         }
     }
 
     /// Whether some number of a rejected combination is not finite.
     pub fn is_vague(&self) -> bool {
-        let (motion, margin) = match self {
-            Self::Regular { reading, motion, .. } => (Some(motion), reading.margin),
-            Self::Singular(SingularCase::Rejected(Rejection { margin, motion, .. })) => (motion.as_ref(), *margin),
-            Self::Singular(_) => return false,
-        };
-        !(motion.is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
+        match self {
+            Self::Rejected(Rejection { margin, motion, .. })
+            | Self::Singular(SingularCase::Rejected(Rejection { margin, motion, .. })) => {
+                !(motion.as_ref().is_none_or(Motion::is_finite) && margin.is_none_or(f64::is_finite))
+            }
+            Self::Regular { .. } | Self::Singular(_) => false,
+        }
     }
 }
 
 /// A problem in these numbers and its elimination.
 pub struct CombinationSolver<'e, T> {
     exact: &'e ContactProblem<T>,
+    /// Of its own numbers: those of f64 may be off.
+    scale: Scale,
     tableau: Tableau<T>,
 }
 
@@ -57,30 +61,42 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
     pub fn new(exact: &'e ContactProblem<T>) -> Self {
         let mut tableau = Tableau::<T>::default();
         tableau.load(exact);
-        Self { exact, tableau }
+        let mut scale = Scale::default();
+        scale.measure(&exact.map(T::to_f64), Errors::NONE);
+        Self { exact, scale, tableau }
     }
 
-    /// Solves a combination; `problem` is the same in f64.
-    pub fn solve(&mut self, modes: &[Mode], problem: &ContactProblem, scale: &Scale) -> Result<Solved, Unsettled> {
+    pub fn solve(&mut self, modes: &[Mode]) -> Result<Solved, Unsettled> {
+        let Self { exact, scale, tableau } = self;
         T::freeing(|| {
-            let leaf = self.tableau.leaf(modes);
+            let leaf = tableau.leaf(modes);
             let mut index = 1;
             for &pivot in leaf.pivots {
                 match pivot.sign() {
                     Sign::Undecided => return Err(Unsettled),
-                    Sign::Zero => return solve_singular(self.exact, problem, scale, modes).map(Solved::Singular),
+                    Sign::Zero => return Equations::of(exact, scale, modes).solve().map(Solved::Singular),
                     Sign::Negative => index = -index,
                     Sign::Positive => {}
                 }
             }
-            let reading = read_signed(&leaf, modes, problem, scale);
+            let reading = read_signed(&leaf, modes, exact.laws(), scale);
             if reading.sign == Sign::Undecided {
                 return Err(Unsettled);
             }
-            let contacts = 0..modes.len();
-            let velocity = contacts.clone().flat_map(|contact| leaf.velocity(contact));
-            let error = scale.error(velocity, contacts.flat_map(|contact| leaf.impulse(contact)));
-            Ok(Solved::Regular { reading, index, motion: motion(&leaf, modes, problem, T::to_f64), error })
+            if reading.sign == Sign::Negative {
+                let motion = || motion(&leaf, modes, exact, T::to_f64);
+                return Ok(Solved::Rejected(Rejection::read(modes, reading, motion)));
+            }
+            let [impulse, velocity]: [Vec<Pair<T>>; 2] = [
+                (0..modes.len()).map(|contact| leaf.impulse(contact)).collect(),
+                (0..modes.len()).map(|contact| leaf.velocity(contact)).collect(),
+            ];
+            let mut numbers = Numbers::of((exact, scale), modes, &impulse, &velocity);
+            slacks(&leaf, modes, exact.laws(), |slack| {
+                let error = scale.scaled(&slack, slack.number.error());
+                numbers.are_sharp &= error <= DIGITS * reading.margin.unwrap_or(0.0).max(1.0);
+            });
+            Ok(Solved::Regular { reading, index, numbers })
         })
     }
 }

@@ -78,11 +78,11 @@ fn is_singular(leaf: &Leaf<'_, f64>, problem: &ContactProblem) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::analyse;
+    use crate::impact::{ListedRejections, analyze};
     use crate::law::{Friction, Mode};
 
     #[test]
-    fn a_combination_is_valid_where_all_its_inequalities_have_the_sign_of_the_determinant() {
+    fn valid_inequalities_have_the_determinants_sign() {
         // The paper's section 4: G = [[2, 1], [1, 2]].
         for mu in [Friction::Finite(0.4), Friction::Finite(6.0), Friction::Infinite] {
             for before in [[1.0, -1.0], [-3.0, -1.0], [0.5, 0.2], [2.5, -0.5]] {
@@ -93,7 +93,7 @@ mod tests {
                     all.numerators[all.of_combination(*combination)].iter().all(|number| number * determinant > 0.0)
                 };
                 let found: Vec<_> = (0..4).filter(valid).map(|combination| [Mode::ALL[combination]]).collect();
-                let analysis = analyse(&problem, false).unwrap();
+                let analysis = analyze(&problem, ListedRejections::Nothing).unwrap();
                 let outcomes: Vec<_> = analysis.outcomes.into_iter().map(|outcome| outcome.modes).collect();
                 assert_eq!(outcomes, found, "{mu} {before:?}");
             }

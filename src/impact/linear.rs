@@ -42,6 +42,11 @@ impl<T: Real> LinearFunction<T> {
         self.coefficients.iter().zip(y).fold(constant, |sum, (&coefficient, &entry)| sum + coefficient * entry)
     }
 
+    /// The same function with `y` as its origin.
+    pub fn seen_from(&self, y: &[T]) -> Self {
+        Self { constant: self.at(y), coefficients: self.coefficients.clone() }
+    }
+
     /// A function of one more entry of y, with this `coefficient`.
     pub fn extended(&self, constant: T, coefficient: T) -> Self {
         Self { constant, coefficients: extended(&self.coefficients, coefficient) }
@@ -96,10 +101,16 @@ impl<T: Real> Solutions<T> {
 }
 
 impl<T: Ordered> Solutions<T> {
-    /// The solutions on which `function`, one of y, is also zero; `None` if there are none.
-    pub fn where_zero(&self, function: &LinearFunction<T>) -> Result<Option<Self>, Unsettled> {
-        let equation = extended(&function.coefficients, -function.constant);
-        let Some(inner) = solve(self.directions.len(), vec![equation])? else { return Ok(None) };
+    /// The solutions on which `functions` of y are also zero; `None` if there are none.
+    pub fn where_zero<'f>(
+        &self,
+        functions: impl Iterator<Item = &'f LinearFunction<T>>,
+    ) -> Result<Option<Self>, Unsettled>
+    where
+        T: 'f,
+    {
+        let equations = functions.map(|function| extended(&function.coefficients, -function.constant)).collect();
+        let Some(inner) = solve(self.directions.len(), equations)? else { return Ok(None) };
         let direction = |z: &Vec<T>| self.moved(vec![T::zero(); self.origin.len()], z);
         let directions = inner.directions.iter().map(direction).collect();
         Ok(Some(Self { origin: self.at(&inner.origin), directions }))
@@ -260,6 +271,34 @@ impl<T: Ordered> Dictionary<T> {
         self.rows[row] = solved;
         std::mem::swap(&mut self.basic[row], &mut self.nonbasic[column]);
     }
+}
+
+/// Those of `functions` that are zero wherever none is negative, by their place, and a y at which no other one is zero.
+/// At y = 0 no function may be negative.
+pub fn vanishing<T: Ordered>(functions: &[LinearFunction<T>]) -> Result<(Vec<usize>, Vec<T>), Unsettled> {
+    let mut y = vec![T::zero(); functions.first().map_or(0, |function| function.coefficients.len())];
+    let mut all = Vec::new();
+    for (place, function) in functions.iter().enumerate() {
+        if settled(function.at(&y))?.is_gt() {
+            continue;
+        }
+        // One is enough of a function that grows without bound.
+        let top = LinearFunction {
+            constant: T::one(),
+            coefficients: function.coefficients.iter().map(|&entry| -entry).collect(),
+        };
+        let rows: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&y)).chain([top]).collect();
+        let best = maximize(&rows, &function.coefficients)?.ok_or(Unsettled)?;
+        if settled(function.change(&best))?.is_eq() {
+            all.push(place);
+            continue;
+        }
+        // Half way there, what is positive stays so.
+        for (entry, step) in y.iter_mut().zip(best) {
+            *entry = *entry + step * T::from_f64(0.5);
+        }
+    }
+    Ok((all, y))
 }
 
 /// The y whose smallest function is greatest, and that value, at most `cap`: an unbounded set needs one.

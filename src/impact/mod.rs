@@ -8,25 +8,30 @@ pub mod problem;
 pub mod enumerate;
 pub mod slack;
 mod bound;
+mod generators;
+mod digits;
 pub mod inequalities;
 mod reading;
 mod kernel;
-mod generators;
 mod index;
 mod program;
+mod corners;
+mod needed;
 mod singular;
 mod combination;
 mod explanation;
 mod rank;
 mod collected;
 mod passes;
+mod families;
 pub mod analysis;
 
 pub use crate::law::{Friction, Inequality, Law, Mode};
-pub use analysis::{CONTACT_LIMIT, Scratch, analyse, too_many_contacts};
+pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
 pub use collected::{AnalysisOptions, ListedRejections};
 pub use inequalities::Inequalities;
 pub use outcome::{
-    Analysis, AtZero, Border, Effort, Explanation, ImpulseRegion, Motion, Outcome, Rejection, RejectionReason, Verdict,
+    Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Outcome, Rejection, RejectionReason,
+    Verdict,
 };
 pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

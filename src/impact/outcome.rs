@@ -45,7 +45,7 @@ pub struct Outcome {
     /// Velocity of the base after the impact \[m/s, rad/s\]; only of a robot that is not bolted to the world.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_velocity_after: Option<Named>,
-    /// Rates of the joints after the impact, held ones included \[rad/s, m/s\]; only of a robot.
+    /// Rates of the joints after the impact, braked ones included \[rad/s, m/s\]; only of a robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint_velocity_after: Option<Named>,
     /// Impulse on point a of each loop, [x, z] in the world \[N s\]; the opposite acts on b. Only of a state with
@@ -59,7 +59,8 @@ pub struct Outcome {
     /// Least and greatest of every entry of `impulse`, null if it has no bound; only if `impulse` is not unique.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub impulse_range: Option<Vec<Pair<Range>>>,
-    /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others.
+    /// |L_t| / L_n of each sticking contact that is pressed on the ground; null for others. If `impulse` is not unique,
+    /// it is the ratio of the sums of all contacts that share it, as of one foot's, or else the least admissible one.
     pub friction_needed: Vec<Option<f64>>,
     /// Sign of det A (paper, section 2); null if it is not defined, as on a border.
     pub index: Option<i8>,
@@ -68,14 +69,29 @@ pub struct Outcome {
     /// What is exactly zero, and the lists of modes beyond; only on a border.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub border: Option<Border>,
-    /// True, and only then present, of an end of a family: every velocity between both ends is an outcome.
+    /// True, and only then present, of a corner of a [`Family`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub family: bool,
-    /// Every sign is shown by an error bound.
+    /// Every sign is shown by an error bound, and every number of this list is right to 1e-10 of its scale.
     pub proven: bool,
     /// False, and only then present, if no precision settled a sign: the combination is neither shown nor excluded.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub decided: bool,
+}
+
+/// Velocities of one list of modes that are all outcomes: a convex set that is bounded.
+///
+/// It is open but for those of its faces on which only an impulse inequality is zero; velocities on its other faces
+/// have other modes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Family {
+    /// One mode per contact.
+    pub modes: Vec<Mode>,
+    /// 1 of a segment, 2 of an area, and so on.
+    pub dimension: usize,
+    /// The corners of its closure, by their place in `outcomes` from 0; each has the modes of its own velocity.
+    pub corners: Vec<usize>,
 }
 
 /// Least and greatest value; `None` if there is no bound.
@@ -133,19 +149,6 @@ impl Outcome {
     pub fn velocity(&self) -> impl Iterator<Item = f64> {
         let parts = [&self.base_velocity_after, &self.joint_velocity_after];
         parts.into_iter().flatten().flat_map(|part| part.values().iter().copied())
-    }
-
-    /// Takes over impulses and velocities after, and what follows from them with the contact velocities `before`.
-    pub(super) fn set_motion(&mut self, motion: Motion, before: &[Pair<f64>]) {
-        // Adding zero turns a negative zero into the one that people expect to read.
-        let unsigned = |list: Vec<Pair<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
-        self.impulse = unsigned(motion.impulse);
-        self.velocity_after = unsigned(motion.velocity_after);
-        let moves = self.impulse.iter().zip(before.iter().zip(&self.velocity_after));
-        let work: f64 = moves.map(|(l, (c, after))| l[0] * (c[0] + after[0]) + l[1] * (c[1] + after[1])).sum();
-        self.energy_loss = 0.0 - 0.5 * work;
-        let needed = |(&mode, l): (&Mode, &Pair<f64>)| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
-        self.friction_needed = self.modes.iter().zip(&self.impulse).map(needed).collect();
     }
 }
 
@@ -252,14 +255,21 @@ pub struct Effort {
     pub precise: usize,
 }
 
+impl Effort {
+    /// All combinations that the laws of the contacts admit.
+    pub fn combinations(self) -> usize {
+        self.bound + self.ball + self.double_double + self.precise
+    }
+}
+
 /// Everything that is known about a contact problem.
 ///
 /// ```
-/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, impact::analyse};
+/// use heelstrike::{ContactProblem, Friction, Mode, Verdict, analyze, impact::ListedRejections};
 ///
 /// let delassus = vec![2.0, 1.0, 1.0, 2.0];
 /// let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
-/// let analysis = analyse(&problem, true)?;
+/// let analysis = analyze(&problem, ListedRejections::Everything)?;
 /// assert!(analysis.verdict == Verdict::Unique && analysis.proven);
 /// assert!(analysis.outcomes[0].impulse[0][1] > 0.0 && analysis.outcomes[0].energy_loss > 0.0);
 /// assert!(analysis.rejected.iter().any(|rejection| rejection.modes == [Mode::Separate]));
@@ -269,10 +279,12 @@ pub struct Effort {
 pub struct Analysis {
     /// The answer in one word.
     pub verdict: Verdict,
-    /// True if every combination's signs are shown by an error bound.
+    /// True if every combination's signs are shown by an error bound, and every outcome's digits.
     pub proven: bool,
     /// Every outcome; with [`Verdict::Undecided`] also the combinations that are not excluded.
     pub outcomes: Vec<Outcome>,
+    /// Lists of modes with more than one velocity; all of them are outcomes, of which `outcomes` has the corners.
+    pub families: Vec<Family>,
     /// Every other combination, if asked for.
     pub rejected: Vec<Rejection>,
     /// Sum of the outcomes' indices; `None` if one of them has none.
@@ -290,6 +302,15 @@ pub struct Analysis {
 }
 
 impl Analysis {
+    /// Every list of modes with an outcome that is decided, once and sorted.
+    pub fn modes(&self) -> Vec<Vec<Mode>> {
+        let decided = self.outcomes.iter().filter(|outcome| outcome.decided).map(|outcome| &outcome.modes);
+        let mut modes: Vec<Vec<Mode>> = decided.chain(self.families.iter().map(|own| &own.modes)).cloned().collect();
+        modes.sort();
+        modes.dedup();
+        modes
+    }
+
     /// A note if an outcome gains energy: Newton's restitution with Coulomb friction can.
     pub fn energy_note(&self) -> Option<String> {
         let gains = self.outcomes.iter().filter(|outcome| outcome.energy_loss < 0.0).count();

@@ -1,8 +1,9 @@
 //! The signs of all inequalities of a combination as one.
 
 use super::bound::Bound;
+use super::digits::after;
 use super::enumerate::Leaf;
-use super::outcome::{Motion, RejectionReason};
+use super::outcome::{Motion, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::slack::{Scale, Slack, slacks};
 use crate::law::{Inequality, Law, Mode};
@@ -18,6 +19,15 @@ pub struct CombinationReading {
     pub margin: Option<f64>,
     /// The impulse inequalities that are exactly zero, by contact.
     pub at_zero: Vec<(usize, Inequality)>,
+}
+
+impl Rejection {
+    /// Of a combination whose reading is negative; `motion` is not asked for if two equations contradict each other.
+    pub fn read(modes: &[Mode], reading: CombinationReading, motion: impl FnOnce() -> Motion) -> Self {
+        let solved = !matches!(reading.because, RejectionReason::NothingHolds { .. });
+        let motion = solved.then(motion);
+        Self { margin: reading.margin, motion, ..Self::of(modes, reading.because) }
+    }
 }
 
 /// Reads a leaf's f64 numbers, known to `bound`; unless `complete`, up to the first violation.
@@ -38,14 +48,9 @@ pub fn read_f64(
 }
 
 /// Reads a leaf whose numbers know their own sign.
-pub fn read_signed<T: Ordered>(
-    leaf: &Leaf<'_, T>,
-    modes: &[Mode],
-    problem: &ContactProblem,
-    scale: &Scale,
-) -> CombinationReading {
+pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], scale: &Scale) -> CombinationReading {
     let scaled = |slack: &Slack<T>| scale.scaled(slack, slack.number.to_f64());
-    read(leaf, modes, problem.laws(), true, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
+    read(leaf, modes, laws, true, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
 }
 
 /// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one.
@@ -112,15 +117,11 @@ fn read<T: Real>(
 pub fn motion<T: Real>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
-    problem: &ContactProblem,
+    problem: &ContactProblem<T>,
     nearest: impl Fn(T) -> f64,
 ) -> Motion {
     let contacts = 0..problem.contacts();
-    let velocity = |contact: usize| {
-        let [c_t, xi_n] = leaf.velocity(contact).map(&nearest);
-        let c_t = if modes[contact] == Mode::Stick { 0.0 } else { c_t };
-        [c_t, xi_n - problem.bounce(contact)]
-    };
+    let velocity = |contact: usize| after(leaf.velocity(contact), contact, modes, problem).map(&nearest);
     Motion {
         impulse: contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)).collect(),
         velocity_after: contacts.map(velocity).collect(),

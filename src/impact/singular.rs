@@ -8,17 +8,24 @@
 //! form a convex set; the combination is an outcome exactly when that set is not empty, which a linear program answers,
 //! and the impulse listed is its member of least norm. A velocity that the modes exclude only by depending on others (a
 //! flat foot whose heel sticks cannot slide at the toe) belongs to the list of modes that says so: its redundant twin.
-//! If even the velocity depends on y it is a family, given by its ends. No tolerance decides: see [`super::linear`].
+//! If even the velocity depends on y it is a family: a convex set of velocities, given by its dimension and its
+//! corners. A family's closure holds velocities of other modes, so that a corner may be another combination's outcome.
+//! It is bounded: L.c+ <= sum of L_n e |c_n-|, so that L.G L = L.(c+ - c_free) grows no faster than L does. No
+//! tolerance decides: see [`super::linear`].
 
+use super::corners::corners;
+use super::digits::{Numbers, is_known, is_known_range};
 use super::generators::Generators;
 use super::index::index;
-use super::linear::{LinearFunction, Solutions, Unsettled, extended, maximize, settled, solve, widest};
+use super::linear::{LinearFunction, Solutions, Unsettled, extended, maximize, settled, solve, vanishing, widest};
+use super::needed::friction_needed;
 use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
 use super::slack::Scale;
 use crate::law::{Condition, Inequality, Mode};
-use crate::scalar::Ordered;
+use crate::planar::Pair;
+use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
 
 /// Slacks are not followed beyond this: the impulses are then unbounded.
@@ -26,12 +33,19 @@ const UNBOUNDED: f64 = 1e3;
 
 /// The solutions of a combination whose equations are singular.
 #[derive(Debug, Clone)]
-pub enum SingularCase {
+pub enum SingularCase<F = ()> {
     Rejected(Rejection),
     /// Its velocity is the only one of these modes.
     Valid(SingularOutcome),
-    /// Its velocities form a set: the two ends. An end's own modes may be others, if it lies on the set's rim.
-    Family([SingularOutcome; 2]),
+    /// Its velocities form a set.
+    Family(F),
+}
+
+/// The velocities of a family, `[c_t, xi_n]` by rows \[m/s\].
+pub struct FamilyVelocities<T> {
+    pub dimension: usize,
+    /// Those of each corner of the closure.
+    pub corners: Vec<Vec<T>>,
 }
 
 /// One velocity and the impulses that lead to it.
@@ -39,8 +53,8 @@ pub enum SingularCase {
 pub struct SingularOutcome {
     /// The strict modes of the velocity.
     pub modes: Vec<Mode>,
-    /// The velocity and the least impulse.
-    pub motion: Motion,
+    /// Those of the velocity and the least impulse.
+    pub numbers: Numbers,
     /// The smallest slack; `None` if there is none.
     pub margin: Option<f64>,
     /// Least and greatest of every impulse's entry; `None` if the impulse is the only one.
@@ -49,8 +63,6 @@ pub struct SingularOutcome {
     pub at_zero: Vec<(usize, Inequality)>,
     /// Sign of det B; `None` on a border.
     pub index: Option<i8>,
-    /// How far velocity and impulse may be off, in the scale of margins.
-    pub error: f64,
 }
 
 /// An inequality on the solutions, in the scale of margins.
@@ -60,20 +72,12 @@ struct Constraint<T> {
     function: LinearFunction<T>,
 }
 
-/// Solves one combination; `rounded` is the same problem in f64.
-pub fn solve_singular<T: Ordered>(
-    problem: &ContactProblem<T>,
-    rounded: &ContactProblem,
-    scale: &Scale,
-    modes: &[Mode],
-) -> Result<SingularCase, Unsettled> {
-    let generators = Generators::of(modes, problem.laws());
-    let equations =
-        zero_rows(modes).map(|row| extended(&generators.velocity_row(problem, row), -problem.free_row(row))).collect();
-    let Some(solutions) = solve(generators.count(), equations)? else {
-        return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
-    };
-    Equations { problem, rounded, scale, modes, generators }.weigh(&solutions)
+/// A combination of a problem.
+pub struct Equations<'a, T> {
+    problem: &'a ContactProblem<T>,
+    scale: &'a Scale,
+    modes: &'a [Mode],
+    generators: Generators,
 }
 
 /// The velocity rows that a combination sets to zero.
@@ -82,49 +86,117 @@ fn zero_rows(modes: &[Mode]) -> impl Iterator<Item = usize> {
     rows.filter_map(|(row, sign)| (sign == Some(Ordering::Equal)).then_some(row))
 }
 
-struct Equations<'a, T> {
-    problem: &'a ContactProblem<T>,
-    rounded: &'a ContactProblem,
-    scale: &'a Scale,
-    modes: &'a [Mode],
-    generators: Generators,
-}
+impl<'a, T: Ordered> Equations<'a, T> {
+    pub fn of(problem: &'a ContactProblem<T>, scale: &'a Scale, modes: &'a [Mode]) -> Self {
+        Self { problem, scale, modes, generators: Generators::of(modes, problem.laws()) }
+    }
 
-impl<T: Ordered> Equations<'_, T> {
-    fn weigh(&self, solutions: &Solutions<T>) -> Result<SingularCase, Unsettled> {
-        let inequalities = self.inequalities(solutions);
-        let velocities: Vec<LinearFunction<T>> =
-            (0..2 * self.modes.len()).map(|row| self.velocity(solutions, row)).collect();
+    pub fn solve(&self) -> Result<SingularCase, Unsettled> {
+        Ok(match self.velocities()? {
+            SingularCase::Rejected(rejection) => SingularCase::Rejected(rejection),
+            SingularCase::Valid(outcome) => SingularCase::Valid(outcome),
+            SingularCase::Family(_) => SingularCase::Family(()),
+        })
+    }
+
+    /// As [`Equations::solve`]; the solutions of a family are those that the inequalities leave, with one in the
+    /// interior of its set as their origin.
+    fn velocities(&self) -> Result<SingularCase<Solutions<T>>, Unsettled> {
+        let Self { problem, modes, generators, .. } = self;
+        let equation = |row: usize| extended(&generators.velocity_row(problem, row), -problem.free_row(row));
+        let Some(solutions) = solve(generators.count(), zero_rows(modes).map(equation).collect())? else {
+            return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
+        };
+        let inequalities = self.inequalities(&solutions);
         for Constraint { function, .. } in inequalities.iter().filter(|own| own.inequality.is_strict()) {
             if function.is_constant()? && settled(function.constant)?.is_eq() {
-                return Ok(SingularCase::Rejected(Rejection::of(self.modes, RejectionReason::RedundantTwin)));
+                return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
             }
         }
-        let dimension = solutions.directions.len();
         let functions: Vec<LinearFunction<T>> = inequalities.iter().map(|own| own.function.clone()).collect();
-        let (inside, least) = widest(&functions, dimension, T::from_f64(UNBOUNDED))?;
+        let (inside, least) = widest(&functions, solutions.directions.len(), T::from_f64(UNBOUNDED))?;
         let standing = settled(least)?;
         if standing.is_lt() {
-            return Ok(self.rejected(solutions, &inequalities, &inside));
+            return Ok(SingularCase::Rejected(self.rejected(&solutions, &inequalities, &inside)));
         }
-        let mut family = false;
-        for velocity in &velocities {
-            family |= !velocity.is_constant()?;
+        if self.is_one_velocity(&solutions)? {
+            return Ok(SingularCase::Valid(self.outcome(&solutions, &inside, least)?));
         }
-        if !family {
-            return Ok(SingularCase::Valid(self.outcome(solutions, self.modes.to_vec(), &inside, least)?));
+        let mut space = Solutions { origin: solutions.at(&inside), ..solutions };
+        if standing.is_eq() {
+            let from_inside: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&inside)).collect();
+            let (equalities, inner) = vanishing(&from_inside)?;
+            // A velocity that is zero throughout belongs to other modes.
+            if equalities.iter().any(|&place| inequalities[place].inequality.is_strict()) {
+                return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::RedundantTwin)));
+            }
+            let origin = space.at(&inner);
+            space = space.where_zero(equalities.iter().map(|&place| &from_inside[place]))?.ok_or(Unsettled)?;
+            space.origin = origin;
+            if self.is_one_velocity(&space)? {
+                // What the equations leave free, the inequalities do not.
+                let still = vec![T::zero(); space.directions.len()];
+                return Ok(SingularCase::Valid(self.outcome(&space, &still, T::zero())?));
+            }
         }
-        // The rim of a family belongs to other modes; some velocity of its own must be left.
-        if standing.is_eq() && !self.has_own_velocity(&inequalities, &inside)? {
-            return Ok(SingularCase::Rejected(Rejection::of(self.modes, RejectionReason::RedundantTwin)));
+        Ok(SingularCase::Family(space))
+    }
+
+    /// The velocities of a combination that is a family; `None` if there are too many corners.
+    pub fn family(&self) -> Result<Option<FamilyVelocities<T>>, Unsettled> {
+        let SingularCase::Family(space) = self.velocities()? else { return Err(Unsettled) };
+        let rows: Vec<LinearFunction<T>> = (0..2 * self.modes.len()).map(|row| self.velocity(&space, row)).collect();
+        // Some rows are coordinates of the family, the others depend on them.
+        let mut coordinates: Vec<LinearFunction<T>> = Vec::new();
+        let mut factors: Vec<Vec<T>> = Vec::new();
+        for row in &rows {
+            let equation = |at: usize| {
+                coordinates.iter().map(|own| own.coefficients[at]).chain([row.coefficients[at]]).collect::<Vec<T>>()
+            };
+            let equations = (0..space.directions.len()).map(equation).collect();
+            if let Some(dependent) = solve(coordinates.len(), equations)? {
+                factors.push(dependent.origin);
+            } else {
+                let own = std::iter::repeat_n(T::zero(), coordinates.len()).chain([T::one()]).collect();
+                factors.push(own);
+                coordinates.push(row.clone());
+            }
         }
-        let greatest = self.end(solutions, &inside, T::one())?;
-        let least = self.end(solutions, &inside, -T::one())?;
-        if self.has_velocity(&greatest, |row| self.velocity(&least, row).constant)? {
-            // What the equations leave free, the inequalities do not.
-            return Ok(SingularCase::Valid(SingularOutcome { margin: Some(0.0), ..self.end_outcome(&greatest)? }));
+        let functions: Vec<LinearFunction<T>> =
+            self.inequalities(&space).into_iter().map(|each| each.function).collect();
+        let Some(corners) = corners(&functions, &coordinates)? else { return Ok(None) };
+        let velocity = |corner: Vec<T>| -> Result<Vec<T>, Unsettled> {
+            let from: Vec<T> = corner.iter().zip(&coordinates).map(|(&at, own)| at - own.constant).collect();
+            let entry = |(row, factors): (&LinearFunction<T>, &Vec<T>)| {
+                let entry = row.constant + dot(factors, &from);
+                Ok(if settled(entry)?.is_eq() { T::zero() } else { entry })
+            };
+            rows.iter().zip(&factors).map(entry).collect()
+        };
+        let corners = corners.into_iter().map(velocity).collect::<Result<_, _>>()?;
+        Ok(Some(FamilyVelocities { dimension: coordinates.len(), corners }))
+    }
+
+    /// The outcome with this velocity, which is one of the combination's, `[c_t, xi_n]` by rows.
+    pub fn outcome_at(&self, velocity: &[T]) -> Result<SingularOutcome, Unsettled> {
+        let Self { problem, generators, .. } = self;
+        let equation =
+            |row: usize| extended(&generators.velocity_row(problem, row), velocity[row] - problem.free_row(row));
+        let space = solve(generators.count(), (0..velocity.len()).map(equation).collect())?.ok_or(Unsettled)?;
+        let pressing = self.inequalities(&space).into_iter().filter(|own| !own.inequality.is_strict());
+        let functions: Vec<LinearFunction<T>> = pressing.map(|own| own.function).collect();
+        let (inside, least) = widest(&functions, space.directions.len(), T::from_f64(UNBOUNDED))?;
+        let outcome = self.outcome(&space, &inside, least)?;
+        Ok(SingularOutcome { index: None, margin: None, ..outcome })
+    }
+
+    fn is_one_velocity(&self, solutions: &Solutions<T>) -> Result<bool, Unsettled> {
+        for row in 0..2 * self.modes.len() {
+            if !self.velocity(solutions, row).is_constant()? {
+                return Ok(false);
+            }
         }
-        Ok(SingularCase::Family([self.end_outcome(&greatest)?, self.end_outcome(&least)?]))
+        Ok(true)
     }
 
     fn velocity(&self, solutions: &Solutions<T>, row: usize) -> LinearFunction<T> {
@@ -155,7 +227,7 @@ impl<T: Ordered> Equations<'_, T> {
         all
     }
 
-    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Constraint<T>], y: &[T]) -> SingularCase {
+    fn rejected(&self, solutions: &Solutions<T>, inequalities: &[Constraint<T>], y: &[T]) -> Rejection {
         let values = inequalities.iter().map(|inequality| (inequality, inequality.function.at(y).to_f64()));
         // The linear program makes several equally bad; of one contact's the cone is named.
         let order = |own: &Constraint<T>| (own.contact, own.inequality != Inequality::FrictionCone);
@@ -164,109 +236,36 @@ impl<T: Ordered> Equations<'_, T> {
             contact: worst.contact,
             inequality: worst.inequality,
         });
-        SingularCase::Rejected(Rejection {
+        let at = Solutions { origin: solutions.at(y), directions: Vec::new() };
+        Rejection {
             margin: worst.map(|(_, value)| value),
-            motion: Some(self.motion(solutions, y, self.modes)),
+            motion: Some(self.motion(&at)),
             ..Rejection::of(self.modes, because)
-        })
+        }
     }
 
-    /// Whether some point without a negative inequality has every strict one above zero.
-    fn has_own_velocity(&self, inequalities: &[Constraint<T>], inside: &[T]) -> Result<bool, Unsettled> {
-        // Unknowns y and s, s at most every strict inequality and at most 1: can it be positive?
-        let shifted = |own: &Constraint<T>| {
-            let strictly = if own.inequality.is_strict() { -T::one() } else { T::zero() };
-            own.function.extended(own.function.at(inside), strictly)
-        };
-        let still = vec![T::zero(); inside.len()];
-        let top = LinearFunction { constant: T::one(), coefficients: extended(&still, -T::one()) };
-        let rows: Vec<LinearFunction<T>> = inequalities.iter().map(shifted).chain([top]).collect();
-        let best = maximize(&rows, &extended(&still, T::one()))?.ok_or(Unsettled)?;
-        best.last().map_or(Ok(false), |&rise| Ok(settled(rise)?.is_gt()))
-    }
-
-    /// Whether the only velocity of `space` has these entries.
-    fn has_velocity(&self, space: &Solutions<T>, entry: impl Fn(usize) -> T) -> Result<bool, Unsettled> {
+    /// Whether the only velocity of `space` is that without impulses.
+    fn is_free(&self, space: &Solutions<T>) -> Result<bool, Unsettled> {
         for row in 0..2 * self.modes.len() {
-            if settled(self.velocity(space, row).constant - entry(row))?.is_ne() {
+            if settled(self.velocity(space, row).constant - self.problem.free_row(row))?.is_ne() {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// The end of a family at which its velocities, in the order of the rows, are greatest (`sign` 1) or least (-1):
-    /// its impulses, one of which no inequality forbids as the origin.
-    fn end(&self, solutions: &Solutions<T>, inside: &[T], sign: T) -> Result<Solutions<T>, Unsettled> {
-        let mut space = solutions.clone();
-        space.origin = solutions.at(inside);
-        for row in 0..2 * self.modes.len() {
-            let velocity = self.velocity(&space, row);
-            if velocity.is_constant()? {
-                continue;
-            }
-            let functions: Vec<LinearFunction<T>> =
-                self.inequalities(&space).into_iter().map(|each| each.function).collect();
-            let toward: Vec<T> = velocity.coefficients.iter().map(|&entry| sign * entry).collect();
-            // Energy bounds every velocity.
-            let best = maximize(&functions, &toward)?.ok_or(Unsettled)?;
-            let point = space.at(&best);
-            let rest = LinearFunction { constant: velocity.constant - velocity.at(&best), ..velocity };
-            space = space.where_zero(&rest)?.ok_or(Unsettled)?;
-            space.origin = point;
-        }
-        Ok(space)
-    }
-
-    fn end_outcome(&self, space: &Solutions<T>) -> Result<SingularOutcome, Unsettled> {
-        let modes = self.modes_of(space)?;
-        let y = vec![T::zero(); space.directions.len()];
-        let mut outcome = self.outcome(space, modes, &y, T::zero())?;
-        (outcome.index, outcome.margin) = (None, None);
-        Ok(outcome)
-    }
-
-    /// The strict modes of the only velocity of `space`.
-    fn modes_of(&self, space: &Solutions<T>) -> Result<Vec<Mode>, Unsettled> {
-        let mut modes = self.modes.to_vec();
-        for (contact, mode) in modes.iter_mut().enumerate() {
-            let closed = *mode != Mode::Separate || settled(self.velocity(space, 2 * contact + 1).constant)?.is_eq();
-            if closed && *mode != Mode::Stick {
-                *mode = Mode::closed(settled(self.velocity(space, 2 * contact).constant)?);
-            }
-        }
-        Ok(modes)
-    }
-
     /// The only velocity of `space`, with its impulses; at `inside` the smallest inequality is `least`, not negative.
-    fn outcome(
-        &self,
-        space: &Solutions<T>,
-        modes: Vec<Mode>,
-        inside: &[T],
-        least: T,
-    ) -> Result<SingularOutcome, Unsettled> {
+    fn outcome(&self, space: &Solutions<T>, inside: &[T], least: T) -> Result<SingularOutcome, Unsettled> {
         let inequalities = self.inequalities(space);
         let dimension = space.directions.len();
         // Velocities are settled; only impulses still depend on y.
         let pressing: Vec<&Constraint<T>> = inequalities.iter().filter(|own| !own.inequality.is_strict()).collect();
-        let shifted: Vec<LinearFunction<T>> = pressing
-            .iter()
-            .map(|each| LinearFunction {
-                constant: each.function.at(inside),
-                coefficients: each.function.coefficients.clone(),
-            })
-            .collect();
+        let shifted: Vec<LinearFunction<T>> = pressing.iter().map(|own| own.function.seen_from(inside)).collect();
         let mut at_zero: Vec<(usize, Inequality)> = Vec::new();
         if settled(least)?.is_eq() {
-            for (own, function) in pressing.iter().zip(&shifted) {
-                let vanishes = settled(function.constant)?.is_eq()
-                    && match maximize(&shifted, &function.coefficients)? {
-                        Some(best) => settled(function.at(&best))?.is_eq(),
-                        None => false,
-                    };
-                let entry = (own.contact, own.inequality);
-                if vanishes && !at_zero.contains(&entry) {
+            for place in vanishing(&shifted)?.0 {
+                let entry = (pressing[place].contact, pressing[place].inequality);
+                if !at_zero.contains(&entry) {
                     at_zero.push(entry);
                 }
             }
@@ -275,10 +274,10 @@ impl<T: Ordered> Equations<'_, T> {
         let mut ranges = Vec::new();
         let mut unique = true;
         if dimension > 0 {
-            for row in 0..2 * modes.len() {
+            for row in 0..2 * self.modes.len() {
                 let entry = space.affine(T::zero(), &self.generators.impulse_row::<T>(row));
                 let here = entry.at(inside);
-                let mut bound = |sign: T| -> Result<Option<f64>, Unsettled> {
+                let mut bound = |sign: T| -> Result<Option<T>, Unsettled> {
                     let toward: Vec<T> = entry.coefficients.iter().map(|&each| sign * each).collect();
                     let Some(best) = maximize(&shifted, &toward)? else {
                         unique = false;
@@ -286,15 +285,14 @@ impl<T: Ordered> Equations<'_, T> {
                     };
                     let change = entry.change(&best);
                     unique &= settled(change)?.is_eq();
-                    Ok(Some((here + change).to_f64()))
+                    Ok(Some(here + change))
                 };
-                let least = bound(-T::one())?;
-                ranges.push([least, bound(T::one())?]);
+                ranges.push([bound(-T::one())?, bound(T::one())?]);
             }
         }
         let lambda = if unique {
             at
-        } else if self.has_velocity(space, |row| self.problem.free_row(row))? {
+        } else if self.is_free(space)? {
             vec![T::zero(); at.len()]
         } else {
             let directions: Vec<Vec<T>> =
@@ -304,38 +302,60 @@ impl<T: Ordered> Equations<'_, T> {
         };
         // A margin at the cap is that of impulses without bound.
         let bounded = settled(least - T::from_f64(UNBOUNDED))?.is_lt();
-        let margin = (!inequalities.is_empty() && bounded).then(|| least.to_f64());
-        let (motion, error) = self.motion_of(space, &lambda, &modes);
+        let margin = (!inequalities.is_empty() && bounded).then_some(least);
+        let [impulse, velocity] = self.solution(space, &lambda);
+        let mut numbers = Numbers::of((self.problem, self.scale), self.modes, &impulse, &velocity);
+        numbers.are_sharp &= margin.is_none_or(|margin| is_known(margin, 1.0));
+        if !unique {
+            let entry = |row: usize| {
+                let entry = space.affine(T::zero(), &self.generators.impulse_row::<T>(row));
+                LinearFunction { constant: entry.at(inside), ..entry }
+            };
+            let impulses: Vec<Pair<LinearFunction<T>>> =
+                (0..self.modes.len()).map(|contact| [entry(2 * contact), entry(2 * contact + 1)]).collect();
+            numbers.take_friction(
+                &friction_needed(self.modes, self.problem.laws(), &impulses, &shifted)?,
+                self.problem.laws(),
+            );
+        }
+        let range = |(&ends, &own): (&[Option<T>; 2], &T)| {
+            numbers.are_sharp &= is_known_range(ends, own);
+            ends.map(|end| end.map(T::to_f64))
+        };
+        let ranges: Vec<Range> = ranges.iter().zip(impulse.as_flattened()).map(range).collect();
         Ok(SingularOutcome {
-            motion,
-            error,
-            margin,
+            numbers,
+            margin: margin.map(T::to_f64),
             range: (!unique).then(|| ranges.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()),
-            index: if at_zero.is_empty() { index(self.problem, &modes)? } else { None },
+            index: if at_zero.is_empty() { index(self.problem, self.modes)? } else { None },
             at_zero,
-            modes,
+            modes: self.modes.to_vec(),
         })
     }
 
-    fn motion(&self, solutions: &Solutions<T>, y: &[T], modes: &[Mode]) -> Motion {
-        let at = Solutions { origin: solutions.at(y), directions: Vec::new() };
-        self.motion_of(&at, &at.origin, modes).0
+    /// The velocity and the impulse of the origin of `space`.
+    fn motion(&self, space: &Solutions<T>) -> Motion {
+        let [impulse, velocity] = self.solution(space, &space.origin);
+        Motion::nearest(self.problem, self.modes, &impulse, &velocity)
     }
 
-    /// The velocity of `space` at its origin, with the impulse that `lambda` gives, and how far they may be off.
-    fn motion_of(&self, space: &Solutions<T>, lambda: &[T], modes: &[Mode]) -> (Motion, f64) {
-        let rows: Vec<T> = (0..2 * modes.len()).map(|row| self.velocity(space, row).constant).collect();
-        let impulse = self.generators.impulse(lambda);
-        let error = self.scale.error(rows.iter().copied(), impulse.iter().copied());
-        let mut velocity: Vec<f64> = rows.iter().map(|row| row.to_f64()).collect();
-        for row in zero_rows(modes) {
-            velocity[row] = 0.0;
+    /// The impulse that `lambda` gives, and the velocity of `space` at its origin, `[c_t, xi_n]` per contact.
+    fn solution(&self, space: &Solutions<T>, lambda: &[T]) -> [Vec<Pair<T>>; 2] {
+        let mut velocity: Vec<T> = (0..2 * self.modes.len()).map(|row| self.velocity(space, row).constant).collect();
+        for row in zero_rows(self.modes) {
+            velocity[row] = T::zero();
         }
-        let bounced = velocity.chunks_exact(2).enumerate();
-        let motion = Motion {
-            impulse: impulse.chunks_exact(2).map(|pair| [pair[0].to_f64(), pair[1].to_f64()]).collect(),
-            velocity_after: bounced.map(|(i, pair)| [pair[0], pair[1] - self.rounded.bounce(i)]).collect(),
-        };
-        (motion, error)
+        let pairs = |rows: Vec<T>| rows.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        [pairs(self.generators.impulse(lambda)), pairs(velocity)]
     }
+}
+
+/// The strict modes of a velocity, `[c_t, xi_n]` by rows.
+pub fn modes_of<T: Ordered>(velocity: &[T]) -> Result<Vec<Mode>, Unsettled> {
+    let mode = |pair: &[T]| match settled(pair[1])? {
+        Ordering::Greater => Ok(Mode::Separate),
+        Ordering::Equal => Ok(Mode::closed(settled(pair[0])?)),
+        Ordering::Less => Err(Unsettled),
+    };
+    velocity.chunks_exact(2).map(mode).collect()
 }

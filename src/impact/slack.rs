@@ -3,8 +3,7 @@
 use super::enumerate::Leaf;
 use super::problem::{ContactProblem, Errors};
 use crate::law::{Condition, Law, Mode};
-use crate::planar::Pair;
-use crate::scalar::{Ordered, Real};
+use crate::scalar::Real;
 
 /// One inequality of a combination and its value.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +36,10 @@ pub struct Scale {
     pub mobility: Vec<f64>,
     /// What the scaled velocities of the f64 problem may be off by.
     pub noise: f64,
+    /// What they are likely to be off by.
+    pub likely_noise: f64,
+    /// What the scaled entries of G are likely to be off by.
+    pub likely_rounding: f64,
 }
 
 impl Scale {
@@ -66,9 +69,12 @@ impl Scale {
         }
         let noise = errors.velocity.unwrap_or_default().iter().flatten().zip(&self.mobility);
         self.noise = noise.map(|(noise, mobility)| noise / (mobility * self.speed)).fold(0.0, f64::max);
+        let [of_delassus, of_velocity] = errors.likely;
+        (self.likely_noise, self.likely_rounding) = (of_velocity * self.noise, of_delassus * errors.delassus);
         if (0..problem.contacts()).any(|contact| problem.bounce(contact) != 0.0) {
             // The bounce and its sum with c_n, each at most S sqrt(G_nn), are rounded.
             self.noise += 4.0 * f64::EPSILON;
+            self.likely_noise += 4.0 * f64::EPSILON;
         }
     }
 
@@ -82,25 +88,5 @@ impl Scale {
     #[inline]
     pub fn factor(&self, contact: usize, condition: &Condition) -> f64 {
         condition.scale([self.mobility[2 * contact], self.mobility[2 * contact + 1]])
-    }
-
-    /// The largest error of velocities and impulses, by row, in the scale, relative to the largest of them beyond one.
-    pub fn error<T: Ordered>(&self, velocity: impl Iterator<Item = T>, impulse: impl Iterator<Item = T>) -> f64 {
-        let velocity = velocity.zip(&self.mobility).map(|(number, mobility)| (number, 1.0 / mobility));
-        let impulse = impulse.zip(&self.mobility).map(|(number, mobility)| (number, *mobility));
-        let (mut size, mut error) = (1.0_f64, 0.0_f64);
-        for (number, factor) in velocity.chain(impulse) {
-            size = size.max((number.to_f64() / self.speed * factor).abs());
-            let off = number.error() / self.speed * factor;
-            // `f64::max` would drop a NaN.
-            error = if off.is_nan() { f64::INFINITY } else { error.max(off) };
-        }
-        error / size
-    }
-
-    /// Whether two lists of contact velocities are the same up to rounding.
-    pub fn same_velocity(&self, a: &[Pair<f64>], b: &[Pair<f64>]) -> bool {
-        let differences = a.iter().flatten().zip(b.iter().flatten()).zip(&self.mobility);
-        differences.map(|((a, b), mobility)| (a - b).abs() / (mobility * self.speed)).all(|far| far < 1e-8)
     }
 }

@@ -27,6 +27,14 @@ impl Friction {
     pub fn is_zero(self) -> bool {
         self == Friction::ZERO
     }
+
+    /// The same friction with its coefficient in another number.
+    pub(crate) fn map<T>(self, number: impl FnOnce(f64) -> T) -> Friction<T> {
+        match self {
+            Self::Finite(mu) => Friction::Finite(number(mu)),
+            Self::Infinite => Friction::Infinite,
+        }
+    }
 }
 
 impl From<f64> for Friction {

@@ -131,10 +131,10 @@ impl<T: Real> Law<T> {
     }
 }
 
-impl From<Friction> for Law {
-    fn from(friction: Friction) -> Self {
+impl<T: Real + PartialEq> From<Friction<T>> for Law<T> {
+    fn from(friction: Friction<T>) -> Self {
         match friction {
-            _ if friction.is_zero() => Self::Frictionless,
+            Friction::Finite(mu) if mu == T::zero() => Self::Frictionless,
             Friction::Finite(mu) => Self::Coulomb(mu),
             Friction::Infinite => Self::Unbounded,
         }

@@ -10,9 +10,9 @@
 
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
-    Closed, Constraints, ContactPoint, Loop, Workspace, add_articulated_impulse, add_impulse, articulated_delassus,
-    articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize, kinematics, loop_impulse,
-    mass_matrix, orthogonalize, point_velocity,
+    Closed, Constraints, ContactPoint, Loop, PointImpulse, Workspace, add_articulated_impulse, add_impulse,
+    articulated_delassus, articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize,
+    kinematics, loop_impulse, mass_matrix, orthogonalize, point_velocity,
 };
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
@@ -37,11 +37,13 @@ pub struct Assembly<T = f64> {
     pub elimination: Elimination,
     pub workspace: Workspace<T>,
     pub points: Vec<ContactPoint<T>>,
-    /// Coordinates of held joints that have a column all the same.
+    /// Coordinates of braked joints that have a column all the same.
     pub kept: Vec<usize>,
     pub loops: Vec<Loop<T>>,
     /// The rows of the loops that count, in the order in which every number eliminates them.
     pub rows: Vec<usize>,
+    /// Whether those are the rows that hold something, whatever digits the pose does not have.
+    pub is_rank_certain: bool,
     column: Vec<T>,
     motions: Vec<(T, Vector<T>)>,
 }
@@ -66,7 +68,8 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    fn velocity_of(&self, point: &ContactPoint<T>, velocity: &[T]) -> Vector<T> {
+    /// The velocity of a point \[m/s\].
+    pub fn velocity_of(&self, point: &ContactPoint<T>, velocity: &[T]) -> Vector<T> {
         point_velocity(&self.plan, point.body, point.arm(&self.workspace), velocity, &self.workspace)
     }
 
@@ -92,7 +95,7 @@ impl<T: Real> Assembly<T> {
         if self.is_constrained() {
             let constraints = Constraints { kept: &self.kept, rows: &self.rows };
             let foot = foot.filter(|_| !self.loops.is_empty());
-            orthogonalize(&self.plan, &self.loops, (constraints, foot), &mut self.workspace);
+            orthogonalize(&self.plan, &self.loops, constraints, foot, &mut self.workspace);
         }
     }
 
@@ -129,14 +132,13 @@ impl<T: Real> Assembly<T> {
         }
     }
 
-    /// Adds to `velocity` what an impulse at a point does to it, by a way that is prepared; the point is at an arm from
-    /// the origin of its body, in the world's axes.
-    pub fn push(&mut self, by: Elimination, at: (usize, Vector<T>), impulse: Vector<T>, velocity: &mut [T]) {
+    /// Adds to `velocity` what an impulse at a point does to it, by a way that is prepared.
+    pub fn push(&mut self, by: Elimination, impulse: PointImpulse<T>, velocity: &mut [T]) {
         let Self { plan, workspace, column, motions, .. } = self;
         match by {
-            Elimination::Ltl => add_impulse(plan, workspace, at, impulse, column, velocity),
+            Elimination::Ltl => add_impulse(plan, workspace, impulse, column, velocity),
             Elimination::ArticulatedBodies => {
-                add_articulated_impulse(plan, workspace, at, impulse, (column, motions), velocity);
+                add_articulated_impulse(plan, workspace, impulse, column, motions, velocity);
             }
         }
     }
@@ -147,7 +149,8 @@ impl<T: Real> Assembly<T> {
         for applied in &scene.impulses {
             let link = &robot.links[applied.link];
             let arm = self.workspace.rotation[link.body].apply(link.point(applied.offset));
-            self.push(self.elimination, (link.body, arm), applied.vector.map(T::from_f64), &mut change);
+            let impulse = PointImpulse { body: link.body, arm, vector: applied.vector.map(T::from_f64) };
+            self.push(self.elimination, impulse, &mut change);
         }
         change
     }

@@ -28,6 +28,8 @@ pub struct ExactState<'a> {
     pub resting: &'a [bool],
     /// The joints that keep their rates although they have columns, and the rows of the loops that count.
     pub constraints: Constraints<'a>,
+    /// Whether the rows that count are those of the mechanism, and not of its pose's rounding.
+    pub is_rank_certain: bool,
     pub laws: &'a [Law],
     pub restitution: &'a [f64],
     pub errors: Errors<'a>,
@@ -51,8 +53,8 @@ pub struct Contacts<T> {
 
 impl ExactState<'_> {
     pub fn plan<T: Real>(&self) -> Plan<T> {
-        let held = if self.constraints.kept.is_empty() { &self.scene.held[..] } else { &[] };
-        Plan::new(self.robot, held, &self.scene.rotor_inertia)
+        let braked = if self.constraints.kept.is_empty() { &self.scene.braked[..] } else { &[] };
+        Plan::new(self.robot, braked, &self.scene.rotor_inertia)
     }
 
     /// The robot with its constraints, to be taken through the steps of the assembly.
@@ -134,6 +136,10 @@ impl Source for ExactState<'_> {
 
     fn errors(&self) -> Errors<'_> {
         self.errors
+    }
+
+    fn is_exact(&self) -> bool {
+        self.is_rank_certain
     }
 
     fn contact_name(&self, contact: usize) -> String {

@@ -3,10 +3,14 @@
 use super::Pipeline;
 use super::assembly::Assembly;
 use crate::contact::Contact;
-use crate::dynamics::{ContactPoint, Loop, independent_rows, kinetic_energy, point_velocity, spent_energy};
+use crate::dynamics::plan::Plan;
+use crate::dynamics::{
+    Arm, Constraints, ContactPoint, Loop, Reach, follow_exactly, independent_rows, kinetic_energy, point_velocity,
+    spent_energy,
+};
 use crate::error::{Error, Reason, Result};
 use crate::robot::Robot;
-use crate::scalar::Real;
+use crate::scalar::{Ball, Certified, Real};
 use crate::state::NamedLoop;
 
 /// How far apart the points of a loop may lie, as part of the robot's size: recorded poses are rounded, and simulators
@@ -16,10 +20,14 @@ const OPEN: f64 = 1e-4;
 const OPENING: f64 = 1e-4;
 /// Below this part of the kinetic energy a motion that opens the loops is rounding, and not worth a word.
 const ROUNDING: f64 = 1e-20;
-/// A row of K is taken to follow from others if less than this part of its points' squared motions is left.
+/// A row of K is taken to follow from others if less than this part of its squared reach is left.
 const DEPENDENT: f64 = 1e-22;
 /// A pose that leaves a loop open gives directions only to this multiple of the gap.
 const PER_GAP: f64 = 16.0;
+/// Near a pose that leaves gaps up to g open is one that closes them, and its K has the same rank, if of each row more
+/// than this multiple of g over the loops' shortest arm is left as a part of its squared reach: next to a singular pose
+/// a gap g is as much as angles of sqrt(g). Source: the theorem of Newton and Kantorovich, whose constant is 2.
+const CERTAIN: f64 = 4.0;
 
 impl NamedLoop {
     /// The loop for the dynamics, in numbers of any kind.
@@ -31,6 +39,14 @@ impl NamedLoop {
         }
     }
 
+    /// Where the ends are, with their arms stretched.
+    fn arms(&self, robot: &Robot) -> [Arm; 2] {
+        [self.a, self.b].map(|end| {
+            let link = &robot.links[end.link];
+            Arm { body: link.body, length: link.stretch(end.offset) }
+        })
+    }
+
     /// As messages name it, with its number in the list.
     fn name(&self, index: usize, robot: &Robot) -> String {
         let [a, b] = [self.a, self.b].map(|end| &robot.links[end.link].name);
@@ -39,26 +55,51 @@ impl NamedLoop {
 }
 
 impl Pipeline<'_> {
-    /// Finds which rows of the loops count, and closes them in `velocity`; a `foot` that rests keeps resting. A loop
-    /// that the pose or the velocity leaves open is refused, with the gap.
+    /// Finds which rows of the loops count at `position`, and closes them in `velocity`; a `foot` that rests keeps
+    /// resting. A loop that the pose or the velocity leaves open is refused, with the gap.
     pub(super) fn close_loops(
         &mut self,
         named: &[NamedLoop],
+        position: &[f64],
         foot: Option<&Contact>,
         velocity: &mut [f64],
         notes: &mut Vec<String>,
     ) -> Result<()> {
         self.assembly.loops.clear();
         self.assembly.rows.clear();
+        self.assembly.is_rank_certain = true;
         if named.is_empty() {
             self.assembly.constrain(None);
             return Ok(());
         }
         let robot = self.robot;
         self.assembly.loops.extend(named.iter().map(|own| own.points(robot)));
-        let tolerance = self.refuse_gaps(named)?;
+        let gap = self.refuse_gaps(named)?;
+        self.bounds.stretch(&self.assembly.plan, &self.assembly.configuration, std::iter::empty());
+        let reaches: Vec<[Reach; 2]> = named.iter().map(|own| self.reaches(own.arms(robot))).collect();
+        let known = PER_GAP * gap / self.feet.size();
+        let tolerance = if gap > 0.0 { DEPENDENT.max(known * known) } else { DEPENDENT };
         let Assembly { plan, loops, kept, workspace, .. } = &self.assembly;
-        self.assembly.rows = independent_rows(plan, loops, kept, tolerance, workspace);
+        let rows = independent_rows(plan, loops, kept, &reaches, tolerance, workspace);
+        self.assembly.rows = rows.iter().map(|&(row, _)| row).collect();
+        let [shortest, longest] = [
+            reaches.as_flattened().iter().fold(f64::INFINITY, |least, reach| least.min(reach.shortest)),
+            reaches.as_flattened().iter().fold(0.0, |most: f64, reach| most.max(reach.longest)),
+        ];
+        let doubtful = CERTAIN * (gap + f64::EPSILON * longest) / shortest;
+        let all_count = rows.len() == 2 * named.len();
+        if rows.iter().any(|&(_, share)| share <= doubtful)
+            || !(all_count || self.others_follow_exactly(named, position))
+        {
+            self.assembly.is_rank_certain = false;
+            notes.push(format!(
+                "how much the loops hold depends on digits that the pose does not have (gap {gap:.1e} m): they are taken to \
+                 hold {} of {} directions, and nothing is proven; a pose that closes them to more digits, or one \
+                 farther from a singular pose, decides it",
+                rows.len(),
+                2 * named.len()
+            ));
+        }
         // What follows from others is left out.
         for (index, own) in named.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
             let left = [(2 * index, "x"), (2 * index + 1, "z")];
@@ -72,6 +113,21 @@ impl Pipeline<'_> {
         }
         notes.extend(self.close_velocity(named, foot.map(Contact::point_of), velocity)?);
         Ok(())
+    }
+
+    fn reaches(&self, [a, b]: [Arm; 2]) -> [Reach; 2] {
+        [(a, b), (b, a)].map(|(end, other)| self.bounds.reach(&self.assembly.plan, end, other.body))
+    }
+
+    /// Whether the loops are exactly closed, and the rows left out follow exactly from those that count.
+    fn others_follow_exactly(&self, named: &[NamedLoop], position: &[f64]) -> bool {
+        let Assembly { kept, rows, .. } = &self.assembly;
+        let braked = if kept.is_empty() { &self.braked[..] } else { &[] };
+        let mut exact: Assembly<Certified<Ball>> = Assembly::new(Plan::new(self.robot, braked, &self.rotor_inertia));
+        exact.configuration.set(&exact.plan, position);
+        exact.place();
+        let loops: Vec<_> = named.iter().map(|own| own.points(self.robot)).collect();
+        follow_exactly(&exact.plan, &loops, Constraints { kept, rows }, &exact.workspace)
     }
 
     /// Whether both rows of a loop count.
@@ -107,9 +163,9 @@ impl Pipeline<'_> {
         }
         // What was left out must hold all the same.
         for (index, own) in loops.iter().enumerate().filter(|(index, _)| !self.is_whole(*index)) {
-            let [a, b] = own.velocities(plan, velocity, workspace);
-            let left = (a - b).length();
-            if left * left > OPENING * (a.dot(a) + b.dot(b)) {
+            let left = own.opening(plan, velocity, workspace).length();
+            let [a, b] = named[index].arms(robot).map(|end| self.bounds.speed(plan, end, velocity));
+            if left * left > OPENING * (a * a + b * b) {
                 return Err(moves_apart(&named[index], index, left, robot));
             }
         }
@@ -122,7 +178,7 @@ impl Pipeline<'_> {
         }))
     }
 
-    /// Refuses a loop whose points are apart; gives how large a row must be to count.
+    /// Refuses a loop whose points are apart; gives the widest gap \[m\].
     fn refuse_gaps(&self, named: &[NamedLoop]) -> Result<f64> {
         let size = self.feet.size();
         let mut widest = 0.0_f64;
@@ -137,8 +193,7 @@ impl Pipeline<'_> {
             }
             widest = widest.max(gap);
         }
-        let known = PER_GAP * widest / size;
-        Ok(if widest > 0.0 { DEPENDENT.max(known * known) } else { DEPENDENT })
+        Ok(widest)
     }
 }
 

@@ -7,15 +7,16 @@
 pub(crate) mod assembly;
 pub(crate) mod exact;
 mod loops;
+mod resting;
 mod prepared;
 pub mod robust;
 
 use self::assembly::{Assembly, Elimination};
 pub(crate) use self::prepared::Prepared;
-pub use self::prepared::Unsolved;
-use crate::contact::{Contact, Feet, Placement};
+pub use self::prepared::{NearestFoot, Unsolved};
+use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{ContactPoint, RoundingBounds, articulated_inertias};
+use crate::dynamics::{ContactPoint, PointImpulse, RoundingBounds, articulated_inertias};
 use crate::error::{Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, too_many_contacts,
@@ -33,8 +34,13 @@ pub struct Options {
     /// How far from the ground a foot may be and still touch \[m\]; by default [`CONTACT_TOLERANCE`] times the robot's
     /// size.
     pub contact_tolerance: Option<f64>,
-    /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 snaps nothing.
-    pub resting_speed: f64,
+    /// Contacts slower than this are taken as exactly at rest \[m/s\]; 0 takes every velocity at its word. By default it
+    /// is, of each contact, the bound of the rounding in J v and, where rates and angles have 6 to 15 significant digits
+    /// and cancel to a ten-thousandth, what half a unit in their last places makes of it; a state with an uncertainty is
+    /// then taken at its word.
+    pub resting_speed: Option<f64>,
+    /// Refuse states with joints outside the limits of the robot's file, which otherwise are noted.
+    pub strict_limits: bool,
     /// Feet in addition to the robot's shapes; they are detected by their height, too.
     pub feet: Vec<NamedContact>,
     /// Up to how many contacts to list every rejected combination, and beta, gamma and the region of each contact.
@@ -57,15 +63,19 @@ pub struct Impact {
     pub placement: Placement,
     /// The closed contacts, in the order of all lists per contact.
     pub contacts: Vec<Contact>,
+    /// The lowest foot that does not touch; `None` if every foot touches.
+    pub nearest: Option<NearestFoot>,
     /// Contact velocities before the impact, [tangential, normal] \[m/s\].
     pub velocity_before: Vec<Pair<f64>>,
     /// Kinetic energy before the impact \[J\].
     pub kinetic_energy: f64,
     /// The contact problem, in f64.
     pub problem: ContactProblem,
+    /// Which contacts were taken as exactly at rest, because they are slow.
+    pub resting: Vec<bool>,
     /// Which contact is that of the stance's foot; `None` without a stance or if its foot does not touch.
     pub stance: Option<usize>,
-    /// Every outcome and the verdict; `None` of more contacts than are enumerated (see [`Impact::analysed`]).
+    /// Every outcome and the verdict; `None` of more contacts than are enumerated (see [`Impact::analyzed`]).
     pub analysis: Option<Analysis>,
     /// Whether the outcomes are the same on the box of the state's uncertainty; `None` if it has none.
     pub holds: Option<robust::Robustness>,
@@ -82,21 +92,21 @@ impl Impact {
     ///
     /// # Errors
     /// [`TooManyContacts`](crate::Reason::TooManyContacts) for more contacts than are enumerated.
-    pub fn analysed(&self) -> Result<&Analysis> {
+    pub fn analyzed(&self) -> Result<&Analysis> {
         self.analysis.as_ref().map_or_else(|| Err(too_many_contacts(self.contacts.len())), Ok)
     }
 
-    /// As [`Impact::analysed`], without the rest.
+    /// As [`Impact::analyzed`], without the rest.
     ///
     /// # Errors
-    /// As [`Impact::analysed`].
+    /// As [`Impact::analyzed`].
     pub fn into_analysis(self) -> Result<Analysis> {
         self.analysis.ok_or_else(|| too_many_contacts(self.contacts.len()))
     }
 }
 
 /// Something that this scene does not need; what the file does not is in [`Robot`].
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum LeftOut {
     /// The column of a joint that keeps its rate (an index into [`Robot::joints`](crate::Robot)).
     Column(usize),
@@ -104,6 +114,8 @@ pub enum LeftOut {
     OutOfReach(usize),
     /// This many collision shapes, because contacts are named by hand.
     NotAsked(usize),
+    /// Contact points of one body between others, which act for them.
+    Merged(Merged),
     /// The tangential impulses of these contacts, which have no friction.
     Tangential(Vec<usize>),
     /// The friction cones of these contacts, whose friction is infinite.
@@ -114,7 +126,6 @@ pub enum LeftOut {
 struct Answer {
     impact: Impact,
     foot: Option<Contact>,
-    resting: Vec<bool>,
     /// The rows of the loops that count.
     rows: Vec<usize>,
 }
@@ -122,7 +133,8 @@ struct Answer {
 /// The matrices behind an answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrices {
-    /// Names of the moving coordinates in the order of q: rows and columns of M, columns of J (held joints have none).
+    /// Names of the moving coordinates in the order of q: rows and columns of M, columns of J (braked joints have
+    /// none).
     pub coordinates: Vec<String>,
     /// M, one row per coordinate.
     pub mass_matrix: Vec<Vec<f64>>,
@@ -143,7 +155,7 @@ pub struct Matrices {
 /// let text = r#"{"position": {"base": {"pitch": -1.4}, "joints": {"hip": -2.8}}, "velocity": {"base": {"pitch": -1}},
 ///                "stance": "left_leg", "friction": "infinite"}"#;
 /// let impact = pipeline.impact(&State::from_json(text, &robot, &Defaults::default())?)?;
-/// assert_eq!(impact.analysed()?.verdict, Verdict::Ambiguous);
+/// assert_eq!(impact.analyzed()?.verdict, Verdict::Ambiguous);
 /// assert_eq!((&*impact.contacts[0].name, impact.contacts.len()), ("left_leg", 2));
 /// # Ok::<(), heelstrike::Error>(())
 /// ```
@@ -155,8 +167,8 @@ pub struct Pipeline<'r> {
     /// Names of the base's coordinates and of the joints.
     names: [Arc<[String]>; 2],
     assembly: Assembly,
-    /// The held joints and rotors for which the last plan was compiled.
-    held: Vec<usize>,
+    /// The braked joints and rotors for which the last plan was compiled.
+    braked: Vec<usize>,
     rotor_inertia: Vec<f64>,
     bounds: RoundingBounds,
     scratch: Scratch,
@@ -166,6 +178,8 @@ impl<'r> Pipeline<'r> {
     /// A pipeline for states of `robot`.
     pub fn new(robot: &'r Robot, options: Options) -> Self {
         let feet = Feet::new(robot, &options.feet);
+        // Who gives a tolerance means it.
+        let feet = if options.contact_tolerance.is_none() { feet.uneven() } else { feet };
         let mut names = robot.coordinates().map(str::to_owned);
         Self {
             robot,
@@ -173,7 +187,7 @@ impl<'r> Pipeline<'r> {
             options,
             names: [names.by_ref().take(robot.base_dofs()).collect(), names.collect()],
             assembly: Assembly::new(Plan::new(robot, &[], &[])),
-            held: Vec::new(),
+            braked: Vec::new(),
             rotor_inertia: Vec::new(),
             bounds: RoundingBounds::default(),
             scratch: Scratch::default(),
@@ -184,9 +198,9 @@ impl<'r> Pipeline<'r> {
     ///
     /// # Errors
     /// The [`Reason`](crate::Reason)s are `Singular` for a coordinate without inertia, `Penetration` for a foot deep in
-    /// the ground, `Inconsistent` for a loop that the pose or the velocity leaves open, `Missing` for a contact without
-    /// friction or a stance without a foot, `MatricesTooLarge` for hundreds of contacts, and `NotFinite` for numbers
-    /// whose products leave the range of f64.
+    /// the ground, `Inconsistent` for a joint outside strict limits and a loop that the pose or the velocity leaves
+    /// open, `Missing` for a contact without friction or a stance without a foot, `MatricesTooLarge` for hundreds of
+    /// contacts, and `NotFinite` for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
         let mut answer = self.answer(state, None)?;
         if let Some(uncertainty) = &state.uncertainty {
@@ -213,14 +227,15 @@ impl<'r> Pipeline<'r> {
         for &entry in &free {
             finite(entry, || "a velocity after the applied impulses".into())?;
         }
-        let errors = Errors { delassus: self.bounds.delassus, velocity: Some(&self.bounds.velocity) };
+        let RoundingBounds { delassus, velocity: of_velocity, likely, .. } = &self.bounds;
+        let errors = Errors { delassus: *delassus, velocity: Some(of_velocity), likely: *likely };
         let source = prepared.exact(self.robot, state, &self.assembly, errors);
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
         let Options { no_proof, reductions, .. } = self.options;
         let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
         let asked = AnalysisOptions { rejections, prove: !no_proof, reductions };
         // More contacts than are enumerated are all that it refuses.
-        let mut analysis = self.scratch.analyse(problem, &source, asked).ok();
+        let mut analysis = self.scratch.analyze(problem, &source, asked).ok();
         let outcomes = analysis.as_mut().map_or(&mut [][..], |analysis| &mut analysis.outcomes);
         if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
@@ -228,22 +243,25 @@ impl<'r> Pipeline<'r> {
         for outcome in outcomes {
             self.set_velocity(outcome, velocity, applied, &free);
         }
+        let left_out = self.left_out(scene, &prepared);
         let mut notes = prepared.notes;
         notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
         let impact = Impact {
             velocity_before: prepared.problem.velocity_before().to_vec(),
-            left_out: self.left_out(scene, prepared.problem.laws(), prepared.out_of_reach),
+            left_out,
             matrices: self.options.matrices.then(|| self.matrices()),
             placement: prepared.placement,
             contacts: prepared.contacts,
+            nearest: prepared.nearest,
             kinetic_energy: prepared.kinetic_energy,
             problem: prepared.problem,
+            resting: prepared.resting,
             stance: prepared.stance,
             analysis,
             holds: None,
             notes,
         };
-        Ok(Answer { impact, foot: prepared.foot, resting: prepared.resting, rows: self.assembly.rows.clone() })
+        Ok(Answer { impact, foot: prepared.foot, rows: self.assembly.rows.clone() })
     }
 
     /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows
@@ -267,11 +285,11 @@ impl<'r> Pipeline<'r> {
         }
         check_length("velocity", velocity.len(), coordinates)?;
         self.compile(&Scene::default());
-        self.close_loops(&[], None, &mut [], &mut Vec::new())?;
+        self.close_loops(&[], &[], None, &mut [], &mut Vec::new())?;
         self.assembly.configuration.clone_from(configuration);
         self.assembly.place();
         self.assembly.factorize();
-        self.check_inertia(false)?;
+        self.check_inertia(&[])?;
         let point = |contact: &NamedContact| {
             let link = &self.robot.links[contact.link];
             let (center, ground) = (link.point(contact.offset), Rotation::identity());
@@ -309,17 +327,18 @@ impl<'r> Pipeline<'r> {
             let point = self.assembly.points[index];
             let axes = point.axes();
             let vector = axes[0] * tangential + axes[1] * normal;
-            let at = (point.body, point.arm(&self.assembly.workspace));
-            self.assembly.push(by, at, vector, &mut after);
+            let arm = point.arm(&self.assembly.workspace);
+            self.assembly.push(by, PointImpulse { body: point.body, arm, vector }, &mut after);
         }
         after
     }
 
-    /// Lists what a scene leaves out; `out_of_reach` is how many shapes are too far from the ground.
-    fn left_out(&self, scene: &Scene, laws: &[Law], out_of_reach: usize) -> Vec<LeftOut> {
+    /// Lists what a scene leaves out.
+    fn left_out(&self, scene: &Scene, prepared: &Prepared) -> Vec<LeftOut> {
+        let (laws, out_of_reach) = (prepared.problem.laws(), prepared.out_of_reach);
         let mut all = Vec::new();
         if self.options.reductions.held {
-            all.extend(scene.held.iter().map(|&joint| LeftOut::Column(joint)));
+            all.extend(scene.braked.iter().map(|&joint| LeftOut::Column(joint)));
         }
         let shapes = self.feet.iter().count();
         match scene.contacts {
@@ -327,6 +346,7 @@ impl<'r> Pipeline<'r> {
             None if out_of_reach > 0 => all.push(LeftOut::OutOfReach(out_of_reach)),
             _ => {}
         }
+        all.extend(prepared.merged.iter().cloned().map(LeftOut::Merged));
         let with = |wanted: Law| (0..laws.len()).filter(|&at| laws[at] == wanted).collect::<Vec<_>>();
         let [none, infinite] = [Friction::ZERO, Friction::Infinite].map(|friction| with(friction.into()));
         if self.options.reductions.frictionless && !none.is_empty() {

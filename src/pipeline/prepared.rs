@@ -8,18 +8,19 @@
 
 use super::assembly::Assembly;
 use super::exact::ExactState;
+use super::resting::Standing;
 use super::{CONTACT_TOLERANCE, Pipeline};
-use crate::contact::{Contact, Footing, Placement, Surface};
+use crate::contact::{Contact, Footing, Merged, Placement, Surface};
 use crate::dynamics::plan::Plan;
-use crate::dynamics::{Arm, Constraints, Workspace, kinetic_energy};
-use crate::error::{Error, Reason, Result, finite};
+use crate::dynamics::{Constraints, Workspace, kinetic_energy};
+use crate::error::{Error, Reason, Result, along_normal, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
-use crate::state::{Ground, Scene, State, check_length};
+use crate::state::{NamedLoop, Scene, State, check_length};
 
-/// A state's contact problem, not yet analysed.
+/// A state's contact problem, not yet analyzed.
 #[derive(Debug, Clone)]
 pub struct Unsolved {
     pub contacts: Vec<Contact>,
@@ -28,7 +29,18 @@ pub struct Unsolved {
     pub clearance: Vec<f64>,
 }
 
-/// A state that is ready to be analysed.
+/// A foot that does not touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearestFoot {
+    /// The URDF link that carries it (an index into [`Robot::links`]).
+    pub link: usize,
+    /// Height of its lowest point above the ground along the normal \[m\].
+    pub height: f64,
+    /// How that point moves before the impact, [tangential, normal] \[m/s\].
+    pub velocity: Pair<f64>,
+}
+
+/// A state that is ready to be analyzed.
 pub struct Prepared {
     pub placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
@@ -36,6 +48,9 @@ pub struct Prepared {
     /// The foot of the stance.
     pub foot: Option<Contact>,
     pub contacts: Vec<Contact>,
+    pub nearest: Option<NearestFoot>,
+    /// Contacts for which others act.
+    pub merged: Vec<Merged>,
     /// Shapes that were too far from the ground to be asked.
     pub out_of_reach: usize,
     /// The place of the stance's foot among the contacts.
@@ -48,6 +63,13 @@ pub struct Prepared {
     pub change: Vec<f64>,
     pub problem: ContactProblem,
     pub notes: Vec<String>,
+}
+
+/// What touches the ground.
+struct Detected {
+    contacts: Vec<Contact>,
+    merged: Vec<Merged>,
+    out_of_reach: usize,
 }
 
 impl Prepared {
@@ -69,6 +91,7 @@ impl Prepared {
             contacts: &self.contacts,
             resting: &self.resting,
             constraints: Constraints { kept: &assembly.kept, rows: &assembly.rows },
+            is_rank_certain: assembly.is_rank_certain,
             laws: self.problem.laws(),
             restitution: self.problem.restitution(),
             errors,
@@ -107,24 +130,33 @@ impl Pipeline<'_> {
         self.assembly.configuration.set(&self.assembly.plan, &state.position);
         self.assembly.place();
         self.assembly.factorize();
-        self.check_inertia(!scene.loops.is_empty())?;
+        self.check_inertia(&scene.loops)?;
 
         let mut notes = Vec::new();
+        self.check_limits(state, &mut notes)?;
         let surface = Surface::new(&scene.ground);
         let (base, mut velocity, foot) = self.stand(state, &surface)?;
-        self.close_loops(&scene.loops, foot.as_ref(), &mut velocity, &mut notes)?;
+        self.close_loops(&scene.loops, &state.position, foot.as_ref(), &mut velocity, &mut notes)?;
         let placement = Placement::new(&self.assembly.plan, &self.assembly.workspace, base);
-        let (contacts, out_of_reach) = self.contacts(scene, &self.footing(scene, &placement, &surface), &mut notes)?;
+        let footing = self.footing(scene, &placement, &surface);
+        let Detected { contacts, merged, out_of_reach } = self
+            .contacts(&footing, foot.as_ref(), &mut notes)
+            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity)))?;
+        let nearest = self.open_foot(&footing, &contacts, &velocity);
+        if scene.contacts.is_none() {
+            self.note_near_miss(&contacts, nearest, &mut notes);
+        }
         check_matrix_size(contacts.len())?;
         let stance = foot.as_ref().and_then(|foot| place_of(foot, &contacts));
         self.assembly.points.clear();
         self.assembly.points.extend(contacts.iter().map(Contact::point_of));
         self.assembly.contact_jacobian(&velocity, stance);
-        let resting = self.snap(&contacts, &mut notes);
+        let standing = Standing { foot: foot.as_ref(), place: stance };
+        self.bound_velocities(&contacts, &velocity, standing);
+        let resting = self.take_as_resting(state, &velocity, &contacts, standing, &mut notes);
         self.assembly.delassus();
         let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
-        self.bound(&contacts, &velocity, foot.as_ref(), |contact| resting[contact] || stance == Some(contact));
-        self.note_slow(&contacts, &mut notes);
+        self.bound_delassus();
         if !scene.impulses.is_empty() || (self.assembly.is_constrained() && !self.options.no_proof) {
             // They go through M^-1, whose rounding these bounds do not follow.
             self.bounds.delassus = f64::INFINITY;
@@ -140,6 +172,8 @@ impl Pipeline<'_> {
             velocity,
             foot,
             contacts,
+            nearest,
+            merged,
             out_of_reach,
             stance,
             resting,
@@ -160,23 +194,36 @@ impl Pipeline<'_> {
         check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)
     }
 
-    /// Compiles the plan, unless the last one was for the same held joints and rotors.
+    /// Notes joints outside their limits, or refuses the first of them.
+    fn check_limits(&self, state: &State, notes: &mut Vec<String>) -> Result<()> {
+        for outside in state.outside_limits(self.robot) {
+            if self.options.strict_limits {
+                let error = Error::new(Reason::Inconsistent(outside.to_string()));
+                let hint = "correct the state or the limits of the robot's file, or do without `strict_limits`";
+                return Err(error.at(format!("position.joints.{}", outside.joint.name)).hint(hint));
+            }
+            notes.push(outside.to_string());
+        }
+        Ok(())
+    }
+
+    /// Compiles the plan, unless the last one was for the same braked joints and rotors.
     pub(super) fn compile(&mut self, scene: &Scene) {
-        if self.held != scene.held || self.rotor_inertia != scene.rotor_inertia {
+        if self.braked != scene.braked || self.rotor_inertia != scene.rotor_inertia {
             let (without, kept) = match self.options.reductions.held {
-                true => (&scene.held[..], &[][..]),
-                false => (&[][..], &scene.held[..]),
+                true => (&scene.braked[..], &[][..]),
+                false => (&[][..], &scene.braked[..]),
             };
             self.assembly.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
             self.assembly.kept.clear();
             self.assembly.kept.extend(kept.iter().map(|joint| self.robot.base_dofs() + joint));
-            self.held.clone_from(&scene.held);
+            self.braked.clone_from(&scene.braked);
             self.rotor_inertia.clone_from(&scene.rotor_inertia);
         }
     }
 
     /// Refuses a coordinate whose inertia is zero to rounding once all that it carries may move.
-    pub(super) fn check_inertia(&self, has_loops: bool) -> Result<()> {
+    pub(super) fn check_inertia(&self, loops: &[NamedLoop]) -> Result<()> {
         let nv = self.assembly.plan.columns();
         for column in (0..nv).rev() {
             let Workspace { mass_matrix, factor, .. } = &self.assembly.workspace;
@@ -188,7 +235,7 @@ impl Pipeline<'_> {
                 let name = self.robot.coordinates().nth(coordinate).unwrap_or_default().to_owned();
                 let is_joint = coordinate >= self.robot.base_dofs();
                 let what = if is_joint { format!("joint \"{name}\"") } else { format!("the base along {name}") };
-                return Err(Error::new(Reason::Singular(what)).hint(match (is_joint, has_loops) {
+                let remedy = match (is_joint, !loops.is_empty()) {
                     (true, false) => "name the joint in `held`, or give it a `rotor_inertia`",
                     (true, true) => {
                         "it needs inertia of its own, whatever the loops hold: give its links a mass or it a \
@@ -198,10 +245,22 @@ impl Pipeline<'_> {
                         "in this pose the joints can follow it without moving any mass: bend or hold (`held`) one of \
                          them, or give it a `rotor_inertia`"
                     }
-                }));
+                };
+                let without =
+                    coordinate.checked_sub(self.robot.base_dofs()).and_then(|joint| self.without_inertial(joint));
+                let hint = without.map_or(remedy.to_owned(), |link| format!("{link} has no <inertial>: {remedy}"));
+                return Err(Error::new(Reason::Singular(what)).hint(hint));
             }
         }
         Ok(())
+    }
+
+    /// The first link that `joint` moves and to which the file gives no `<inertial>`.
+    fn without_inertial(&self, joint: usize) -> Option<String> {
+        let child = self.robot.joints.get(joint)?.child;
+        let link = self.robot.links.iter().find(|link| link.body == child && !link.has_inertial)?;
+        let line = link.line.map_or(String::new(), |line| format!(" on line {line} of the robot's file"));
+        Some(format!("link \"{}\"{line}", link.name))
     }
 
     /// The kinetic energy \[J\]; it and the Delassus matrix must be numbers, or no sign means anything. The refusal
@@ -234,93 +293,118 @@ impl Pipeline<'_> {
             return Ok((Vector::zero(), velocity, None));
         }
         let Some(link) = state.scene.stance else {
-            return Ok((Vector::new(state.position[0], state.position[1]), velocity, None));
+            let base = Vector::new(state.position[0], state.position[1]);
+            if !state.scene.place_lowest {
+                return Ok((base, velocity, None));
+            }
+            let placement = &Placement::new(&self.assembly.plan, &self.assembly.workspace, base);
+            let rise = self.footing(&state.scene, placement, surface).rise()?;
+            return Ok((base + Vector::new(0.0, rise), velocity, None));
         };
         let placement = &Placement::new(&self.assembly.plan, &self.assembly.workspace, Vector::zero());
         let footing = self.footing(&state.scene, placement, surface);
-        // A side is flat by the rounding of its corners, whatever the contact tolerance is.
-        let stance = footing.stance(link, CONTACT_TOLERANCE * self.feet.size())?;
+        // Within a tolerance that was given for a recording a foot may be tilted: then it stands on its lower end.
+        let flat = self.options.contact_tolerance.map_or(f64::INFINITY, |_| CONTACT_TOLERANCE * self.feet.size());
+        let stance = footing.stance(link, self.tolerance(), flat)?;
         self.assembly.rest(&stance.foot.point_of(), &mut velocity);
         Ok((stance.base, velocity, Some(stance.foot)))
     }
 
     fn footing<'a>(&'a self, scene: &'a Scene, placement: &'a Placement, surface: &'a Surface) -> Footing<'a> {
-        Footing { robot: self.robot, feet: &self.feet, named: scene.contacts.as_deref(), placement, surface }
+        Footing { robot: self.robot, feet: &self.feet, scene, placement, surface }
     }
 
-    /// The closed contacts, and how many shapes were too far from the ground to be asked.
-    fn contacts(&self, scene: &Scene, footing: &Footing, notes: &mut Vec<String>) -> Result<(Vec<Contact>, usize)> {
+    /// The closed contacts.
+    fn contacts(&self, footing: &Footing, standing: Option<&Contact>, notes: &mut Vec<String>) -> Result<Detected> {
         let tolerance = self.tolerance();
-        let contacts = footing.contacts(tolerance)?;
+        let (contacts, merged) = footing.contacts(tolerance, self.options.reductions.merge, standing)?;
+        let is_named = footing.scene.contacts.is_some();
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;
         }
-        if contacts.is_empty() && footing.named.is_none() {
-            notes.push(match (footing.nearest(), &scene.ground) {
-                (Some((link, height)), Ground::Slope(_)) => {
-                    format!("nothing touches the ground: the lowest foot, {link}, is {height:?} m above it")
-                }
-                (Some((link, distance)), Ground::Profile(_)) => {
-                    format!("nothing touches the ground: the nearest foot, {link}, is {distance:?} m away from it")
-                }
-                (None, _) => {
-                    "the robot has no feet: name contact points by `contacts` in the state or by `feet`".into()
-                }
-            });
-        }
         let mut out_of_reach = 0;
-        if footing.named.is_none() {
+        if !is_named {
             out_of_reach = footing.out_of_reach(tolerance);
             notes.extend(footing.left_behind(tolerance).into_iter().map(|(link, end)| {
                 format!("{link} reaches beyond the end of the ground's profile at x = {end:?} m: there is no ground")
             }));
         }
-        Ok((contacts, out_of_reach))
+        Ok(Detected { contacts, merged, out_of_reach })
     }
 
-    /// Takes contacts below the resting speed as exactly at rest; gives which.
-    fn snap(&mut self, contacts: &[Contact], notes: &mut Vec<String>) -> Vec<bool> {
-        let limit = self.options.resting_speed;
-        let snapped = |(speed, Contact { name, .. }): (&mut Pair<f64>, &Contact)| {
-            let slow = libm::hypot(speed[0], speed[1]);
-            // A speed that is zero to rounding is one of them.
-            let snapped = limit > 0.0 && slow < limit;
-            if snapped && slow > 0.0 {
-                *speed = [0.0; 2];
-                notes.push(format!(
-                    "{name} moves at {slow:.1e} m/s and is taken as exactly at rest (resting speed {limit} m/s); the \
-                     velocities of base and joints are not changed for it"
-                ));
-            }
-            snapped
+    /// The lowest foot that does not touch, and how it moves.
+    fn open_foot(&self, footing: &Footing, contacts: &[Contact], velocity: &[f64]) -> Option<NearestFoot> {
+        let foot = footing.nearest(contacts)?;
+        let point = foot.point_of();
+        let (moving, [tangent, normal]) = (self.assembly.velocity_of(&point, velocity), point.axes());
+        let velocity = [tangent.dot(moving), normal.dot(moving)];
+        let is_finite = [foot.gap, velocity[0], velocity[1]].into_iter().all(f64::is_finite);
+        is_finite.then_some(NearestFoot { link: foot.link, height: foot.gap, velocity })
+    }
+
+    /// The refusal of a foot that is too deep, completed by how the `lowest` foot moves, and for a stance with a remedy
+    /// that leaves the base to it.
+    fn sunk(&self, error: Error, scene: &Scene, lowest: Option<NearestFoot>) -> Error {
+        let Reason::Penetration { link, depth, tolerance, .. } = error.reason() else { return error };
+        let velocity = lowest.filter(|foot| self.robot.links[foot.link].name == *link).map(|foot| foot.velocity);
+        let hint = match (scene.stance, error.remedy()) {
+            (Some(_), _) | (_, None) => format!(
+                "a stance leaves the other feet where the pose puts them: correct the pitch or the joints, stand on \
+                 {link}, or give `place: lowest` instead of the stance"
+            ),
+            (None, Some(remedy)) => format!("{remedy}; `place: lowest` puts the lowest foot on the ground"),
         };
-        self.assembly.workspace.contact_velocity.iter_mut().zip(contacts).map(snapped).collect()
+        Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
+            .hint(hint)
     }
 
-    /// Bounds the rounding of G and c; without proofs that of G is taken for what was measured.
-    fn bound(&mut self, contacts: &[Contact], velocity: &[f64], foot: Option<&Contact>, rests: impl Fn(usize) -> bool) {
-        let Self { robot, assembly: Assembly { plan, configuration, workspace, .. }, bounds, .. } = self;
-        let arm = |contact: &Contact| Arm { body: contact.body, length: contact.stretch(robot) + contact.radius };
-        bounds.stretch(plan, configuration, contacts.iter().map(arm));
-        bounds.velocities(plan, velocity, foot.map(arm), rests);
-        if self.options.no_proof {
-            bounds.delassus = DYNAMICS_ROUNDING;
-        } else {
-            bounds.delassus(plan, workspace);
-        }
-    }
-
-    /// Notes speeds that are no more than rounding.
-    fn note_slow(&self, contacts: &[Contact], notes: &mut Vec<String>) {
-        let speeds = self.assembly.workspace.contact_velocity.iter().zip(&self.bounds.velocity);
-        for (Contact { name, .. }, (speed, noise)) in contacts.iter().zip(speeds) {
-            let [slow, bound] = [speed, noise].map(|pair| libm::hypot(pair[0], pair[1]));
-            if bound > 0.0 && slow <= bound {
-                notes.push(format!(
-                    "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
-                     say so by `stance` or `resting_speed`"
-                ));
+    /// Notes that nothing touches, and a foot that comes down just above the ground.
+    fn note_near_miss(&self, contacts: &[Contact], nearest: Option<NearestFoot>, notes: &mut Vec<String>) {
+        let Some(NearestFoot { link, height, velocity }) = nearest else {
+            if contacts.is_empty() {
+                notes.push("the robot has no feet: name contact points by `contacts` in the state or by `feet`".into());
             }
+            return;
+        };
+        let is_near = height > 0.0 && height <= NEAR_MISS * self.feet.size() && velocity[1] < 0.0;
+        if !is_near && !contacts.is_empty() {
+            return;
+        }
+        let name = &self.robot.links[link].name;
+        let moving = along_normal(velocity);
+        // A little more than the height, in two digits, next to three of the height.
+        let enough = 1.1 * height;
+        let height = format!("{height:.2e}").parse().unwrap_or(height);
+        notes.push(match (contacts.is_empty(), is_near) {
+            (true, true) => format!(
+                "nothing touches the ground: the lowest foot, {name}, is {height:?} m above it and {moving}; to let \
+                 it touch, put it there by `place: lowest`, or give `contact_tolerance: {enough:.1e}`"
+            ),
+            (true, false) => format!(
+                "nothing touches the ground: the lowest foot, {name}, is {height:?} m above it and {moving}; \
+                 `place: lowest` puts it there"
+            ),
+            (false, _) => format!(
+                "{name} nearly touches, {height:?} m above the ground: to let it touch, give `contact_tolerance: \
+                 {enough:.1e}`, or correct the pose"
+            ),
+        });
+    }
+
+    /// Bounds the rounding of c; the foot of the stance rests.
+    fn bound_velocities(&mut self, contacts: &[Contact], velocity: &[f64], standing: Standing) {
+        let Self { robot, assembly: Assembly { plan, configuration, .. }, bounds, .. } = self;
+        bounds.stretch(plan, configuration, contacts.iter().map(|contact| contact.arm(robot)));
+        let foot = standing.foot.map(|foot| foot.arm(robot));
+        bounds.velocities(plan, velocity, foot, |contact| standing.place == Some(contact));
+    }
+
+    /// Bounds the rounding of G; without proofs it is taken for what was measured.
+    fn bound_delassus(&mut self) {
+        if self.options.no_proof {
+            self.bounds.delassus = DYNAMICS_ROUNDING;
+        } else {
+            self.bounds.delassus(&self.assembly.plan, &self.assembly.workspace);
         }
     }
 
@@ -328,18 +412,29 @@ impl Pipeline<'_> {
         let friction = contacts.iter().map(|contact| {
             scene.friction.of(contact.link).ok_or_else(|| {
                 let name = &self.robot.links[contact.link].name;
-                Error::new(Reason::Missing(format!("the friction of link \"{name}\", which touches the ground,")))
-                    .at("friction")
-                    .hint("add \"friction\": 0.8 (or \"infinite\") to the state, or set `friction: 0.8` for all states")
+                let reason = format!("the friction of link \"{name}\", which touches the ground,");
+                let error = Error::new(Reason::Missing(reason)).at("friction");
+                match scene.friction.links.keys().next() {
+                    Some(&other) => error.hint(format!(
+                        "the state gives that of {}; add \"{name}\" or \"default\" to it",
+                        self.robot.links[other].name
+                    )),
+                    None => error.hint(
+                        "add \"friction\": 0.8 (or \"infinite\") to the state, or set `friction: 0.8` for all states",
+                    ),
+                }
             })
         });
         let friction = friction.collect::<Result<Vec<_>>>()?;
         let restitution = contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect();
         let before = self.assembly.workspace.contact_velocity.clone();
         let free = if scene.impulses.is_empty() { before.clone() } else { self.assembly.free(&before, change) };
-        ContactProblem::checked(self.assembly.workspace.delassus.clone(), (before, free), (friction, restitution))
+        ContactProblem::checked(self.assembly.workspace.delassus.clone(), before, free, friction, restitution)
     }
 }
+
+/// A foot that comes down from no more than this part of the robot's size has nearly touched.
+const NEAR_MISS: f64 = 1e-2;
 
 /// What G of a robot loses to rounding, relative to its rows' own scale: measured below 3e-15 against 640 bits on
 /// chains, straight legs and extreme mass ratios. It is no bound, and used only if none is asked for.
@@ -347,11 +442,10 @@ const DYNAMICS_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The contact of the foot that stands: the same circle with the same normal; a point rests whatever the normal is.
 fn place_of(foot: &Contact, contacts: &[Contact]) -> Option<usize> {
-    let same = |other: &Contact| {
-        (foot.link, foot.body, foot.center, foot.radius) == (other.link, other.body, other.center, other.radius)
-    };
     let at = |exactly: bool| {
-        contacts.iter().position(|other| same(other) && (other.ground == foot.ground || !exactly && foot.radius == 0.0))
+        contacts.iter().position(|other| {
+            foot.has_circle_of(other) && (other.ground == foot.ground || !exactly && foot.radius == 0.0)
+        })
     };
     at(true).or_else(|| at(false))
 }

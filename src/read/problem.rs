@@ -94,7 +94,10 @@ fn delassus_matrix(delassus: &Node, velocity: &Node) -> Result<(Vec<f64>, Vec<[f
     let (contacts, size, columns) = (velocity.len(), 2 * velocity.len(), rows.first().map_or(0, Vec::len));
     if rows.len() != size || columns != size {
         let found = format!("{} x {columns}", rows.len());
-        let reason = format!("{contacts} contacts need a Delassus matrix of {size} x {size}, not {found}");
+        let reason = format!(
+            "the matrix of {contacts} contact{s} has {size} x {size} entries, not {found}",
+            s = if contacts == 1 { "" } else { "s" }
+        );
         let hint = "two rows and columns per contact, tangential and normal";
         return Err(delassus.refuse(Reason::Inconsistent(reason)).hint(hint));
     }

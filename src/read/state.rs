@@ -43,7 +43,7 @@ impl State {
 pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<State> {
     let mut state = State::zero(robot);
     let scene = &mut state.scene;
-    let mut own_loops = None;
+    let (mut own_loops, mut own_place) = (None, None);
 
     for field in root.fields("field")? {
         match field.key() {
@@ -54,7 +54,8 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
             "restitution" => scene.restitution = by_link(field, robot, restitution)?,
             "ground" => scene.ground = ground(field)?,
             "stance" => scene.stance = Some(stance(field, robot)?),
-            "held" => scene.held = held(field, robot)?,
+            "place" => own_place = Some((field, lowest(field, robot)?)),
+            "held" => scene.braked = braked(field, robot)?,
             "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
             "contacts" => scene.contacts = Some(contacts(field, robot)?),
             "impulse" => scene.impulses = impulses(field, robot)?,
@@ -71,6 +72,12 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
             refuse_base(field, |name| format!("the stance gives the base's {name} from the rest"), hint)?;
         }
     }
+    if let (Some(_), Some((field, true))) = (scene.stance, own_place) {
+        let reason = Reason::Inconsistent("the stance already places the base".into());
+        return Err(field.refuse(reason).hint("leave out either the stance or \"place\""));
+    }
+    let by_default = || defaults.place_lowest && scene.stance.is_none();
+    scene.place_lowest = own_place.map_or_else(by_default, |(_, lowest)| lowest);
     scene.friction.default = scene.friction.default.or(defaults.friction);
     scene.loops = own_loops.unwrap_or_else(|| defaults.loops.clone());
     Ok(state)
@@ -119,11 +126,25 @@ fn refuse_base(object: Node, reason: impl Fn(&str) -> String, hint: &str) -> Res
 
 fn stance(field: Node, robot: &Robot) -> Result<usize> {
     let link = link(field, robot)?;
-    if robot.base == Base::Fixed {
-        let reason = Reason::Inconsistent("the robot is bolted to the world, a stance cannot place it".into());
-        return Err(field.refuse(reason).hint("leave it out, or give `base: floating`"));
-    }
+    refuse_bolted(field, robot, "a stance cannot place it")?;
     Ok(link)
+}
+
+/// "lowest" if the base is moved, "given" if not.
+fn lowest(field: Node, robot: &Robot) -> Result<bool> {
+    match field.text()? {
+        "given" => Ok(false),
+        "lowest" => refuse_bolted(field, robot, "it cannot be placed").map(|()| true),
+        other => Err(field.expected("\"lowest\" or \"given\"").did_you_mean(other, ["lowest", "given"])),
+    }
+}
+
+fn refuse_bolted(field: Node, robot: &Robot, what: &str) -> Result<()> {
+    if robot.base == Base::Floating {
+        return Ok(());
+    }
+    let reason = Reason::Inconsistent(format!("the robot is bolted to the world, {what}"));
+    Err(field.refuse(reason).hint("leave it out, or give `base: floating`"))
 }
 
 /// A value for all links, or an object of values by link with an optional `default`.
@@ -147,7 +168,8 @@ pub(crate) fn friction(node: Node) -> Result<Friction> {
     match node.as_text() {
         Some("infinite") => Ok(Friction::Infinite),
         Some(text) if node.names().is_none() => {
-            Err(node.expected("a number or \"infinite\"").did_you_mean(text, ["infinite"]))
+            let error = node.expected_number("a number or \"infinite\"").did_you_mean(text, ["infinite"]);
+            Err(if matches!(text, "inf" | "Inf" | "Infinity") { error.hint("did you mean infinite?") } else { error })
         }
         text => {
             let number = node.number_from_zero("friction");
@@ -193,17 +215,17 @@ fn profile(entry: Node) -> Result<Profile> {
 }
 
 /// A list of different joints.
-fn held(field: Node, robot: &Robot) -> Result<Vec<usize>> {
-    let mut held = Vec::new();
+fn braked(field: Node, robot: &Robot) -> Result<Vec<usize>> {
+    let mut braked = Vec::new();
     for entry in field.entries()? {
         let name = entry.text()?;
         let joint = joint(entry, name, robot)?;
-        if held.contains(&joint) {
+        if braked.contains(&joint) {
             return Err(entry.refuse(Reason::Duplicate { what: "joint", name: name.to_owned() }));
         }
-        held.push(joint);
+        braked.push(joint);
     }
-    Ok(held)
+    Ok(braked)
 }
 
 /// An object of inertias by joint, for every joint and then every mimic joint of the robot.

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_are_expressions_of_each_other_in_any_order() {
+    fn constants_refer_to_each_other_in_any_order() {
         let text = r#"{"constants": {"h": "l/4", "l": "2*one", "one": 1}, "parameters": {"a": {"from": "-h", "to": "pi", "steps": 3}}, "state": {}}"#;
         let study = Study::from_json(text).expect("a study");
         let [parameter] = study.parameters() else { panic!("one") };

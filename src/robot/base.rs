@@ -1,4 +1,4 @@
-//! How the root is held, judged after fixed and held joints are welded.
+//! How the root is attached, judged after fixed and frozen joints are merged.
 //!
 //! ```text
 //!     root still massless over a whole chain of x, z and pitch joints, or a planar or floating joint
@@ -17,8 +17,8 @@ use crate::description::{Description, UrdfJoint};
 /// The share of the robot's mass up to which a link looks as if it only had to be given one.
 const LIGHT: f64 = 1e-2;
 
-/// How the root is held.
-pub(super) struct Judgement {
+/// How the root is attached.
+pub(super) struct Judgment {
     pub(super) base: Base,
     /// Where the robot begins: a link of the file.
     pub(super) root: usize,
@@ -30,8 +30,8 @@ pub(super) struct Judgement {
     pub(super) caution: Option<String>,
 }
 
-/// Judges the base, unless it is `asked` for. Planar and floating joints that are not the base become held ones.
-pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option<Base>) -> Judgement {
+/// Judges the base, unless it is `asked` for. Planar and floating joints that are not the base become frozen ones.
+pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option<Base>) -> Judgment {
     let root = description.root;
     let welded = Welded::new(description, roles);
     let exit = welded.single_exit(root).filter(|&joint| roles[joint] == Role::Free && welded.is_massless(root, 0.0));
@@ -44,11 +44,11 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
     if let Some(joint) = free {
         let UrdfJoint { kind, name, child, .. } = &description.joints[joint];
         let because = format!("{} joint \"{name}\" is the base itself", kind.name());
-        return Judgement { base: Base::Floating, root: *child, because, chain: vec![joint], caution: None };
+        return Judgment { base: Base::Floating, root: *child, because, chain: vec![joint], caution: None };
     }
 
     let welded = Welded::new(description, roles);
-    let at_root = |base, because: String| Judgement { base, root, because, chain: Vec::new(), caution: None };
+    let at_root = |base, because: String| Judgment { base, root, because, chain: Vec::new(), caution: None };
     if asked == Some(Base::Fixed) {
         return at_root(Base::Fixed, "as asked".into());
     }
@@ -65,7 +65,7 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
                  the chain and its mass"
             )
         });
-        return Judgement { base: Base::Floating, root, because, chain: chain.into(), caution };
+        return Judgment { base: Base::Floating, root, because, chain: chain.into(), caution };
     }
     let massless = welded.mass(root) == 0.0;
     match welded.single_exit(root) {
@@ -84,7 +84,7 @@ pub(super) fn judge(description: &Description, roles: &mut [Role], asked: Option
                     names(chain)
                 )
             });
-            Judgement { caution, ..at_root(Base::Floating, "the root has mass".into()) }
+            Judgment { caution, ..at_root(Base::Floating, "the root has mass".into()) }
         }
     }
 }

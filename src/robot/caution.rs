@@ -1,12 +1,15 @@
 //! What a user must know before trusting a reduced robot, each with its remedy.
 
-use super::plane::{PARALLEL, Plane};
+use super::legs::OBLIQUE;
+use super::plane::Plane;
 use super::reading::{FreezeReason, FrozenJoint};
 use super::reference_pose::ReferencePose;
-use crate::description::{Description, JointKind, Matrix, apply, turn};
+use crate::description::{Description, Geometry, JointKind, Matrix, Mesh, apply, turn};
 
 /// An axis up to this far off the normal \[rad\] may have been meant to be parallel to it.
 const NEARLY: f64 = 0.35;
+/// An axis up to this far off is so by the digits of the file \[rad\].
+const SLIGHTLY: f64 = 0.02;
 /// The most joints that are named.
 const NAMED: usize = 3;
 
@@ -15,29 +18,35 @@ pub(super) struct Seen<'a> {
     pub(super) description: &'a Description,
     pub(super) pose: &'a ReferencePose,
     pub(super) plane: Plane,
+    /// Whether each joint leads to one of the lowest links.
+    pub(super) legs: &'a [bool],
 }
 
-/// The cautions about joints that are held, of which `kept` others stay.
-pub(super) fn about_held(seen: &Seen, held: &[FrozenJoint], kept: usize) -> Vec<String> {
+/// The cautions about joints that are frozen, of which `kept` others stay.
+pub(super) fn about_frozen(seen: &Seen, frozen: &[FrozenJoint], kept: usize) -> Vec<String> {
     use FreezeReason::{Asked, Base, Fixed, Kind, OffPlane};
-    let with = |wanted: fn(&FreezeReason) -> bool| held.iter().filter(move |joint| wanted(&joint.reason));
+    let with = |wanted: fn(&FreezeReason) -> bool| frozen.iter().filter(move |joint| wanted(&joint.reason));
     let movable: Vec<_> = with(|reason| !matches!(reason, Fixed | Asked { .. } | Base)).collect();
-    let nearly: Vec<_> = with(|reason| matches!(reason, OffPlane { angle, .. } if *angle <= NEARLY)).collect();
+    let off = |joint: &FrozenJoint, most: f64| matches!(joint.reason, OffPlane { angle, .. } if angle <= most);
+    let is_leg = |joint: &FrozenJoint| seen.description.joint(&joint.name).is_some_and(|index| seen.legs[index]);
+    let many = frozen.iter().filter(|joint| off(joint, NEARLY)).count() >= kept;
+    let tilted = |joint: &&FrozenJoint| many && off(joint, NEARLY) || is_leg(joint) && off(joint, OBLIQUE);
+    let nearly: Vec<_> = frozen.iter().filter(tilted).collect();
     let hidden: Vec<_> = with(|reason| matches!(reason, Kind(_))).collect();
     let names = |joints: &[&FrozenJoint]| names(joints.iter().map(|joint| joint.name.as_str()));
     let mut cautions = Vec::new();
-    if !nearly.is_empty() && nearly.len() >= kept {
+    if !nearly.is_empty() {
         cautions.push(about_tilted(seen, &nearly, movable.len() + kept));
     } else if kept == 0 && movable.len() > hidden.len() {
         cautions.push(format!(
-            "no joint moves in this plane, so the robot is one rigid body ({} held): choose another plane (`plane`), or hold \
+            "no joint moves in this plane, so the robot is one rigid body ({} frozen): choose another plane (`plane`), or hold \
              joints where the axes of others are in line (`hold: NAME=VALUE`)",
             names(&movable)
         ));
     }
     if !hidden.is_empty() {
         cautions.push(format!(
-            "{} could move in the plane and is held all the same, having no single axis: replace it by revolute and prismatic \
+            "{} could move in the plane and is frozen all the same, having no single axis: replace it by revolute and prismatic \
              joints",
             names(&hidden)
         ));
@@ -61,23 +70,61 @@ pub(super) fn about_outside(description: &Description, outside: &[String]) -> Op
     })
 }
 
+/// The caution about joints that move, but whose `<axis>` the file leaves out.
+pub(super) fn about_axes(description: &Description) -> Option<String> {
+    let without = description.joints.iter().filter(|joint| joint.kind.has_axis() && !joint.has_axis);
+    let without: Vec<String> = without.map(|joint| format!("{} on line {}", joint.name, joint.location.line)).collect();
+    (!without.is_empty()).then(|| {
+        let names = names(without.iter().map(String::as_str));
+        format!("without an <axis>, and so about or along x: {names}; name the axis, as in <axis xyz=\"0 1 0\"/>")
+    })
+}
+
+/// The caution about collision meshes that could not be read.
+pub(super) fn about_meshes(description: &Description) -> Option<String> {
+    let mut left_out: Vec<String> = Vec::new();
+    for link in &description.links {
+        for collision in &link.collisions {
+            if let Geometry::Mesh { file, mesh: Mesh::LeftOut { why }, .. } = &collision.geometry {
+                left_out.push(format!("{file} of {}: {why}", link.name));
+            }
+        }
+    }
+    let what =
+        if left_out.len() == 1 { "1 collision mesh is" } else { &format!("{} collision meshes are", left_out.len()) };
+    (!left_out.is_empty()).then(|| {
+        format!(
+            "{what} left out, so that nothing touches there ({}{}): name the folder of its package by `package_path`, or \
+             a foot by `feet: LINK:X,Y,Z`",
+            left_out[0],
+            if left_out.len() == 1 { "" } else { ", and others" },
+        )
+    })
+}
+
 /// The caution about joints whose axes are nearly parallel to the normal, out of `all` that could move.
 fn about_tilted(seen: &Seen, nearly: &[&FrozenJoint], all: usize) -> String {
     let angles = nearly.iter().filter_map(|joint| match joint.reason {
         FreezeReason::OffPlane { angle, .. } => Some(angle),
         _ => None,
     });
-    let degrees = |angle: f64| format!("{:.1}", angle.to_degrees());
-    let (least, most) = (degrees(angles.clone().fold(f64::INFINITY, f64::min)), degrees(angles.fold(0.0, f64::max)));
+    let degrees = |angle: f64| format!("{:.*}", if angle <= SLIGHTLY { 3 } else { 1 }, angle.to_degrees());
+    let (least, most) =
+        (degrees(angles.clone().fold(f64::INFINITY, f64::min)), degrees(angles.clone().fold(0.0, f64::max)));
     let range = if least == most { most } else { format!("{least} to {most}") };
-    let mut remedies: Vec<String> = Vec::new();
-    for remedy in nearly.iter().filter_map(|joint| remedy(seen, seen.description.joint(&joint.name)?)) {
-        if !remedies.contains(&remedy) {
+    let slightly = angles.filter(|&angle| angle <= SLIGHTLY).fold(0.0, f64::max);
+    let mut remedies: Vec<Remedy> = Vec::new();
+    for joint in nearly.iter().filter_map(|joint| seen.description.joint(&joint.name)) {
+        let is_slight = seen.plane.off_normal(seen.pose.axes[joint]) <= SLIGHTLY;
+        let remedy = if is_slight { Remedy::Tolerance(1.1 * slightly) } else { remedy(seen, joint) };
+        // One for each joint: a hinge has one value.
+        if !remedies.iter().any(|other| other.is_about_the_same(&remedy)) {
             remedies.push(remedy);
         }
     }
+    let remedies: Vec<String> = remedies.iter().map(|remedy| remedy.in_words(seen.description)).collect();
     format!(
-        "{} of {all} joints that could move are held only because their axes are {range} degrees off the plane ({}); to keep \
+        "{} of {all} joints that could move are frozen only because their axes are {range} degrees off the plane ({}); to keep \
          them: {}",
         nearly.len(),
         names(nearly.iter().map(|joint| joint.name.as_str())),
@@ -85,10 +132,43 @@ fn about_tilted(seen: &Seen, nearly: &[&FrozenJoint], all: usize) -> String {
     )
 }
 
-/// What brings the axis of a joint into line: a held hinge before it that can turn it there, or else the joint whose
+/// What keeps a joint whose axis is off the normal.
+enum Remedy {
+    /// Freezing this hinge at this angle \\[rad\\] brings it into line.
+    Freeze { hinge: usize, angle: f64 },
+    /// The origin of this joint tilts it.
+    Origin(usize),
+    /// Its own axis is tilted.
+    Axis(usize),
+    /// It is off by no more than this \\[rad\\].
+    Tolerance(f64),
+}
+
+impl Remedy {
+    fn is_about_the_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Freeze { hinge, .. }, Self::Freeze { hinge: other, .. }) => hinge == other,
+            (Self::Origin(joint), Self::Origin(other)) | (Self::Axis(joint), Self::Axis(other)) => joint == other,
+            (Self::Tolerance(_), Self::Tolerance(_)) => true,
+            _ => false,
+        }
+    }
+
+    fn in_words(&self, description: &Description) -> String {
+        let name = |joint: usize| &description.joints[joint].name;
+        match *self {
+            Self::Freeze { hinge, angle } => format!("`hold: {}={angle:.6}`", name(hinge)),
+            Self::Origin(joint) => format!("straighten the rpy of {}", name(joint)),
+            Self::Axis(joint) => format!("straighten the axis of {}", name(joint)),
+            Self::Tolerance(angle) => format!("`axis_tolerance: {angle:.1e}`"),
+        }
+    }
+}
+
+/// What brings the axis of a joint into line: a frozen hinge before it that can turn it there, or else the joint whose
 /// origin tilts it.
-fn remedy(seen: &Seen, joint: usize) -> Option<String> {
-    let Seen { description, pose, plane } = seen;
+fn remedy(seen: &Seen, joint: usize) -> Remedy {
+    let Seen { description, pose, plane, .. } = seen;
     let axis = pose.axes[joint];
     let before = || {
         let link = |joint: usize| description.links[description.joints[joint].parent].joint;
@@ -98,30 +178,28 @@ fn remedy(seen: &Seen, joint: usize) -> Option<String> {
         let kind = description.joints[before].kind;
         // One that is nearly in line is to be kept itself.
         matches!(kind, JointKind::Revolute | JointKind::Continuous)
-            && pose.held[before].is_none()
-            && plane.off_normal(pose.axes[before]) > NEARLY
+            && pose.frozen[before].is_none()
+            && plane.off_normal(pose.axes[before]) > OBLIQUE
     });
-    let mut turned = turned.filter_map(|before| Some((before, angle_into_line(axis, pose.axes[before], *plane)?)));
-    if let Some((hinge, angle)) = turned.next() {
-        return Some(format!("`hold: {}={angle:.6}`", description.joints[hinge].name));
+    let into_line = |hinge: usize| angle_into_line(axis, pose.axes[hinge], *plane, pose.tolerance);
+    let mut turned = turned.filter_map(|hinge| Some(Remedy::Freeze { hinge, angle: into_line(hinge)? }));
+    if let Some(freeze) = turned.next() {
+        return freeze;
     }
     let in_line = |axes: &Matrix| {
         let columns = [0, 1, 2].map(|column| axes.map(|row| row[column]));
-        columns.into_iter().any(|column| plane.off_normal(column) <= PARALLEL)
+        columns.into_iter().any(|column| plane.off_normal(column) <= pose.tolerance)
     };
     let tilts = |at: &usize| {
         let joint = &description.joints[*at];
         in_line(&pose.rotations[joint.parent]) && !in_line(&pose.rotations[joint.child])
     };
-    match std::iter::once(joint).chain(before()).find(tilts) {
-        Some(tilting) => Some(format!("straighten the rpy of {}", description.joints[tilting].name)),
-        None => Some(format!("straighten the axis of {}", description.joints[joint].name)),
-    }
+    std::iter::once(joint).chain(before()).find(tilts).map_or(Remedy::Axis(joint), Remedy::Origin)
 }
 
 /// The angle \[rad\] by which a turn about `hinge` brings `axis` to the plane's normal, if one does; both of length
 /// one.
-fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane) -> Option<f64> {
+fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane, tolerance: f64) -> Option<f64> {
     let [_, normal, _] = plane.axes();
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cross =
@@ -131,7 +209,7 @@ fn angle_into_line(axis: [f64; 3], hinge: [f64; 3], plane: Plane) -> Option<f64>
     let across = |vector: [f64; 3]| [0, 1, 2].map(|k| vector[k] - dot(vector, hinge) * hinge[k]);
     let (from, to) = (across(axis), across(aim));
     let angle = libm::atan2(dot(cross(from, to), hinge), dot(from, to));
-    (plane.off_normal(apply(&turn(hinge, angle), axis)) <= PARALLEL).then_some(angle)
+    (plane.off_normal(apply(&turn(hinge, angle), axis)) <= tolerance).then_some(angle)
 }
 
 /// The first names.

@@ -49,7 +49,8 @@ impl LinkInertia {
     }
 
     /// The part with the three-dimensional `inertia` about its CoG, whose axes are the columns of `rotation` in the
-    /// body's frame; a point mass without one. A negative moment about the normal is refused.
+    /// body's frame; a point mass without one. A moment about the normal that is negative by more than rounding is
+    /// refused.
     pub(super) fn projected(
         mass: f64,
         com: Vector<f64>,
@@ -66,11 +67,19 @@ impl LinkInertia {
                 size += term.abs();
             }
         }
-        if moment < -ROUNDING * size {
+        let largest =
+            inertia.into_iter().flat_map(|rows| rows.as_flattened()).fold(0.0, |most, entry| entry.abs().max(most));
+        let scale = [size, largest, mass * com.dot(com)].into_iter().fold(0.0, f64::max);
+        if moment < -ROUNDING * scale {
             let what = "the moment of inertia about the plane's normal".into();
             return Err(Reason::OutOfRange { what, allowed: "at least 0", value: moment });
         }
-        Ok(Self { mass, com, moment: f64::max(moment, 0.0) })
+        Ok(Self { mass, com, moment })
+    }
+
+    /// Takes a negative moment, which is rounding, as zero; returns it.
+    pub(super) fn without_negative_moment(&mut self) -> Option<f64> {
+        (self.moment < 0.0).then(|| std::mem::replace(&mut self.moment, 0.0))
     }
 }
 
@@ -126,13 +135,19 @@ mod tests {
     fn a_negative_moment_about_the_normal_is_refused() {
         let inertia = |ixx, iyy| [[ixx, 0.0, 0.0], [0.0, iyy, 0.0], [0.0, 0.0, 0.0]];
         assert_eq!(projected(inertia(-1.0, 0.5), [0.0; 3]), Ok(0.5));
-        assert!(projected(inertia(0.5, -1e-30), [0.0; 3]).is_err());
+        assert!(projected(inertia(0.5, -1e-9), [0.0; 3]).is_err());
         // No error: a thin rod along (1, 1, 1) / sqrt(3), turned to the normal: rounding may leave less than 0.
         let third = 1.0 / 3.0;
         let rod = [[2.0 * third, -third, -third], [-third, 2.0 * third, -third], [-third, -third, 2.0 * third]];
         let rotation = [[0.0; 3], [3.0_f64.sqrt().recip(); 3], [0.0; 3]];
-        let part = LinkInertia::projected(1.0, Vector::zero(), Some(&rod), &rotation).expect("no error");
+        let mut part = LinkInertia::projected(1.0, Vector::zero(), Some(&rod), &rotation).expect("no error");
+        part.without_negative_moment();
         assert!((0.0..1e-15).contains(&part.moment));
+        // Nor is it an error next to much greater moments, as of a computed inertia.
+        let computed = [[1e-3, 0.0, 0.0], [0.0, -5e-20, 0.0], [0.0, 0.0, 1e-3]];
+        let mut part = LinkInertia::projected(1.0, Vector::zero(), Some(&computed), &Pose::default().rotation());
+        let part = part.as_mut().expect("no error");
+        assert_eq!((part.without_negative_moment(), part.moment), (Some(-5e-20), 0.0));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::reading::{FrozenJoint, Reading};
 use crate::description::{self, Collision, Description, Geometry, Ignored, JointKind, joint_place, link_place};
 
 /// A joint without a coordinate.
-pub(super) fn held(joint: &FrozenJoint) -> LeftOutPart {
+pub(super) fn frozen(joint: &FrozenJoint) -> LeftOutPart {
     LeftOutPart { what: joint_place(&joint.name), why: joint.why() }
 }
 
@@ -33,6 +33,12 @@ pub(super) fn doubtful_inertia(link: &description::UrdfLink) -> Option<LeftOutPa
         Some(_) => return None,
     };
     Some(LeftOutPart { what: link_place(&link.name), why: why.into() })
+}
+
+/// A moment of inertia that is negative by rounding.
+pub(super) fn rounded(link: &description::UrdfLink, moment: f64) -> LeftOutPart {
+    let why = format!("its moment about the plane's normal is {moment:e} kg m^2, which is rounding: taken as 0");
+    LeftOutPart { what: link_place(&link.name), why }
 }
 
 /// The shapes of a link that is bolted to the world.

@@ -16,6 +16,7 @@
 mod composite;
 mod plane;
 mod reference_pose;
+mod legs;
 mod reading;
 mod caution;
 mod left_out;
@@ -36,7 +37,7 @@ use crate::planar::Vector;
 use crate::scalar::Real;
 use composite::{LinkInertia, composite};
 
-/// How the root body is held.
+/// How the root body is attached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Base {
     /// It moves freely: q = [x, z, pitch, joints...].
@@ -59,7 +60,7 @@ pub enum Base {
 pub struct Robot {
     /// The robot's name in the file.
     pub name: String,
-    /// How the root is held.
+    /// How the root is attached.
     pub base: Base,
     /// Rigid bodies; a parent comes before its children, the root is 0.
     pub bodies: Vec<Body>,
@@ -105,6 +106,7 @@ pub enum ParentJoint {
 /// A joint that moves in the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
+    /// Its name in the file.
     pub name: String,
     /// The parent body (an index into [`Robot::bodies`]).
     pub parent: usize,
@@ -112,12 +114,16 @@ pub struct Joint {
     pub child: usize,
     /// Its origin in the parent body's frame, at coordinate zero \[m\].
     pub origin: Vector<f64>,
+    /// How it moves the child.
     pub axis: Axis,
+    /// The least and the greatest coordinate, as the file has them \[rad or m\]. They do not enter an impact.
+    pub limits: Option<[f64; 2]>,
 }
 
 /// A mimic joint: q = multiplier q_mimicked + offset (URDF's `<mimic>`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MimicJoint {
+    /// The joint itself.
     pub joint: Joint,
     /// The joint that it mimics (an index into [`Robot::joints`]).
     pub mimicked: usize,
@@ -140,6 +146,7 @@ pub enum Axis {
 /// A link of the file and its place in the reduced tree.
 #[derive(Debug, Clone)]
 pub struct Link {
+    /// Its name in the file.
     pub name: String,
     /// The body it belongs to.
     pub body: usize,
@@ -150,13 +157,17 @@ pub struct Link {
     pub shapes: Vec<FootShape>,
     /// True where the file gives the link an `<inertial>`.
     pub has_inertial: bool,
+    /// The line of the file on which it begins; `None` for a robot of no file.
+    pub line: Option<usize>,
 }
 
 /// Something of the file that does not enter the analysis, as in `joint "left_ankle"`, and why, as in `fixed: welded
 /// into left_shank`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOutPart {
+    /// The part, by kind and name.
     pub what: String,
+    /// The reason, and what became of it.
     pub why: String,
 }
 
@@ -170,6 +181,12 @@ impl Link {
             a * x + b * y + c * z + d
         });
         Vector::new(forward, up)
+    }
+
+    /// What the coordinates of [`Link::point`] are added up from, by magnitude \[m\].
+    pub fn stretch(&self, [x, y, z]: [f64; 3]) -> f64 {
+        let terms = self.pose.iter().flat_map(|row| row.iter().zip([x, y, z, 1.0]));
+        terms.map(|(a, b)| (a * b).abs()).sum()
     }
 
     /// The point of the link's own 3-D frame, in the plane through its origin, that lies at `point` in its body's
@@ -254,13 +271,18 @@ impl Robot {
         self.reading.frozen.iter().find(|frozen| frozen.name == name)
     }
 
-    /// Whether a body can move: not the root of a bolted robot, nor what is fixed to it.
-    fn moves(&self, body: usize) -> bool {
+    /// The body that `body` is rigid on in the end: itself, if it is not kept apart from another.
+    pub(crate) fn rigid_body(&self, body: usize) -> usize {
         let mut at = body;
-        while let (Base::Fixed, Some(ParentJoint::Fixed { parent, .. })) = (self.base, self.bodies[at].joint) {
+        while let Some(ParentJoint::Fixed { parent, .. }) = self.bodies[at].joint {
             at = parent;
         }
-        self.base == Base::Floating || self.bodies[at].joint.is_some()
+        at
+    }
+
+    /// Whether a body can move: not the root of a bolted robot, nor what is fixed to it.
+    fn moves(&self, body: usize) -> bool {
+        self.base == Base::Floating || self.bodies[self.rigid_body(body)].joint.is_some()
     }
 
     /// The CoG of each body together with all that is fixed to it, in its frame \[m\]; `None` for a body that is fixed

@@ -45,10 +45,10 @@ impl Plane {
         }
     }
 
-    /// The plane whose normal all of these unit vectors are parallel to; `None` without any.
-    pub(super) fn normal_to(axes: impl Iterator<Item = [f64; 3]> + Clone) -> Option<Self> {
+    /// The plane whose normal all of these unit vectors are parallel to within `tolerance` \[rad\]; `None` without any.
+    pub(super) fn normal_to(axes: impl Iterator<Item = [f64; 3]> + Clone, tolerance: f64) -> Option<Self> {
         axes.clone().next()?;
-        Self::ALL.into_iter().find(|plane| axes.clone().all(|axis| plane.off_normal(axis) <= PARALLEL))
+        Self::ALL.into_iter().find(|plane| axes.clone().all(|axis| plane.off_normal(axis) <= tolerance))
     }
 
     /// The angle between a vector of the root link's axes and the plane's normal, whichever way either points \[rad\].

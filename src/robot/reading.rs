@@ -7,7 +7,9 @@ use std::fmt;
 /// How a file was read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reading {
+    /// The plane that the robot was reduced to.
     pub plane: Plane,
+    /// Why that plane was taken.
     pub plane_because: PlaneReason,
     /// The plane that would keep most joints and how many, where that is more than in this one.
     pub better_plane: Option<(Plane, usize)>,
@@ -28,7 +30,9 @@ pub enum PlaneReason {
     Asked,
     /// All axes of revolute and continuous joints are parallel to its normal.
     CommonAxis,
-    /// It is URDF's usual sagittal plane, and the axes have no common direction.
+    /// More revolute and continuous joints on the way to the lowest links turn in it than in another.
+    Legs,
+    /// It is URDF's usual sagittal plane, and the axes do not suggest another.
     #[default]
     Usual,
 }
@@ -36,7 +40,9 @@ pub enum PlaneReason {
 /// A joint of the file that has no coordinate in the reduced robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrozenJoint {
+    /// Its name in the file.
     pub name: String,
+    /// Why it has no coordinate.
     pub reason: FreezeReason,
     /// The body that its child is welded into; for a joint of the base the robot's root link.
     pub body: String,
@@ -68,6 +74,7 @@ impl Reading {
         let because = match self.plane_because {
             PlaneReason::Asked => "as asked",
             PlaneReason::CommonAxis => "all hinges of the file turn in it",
+            PlaneReason::Legs => "most hinges on the way to the lowest links turn in it",
             PlaneReason::Usual => "the usual one, as the file's hinges have no common direction",
         };
         match self.better_plane {
@@ -93,13 +100,13 @@ impl fmt::Display for FreezeReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Fixed => f.write_str("fixed"),
-            Self::Asked { value } => write!(f, "held at {value} as asked"),
+            Self::Asked { value } => write!(f, "frozen at {value} as asked"),
             Self::OffPlane { angle, slides } => {
                 let wanted = if *slides { "the plane" } else { "the plane's normal" };
-                write!(f, "held at zero, its axis being {:.2} degrees off {wanted}", angle.to_degrees())
+                write!(f, "frozen at zero, its axis being {:.2} degrees off {wanted}", angle.to_degrees())
             }
-            Self::Follows { mimicked } => write!(f, "held like {mimicked}, which it follows"),
-            Self::Kind(kind) => write!(f, "held at zero, being {}", kind.name()),
+            Self::Follows { mimicked } => write!(f, "frozen like {mimicked}, which it follows"),
+            Self::Kind(kind) => write!(f, "frozen at zero, being {}", kind.name()),
             Self::Base => f.write_str("part of the floating base"),
         }
     }

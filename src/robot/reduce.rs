@@ -2,6 +2,7 @@
 //! it.
 
 use super::composite::{LinkInertia, composite};
+use super::legs::{OBLIQUE, legs};
 use super::outline::outline;
 use super::plane::{PARALLEL, Plane};
 use super::reading::{FreezeReason, FrozenJoint, PlaneReason, Reading};
@@ -16,11 +17,16 @@ use crate::reductions::Reductions;
 /// What a user may say about the reduction; plane and base are found where they are not given.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reduction {
+    /// The plane; found from the axes of the joints if it is not given.
     pub plane: Option<Plane>,
     /// Joints (indices into [`Description::joints`]) that are welded at these values \[rad or m\]; in this pose the
     /// axes are judged.
     pub hold: Vec<(usize, f64)>,
+    /// Whether the base floats; found from masses and joints if it is not given.
     pub base: Option<Base>,
+    /// The greatest angle by which an axis may be off the plane's normal (of a prismatic joint, off the plane), and is
+    /// taken as exactly in line \[rad\]; by default 1e-3.
+    pub axis_tolerance: Option<f64>,
     /// Which links are welded.
     pub reductions: Reductions,
 }
@@ -36,36 +42,41 @@ impl Robot {
 
     /// Reduces `description` to a plane of its root link.
     ///
-    /// The plane is the one whose normal all revolute and continuous axes are parallel to, else x-z. Joints that turn
-    /// about the normal or slide in the plane, both within 1e-3 rad, stay; all others are held at zero and welded, with
-    /// the inertia that their links have then. The base floats, is bolted to the world, or is a chain of the file's own
-    /// joints. [`Robot::reading`] reports what was found and why, [`Robot::left_out`] what does not enter the analysis.
+    /// The plane is the one whose normal all revolute and continuous axes are parallel to, else that of x-z and y-z
+    /// which more of those on the way to the lowest links are normal to. Joints that turn about the normal or slide in
+    /// the plane, both within the tolerance, stay; all others are frozen at zero, with the inertia that their links
+    /// have then. The base floats, is bolted to the world, or is a chain of the file's own joints. [`Robot::reading`]
+    /// reports what was found and why, [`Robot::left_out`] what does not enter the analysis.
     ///
     /// # Errors
-    /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be held at a
+    /// [`Reason::Inconsistent`] for joints that follow each other in a circle, for a joint that cannot be frozen at a
     /// value, and where nothing that moves has mass; [`Reason::OutOfRange`] for a negative moment of inertia about the
     /// normal; [`Reason::NotFinite`] where sizes or masses add up to more than an f64 holds.
     pub fn reduce(description: &Description, reduction: &Reduction) -> Result<Self> {
-        let pose = ReferencePose::new(description, &reduction.hold)?;
-        let (plane, plane_because) = find_plane(description, &pose, reduction.plane);
+        let tolerance = reduction.axis_tolerance.unwrap_or(PARALLEL);
+        let pose = ReferencePose::new(description, &reduction.hold, tolerance)?;
+        let legs = legs(description, &pose);
+        let (plane, plane_because) = find_plane(description, &pose, &legs, reduction.plane);
         let mut roles = roles(description, &pose, plane);
         let found = base::judge(description, &mut roles, reduction.base);
         let rotation = product(&plane.axes(), &pose.rotations[found.root]);
         let tree = Tree::grow(description, (&pose, &roles), found.root, rotation, reduction.reductions);
 
-        let held = held(description, &roles, &tree, &found);
+        let frozen = frozen(description, &roles, &tree, &found);
         let outside = description.links.iter().zip(&tree.places).filter(|(_, place)| place.is_none());
         let outside: Vec<String> = outside.map(|(link, _)| link.name.clone()).collect();
-        let seen = caution::Seen { description, pose: &pose, plane };
-        let mut cautions = caution::about_held(&seen, &held, tree.joints.len() + tree.mimic_joints.len());
+        let seen = caution::Seen { description, pose: &pose, plane, legs: &legs };
+        let mut cautions = caution::about_frozen(&seen, &frozen, tree.joints.len() + tree.mimic_joints.len());
         cautions.extend(found.caution);
         cautions.extend(caution::about_outside(description, &outside));
+        cautions.extend(caution::about_meshes(description));
+        cautions.extend(caution::about_axes(description));
         let reading = Reading {
             plane,
             plane_because,
-            better_plane: better_plane(description, &pose, plane),
+            better_plane: better_plane(description, &pose, plane).filter(|_| plane_because != PlaneReason::Legs),
             base_because: found.because,
-            frozen: held,
+            frozen,
             outside,
             cautions,
         };
@@ -87,7 +98,9 @@ impl Robot {
                 let Inertial { origin, mass, inertia } = inertial;
                 let frame = place.frame(origin);
                 let part = LinkInertia::projected(*mass, frame.in_plane(), inertia.as_ref(), &frame.rotation);
-                parts[place.body].push(part.map_err(|reason| link.refuse(reason))?);
+                let mut part = part.map_err(|reason| link.refuse(reason))?;
+                robot.left_out.extend(part.without_negative_moment().map(|moment| left_out::rounded(link, moment)));
+                parts[place.body].push(part);
             }
             robot.left_out.extend(left_out::doubtful_inertia(link));
             let mut reduced = reduce_link(link, place, &mut robot.left_out);
@@ -114,16 +127,30 @@ impl Robot {
     }
 }
 
-/// The plane that is `asked` for, or that all hinges lie along, or the usual one.
-fn find_plane(description: &Description, pose: &ReferencePose, asked: Option<Plane>) -> (Plane, PlaneReason) {
+/// The plane that is `asked` for, or that all hinges lie along, or that most hinges of the `legs` lie along.
+fn find_plane(
+    description: &Description,
+    pose: &ReferencePose,
+    legs: &[bool],
+    asked: Option<Plane>,
+) -> (Plane, PlaneReason) {
     let hinges = (0..description.joints.len()).filter(|&joint| {
         let kind = description.joints[joint].kind;
-        matches!(kind, JointKind::Revolute | JointKind::Continuous) && pose.held[joint].is_none()
+        matches!(kind, JointKind::Revolute | JointKind::Continuous) && pose.frozen[joint].is_none()
     });
-    match (asked, Plane::normal_to(hinges.map(|joint| pose.axes[joint]))) {
-        (Some(plane), _) => (plane, PlaneReason::Asked),
-        (None, Some(plane)) => (plane, PlaneReason::CommonAxis),
-        (None, None) => (Plane::default(), PlaneReason::Usual),
+    if let Some(plane) = asked {
+        return (plane, PlaneReason::Asked);
+    }
+    if let Some(plane) = Plane::normal_to(hinges.clone().map(|joint| pose.axes[joint]), pose.tolerance) {
+        return (plane, PlaneReason::CommonAxis);
+    }
+    let turning = |plane: Plane| {
+        let legs = hinges.clone().filter(|&joint| legs[joint]);
+        legs.filter(|&joint| plane.off_normal(pose.axes[joint]) <= OBLIQUE).count()
+    };
+    match [Plane::XZ, Plane::YZ].map(turning) {
+        [0, 0] => (Plane::default(), PlaneReason::Usual),
+        [x, y] => (if y > x { Plane::YZ } else { Plane::XZ }, PlaneReason::Legs),
     }
 }
 
@@ -139,9 +166,9 @@ fn better_plane(description: &Description, pose: &ReferencePose, plane: Plane) -
 }
 
 /// The joints without a coordinate, in the file's order.
-fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgement) -> Vec<FrozenJoint> {
+fn frozen(description: &Description, roles: &[Role], tree: &Tree, found: &base::Judgment) -> Vec<FrozenJoint> {
     let joints = description.joints.iter().zip(roles).enumerate();
-    let held = joints.filter_map(|(index, (joint, role))| {
+    let frozen = joints.filter_map(|(index, (joint, role))| {
         let name = joint.name.clone();
         match (role, tree.places[joint.child].as_ref().map(|place| &tree.bodies[place.body])) {
             (Role::Frozen(reason), Some(body)) => {
@@ -156,16 +183,16 @@ fn held(description: &Description, roles: &[Role], tree: &Tree, found: &base::Ju
             _ => None,
         }
     });
-    held.collect()
+    frozen.collect()
 }
 
 /// What is left out of joints, in the file's order, and of links that are not part of the robot.
 fn joints_left_out(description: &Description, roles: &[Role], tree: &Tree, reading: &Reading) -> Vec<LeftOutPart> {
-    let mut held = reading.frozen.iter().peekable();
+    let mut frozen = reading.frozen.iter().peekable();
     let mut all = Vec::new();
     for (index, joint) in description.joints.iter().enumerate() {
-        if let Some(held) = held.next_if(|held| held.name == joint.name) {
-            all.push(left_out::held(held));
+        if let Some(frozen) = frozen.next_if(|frozen| frozen.name == joint.name) {
+            all.push(left_out::frozen(frozen));
         } else if let Role::Moves { tilt, .. } = roles[index]
             && tilt > 0.0
             && tree.places[joint.parent].is_some()
@@ -191,7 +218,14 @@ fn reduce_link(link: &description::UrdfLink, place: &Place, left_out: &mut Vec<L
             Err(why) => left_out.push(left_out::skipped(link, collision, why)),
         }
     }
-    Link { name: link.name.clone(), body: place.body, pose, shapes, has_inertial: link.inertial.is_some() }
+    Link {
+        name: link.name.clone(),
+        body: place.body,
+        pose,
+        shapes,
+        has_inertial: link.inertial.is_some(),
+        line: Some(link.location.line),
+    }
 }
 
 /// Refuses a robot whose sums have left the range of f64.

@@ -1,4 +1,4 @@
-//! The pose in which axes are judged: held joints at their values, all others at zero.
+//! The pose in which axes are judged: frozen joints at their values, all others at zero.
 //!
 //! ```text
 //!     R_child = R_parent R_origin turn(a, q)          axis in the root's axes = R_parent R_origin a
@@ -7,37 +7,40 @@
 use crate::description::{Description, JointKind, Matrix, Mimic, Pose, UrdfJoint, apply, product, turn, unit};
 use crate::error::{Reason, Result};
 
-/// Every joint's axis, and where held joints are.
+/// Every joint's axis, and where frozen joints are.
 pub(super) struct ReferencePose {
-    /// The value at which a joint is to be held \[rad or m\], by the joint's index; those that mimic it are held too.
-    pub(super) held: Vec<Option<f64>>,
+    /// The value at which a joint is to be frozen \[rad or m\], by the joint's index; those that mimic it are frozen
+    /// too.
+    pub(super) frozen: Vec<Option<f64>>,
     /// The joint that a joint mimics in the end, by its index.
     pub(super) mimicked: Vec<Option<Mimic>>,
     /// Each joint's axis, of length one, in the root link's axes.
     pub(super) axes: Vec<[f64; 3]>,
     /// Each link's axes, as columns, in those of the root link.
     pub(super) rotations: Vec<Matrix>,
+    /// The greatest angle by which an axis may be off the plane's normal and counts as parallel to it \[rad\].
+    pub(super) tolerance: f64,
 }
 
 impl ReferencePose {
-    /// The pose with these joints held at these values, no joint twice, and none without a coordinate of its own.
-    pub(super) fn new(description: &Description, hold: &[(usize, f64)]) -> Result<Self> {
+    /// The pose with these joints frozen at these values, no joint twice, and none without a coordinate of its own.
+    pub(super) fn new(description: &Description, hold: &[(usize, f64)], tolerance: f64) -> Result<Self> {
         let joints = &description.joints;
-        let mut held = vec![None; joints.len()];
+        let mut frozen = vec![None; joints.len()];
         for &(index, value) in hold {
             let joint = &joints[index];
             refuse_no_coordinate(joint, joints)?;
-            if held[index].replace(value).is_some() {
-                return Err(joint.refuse(Reason::Duplicate { what: "held joint", name: joint.name.clone() }));
+            if frozen[index].replace(value).is_some() {
+                return Err(joint.refuse(Reason::Duplicate { what: "frozen joint", name: joint.name.clone() }));
             }
             if !value.is_finite() {
-                return Err(joint.refuse(Reason::NotFinite { what: "the value at which it is held".into(), value }));
+                return Err(joint.refuse(Reason::NotFinite { what: "the value at which it is frozen".into(), value }));
             }
         }
         let mimicked = description.mimicked()?;
         for (index, mimicked) in mimicked.iter().enumerate() {
             if let Some(&Mimic { joint, multiplier, offset }) = mimicked.as_ref() {
-                held[index] = held[joint].map(|value| multiplier * value + offset);
+                frozen[index] = frozen[joint].map(|value| multiplier * value + offset);
             }
         }
         let mut axes = vec![[0.0; 3]; joints.len()];
@@ -46,22 +49,22 @@ impl ReferencePose {
             let joint = &joints[index];
             let origin = product(&rotations[joint.parent], &joint.origin.rotation());
             axes[index] = unit(apply(&origin, unit(joint.axis)));
-            rotations[joint.child] = held[index].map_or(origin, |value| product(&origin, &held_turn(joint, value)));
+            rotations[joint.child] = frozen[index].map_or(origin, |value| product(&origin, &frozen_turn(joint, value)));
         }
-        Ok(Self { held, mimicked, axes, rotations })
+        Ok(Self { frozen, mimicked, axes, rotations, tolerance })
     }
 }
 
-/// How a joint that is held at `value` turns its child.
-pub(super) fn held_turn(joint: &UrdfJoint, value: f64) -> Matrix {
+/// How a joint that is frozen at `value` turns its child.
+pub(super) fn frozen_turn(joint: &UrdfJoint, value: f64) -> Matrix {
     match joint.kind {
         JointKind::Revolute | JointKind::Continuous => turn(unit(joint.axis), value),
         _ => Pose::default().rotation(),
     }
 }
 
-/// How a joint that is held at `value` shifts its child, in the joint's frame \[m\].
-pub(super) fn held_shift(joint: &UrdfJoint, value: f64) -> [f64; 3] {
+/// How a joint that is frozen at `value` shifts its child, in the joint's frame \[m\].
+pub(super) fn frozen_shift(joint: &UrdfJoint, value: f64) -> [f64; 3] {
     match joint.kind {
         JointKind::Prismatic => unit(joint.axis).map(|component| component * value),
         _ => [0.0; 3],
@@ -73,12 +76,12 @@ fn refuse_no_coordinate(joint: &UrdfJoint, joints: &[UrdfJoint]) -> Result<()> {
     match (joint.kind, &joint.mimic) {
         (_, Some(mimic)) => {
             let mimicked = &joints[mimic.joint].name;
-            let reason = format!("it cannot be held by itself: it follows joint \"{mimicked}\"");
+            let reason = format!("it cannot be frozen by itself: it follows joint \"{mimicked}\"");
             Err(refuse(reason).hint(format!("hold {mimicked}")))
         }
         (JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic, None) => Ok(()),
         (kind, None) => {
-            Err(refuse(format!("it cannot be held at a value: it is {}", kind.name())).hint("leave it out of `hold`"))
+            Err(refuse(format!("it cannot be frozen at a value: it is {}", kind.name())).hint("leave it out of `hold`"))
         }
     }
 }

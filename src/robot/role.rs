@@ -1,11 +1,11 @@
 //! What each joint of the file is in the plane: revolute, prismatic, or fixed.
 //!
 //! ```text
-//!     revolute:   angle(a, n) <= 1e-3 rad      ->  it turns about ±n exactly         else frozen
-//!     prismatic:  angle(a, plane) <= 1e-3 rad  ->  it slides along a in the plane    else frozen
+//!     revolute:   angle(a, n) <= tolerance      ->  it turns about ±n exactly         else frozen
+//!     prismatic:  angle(a, plane) <= tolerance  ->  it slides along a in the plane    else frozen
 //! ```
 
-use super::plane::{PARALLEL, Plane};
+use super::plane::Plane;
 use super::reference_pose::ReferencePose;
 use super::{Axis, FreezeReason};
 use crate::description::{Description, JointKind, Mimic, apply, unit};
@@ -44,7 +44,7 @@ pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plan
             // Reported as what it is: frozen at zero whatever the mimicked joint does.
             (Role::Free | Role::Frozen(_), _) => {}
         }
-        if pose.held[index].is_some() && joints[index].kind != JointKind::Fixed {
+        if pose.frozen[index].is_some() && joints[index].kind != JointKind::Fixed {
             roles[index] = follows();
         }
     }
@@ -53,7 +53,7 @@ pub(super) fn roles(description: &Description, pose: &ReferencePose, plane: Plan
 
 /// A joint's role by itself.
 fn role(kind: JointKind, index: usize, pose: &ReferencePose, plane: Plane) -> Role {
-    if let (Some(value), true) = (pose.held[index], kind.has_axis()) {
+    if let (Some(value), true) = (pose.frozen[index], kind.has_axis()) {
         return Role::Frozen(FreezeReason::Asked { value });
     }
     let axis = pose.axes[index];
@@ -64,7 +64,7 @@ fn role(kind: JointKind, index: usize, pose: &ReferencePose, plane: Plane) -> Ro
         JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic => {
             let slides = kind == JointKind::Prismatic;
             let angle = if slides { plane.off_plane(axis) } else { plane.off_normal(axis) };
-            if angle > PARALLEL {
+            if angle > pose.tolerance {
                 return Role::Frozen(FreezeReason::OffPlane { angle, slides });
             }
             let [x, along_normal, z] = apply(&plane.axes(), axis);

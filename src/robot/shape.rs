@@ -11,8 +11,6 @@
 //! ```
 
 use crate::planar::Vector;
-use parry2d::math::Vector as ParryVector;
-use parry2d::shape::SharedShape;
 
 /// A collision shape in the plane, rigid in its body's frame: a convex polygon of corners swept by a rim.
 #[derive(Debug, Clone)]
@@ -22,7 +20,6 @@ pub struct FootShape {
     pub rim: Rim,
     /// The file of the mesh whose hull it is.
     pub mesh: Option<String>,
-    polygon: Option<SharedShape>,
 }
 
 /// What stands about each corner of a shape.
@@ -68,34 +65,23 @@ impl Rim {
 }
 
 impl FootShape {
-    /// A disc; of radius 0, a point. `center` in the body's frame, both in metres.
+    /// A disc; of radius 0, a point. `center` in the body's frame, both in meters.
     pub fn disc(center: Vector<f64>, radius: f64) -> Self {
-        Self { corners: vec![center], rim: Rim::Circle { radius }, mesh: None, polygon: None }
+        Self { corners: vec![center], rim: Rim::Circle { radius }, mesh: None }
     }
 
     /// The polygon of `corners` \[m\] in the body's frame, convex and counter-clockwise seen with forward to the right
     /// and up upward, with `rim` about each; two corners are a line, one is a point. None for no corner, or for
-    /// neighbors that coincide.
+    /// neighbors that coincide or whose distance exceeds f64.
     pub fn swept(corners: Vec<Vector<f64>>, rim: Rim) -> Option<Self> {
-        let points: Vec<ParryVector> = corners.iter().map(|&Vector { x, z }| ParryVector::new(x, z)).collect();
-        let polygon = match points[..] {
-            [] => return None,
-            [_] => None,
-            [a, b] if a == b => return None,
-            [a, b] => Some(SharedShape::segment(a, b)),
-            _ => Some(SharedShape::convex_polyline_unmodified(points)?),
-        };
-        Some(Self { corners, rim, mesh: None, polygon })
+        let side = |at: usize| (corners[(at + 1) % corners.len()] - corners[at]).length();
+        let distinct = corners.len() == 1 || (0..corners.len()).all(|at| side(at) > 0.0 && side(at).is_finite());
+        (distinct && !corners.is_empty()).then_some(Self { corners, rim, mesh: None })
     }
 
     /// The polygon's corners in the body's frame \[m\]; at least one.
     pub fn corners(&self) -> &[Vector<f64>] {
         &self.corners
-    }
-
-    /// The polygon without its rim, for parry: a convex polygon, or a segment; `None` for one corner.
-    pub(crate) fn polygon(&self) -> Option<&SharedShape> {
-        self.polygon.as_ref()
     }
 
     /// Center and radius of a circle about the whole shape, in the body's frame \[m\].

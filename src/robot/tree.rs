@@ -6,10 +6,10 @@
 //!     p = p_parent + R_parent xyz,   R = R_parent Rz(yaw) Ry(pitch) Rx(roll)          p = 0 in a body of its own
 //! ```
 //!
-//! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is held at
-//! a value shifts and turns its child by that once more. Linear in links; nothing recurses.
+//! where `xyz` and roll, pitch, yaw are of the joint's origin and R leads to the plane's axes; a joint that is frozen
+//! at a value shifts and turns its child by that once more. Linear in links; nothing recurses.
 
-use super::reference_pose::{ReferencePose, held_shift, held_turn};
+use super::reference_pose::{ReferencePose, frozen_shift, frozen_turn};
 use super::role::Role;
 use super::{Body, Joint, MimicJoint, ParentJoint};
 use crate::description::{self, Description, Inertial, Matrix, Mimic, Pose, apply, product};
@@ -91,7 +91,7 @@ impl Tree {
                 (&Role::Moves { axis, ref mimicked, .. }, Some(mover)) => {
                     let (name, parent, child, origin) = (joint.name.clone(), at.body, bodies.len(), at.in_plane());
                     bodies.push(Body::of(&links[joint.child].name, Some(mover)));
-                    let joint = Joint { name, parent, child, origin, axis };
+                    let joint = Joint { name, parent, child, origin, axis, limits: joint.limits };
                     let mimic = mimicked.as_ref().map(|mimicked| (movers[mimicked.joint], mimicked));
                     if let Some((Some(ParentJoint::Joint(mimicked)), &Mimic { multiplier, offset, .. })) = mimic {
                         mimic_joints.push((index, MimicJoint { joint, mimicked, multiplier, offset }));
@@ -101,10 +101,10 @@ impl Tree {
                     Place { body: child, offset: [0.0; 3], ..at }
                 }
                 _ => {
-                    let at = match pose.held[index] {
+                    let at = match pose.frozen[index] {
                         Some(value) => {
-                            let offset = at.point(held_shift(joint, value));
-                            Place { rotation: product(&at.rotation, &held_turn(joint, value)), offset, ..at }
+                            let offset = at.point(frozen_shift(joint, value));
+                            Place { rotation: product(&at.rotation, &frozen_turn(joint, value)), offset, ..at }
                         }
                         None => at,
                     };

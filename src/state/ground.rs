@@ -80,12 +80,13 @@ impl Profile {
             }
             if !(pair[1] - pair[0]).length().is_finite() {
                 let reason = "the distance from the point before is beyond the range of f64".to_owned();
-                return Err(refused(reason).hint("give the points in metres"));
+                return Err(refused(reason).hint("give the points in meters"));
             }
         }
         Ok(Self { points })
     }
 
+    /// The points of the profile, ascending in x \[m\].
     pub fn points(&self) -> &[Vector<f64>] {
         &self.points
     }

@@ -3,8 +3,10 @@
 mod ground;
 mod named;
 mod scene;
+mod limits;
 
 pub use ground::{Ground, Profile};
+pub use limits::OutsideLimits;
 pub use named::Named;
 pub use scene::{AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene};
 
@@ -52,8 +54,8 @@ impl State {
     /// Sets a coordinate by its name: x, z or pitch of the base \[m, rad\], or a joint \[rad, m\].
     ///
     /// # Errors
-    /// [`Reason::UnknownName`] for a name that is none of [`Robot::coordinates`], [`Reason::Inconsistent`] for a list that
-    /// is neither empty nor as long as the robot has coordinates.
+    /// [`Reason::UnknownName`] for a name that is none of [`Robot::coordinates`], [`Reason::Inconsistent`] for a list
+    /// that is neither empty nor as long as the robot has coordinates.
     pub fn set_position(&mut self, robot: &Robot, name: &str, value: f64) -> Result<()> {
         set(&mut self.position, "position", robot, name, value)
     }
@@ -117,6 +119,8 @@ pub struct Uncertainty {
 pub struct Defaults {
     /// Friction of every link to which the state gives none.
     pub friction: Option<Friction>,
+    /// Whether states without a stance put their lowest foot on the ground ([`Scene::place_lowest`]).
+    pub place_lowest: bool,
     /// Loops of every state that gives none of its own.
     pub loops: Vec<NamedLoop>,
 }

@@ -19,6 +19,7 @@ impl<T> Named<T> {
         Self { names, values }
     }
 
+    /// The values in the order of the names.
     pub fn values(&self) -> &[T] {
         &self.values
     }

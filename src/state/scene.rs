@@ -1,4 +1,4 @@
-//! What surrounds the robot: ground, friction, restitution, held joints, loops, applied impulses.
+//! What surrounds the robot: ground, friction, restitution, braked joints, loops, applied impulses.
 
 use super::ground::Ground;
 use crate::law::Friction;
@@ -28,8 +28,11 @@ pub struct Scene {
     pub restitution: ByLink<f64>,
     /// The link whose lowest point is placed on the ground at x = 0 and is at rest.
     pub stance: Option<usize>,
+    /// Whether the base is moved along z such that the lowest foot, or the lowest named contact, is on the ground; it
+    /// moves as it does.
+    pub place_lowest: bool,
     /// Joints that keep their velocity through the impact.
-    pub held: Vec<usize>,
+    pub braked: Vec<usize>,
     /// Rotor inertia at each joint and then at each mimic joint \[kg m^2\]; empty for none. It is added to the mass
     /// matrix's diagonal, that of a mimic joint times multiplier^2.
     pub rotor_inertia: Vec<f64>,
@@ -44,13 +47,16 @@ pub struct Scene {
 /// A value per link, with a default for links that are not named.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ByLink<T> {
+    /// The value of every link that is not named.
     pub default: Option<T>,
+    /// The values of named links, by index.
     pub links: BTreeMap<usize, T>,
 }
 
 /// A contact point of a link that the user names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedContact {
+    /// The link, by index.
     pub link: usize,
     /// Point (or center of the circle) in the link's 3-D frame \[m\].
     pub offset: [f64; 3],
@@ -70,14 +76,18 @@ pub struct NamedLoop {
 /// A point of a link, in its 3-D frame \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkPoint {
+    /// The link, by index.
     pub link: usize,
+    /// The point in the link's frame \[m\].
     pub offset: [f64; 3],
 }
 
 /// An impulse that acts on a point of a link, in its 3-D frame \[m\], while the robot strikes the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AppliedImpulse {
+    /// The link, by index.
     pub link: usize,
+    /// The point in the link's frame \[m\].
     pub offset: [f64; 3],
     /// The impulse `[x, z]` in the world's axes \[N s\].
     pub vector: Vector<f64>,
@@ -90,10 +100,12 @@ impl<T> Default for ByLink<T> {
 }
 
 impl<T: Copy> ByLink<T> {
+    /// The same value for every link.
     pub fn everywhere(value: T) -> Self {
         Self { default: Some(value), links: BTreeMap::new() }
     }
 
+    /// The value of a link; `None` if it has none and there is no default.
     pub fn of(&self, link: usize) -> Option<T> {
         self.links.get(&link).copied().or(self.default)
     }

@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thin_region_among_contacts_that_no_sample_has_is_found() {
+    fn thin_region_of_unseen_contacts_is_found() {
         // The foot is down between two samples; while it is, it sticks, except on a thin stretch.
         const THIN: [f64; 2] = [0.4512, 0.451_201];
         let down = |at: f64| (0.41..0.49).contains(&at);

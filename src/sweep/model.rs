@@ -15,12 +15,17 @@ use std::sync::Arc;
 /// A study of one robot.
 #[derive(Debug, Clone)]
 pub struct RobotStudy<'a> {
+    /// What is varied, and the states.
     pub study: &'a Study<'a>,
+    /// The file of the robot, whose masses and lengths may vary.
     pub description: &'a Description,
+    /// How it is reduced to its plane.
     pub reduction: &'a Reduction,
     /// The robot as the file has it.
     pub robot: &'a Robot,
+    /// How contacts are found and what is computed.
     pub options: Options,
+    /// What states take that do not state it.
     pub defaults: Defaults,
 }
 

@@ -26,25 +26,21 @@ pub enum Regime {
 impl Regime {
     /// That of an answer.
     pub fn of(answer: &Result<Impact>) -> Self {
-        let analysed = answer.as_ref().map_err(Error::clone).and_then(|impact| Ok((impact, impact.analysed()?)));
-        let (impact, analysis) = match analysed {
-            Ok(analysed) => analysed,
+        let analyzed = answer.as_ref().map_err(Error::clone).and_then(|impact| Ok((impact, impact.analyzed()?)));
+        let (impact, analysis) = match analyzed {
+            Ok(analyzed) => analyzed,
             Err(error) => {
                 let place = error.place().map(str::to_owned);
                 return Self::Refused { reason: discriminant(error.reason()), place };
             }
         };
-        let list = |decided: bool| {
-            let chosen = analysis.outcomes.iter().filter(|outcome| outcome.decided == decided);
-            let mut list: Vec<Vec<Mode>> = chosen.map(|outcome| outcome.modes.clone()).collect();
-            list.sort();
-            list.dedup();
-            list
-        };
+        let open = analysis.outcomes.iter().filter(|outcome| !outcome.decided);
+        let mut undecided: Vec<Vec<Mode>> = open.map(|outcome| outcome.modes.clone()).collect();
+        undecided.sort();
         Self::Answered {
             contacts: impact.contacts.iter().map(|contact| contact.name.clone()).collect(),
-            outcomes: list(true),
-            undecided: list(false),
+            outcomes: analysis.modes(),
+            undecided,
         }
     }
 

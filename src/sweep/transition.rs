@@ -78,8 +78,9 @@ impl Transition {
             let (opening, closing) = (missing(&below.0, &above.0), missing(&above.0, &below.0));
             return Self { opening, closing, ..Self::default() };
         }
-        let mut ended = ending(&below, &above.1, Side::Below);
-        ended.extend(ending(&above, &below.1, Side::Above));
+        let names = &below.0;
+        let mut ended = ending(names, &below.1, &above.1, Side::Below);
+        ended.extend(ending(names, &above.1, &below.1, Side::Above));
         Self { ended, ..Self::default() }
     }
 
@@ -112,8 +113,8 @@ impl Transition {
 /// Next to a border a margin is not greater than this, unless the state jumps there.
 const ZERO: f64 = 1e-4;
 
-/// The outcomes of one side that the other rejects, and for which inequality.
-fn ending((names, here): &(Vec<String>, Analysis), there: &Analysis, side: Side) -> Vec<EndedOutcome> {
+/// The outcomes of the `side` that is `here` which the other rejects, and for which inequality of a contact in `names`.
+fn ending(names: &[String], here: &Analysis, there: &Analysis, side: Side) -> Vec<EndedOutcome> {
     let cause = |outcome: &Outcome| {
         let modes = &outcome.modes;
         // An outcome far from its own borders ends where the state jumps, and no inequality is zero.

@@ -9,18 +9,22 @@ use crate::robot::{Axis, Base, Body, FootShape, FreezeReason, FrozenJoint, Joint
 use crate::state::NamedContact;
 use serde::Serialize;
 
-/// The reduced robot as it is written; what is proven refers to these numbers. [`Report`](super::Report) has an example.
+/// The reduced robot as it is written; what is proven refers to these numbers. [`Report`](super::Report) has an
+/// example.
 #[derive(Debug, Clone, Serialize)]
 pub struct Inspection<'a> {
+    /// The robot's name in its file.
     pub name: &'a str,
     /// Forward and up in the file's root frame.
     pub plane: &'static str,
     /// Its normal there, with its sign.
     #[serde(skip)]
     normal: &'static str,
+    /// Why this plane was taken, in words.
     pub plane_because: String,
     /// `floating` or `fixed`.
     pub base: &'static str,
+    /// Why the base is floating or fixed, in words.
     pub base_because: &'a str,
     /// What a user must know before trusting the rest, with the remedy.
     pub cautions: &'a [String],
@@ -47,7 +51,9 @@ pub struct Inspection<'a> {
 /// Links that no moving joint separates, in the file's order; named after the one that carries its frame.
 #[derive(Debug, Clone, Serialize)]
 pub struct BodyRecord<'a> {
+    /// The link that carries its frame.
     pub name: &'a str,
+    /// All of its links.
     pub links: Vec<&'a str>,
     /// Mass \[kg\].
     pub mass: f64,
@@ -66,11 +72,14 @@ pub struct BodyRecord<'a> {
 /// A joint that moves in the plane, from its parent body to the body it moves.
 #[derive(Debug, Clone, Serialize)]
 pub struct JointRecord<'a> {
+    /// Its name in the file.
     pub name: &'a str,
     /// `turn` or `slide`.
     #[serde(rename = "type")]
     pub kind: &'static str,
+    /// The body that it is fixed to.
     pub parent: &'a str,
+    /// The body that it moves.
     pub child: &'a str,
     /// Its origin in the parent body's frame at coordinate zero \[m\].
     pub origin: Vector<f64>,
@@ -85,19 +94,26 @@ pub struct JointRecord<'a> {
 /// A joint that follows another: its coordinate is multiplier times that of the mimicked one plus offset \[rad, m\].
 #[derive(Debug, Clone, Serialize)]
 pub struct MimicRecord<'a> {
+    /// The joint itself.
     #[serde(flatten)]
     pub joint: JointRecord<'a>,
+    /// The joint that it follows.
     #[serde(rename = "leader")]
     pub mimicked: &'a str,
+    /// How much it moves for a unit of the mimicked joint \[1, m/rad, rad/m\].
     pub multiplier: f64,
+    /// Its coordinate where that of the mimicked joint is zero \[rad, m\].
     pub offset: f64,
 }
 
 /// A joint of the file that has no coordinate, why, and the body that its child is fixed to.
 #[derive(Debug, Clone, Serialize)]
 pub struct FrozenRecord<'a> {
+    /// Its name in the file.
     pub name: &'a str,
+    /// The body that its child is fixed to.
     pub body: &'a str,
+    /// Why it has no coordinate, in words.
     pub why: String,
     #[serde(skip)]
     reason: &'a FreezeReason,
@@ -106,7 +122,9 @@ pub struct FrozenRecord<'a> {
 /// A link of the file, and the body it belongs to.
 #[derive(Debug, Clone, Serialize)]
 pub struct LinkRecord<'a> {
+    /// Its name in the file.
     pub name: &'a str,
+    /// The body that it belongs to.
     pub body: &'a str,
     /// Whether the file gives it an inertial; without one it is massless.
     pub has_inertial: bool,
@@ -115,7 +133,9 @@ pub struct LinkRecord<'a> {
 /// A shape that can touch the ground, with the body whose frame it is given in.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct FootRecord<'a> {
+    /// The link that has the shape.
     pub link: &'a str,
+    /// The body in whose frame the shape is given.
     pub body: &'a str,
     /// `disc` or `polygon`.
     pub shape: &'static str,
@@ -149,7 +169,7 @@ impl<'a> Inspection<'a> {
             let &Body { ref name, mass, com, moment, .. } = body;
             BodyRecord { name, links, mass, com, moment, fixed_to, origin }
         };
-        let joint = |&Joint { ref name, parent, child, origin, axis }: &'a Joint| {
+        let joint = |&Joint { ref name, parent, child, origin, axis, .. }: &'a Joint| {
             let (kind, sign, direction) = match axis {
                 Axis::Revolute { sign } => ("turn", Some(sign), None),
                 Axis::Prismatic { direction } => ("slide", None, Some(direction)),

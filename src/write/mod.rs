@@ -24,12 +24,12 @@ pub mod schema;
 
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
-pub use csv::Columns;
+pub use csv::{Columns, RowKind};
 pub use inspection::Inspection;
 pub(crate) use result::short_id;
 pub use result::{
-    Brief, CarriedFields, ContactRecord, ErrorObject, LeftOutRecord, OutcomeInBrief, Refused, Rejected, Report,
-    Touchdown,
+    Brief, CarriedFields, ContactInBrief, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, OutcomeInBrief,
+    Refused, Rejected, Report, Touchdown,
 };
 pub use state::{CounterexampleRecord, HoldsRecord};
 pub use text::{Subject, text};

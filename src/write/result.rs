@@ -4,15 +4,20 @@
 //! singular matrix) are null. Numbers are written with every digit.
 
 use super::Detail;
-use super::state::{CounterexampleRecord, HoldsRecord};
-use crate::impact::{Analysis, Explanation, Outcome, Rejection, Verdict};
-use crate::pipeline::{Impact, LeftOut};
+#[cfg(feature = "schema")]
+use super::state::any_object;
+use super::state::{CounterexampleRecord, HoldsRecord, raw_state};
+use crate::contact::Merged;
+use crate::gait::Landing;
+use crate::impact::{Analysis, Explanation, Family, Outcome, Rejection, Verdict};
+use crate::pipeline::{Impact, LeftOut, NearestFoot};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::state::{Named, State};
-use crate::{Error, Mode, Robot, description};
+use crate::{Error, Mode, Reason, Robot, description};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
+use serde_json::value::RawValue;
 use std::borrow::Cow;
 use std::fmt::{self, Display};
 
@@ -41,6 +46,9 @@ pub struct Report<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Cow<'a, Value>>,
+    /// The line on which the input begins, from 1; in a batch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<usize>,
     /// Where the state was found; of a touchdown in a recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touchdown: Option<Touchdown<'a>>,
@@ -58,9 +66,15 @@ pub struct Report<'a> {
     pub counterexample: Option<CounterexampleRecord<'a>>,
     /// The closed contacts, in the order of all lists per contact.
     pub contacts: Vec<ContactRecord<'a>>,
+    /// The lowest foot that does not touch; absent if every foot touches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest: Option<NearestRecord<'a>>,
     /// Every outcome; absent next to an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Cow<'a, [Outcome]>>,
+    /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
+    #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
+    pub families: Cow<'a, [Family]>,
     /// Every other combination, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejected: Option<Vec<Rejected<'a>>>,
@@ -136,6 +150,19 @@ pub struct ContactRecord<'a> {
     pub velocity_before: Pair<f64>,
 }
 
+/// A foot that does not touch, or that is too deep in the ground.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "NearestFoot")]
+pub struct NearestRecord<'a> {
+    /// The URDF link that carries it.
+    pub name: Cow<'a, str>,
+    /// Height of its lowest point above the ground along the normal \[m\], negative below it.
+    pub height: f64,
+    /// How that point moves before the impact, [tangential, normal] \[m/s\].
+    pub velocity: Pair<f64>,
+}
+
 /// Something of the robot's file or of the scene that does not enter the analysis.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -163,17 +190,27 @@ impl<'a> LeftOutRecord<'a> {
         let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };
         let of_scene = impact.left_out.iter().map(|left| {
             let (what, why) = match left {
-                LeftOut::Column(joint) => {
-                    (description::joint_place(&robot.joints[*joint].name), "held: it keeps its rate and has no column")
-                }
+                LeftOut::Column(joint) => (
+                    description::joint_place(&robot.joints[*joint].name),
+                    "braked: it keeps its rate and has no column".into(),
+                ),
                 LeftOut::OutOfReach(count) => {
-                    (format!("{} out of reach", shapes(*count)), "too high to reach the ground")
+                    (format!("{} out of reach", shapes(*count)), "too high to reach the ground".into())
                 }
-                LeftOut::NotAsked(count) => (format!("{} of the file", shapes(*count)), "contacts are named by hand"),
-                LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0"),
-                LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction"),
+                LeftOut::NotAsked(count) => {
+                    (format!("{} of the file", shapes(*count)), "contacts are named by hand".into())
+                }
+                LeftOut::Merged(Merged { inner, outer, off }) => {
+                    let points =
+                        if *inner == 1 { "1 contact point".to_owned() } else { format!("{inner} contact points") };
+                    let off = if *off > 0.0 { format!(", at most {off:.1e} m off their line") } else { String::new() };
+                    let why = format!("the outer points of the same body on straight ground act for them{off}");
+                    (format!("{points} next to {}", contacts(outer)), why.into())
+                }
+                LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0".into()),
+                LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction".into()),
             };
-            Self { what: Cow::Owned(what), why: Cow::Borrowed(why) }
+            Self { what: Cow::Owned(what), why }
         });
         of_scene.chain(Self::all(robot)).collect()
     }
@@ -183,7 +220,7 @@ impl<'a> LeftOutRecord<'a> {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Touchdown<'a> {
-    /// The row of the state, or the last one before it, counted from 0 without the header.
+    /// The line of the state's row in the table, or of the last row before it, from 1.
     pub row: usize,
     /// The time of the state \[s\].
     pub time: f64,
@@ -195,6 +232,28 @@ pub struct Touchdown<'a> {
     pub at: Cow<'a, str>,
     /// Which other feet take part: `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`.
     pub touching: String,
+    /// The state before the impact, to be fed back.
+    #[cfg_attr(feature = "schema", schemars(schema_with = "any_object"))]
+    pub state: Box<RawValue>,
+    /// Its q and v, for tables.
+    #[serde(skip)]
+    pub coordinates: Vec<f64>,
+}
+
+impl<'a> Touchdown<'a> {
+    /// The touchdown of a `state` that was found behind a `row` of a recording at `time` \[s\].
+    pub fn of(robot: &Robot, state: &State, landing: &'a Landing, row: usize, time: f64) -> Option<Self> {
+        Some(Self {
+            row,
+            time,
+            striking: (&landing.striking).into(),
+            shift_z: landing.shift_z,
+            at: landing.at.name().into(),
+            touching: landing.touching.to_string(),
+            state: raw_state(robot, state)?,
+            coordinates: [&state.position[..], &state.velocity].concat(),
+        })
+    }
 }
 
 /// Fields of a table that are carried through, written as an object.
@@ -245,6 +304,14 @@ pub struct OutcomeInBrief<'a> {
     pub decided: bool,
 }
 
+/// A closed contact in brief.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ContactInBrief<'a> {
+    /// Its name.
+    pub name: Cow<'a, str>,
+}
+
 /// The result in brief.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -253,6 +320,9 @@ pub struct Brief<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
     pub id: Option<Cow<'a, Value>>,
+    /// The line on which the input begins, from 1; in a batch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<usize>,
     /// Where the state was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touchdown: Option<Touchdown<'a>>,
@@ -265,9 +335,14 @@ pub struct Brief<'a> {
     /// Whether every state of the box has the same outcomes; of an uncertain state.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<HoldsRecord>,
+    /// The closed contacts, in the order of the modes.
+    pub contacts: Vec<ContactInBrief<'a>>,
     /// Every outcome.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
+    /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
+    #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
+    pub families: Cow<'a, [Family]>,
     /// Why there are no outcomes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
@@ -299,6 +374,9 @@ pub struct ErrorObject {
     /// What to do.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hint: Option<String>,
+    /// The foot that is too deep in the ground.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest: Option<NearestRecord<'static>>,
 }
 
 impl Refused {
@@ -312,7 +390,13 @@ impl ErrorObject {
     /// The error without its file, line and column.
     pub fn new(error: &Error) -> Self {
         let [place, hint] = [error.place(), error.remedy()].map(|text| text.map(str::to_owned));
-        Self { message: error.reason().to_string(), place, hint }
+        let nearest = match error.reason() {
+            Reason::Penetration { link, depth, velocity: Some(velocity), .. } => {
+                Some(NearestRecord { name: link.clone().into(), height: -depth, velocity: *velocity })
+            }
+            _ => None,
+        };
+        Self { message: error.reason().to_string(), place, hint, nearest }
     }
 }
 
@@ -330,7 +414,7 @@ impl<'a> Report<'a> {
     /// # Errors
     /// The refusal of the outcomes, if no matrices were asked for.
     pub fn of_state(robot: &'a Robot, state: &'a State, impact: &'a Impact, detail: Detail) -> crate::Result<Self> {
-        let error = match impact.analysed() {
+        let error = match impact.analyzed() {
             Err(error) if impact.matrices.is_none() => return Err(error),
             analysis => analysis.err(),
         };
@@ -342,9 +426,13 @@ impl<'a> Report<'a> {
             gap: Some(contact.gap),
             ..ContactRecord::of_problem(&contact.name, *velocity)
         });
+        let nearest = impact.nearest.and_then(|NearestFoot { link, height, velocity }| {
+            Some(NearestRecord { name: Cow::Borrowed(&robot.links.get(link)?.name), height, velocity })
+        });
         let matrices = impact.matrices.as_ref();
         Ok(Self {
             id: state.id.as_ref().map(Cow::Borrowed),
+            nearest,
             kinetic_energy: Some(impact.kinetic_energy),
             left_out: Some(LeftOutRecord::of_impact(robot, impact)),
             holds: impact.holds.as_ref().map(HoldsRecord::from),
@@ -389,6 +477,7 @@ impl<'a> Report<'a> {
             verdict: known.map(|analysis| analysis.verdict),
             proven: known.map(|analysis| analysis.proven),
             outcomes: known.map(|analysis| Cow::Borrowed(&*analysis.outcomes)),
+            families: known.map(|analysis| Cow::Borrowed(&*analysis.families)).unwrap_or_default(),
             rejected,
             no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
             explain: explained.map(|analysis| analysis.explanation.as_ref().map(Cow::Borrowed)),
@@ -407,13 +496,17 @@ impl<'a> Report<'a> {
             let modes = Cow::Borrowed(&**modes);
             OutcomeInBrief { modes, index, margin, decided }
         });
+        let contacts = self.contacts.iter().map(|contact| ContactInBrief { name: Cow::Borrowed(&*contact.name) });
         Brief {
             id: self.id.clone(),
+            line: self.line,
             touchdown: self.touchdown.clone(),
             verdict: self.verdict,
             proven: self.proven,
             holds: self.holds,
+            contacts: contacts.collect(),
             outcomes: self.outcomes.is_some().then(|| in_brief.collect()),
+            families: self.families.clone(),
             error: self.error.clone(),
         }
     }

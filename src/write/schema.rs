@@ -59,7 +59,7 @@ pub fn accuracy() -> Value {
 #[schemars(title = "Result")]
 enum ResultLine<'a> {
     Whole(Box<Report<'a>>),
-    Brief(Brief<'a>),
+    Brief(Box<Brief<'a>>),
     Refused(Refused),
 }
 
@@ -95,7 +95,7 @@ struct SampleWhole<'a> {
 #[schemars(inline)]
 enum SampleResult<'a> {
     Whole(Box<Report<'a>>),
-    Brief(Brief<'a>),
+    Brief(Box<Brief<'a>>),
     Refused(RefusedSample),
 }
 

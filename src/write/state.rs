@@ -17,6 +17,11 @@ impl State {
     }
 }
 
+/// The state as JSON, for a field of a result.
+pub(super) fn raw_state(robot: &Robot, state: &State) -> Option<Box<RawValue>> {
+    to_raw_value(&StateRecord { robot, state }).ok()
+}
+
 /// A state that is written with the names of its robot.
 struct StateRecord<'a> {
     robot: &'a Robot,
@@ -94,8 +99,9 @@ impl Serialize for StateRecord<'_> {
         entry(&mut map, "ground", !matches!(scene.ground, Ground::Slope(0.0)), &ground)?;
         let stance = scene.stance.map(|stance| self.link(stance));
         entry(&mut map, "stance", stance.is_some(), &stance)?;
-        let held: Vec<_> = scene.held.iter().map(|&joint| &self.robot.joints[joint].name).collect();
-        entry(&mut map, "held", !held.is_empty(), &held)?;
+        entry(&mut map, "place", scene.place_lowest, &"lowest")?;
+        let braked: Vec<_> = scene.braked.iter().map(|&joint| &self.robot.joints[joint].name).collect();
+        entry(&mut map, "held", !braked.is_empty(), &braked)?;
         let rotors = self.by_joint(&scene.rotor_inertia);
         entry(&mut map, "rotor_inertia", !scene.rotor_inertia.is_empty(), &rotors)?;
         let contacts = scene.contacts.iter().flatten().map(
@@ -166,13 +172,13 @@ impl<'a> CounterexampleRecord<'a> {
     /// The counterexample of what was found about a state of `robot`; `None` if there is none.
     pub fn of(robot: &'a Robot, holds: &'a Robustness) -> Option<Self> {
         let Robustness::Not(found) = holds else { return None };
-        let state = to_raw_value(&StateRecord { robot, state: &found.state }).ok()?;
+        let state = raw_state(robot, &found.state)?;
         Some(Self { state, verdict: found.verdict, outcomes: Cow::Borrowed(&found.outcomes) })
     }
 }
 
 /// Any object, of which there is a schema of its own.
 #[cfg(feature = "schema")]
-fn any_object(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+pub(super) fn any_object(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({"type": "object"})
 }

@@ -1,5 +1,6 @@
 //! Tables for people: columns of text to the left, columns of numbers with their points below each other.
 
+use crate::error::visible;
 use crate::planar::Pair;
 use std::fmt::Write;
 
@@ -20,9 +21,10 @@ struct Column {
 }
 
 impl Table {
-    /// Adds a column of text.
+    /// Adds a column of text, all of it [`visible`].
     pub(crate) fn text<C: Into<String>>(mut self, head: &str, cells: impl IntoIterator<Item = C>) -> Self {
-        let cells = std::iter::once(head.to_owned()).chain(cells.into_iter().map(Into::into)).collect();
+        let cells = std::iter::once(head.to_owned()).chain(cells.into_iter().map(Into::into));
+        let cells = cells.map(|cell| visible(&cell).into_owned()).collect();
         self.columns.push(Column { cells, to_the_right: false });
         self
     }

@@ -1,14 +1,16 @@
-//! Names, modes, verdicts and grades in words.
+//! Names, modes, verdicts and grades in words; all but [`id`] is [`visible`].
 
 use super::table::number;
-use crate::{Mode, Verdict};
+use crate::error::visible;
+use crate::{Mode, Outcome, Verdict};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::hash::Hash;
 
 /// `ramone (k17)`.
 pub fn titled(name: &str, id: &Option<Value>) -> String {
-    id.as_ref().map_or(name.to_owned(), |own| format!("{name} ({})", self::id(own)))
+    let title = id.as_ref().map_or_else(|| name.to_owned(), |own| format!("{name} ({})", self::id(own)));
+    visible(&title).into_owned()
 }
 
 /// An id without quotes.
@@ -25,19 +27,23 @@ pub(crate) fn grades(margin: Option<f64>, index: Option<i8>) -> String {
 
 /// `left_foot lifts off, right_foot sticks`.
 pub(crate) fn modes(names: impl IntoIterator<Item: AsRef<str>>, modes: &[Mode]) -> String {
-    let clauses = names.into_iter().zip(modes).map(|(name, mode)| format!("{} {}", name.as_ref(), verb(*mode)));
+    let clauses =
+        names.into_iter().zip(modes).map(|(name, mode)| format!("{} {}", visible(name.as_ref()), verb(*mode)));
     clauses.collect::<Vec<_>>().join(", ")
 }
 
 const NUMBERS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
 
 /// The verdict as a sentence.
-pub(crate) fn verdict(verdict: Verdict, outcomes: usize) -> String {
+pub(crate) fn verdict(verdict: Verdict, outcomes: &[Outcome]) -> String {
     let sentence = match verdict {
         Verdict::Unique => "Exactly one outcome.",
         Verdict::Ambiguous => {
-            let count = NUMBERS.get(outcomes).map_or(outcomes.to_string(), |word| (*word).to_owned());
-            return format!("{count} outcomes are equally valid.");
+            let count = outcomes.len();
+            let count = NUMBERS.get(count).map_or(count.to_string(), |word| (*word).to_owned());
+            let families = outcomes.iter().any(|outcome| outcome.family);
+            let families = if families { ", and so are the families of velocities between them" } else { "" };
+            return format!("{count} outcomes are equally valid{families}.");
         }
         // Regular contacts always have an outcome.
         Verdict::None => {
@@ -68,7 +74,7 @@ pub(crate) fn list(names: &[impl AsRef<str>], room: usize) -> String {
         end <= room + 2
     };
     let shown = names.iter().take_while(fits).count().max(1).min(names.len());
-    let mut text = names[..shown].iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
+    let mut text = visible(&names[..shown].iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ")).into_owned();
     if shown < names.len() {
         text.push_str(&format!(" and {} more", names.len() - shown));
     }

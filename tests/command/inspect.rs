@@ -20,13 +20,32 @@ fn every_robot_is_shown_with_what_a_user_needs_first() {
         ("upkie", "tests/data/robots/upkie/upkie.urdf"),
     ] {
         let text = heelstrike(&["inspect", path]).text();
-        assert!(text.lines().count() <= 55, "{name}: {text}");
-        // Without what is left of a line that was broken.
-        let head = text.lines().skip(1).filter(|line| !line.starts_with("     "));
+        assert!(text.lines().count() <= 40, "{name}: {text}");
+        // Without cautions, and what is left of a line that was broken.
+        let is_label = |line: &&str| !line.starts_with("     ") && !line.starts_with("  caution");
+        let head = text.lines().skip(1).filter(is_label);
         let labels: Vec<&str> = head.take(6).filter_map(|line| line.split_whitespace().next()).collect();
         assert_eq!(labels, ["plane", "mass", "base", "joints", "coordinates", "feet"], "{name}");
         insta::assert_snapshot!(format!("inspect_{name}"), text);
     }
+}
+
+#[test]
+fn inspect_shows_everything_if_asked() {
+    let cut = heelstrike(&["inspect", A1]).text();
+    let whole = heelstrike(&["inspect", A1, "--all"]).text();
+    assert!(cut.lines().count() == 40 && cut.ends_with("The rest: --all\n"), "{cut}");
+    assert!(whole.lines().count() > 40 && !whole.contains("--all") && !whole.contains(" more lines"), "{whole}");
+    // Without the lines that stand for others, each line of the one is in the other.
+    let own = cut.lines().filter(|line| !line.contains(" more lines") && !line.contains("--all"));
+    assert!(
+        own.clone().count() > 30 && own.clone().all(|line| whole.lines().any(|other| other == line)),
+        "{cut}{whole}"
+    );
+    // A foot of several alike shapes is listed once.
+    let shapes = "<collision><geometry><sphere radius='0.1'/></geometry></collision>".repeat(3);
+    let file = file("shapes.urdf", urdf::body(1.0, &shapes));
+    assert!(heelstrike(&["inspect", &file]).text().contains("feet         3 of body (circle of radius 0.1 m)\n"));
 }
 
 #[test]
@@ -42,7 +61,7 @@ fn plane_hold_and_base_shape_the_robot() {
     let held = inspect(&["--hold", "FR_calf_joint=-1.5", "--hold", "FL_calf_joint=-1.5", "--base", "fixed"]);
     assert_eq!(list(&held["coordinates"]).len(), 6);
     assert_eq!((&held["base"], &held["base_because"]), (&"fixed".into(), &"as asked".into()));
-    let left = json!({"name": "FR_calf_joint", "body": "FR_thigh", "why": "held at -1.5 as asked"});
+    let left = json!({"name": "FR_calf_joint", "body": "FR_thigh", "why": "frozen at -1.5 as asked"});
     assert!(list(&held["held"]).contains(&left), "{}", held["held"]);
 
     let unknown = heelstrike(&["inspect", A1, "--hold", "FR_calf=0"]).refusal(2);
@@ -54,7 +73,7 @@ fn plane_hold_and_base_shape_the_robot() {
 fn a_state_that_names_a_frozen_joint_is_refused() {
     let state = r#"{"position": {"joints": {"FR_hip_joint": 0.1}}, "friction": 1}"#;
     let stderr = heelstrike_reads(&["impact", A1, "-"], state).refusal(1);
-    let reason = "joint \"FR_hip_joint\" has no coordinate: held at zero, its axis being 90.00 degrees off the plane's normal: \
+    let reason = "joint \"FR_hip_joint\" has no coordinate: frozen at zero, its axis being 90.00 degrees off the plane's normal: \
                   welded into base";
     assert!(stderr.contains(reason), "{stderr}");
 }
@@ -65,7 +84,7 @@ fn every_command_warns_of_a_robot_that_loses_joints() {
     let joint = "<joint name='j' type='revolute'><origin rpy='0.0872665 0 0'/><axis xyz='0 1 0'/><parent link='a'/>\
                  <child link='b'/></joint>";
     let file = file("tilted.urdf", urdf::robot(&[a, b, joint.to_owned()]));
-    let word = "1 of 1 joints that could move are held only because their axes are 5.0 degrees off the plane (j); to keep \
+    let word = "1 of 1 joints that could move are frozen only because their axes are 5.0 degrees off the plane (j); to keep \
                 them: straighten the rpy of j";
     let inspect = heelstrike(&["inspect", &file]);
     assert!(inspect.stdout.replace("\n               ", " ").contains(word), "{}", inspect.stdout);

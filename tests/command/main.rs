@@ -12,6 +12,7 @@ mod batch;
 mod inspect;
 mod manners;
 mod meshes;
+mod names;
 mod page;
 mod picture;
 mod refusals;

@@ -31,10 +31,9 @@ fn every_command_has_an_example_in_its_help() {
         if command.is_empty() {
             let names = help.lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
             let names: Vec<&str> = names.map(|(name, _)| name).collect();
-            for command in ["inspect", "impact", "batch", "solve", "schema", "completions"] {
+            for command in ["inspect", "impact", "batch", "solve", "schema", "completions", "man"] {
                 assert!(names.contains(&command), "{command}: {help}");
             }
-            assert!(!names.contains(&"man"), "for those who package the tool");
         }
     }
 }
@@ -134,4 +133,33 @@ fn colors_come_only_where_they_are_wanted() {
             assert_eq!(escapes, colored, "{arguments:?} {variables:?}");
         }
     }
+}
+
+// Options of the scene.
+
+#[test]
+fn place_lowest_puts_states_on_the_ground() {
+    let state = r#"{"position": {"base": {"z": 3}}, "velocity": {"base": {"z": -1}}, "friction": 1}"#;
+    for command in ["impact", "batch"] {
+        let verdict = |more: &[&str]| {
+            let run = heelstrike_reads(&[&[command, BLOCK, "-", "--format", "json"], more].concat(), state);
+            run.well().line()["verdict"].clone()
+        };
+        assert_eq!((verdict(&["--place", "lowest"]), verdict(&[])), (json!("unique"), json!("no_contact")));
+    }
+    let bolted = ["impact", WALKER, "examples/minimalistic.json", "--place", "lowest", "--base", "fixed"];
+    assert!(heelstrike(&bolted).refusal(2).contains("cannot be placed"));
+    let both = ["batch", RAMONE, "-", "--touchdowns", "--place", "lowest"];
+    assert!(heelstrike(&both).refusal(2).contains("cannot be used with"));
+}
+
+#[test]
+fn strict_limits_refuse_where_a_note_was_given() {
+    let walker = fs::read_to_string(WALKER).unwrap().replace("\"continuous\"", "\"revolute\"");
+    let robot = file("limited.urdf", walker.replace("</joint>", "<limit lower=\"-1\" upper=\"1\"/></joint>"));
+    let state = r#"{"position": {"joints": {"hip": -45}}, "stance": "left_leg", "friction": 1}"#;
+    let noted = heelstrike_reads(&["impact", &robot, "-"], state).text();
+    assert!(noted.contains("Note: hip = -45 rad is outside [-1, 1]; degrees?\n"), "{noted}");
+    let refused = heelstrike_reads(&["impact", &robot, "-", "--strict-limits"], state).refusal(1);
+    assert!(refused.contains("position.joints.hip") && refused.contains("or do without --strict-limits"), "{refused}");
 }

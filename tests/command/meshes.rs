@@ -1,5 +1,5 @@
 //! Mesh files as a user meets them: how the command finds them by name, what it says of those that are missing, broken
-//! or hostile, and the feet that they give. Readers and hulls are tested beside their code.
+//! or hostile, and the feet that they give. Readers and hulls are tested next to their code.
 
 use super::support::urdf;
 use super::{command, each, finished, fs, list, place};
@@ -117,6 +117,7 @@ fn names_of_every_kind_lead_to_the_file() {
         "package://pack/meshes/my%20sole.obj",
         "package://pack//meshes/../meshes/my sole.obj",
         "model://pack/meshes/my sole.obj",
+        "package:///pack/meshes/my sole.obj",
         absolute,
         &format!("file://{absolute}"),
         &format!("file://{}", absolute.replace(' ', "%20")),
@@ -131,6 +132,7 @@ fn names_of_every_kind_lead_to_the_file() {
         ("../meshes", "no such file"),
         ("/dev/zero", "no such file"),
         ("package://pack/", "no such file in package pack"),
+        ("package:///gone.stl", "no such file, and its name has no package"),
     ] {
         write(&urdf, mesh(name));
         assert_eq!(foot(&mut inspecting(), &urdf), Err(why.to_owned()), "{name}");
@@ -138,7 +140,7 @@ fn names_of_every_kind_lead_to_the_file() {
 }
 
 #[test]
-fn a_path_that_leaves_its_package_is_refused() {
+fn a_path_that_leaves_its_package_is_left_out() {
     let urdf = folder().join("r.urdf");
     for name in [
         "package://x/../../etc/passwd",
@@ -146,14 +148,23 @@ fn a_path_that_leaves_its_package_is_refused() {
         "package://x\\..\\y.stl",
         "package://x/%2e%2E/y.stl",
         "package://../etc/y.stl",
-        "package:///etc/y.stl",
     ] {
         write(&urdf, mesh(name));
-        let stderr = finished(inspecting().arg(&urdf)).refusal(1);
-        for words in ["link \"foot\"", "leaves its package", ":2:1", "hint: name a file inside the package"] {
-            assert!(stderr.contains(words), "{name}: {stderr}");
-        }
+        let why = "its name leaves its package, as no name may";
+        assert_eq!(foot(&mut inspecting(), &urdf), Err(why.to_owned()), "{name}");
     }
+}
+
+#[test]
+fn missing_mesh_is_named_by_impact_too() {
+    let urdf = folder().join("r.urdf");
+    write(&urdf, mesh("package://gone/sole.stl"));
+    let mut impact = command();
+    let run = finished(impact.arg("impact").arg(&urdf).args(["-", "--friction", "1"]).write_stdin("{}")).well();
+    let words = "note: 1 collision mesh is left out, so that nothing touches there (package://gone/sole.stl of foot: \
+                 package gone is not here: name the folder that holds it by --package-path): name the folder of its \
+                 package by --package-path, or a foot by --contact LINK:X,Y,Z";
+    assert!(run.stderr.contains(words), "{}", run.stderr);
 }
 
 #[test]

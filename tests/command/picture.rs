@@ -94,11 +94,11 @@ fn a_picture_does_not_replace_what_is_read() {
 fn a_picture_and_the_results_are_two_files() {
     let (name, again) = (&*place("both.svg"), &*place("./both.svg"));
     for command in [
-        &["inspect", "urdf/block.urdf"][..],
-        &["impact", RAMONE, "examples/ramone.json"],
-        &["sweep", WALKER, "examples/paper/figure_7.json"],
-        &["batch", RAMONE, "examples/ramone.json"],
-        &["accuracy", "--case", "massless", "--time", "0"],
+        &["inspect", "urdf/block.urdf", "--format", "json"][..],
+        &["impact", RAMONE, "examples/ramone.json", "--format", "json"],
+        &["sweep", WALKER, "examples/paper/figure_7.json", "--format", "json"],
+        &["batch", RAMONE, "examples/ramone.json", "--output-format", "ndjson"],
+        &["accuracy", "--case", "massless", "--time", "0", "--format", "json"],
     ] {
         let stderr = heelstrike(&[command, &["-o", name, "--plot", again]].concat()).refusal(2);
         let expected = "error: --plot: results and picture would be written to the same file\nhint: name two files\n";

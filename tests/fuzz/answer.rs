@@ -7,6 +7,7 @@ use heelstrike::state::State;
 use heelstrike::write::{Detail, Palette, Report, Subject, text};
 use heelstrike::{Error, Robot};
 use serde_json::Value;
+use std::collections::HashSet;
 
 /// All that can be written of a result.
 pub const ALL: Detail = Detail { explain: true, matrices: true, brief: false };
@@ -58,8 +59,6 @@ pub fn check_analysis(analysis: &Analysis, contacts: usize, case: &str) {
         _ if contacts == 0 => Verdict::NoContact,
         _ if !decided => Verdict::Undecided,
         [] => Verdict::None,
-        // The ends of a family may be too near to each other to differ in f64.
-        [only] if only.family => Verdict::Ambiguous,
         [only] if rests(only) => Verdict::NoImpact,
         [_] => Verdict::Unique,
         _ => Verdict::Ambiguous,
@@ -69,9 +68,23 @@ pub fn check_analysis(analysis: &Analysis, contacts: usize, case: &str) {
     assert_eq!(analysis.no_slip_consistent == Some(true), holds, "{}", context());
     let indices = outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum::<Option<i32>>();
     assert_eq!(analysis.index_sum, indices, "{}", context());
-    for (at, outcome) in outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.family) {
-        let twin = outcomes[..at].iter().any(|other| other.modes == outcome.modes && !other.family);
-        assert!(!twin, "listed twice: {}", context());
+    for (at, outcome) in outcomes.iter().enumerate() {
+        let corner = analysis.families.iter().any(|family| family.corners.contains(&at));
+        assert_eq!(outcome.family, corner, "{}", context());
+        // Only a family's own corners share its modes.
+        let of_family = corner && analysis.families.iter().any(|family| family.modes == outcome.modes);
+        let twin = outcomes[..at].iter().any(|other| other.modes == outcome.modes);
+        assert!(of_family || !twin, "listed twice: {}", context());
+    }
+    for family in &analysis.families {
+        assert!((1..family.corners.len()).contains(&family.dimension), "{family:?}: {}", context());
+    }
+    if !analysis.rejected.is_empty() {
+        let lists: HashSet<_> = analysis.rejected.iter().map(|rejection| &rejection.modes).collect();
+        let valid = outcomes.iter().map(|outcome| &outcome.modes).chain(analysis.families.iter().map(|own| &own.modes));
+        let valid: HashSet<_> = valid.collect();
+        assert!(lists.is_disjoint(&valid) && lists.len() == analysis.rejected.len(), "{}", context());
+        assert_eq!(lists.len() + valid.len(), 1 << (2 * contacts), "{}", context());
     }
 }
 
@@ -129,7 +142,7 @@ pub fn check_state(state: &State, robot: &Robot, kept: &mut Pipeline, options: &
             let mut numbers =
                 after.iter().chain(impact.velocity_before.iter().flatten()).chain([&impact.kinetic_energy]);
             assert!(numbers.all(|number| number.is_finite()) || open::is_far(case), "{impact:?}\n{case}");
-            if let Some(analysis) = accepted(impact.analysed(), case) {
+            if let Some(analysis) = accepted(impact.analyzed(), case) {
                 check_analysis(analysis, impact.contacts.len(), case);
                 let kept = keeps_index_theorem(analysis, impact.contacts.len());
                 assert!(kept || open::is_far(case), "the indices do not sum to 1: {analysis:?}\n{case}");

@@ -1,5 +1,25 @@
 //! Bytes read as choices; where they end, every choice is the first one.
 
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// The names of all fields of states, problems and studies, from the list that hints and schemas follow.
+pub fn field_names() -> String {
+    fn collect(value: &Value, names: &mut BTreeSet<String>) {
+        let Value::Object(entries) = value else { return };
+        for (name, entry) in entries {
+            if name == "properties" {
+                names.extend(entry.as_object().into_iter().flatten().map(|(field, _)| field.clone()));
+            }
+            collect(entry, names);
+        }
+    }
+    let format = serde_json::from_str(include_str!("../../src/read/format.json")).expect("a schema");
+    let mut names = BTreeSet::new();
+    collect(&format, &mut names);
+    names.into_iter().collect::<Vec<_>>().join(" ")
+}
+
 /// Reads choices from bytes, whichever engine made these.
 pub struct Choices<'a> {
     bytes: &'a [u8],

@@ -11,8 +11,8 @@ fn impact(urdf: &str, state: &str) -> Result<Impact> {
     Pipeline::new(&robot, Options::default()).impact(&state)
 }
 
-/// The change by the impulse was taken from the sum with a velocity beside which it vanishes, and the contact was shown
-/// to separate and to press at once.
+/// The change by the impulse was taken from the sum with a velocity next to which it vanishes, and the contact was
+/// shown to separate and to press at once.
 #[test]
 fn an_impulse_is_not_lost_beside_a_great_velocity() {
     let state = r#"{"friction": 0.5, "stance": "right_foot",

@@ -7,7 +7,7 @@ use crate::support::rational::{self, to_f64};
 use crate::watch::watched;
 use dashu_ratio::RBig;
 use heelstrike::Error;
-use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Outcome, Scratch, analyse};
+use heelstrike::impact::{AnalysisOptions, ContactProblem, Friction, Mode, Outcome, Scratch, analyze};
 use heelstrike::read::Problem;
 use heelstrike::write::Report;
 use serde::Serialize;
@@ -221,12 +221,12 @@ thread_local! {
 fn answer(case: &Case, json: &str) -> bool {
     let Some(problem) = accepted(case.problem(), json) else { return false };
     let contacts = problem.contacts();
-    let Some(analysis) = accepted(analyse(&problem, case.explain), json) else { return false };
+    let Some(analysis) = accepted(analyze(&problem, case.explain.into()), json) else { return false };
     check_analysis(&analysis, contacts, json);
     let kept = keeps_index_theorem(&analysis, contacts) || open::is_far(json) || !case.is_definite();
     assert!(kept, "the indices do not sum to 1: {analysis:?}\n{json}");
     let asked = AnalysisOptions { rejections: case.explain.into(), ..AnalysisOptions::default() };
-    let again = KEPT.with_borrow_mut(|kept| kept.analyse(&problem, &problem, asked));
+    let again = KEPT.with_borrow_mut(|kept| kept.analyze(&problem, &problem, asked));
     let same = again.as_ref().is_ok_and(|again| format!("{again:?}") == format!("{analysis:?}"));
     assert!(same, "reused memory gives another answer: {again:?}\n{analysis:?}\n{json}");
     if let Some((delassus, before)) = case.rounded()
@@ -283,7 +283,6 @@ fn check_laws(case: &Case, delassus: &[Vec<f64>], before: &[f64], outcome: &Outc
         let place = || format!("contact {contact}: {}", context());
         assert!(xi >= -speed(n) && l[n] >= -push(n), "{}", place());
         match mode {
-            // The end of a family may lie on the rim of its modes.
             Mode::Separate => assert_eq!([l[t], l[n]], [0.0; 2], "{}", place()),
             Mode::Stick => assert!(xi <= speed(n) && after[t] == 0.0, "{}", place()),
             Mode::SlidePlus | Mode::SlideMinus => {

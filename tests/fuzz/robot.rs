@@ -41,7 +41,7 @@ fn answer(bytes: &[u8], state: &[u8], case: &str) -> bool {
     let mut line = Vec::new();
     append_line(&mut line, &inspection);
     check_json(&line, case);
-    assert!(!inspection.text(&Palette::default()).is_empty(), "{case}");
+    assert!(!inspection.text(&Palette::default(), false).is_empty(), "{case}");
 
     let state = state_of(&robot, &mut Choices::new(state));
     let case = format!("{state}\n{case}");

@@ -1,7 +1,7 @@
 //! States of one robot as text.
 
 use crate::answer::{ALL, accepted, check_state};
-use crate::choices::Choices;
+use crate::choices::{Choices, field_names};
 use crate::watch::watched;
 use heelstrike::Robot;
 use heelstrike::pipeline::{Options, Pipeline};
@@ -16,10 +16,11 @@ static RAMONE: LazyLock<Robot> =
     LazyLock::new(|| Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a robot"));
 
 /// Words that mean something in a state.
-const WORDS: &str = r"
-    id position velocity friction restitution ground stance held rotor_inertia contacts loops uncertainty impulse
-    base joints x z pitch slope profile default link offset radius vector infinite left_hip left_knee right_hip
-    right_knee left_foot right_foot left_shank torso null 1e999 -0.0 1e-320 \u0000 é";
+static WORDS: LazyLock<String> = LazyLock::new(|| {
+    field_names()
+        + r" default infinite left_hip left_knee right_hip right_knee left_foot right_foot left_shank torso
+    null 1e999 -0.0 1e-320 \u0000 é"
+});
 
 pub fn options() -> Options {
     Options { explain_up_to: 3, matrices: ALL.matrices, ..Options::default() }
@@ -31,7 +32,7 @@ thread_local! {
 
 fn check(bytes: &[u8]) -> bool {
     let mut choices = Choices::new(bytes);
-    let text = choices.text(&STATES, WORDS, |choices| state_of(&RAMONE, choices));
+    let text = choices.text(&STATES, &WORDS, |choices| state_of(&RAMONE, choices));
     let case = String::from_utf8_lossy(&text);
     watched(&case, || KEPT.with_borrow_mut(|kept| answer(&text, kept, &case)))
 }

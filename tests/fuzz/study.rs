@@ -1,7 +1,7 @@
 //! Studies of the minimalistic biped as text.
 
 use crate::answer::{accepted, check_refusal};
-use crate::choices::Choices;
+use crate::choices::{Choices, field_names};
 use crate::state::state_of;
 use crate::watch::watched_for;
 use heelstrike::Robot;
@@ -24,10 +24,11 @@ static BIPED: LazyLock<(Description, Robot)> = LazyLock::new(|| {
 });
 
 /// Words that mean something in a study.
-const WORDS: &str = "
-    parameters constants state robot from to steps links joints mass com inertia radius origin left_leg hip alpha j
-    2 0.5 -1 1e999 1e-300 pi e sin(alpha) sqrt(alpha) 1/alpha alpha^2 atan2(alpha,j) (((( ---- infinite base z
-    friction stance é";
+static WORDS: LazyLock<String> = LazyLock::new(|| {
+    field_names()
+        + " left_leg hip alpha j 2 0.5 -1 1e999 1e-300 pi e sin(alpha) sqrt(alpha) 1/alpha alpha^2 atan2(alpha,j)
+    (((( ---- infinite é"
+});
 
 /// A study with every field.
 const FULL: &str = r#"{"parameters": {"alpha": {"from": "pi/20", "to": 1.5, "steps": 4}}, "constants": {"j": 0.04, "v": "-(1 + j)"},
@@ -73,7 +74,7 @@ const MOST_SAMPLES: usize = 20;
 fn check(bytes: &[u8]) -> bool {
     let mut choices = Choices::new(bytes);
     let studies = [include_str!("../../examples/paper/figures_3_and_6.json"), FULL];
-    let text = choices.text(&studies, WORDS, |choices| study_of(&BIPED.1, choices));
+    let text = choices.text(&studies, &WORDS, |choices| study_of(&BIPED.1, choices));
     let case = String::from_utf8_lossy(&text);
     let study = || accepted(utf8(&text).and_then(Study::from_json), &case);
     watched_for(SLOW, &case, || study().is_some_and(|study| survey(&study, &case)))

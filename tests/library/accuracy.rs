@@ -147,7 +147,7 @@ fn assert_compared(name: &str, robot: &Robot, state: &State) {
 }
 
 #[test]
-fn loops_applied_impulses_and_restitution_are_compared() {
+fn loops_impulses_and_restitution_are_compared() {
     let robot = robot(include_str!("../../urdf/five_bar.urdf"));
     let text = include_str!("../../examples/five_bar.json").replace(
         r#""friction": 0.6"#,

@@ -7,7 +7,7 @@ use heelstrike::impact::{Friction, Mode};
 use map::Biped;
 
 #[test]
-fn the_separatrix_lies_where_other_integrators_found_it() {
+fn separatrix_matches_other_integrators() {
     // Measured beforehand by other code, to two digits.
     let infinite = [(1.0, 0.80), (10.0, 0.43), (100.0, 0.056), (1000.0, 0.006)];
     let finite = [(1.0, 0.80), (10.0, 0.64), (100.0, 0.23), (1000.0, 0.17)];
@@ -23,7 +23,7 @@ fn the_separatrix_lies_where_other_integrators_found_it() {
 }
 
 #[test]
-fn runs_end_at_lift_off_or_stop_and_never_at_the_slide() {
+fn runs_end_at_lift_off_or_stop() {
     let map = Biped::new(Friction::Infinite).expect("a run").map(11, 9).expect("a run");
     assert_eq!((map.runs().count(), map.separatrix.len()), (99, 9));
     assert_eq!(map.near_negative_index(0.01).count(), 0);

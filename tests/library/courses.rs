@@ -51,7 +51,7 @@ fn a_curve_goes_from_border_to_border() {
 }
 
 #[test]
-fn straight_lines_between_places_stay_by_the_outcomes() {
+fn straight_lines_stay_near_the_outcomes() {
     // Off by less than half a pixel of 200; angles of a hundred.
     const SEEN: f64 = 2.5e-3;
     // A third, which is no place that was looked at.
@@ -101,7 +101,7 @@ fn curves_are_the_same_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_parameter_has_the_unit_of_the_numbers_that_it_is() {
+fn parameter_has_the_unit_of_its_numbers() {
     let still = json!({"position": {"base": {"z": 1}}});
     for (state, leg, unit) in [
         (json!({"position": {"base": {"pitch": "k - p"}}}), json!({}), Some("rad")),

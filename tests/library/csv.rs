@@ -6,7 +6,7 @@ use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::read::table::{Header, Rates};
 use heelstrike::robot::{Base, Reduction};
 use heelstrike::state::NamedContact;
-use heelstrike::write::{Columns, Detail, Refused, Report};
+use heelstrike::write::{Columns, Detail, Refused, Report, RowKind};
 use heelstrike::{Defaults, Error, Friction, Robot, State};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -27,7 +27,7 @@ fn leg() -> Robot {
 /// The states of a table whose every row is on a line of its own.
 fn states(table: &[u8], robot: &Robot) -> Vec<Result<State, Error>> {
     let mut lines = table.split_inclusive(|&byte| byte == b'\n');
-    let header = Header::read(lines.next().unwrap(), robot, Rates::Columns).unwrap();
+    let header = Header::read(lines.next().unwrap(), robot, Rates::Columns, &[]).unwrap();
     let mut rows = header.rows();
     let mut states = Vec::new();
     for (line, record) in (2..).zip(lines) {
@@ -87,9 +87,9 @@ fn shown(error: &Error) -> String {
 }
 
 #[test]
-fn headers_that_do_not_fit_are_refused_with_their_place() {
+fn headers_that_do_not_fit_are_refused() {
     let bolted = reduced(&leg_urdf(), &Reduction { base: Some(Base::Fixed), ..Reduction::default() });
-    let with_rates: [&[u8]; 12] = [
+    let with_rates: [&[u8]; 16] = [
         b"q_kne,v_knee",
         b"id,\"a,b\",v_base_y",
         b"q_base_qw,q_base_qy,q_base_qx,q_base_qz,v_knee,time",
@@ -102,6 +102,10 @@ fn headers_that_do_not_fit_are_refused_with_their_place() {
         b"q_knee,time",
         b"v_knee,\xff",
         b"q_Knee,v_knee",
+        b"Q_KNEE,v_knee,restituion,tau_knee",
+        b"x,knee",
+        b"v_knee,v_after_knee",
+        b"v_knee,\"note",
     ];
     let with_time: [&[u8]; 5] = [
         b"q_base_qw,q_base_qy,q_base_qx,time",
@@ -118,7 +122,7 @@ fn headers_that_do_not_fit_are_refused_with_their_place() {
         (&hip(), Rates::Columns, &[b"q_knee,v_rise"]),
     ] {
         for record in records {
-            let error = Header::read(record, robot, rates).map(|_| ()).unwrap_err();
+            let error = Header::read(record, robot, rates, &[]).map(|_| ()).unwrap_err();
             writeln!(refusals, "{}\n    {}", record.escape_ascii(), shown(&error)).unwrap();
         }
     }
@@ -141,9 +145,21 @@ fn hip() -> Robot {
 }
 
 #[test]
+fn missing_columns_are_listed_by_name() {
+    let missing = |record: &[u8], rates| Header::read(record, &leg(), rates, &[]).unwrap().missing().join(" ");
+    let all = "q_base_x q_base_pitch q_knee v_base_x v_base_z v_base_pitch";
+    assert_eq!(missing(b"v_knee,q_base_z,tau_base_x", Rates::Columns), all);
+    // A stance gives the base's x and z, a quaternion its pitch, and the time the velocities.
+    assert_eq!(missing(b"v_knee,stance", Rates::Columns), "q_base_pitch q_knee v_base_pitch");
+    let quaternion = b"time,q_knee,q_base_qw,q_base_qx,q_base_qy,q_base_qz";
+    assert_eq!(missing(quaternion, Rates::Time), "q_base_x q_base_z");
+}
+
+#[test]
 fn columns_of_frozen_joints_are_listed_and_not_read() {
     let robot = hip();
-    let header = Header::read(b"q_splay,q_knee,v_spin,q_spin,v_knee,v_splay,note", &robot, Rates::Columns).unwrap();
+    let header =
+        Header::read(b"q_splay,q_knee,v_spin,q_spin,v_knee,v_splay,note", &robot, Rates::Columns, &[]).unwrap();
     assert_eq!(header.ignored().collect::<Vec<_>>(), ["q_splay", "v_spin", "q_spin", "v_splay"]);
     assert_eq!(header.carried().collect::<Vec<_>>(), ["note"]);
     let mut rows = header.rows();
@@ -154,7 +170,7 @@ fn columns_of_frozen_joints_are_listed_and_not_read() {
 
 #[test]
 fn rows_that_do_not_fit_are_refused_with_their_place() {
-    let rows: [&[u8]; 18] = [
+    let rows: [&[u8]; 19] = [
         b"a,x,1,,,,",
         b"a,,1,,,,",
         b"\"a,b\",NaN,1,,,,",
@@ -173,6 +189,7 @@ fn rows_that_do_not_fit_are_refused_with_their_place() {
         b"a",
         b"a,0,1,,,,,",
         b"a,0,1,,,,\"open",
+        b"a,0,1,,,,\"closed\" too early",
     ];
     let mut refusals = String::new();
     for row in rows {
@@ -185,7 +202,7 @@ fn rows_that_do_not_fit_are_refused_with_their_place() {
 }
 
 #[test]
-fn a_broken_row_stays_out_of_the_next_and_of_the_message() {
+fn broken_row_stays_out_of_the_next() {
     let table = b"q_knee,v_knee\n\"open,1\n0.5,1\n1\r2,3\n0.25,1\n";
     let found: Vec<Option<f64>> =
         states(table, &leg()).iter().map(|state| Some(state.as_ref().ok()?.position[3])).collect();
@@ -199,7 +216,7 @@ fn a_broken_row_stays_out_of_the_next_and_of_the_message() {
 fn rows(robot: &Robot, state: &State, options: Options) -> (Vec<BTreeMap<String, String>>, Impact) {
     let impact = Pipeline::new(robot, options).impact(state).unwrap();
     let report = Report::of_state(robot, state, &impact, Detail::default()).unwrap();
-    let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, false));
+    let (mut out, columns) = (Vec::new(), Columns::new(robot, &[], None, RowKind::State));
     columns.append_header(&mut out);
     columns.append_result(&report, None, &mut out).unwrap();
     (by_column(&out), impact)
@@ -228,11 +245,11 @@ fn assert_rows(rows: &[BTreeMap<String, String>], impact: &Impact, contact: &str
 
 #[test]
 fn every_outcome_is_a_row_with_every_number() {
-    let base = ["v_base_x", "v_base_z", "v_base_pitch"];
+    let base = ["v_after_base_x", "v_after_base_z", "v_after_base_pitch"];
     let state = state("id,q_base_z,q_knee,v_base_x,v_base_z,friction\nk,0.5,0,0.1,-1,0.5\n");
     let (rows, impact) = rows(&leg(), &state, Options::default());
     assert_eq!((rows.len(), rows[0]["verdict"].as_str()), (1, "unique"));
-    assert_rows(&rows, &impact, "shin", &[&base[..], &["v_knee"]].concat());
+    assert_rows(&rows, &impact, "shin", &[&base[..], &["v_after_knee"]].concat());
     assert_eq!(["mode_body", "mode_body/0", "p_body/1_n"].map(|column| rows[0][column].as_str()), [""; 3]);
     // It leaves the ground, or jams.
     let (rows, impact) = block("1.7,0.4,infinite");
@@ -242,25 +259,26 @@ fn every_outcome_is_a_row_with_every_number() {
 
 #[test]
 fn the_header_has_every_contact_that_feet_can_give() {
-    let header = |feet: &[NamedContact], touchdowns| {
+    let header = |feet: &[NamedContact], kind| {
         let mut out = Vec::new();
-        Columns::new(&leg(), feet, None, touchdowns).append_header(&mut out);
+        Columns::new(&leg(), feet, None, kind).append_header(&mut out);
         String::from_utf8(out).unwrap()
     };
     let modes = |header: &str| -> Vec<String> {
         header.split(',').filter_map(|name| Some(name.strip_prefix("mode_")?.to_owned())).collect()
     };
     assert_eq!(
-        header(&[], false),
-        "id,verdict,outcome,margin,proven,mode_body,p_body_t,p_body_n,mode_body/0,p_body/0_t,p_body/0_n,mode_body/1,\
-         p_body/1_t,p_body/1_n,mode_shin,p_shin_t,p_shin_n,v_base_x,v_base_z,v_base_pitch,v_knee,border,family,error\n"
+        header(&[], RowKind::State),
+        "id,line,verdict,outcome,margin,proven,mode_body,p_body_t,p_body_n,mode_body/0,p_body/0_t,p_body/0_n,mode_body/1,\
+         p_body/1_t,p_body/1_n,mode_shin,p_shin_t,p_shin_n,v_after_base_x,v_after_base_z,v_after_base_pitch,v_after_knee,border,\
+         family,families,error\n"
     );
     let foot = NamedContact { link: 1, offset: [0.1, 0.0, -0.5], radius: 0.0 };
-    assert_eq!(modes(&header(&[foot], false)), ["body", "body/0", "body/1", "shin", "shin/0", "shin/1"]);
-    assert_eq!(modes(&header(&[], true)), ["body", "body/0", "body/1", "body/2", "body/3", "shin"]);
-    assert!(header(&[], true).contains(
-        ",v_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,touchdown_at,touchdown_touching,border,\
-         family,error"
+    assert_eq!(modes(&header(&[foot], RowKind::State)), ["body", "body/0", "body/1", "shin", "shin/0", "shin/1"]);
+    assert_eq!(modes(&header(&[], RowKind::Touchdown)), ["body", "body/0", "body/1", "body/2", "body/3", "shin"]);
+    assert!(header(&[], RowKind::Touchdown).contains(
+        ",v_after_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,touchdown_at,touchdown_touching,\
+         q_base_x,q_base_z,q_base_pitch,q_knee,v_base_x,v_base_z,v_base_pitch,v_knee,border,family,families,error"
     ));
 }
 
@@ -275,7 +293,10 @@ fn a_row_has_modes_only_of_what_touches() {
     assert_eq!(["mode_body", "mode_shin"].map(|column| row[column].as_str()), ["", ""]);
     assert!(!row["mode_body/0"].is_empty() && !row["mode_body/1"].is_empty());
     let row = only("q_base_z,v_base_z\n9,-1\n", None);
-    assert_eq!(["verdict", "mode_shin", "v_base_z"].map(|column| row[column].as_str()), ["no_contact", "", "-1.0"]);
+    assert_eq!(
+        ["verdict", "mode_shin", "v_after_base_z"].map(|column| row[column].as_str()),
+        ["no_contact", "", "-1.0"]
+    );
 }
 
 #[test]
@@ -287,7 +308,7 @@ fn a_contact_without_columns_is_refused() {
     let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
     let report = Report::of_state(&robot, &state, &impact, Detail::default()).unwrap();
     let mut out = Vec::new();
-    let error = Columns::new(&robot, &[], None, false).append_result(&report, None, &mut out).unwrap_err();
+    let error = Columns::new(&robot, &[], None, RowKind::State).append_result(&report, None, &mut out).unwrap_err();
     assert_eq!(
         shown(&error),
         "the table of results has no columns for contact \"shin/0\" | write NDJSON instead, or add the foot by `feet`"
@@ -298,8 +319,9 @@ fn a_contact_without_columns_is_refused() {
 #[test]
 fn foreign_columns_are_carried_beside_a_refusal() {
     let robot = leg();
-    let header = Header::read(b"time,id,verdict,v_knee,error,note,in_error,family", &robot, Rates::Columns).unwrap();
-    let columns = Columns::new(&robot, &[], Some(&header), false);
+    let header =
+        Header::read(b"time,id,verdict,v_knee,error,note,in_error,family", &robot, Rates::Columns, &[]).unwrap();
+    let columns = Columns::new(&robot, &[], Some(&header), RowKind::State);
     let mut rows = header.rows();
     let row = rows.row(b" 0.10 ,\"k,1\",mine,oops,none,\"a \"\"b\"\"\nc\",other,ours", 7).unwrap().unwrap();
     assert_eq!(row.time().unwrap(), 0.1);
@@ -323,13 +345,14 @@ fn block(row: &str) -> (Vec<BTreeMap<String, String>>, Impact) {
 }
 
 #[test]
-fn a_border_has_what_is_zero_and_a_family_its_ends() {
-    let found = |row: &str| -> Vec<[String; 2]> {
-        block(row).0.iter().map(|row| [&row["border"], &row["family"]].map(String::clone)).collect()
+fn a_border_has_what_is_zero_and_a_family_its_modes() {
+    let found = |row: &str| -> Vec<[String; 3]> {
+        block(row).0.iter().map(|row| ["border", "family", "families"].map(|column| row[column].clone())).collect()
     };
     // Resting, it is not pressed; struck, it stops with less than all of its friction.
-    assert_eq!(found("0,0,0.5"), [["block: L_n = 0", "false"]]);
-    assert_eq!(found("-0.5,-1,0.5"), [["", "false"]]);
+    assert_eq!(found("0,0,0.5"), [["block: L_n = 0", "false", ""]]);
+    assert_eq!(found("-0.5,-1,0.5"), [["", "false", ""]]);
     // At friction 2 sliding loads the contact by just what brakes it: it stops, goes on, or anything between.
-    assert_eq!(found("1,0,2"), [["block: |L_t| = mu L_n", "true"], ["block: L_n = 0", "true"]]);
+    let ends = [["block: |L_t| = mu L_n", "true", "slide+"], ["block: L_n = 0", "true", "slide+"]];
+    assert_eq!(found("1,0,2"), ends);
 }

@@ -233,7 +233,7 @@ fn table_2_comes_out_to_its_printed_digits() {
 }
 
 /// With the center of percussion in the foot, at j = 0.24, all outcomes touch at alpha = pi/4. The f64 nearest to it
-/// lies beside that point, and is reported as one.
+/// lies next to that point, and is reported as one.
 #[test]
 fn the_degenerate_walker_is_proven() {
     let model = MODELS.iter().find(|model| model.name == "pdw_j0.24").expect("the walker");

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::support::answers::{Answer, answers};
-use crate::support::scaled::{Differences, largest};
+use crate::support::scaled::{Differences, largest, near};
 
 /// To this share of the largest speed before or after, or of the largest impulse.
 const TOLERANCE: f64 = 1e-9;
@@ -23,6 +23,15 @@ struct Expected {
     outcomes: Vec<ExpectedOutcome>,
     index_sum: Option<i32>,
     rank: usize,
+    #[serde(default)]
+    families: Vec<ExpectedFamily>,
+}
+
+/// A segment.
+#[derive(Deserialize)]
+struct ExpectedFamily {
+    modes: Vec<Mode>,
+    ends: [Vec<[f64; 2]>; 2],
 }
 
 #[derive(Deserialize)]
@@ -63,6 +72,14 @@ fn compare(problem: &Problem, answer: &Answer, differences: &mut Differences) {
     let index_sum = report.index_sum.flatten().filter(|_| expected.index_sum.is_some());
     let found = (report.proven, report.rank, index_sum);
     differences.same(id, found, (Some(true), Some(expected.rank), expected.index_sum));
+    differences.same(id, report.families.len(), expected.families.len());
+    for (family, should) in report.families.iter().zip(&expected.families) {
+        let ends: Vec<_> =
+            family.corners.iter().map(|&corner| answer.outcomes[corner].velocity_after.concat()).collect();
+        let same = |end: &Vec<[f64; 2]>| ends.iter().any(|found| near(found, &end.concat(), TOLERANCE));
+        differences.same(id, (&family.modes, family.dimension, ends.len()), (&should.modes, 1, 2));
+        differences.same(id, should.ends.each_ref().map(same), [true; 2]);
+    }
     for should in &expected.outcomes {
         let after = should.velocity_after.concat();
         let within = TOLERANCE * largest(&problem.velocity_before.concat()).max(largest(&after));

@@ -45,7 +45,7 @@ pub enum Kind {
     Slide(Point),
     /// Not at all.
     Fixed,
-    /// About the vertical axis, out of the plane: held at zero.
+    /// About the vertical axis, out of the plane: frozen at zero.
     OffPlane,
 }
 

@@ -4,6 +4,7 @@
 
 pub mod answers;
 pub mod command;
+pub mod digits;
 pub mod impact;
 pub mod mechanism;
 pub mod paper;

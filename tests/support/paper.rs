@@ -71,7 +71,8 @@ impl Model {
         if self.kneed { ["left_foot", "right_foot"] } else { ["left_leg", "right_leg"] }
     }
 
-    /// The trailing foot at rest on the ground, the robot turning about it at 1 rad/s counter-clockwise, joints at rest.
+    /// The trailing foot at rest on the ground, the robot turning about it at 1 rad/s counter-clockwise, joints at
+    /// rest.
     pub fn state(&self, alpha: f64, pose: Option<&Pose>, friction: &str) -> Value {
         let friction = friction.parse().map_or(json!(friction), |number: f64| json!(number));
         let (pitch, joints) = if self.kneed {

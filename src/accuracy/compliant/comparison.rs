@@ -5,7 +5,8 @@ use super::ground::SoftGround;
 use super::moving::Moving;
 use crate::Result;
 use crate::accuracy::computation::Computation;
-use crate::dynamics::{add_impulse, kinetic_energy};
+use crate::accuracy::quantile;
+use crate::dynamics::{PointImpulse, add_impulse, kinetic_energy};
 use crate::impact::{ContactProblem, Outcome};
 use crate::law::Mode;
 use crate::pipeline::assembly::{Assembly, Elimination};
@@ -195,14 +196,13 @@ fn gather(parameter: Option<&'static str>, value: Option<f64>, landings: &[Neare
     let mut distances: Vec<f64> = landings.iter().map(|landing| landing.distance).collect();
     distances.sort_by(f64::total_cmp);
     let runs = distances.len();
-    let at = |half: usize| if runs == 0 { f64::NAN } else { distances[(runs - 1) * half / 2] };
     let nearest = |outcome| landings.iter().filter(|landing| landing.outcome == outcome).count();
     let near_none = landings.iter().filter(|landing| landing.distance > NEAR).count();
     Group {
         parameter,
         value,
         runs,
-        distance: [at(0), at(1), at(2)],
+        distance: [0.0, 0.5, 1.0].map(|share| quantile(&distances, share)),
         nearest: (0..outcomes).map(nearest).collect(),
         near_none: near_none as f64 / runs.max(1) as f64,
     }
@@ -246,8 +246,9 @@ fn by_stiffness_of_moving(
         let mut velocity = before.clone();
         for (point, &[tangential, normal]) in points.iter().zip(impulse) {
             let [t, n] = point.axes();
-            let vector = t * tangential + n * normal;
-            add_impulse(plan, workspace, (point.body, point.arm(workspace)), vector, &mut Vec::new(), &mut velocity);
+            let (arm, vector) = (point.arm(workspace), t * tangential + n * normal);
+            let impulse = PointImpulse { body: point.body, arm, vector };
+            add_impulse(plan, workspace, impulse, &mut Vec::new(), &mut velocity);
         }
         velocity
     };

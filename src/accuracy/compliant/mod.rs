@@ -21,13 +21,13 @@ pub use moving::Moving;
 mod tests {
     use super::*;
     use crate::accuracy::robots;
-    use crate::impact::{ContactProblem, analyse};
+    use crate::impact::{ContactProblem, ListedRejections, analyze};
     use crate::law::Friction;
     use crate::pipeline::Options;
     use crate::state::{Defaults, State};
 
     #[test]
-    fn a_mass_on_spring_and_damper_leaves_as_in_the_textbook() {
+    fn mass_on_spring_leaves_as_in_the_textbook() {
         // m x'' + d x' + k x = 0 from x = 0 leaves, without tension, when its acceleration vanishes: at the speed
         // exp(-zeta phi / sqrt(1 - zeta^2)), phi = acos(2 zeta^2 - 1) for zeta < 1 (Brogliato 2016, section 2.1.3).
         let problem =
@@ -51,14 +51,14 @@ mod tests {
                 .unwrap();
         let ground = SoftGround { damping_ratio: f64::INFINITY, stiffness_ratio: 1.0, tangential_damping: 1.0 };
         let run = run(&problem, ground, TOLERANCE).unwrap();
-        let outcome = &analyse(&problem, false).unwrap().outcomes[0];
+        let outcome = &analyze(&problem, ListedRejections::Nothing).unwrap().outcomes[0];
         for (found, expected) in run.impulse.iter().flatten().zip(outcome.impulse.iter().flatten()) {
             assert!((found - expected).abs() < 1e-8, "{run:?} {outcome:?}");
         }
     }
 
     #[test]
-    fn a_problem_at_rest_stays_so_and_too_many_contacts_are_refused() {
+    fn rest_stays_and_many_contacts_are_refused() {
         let ground = SoftGround { damping_ratio: 1.0, stiffness_ratio: 1.0, tangential_damping: 1.0 };
         let still = |contacts: usize| {
             let unit =
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn the_moving_biped_comes_to_the_frozen_one_with_the_root_of_the_stiffness() {
+    fn moving_biped_converges_to_the_frozen_one() {
         let robot = robots::minimalistic().unwrap();
         let state = include_str!("../../../examples/minimalistic.json");
         let state = State::from_json(state, &robot, &Defaults::default()).unwrap();

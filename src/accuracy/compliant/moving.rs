@@ -12,7 +12,7 @@ use super::integrate::{Limits, StiffEquations, integrate};
 use crate::Result;
 use crate::dynamics::plan::{Configuration, JointMotion, Plan};
 use crate::dynamics::{
-    ContactPoint, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
+    ContactPoint, PointImpulse, Workspace, add_impulse, contact_jacobian, delassus, factorize, kinematics, mass_matrix,
 };
 use crate::law::Friction;
 use crate::planar::{Pair, Vector};
@@ -128,8 +128,8 @@ impl<'a> Equation<'a> {
 
         let mut accelerations = vec![0.0; dofs];
         for (body, force) in inertial_forces(plan, &velocity, workspace).into_iter().enumerate() {
-            let com = workspace.rotation[body].apply(com(plan, body));
-            add_impulse(plan, workspace, (body, com), force, column, &mut accelerations);
+            let arm = workspace.rotation[body].apply(com(plan, body));
+            add_impulse(plan, workspace, PointImpulse { body, arm, vector: force }, column, &mut accelerations);
         }
         let base = if plan.floating { Vector::new(moved[0], moved[1]) } else { Vector::zero() };
         let mut touching = Vec::with_capacity(contacts.len());
@@ -141,7 +141,8 @@ impl<'a> Equation<'a> {
             let ([tangential, normal], stretch) =
                 self.suspension.force(index, depth, state[2 * dofs + index] * length, c);
             let force = axes[0] * tangential + axes[1] * normal;
-            add_impulse(plan, workspace, (contact.body, contact.arm(workspace)), force, column, &mut accelerations);
+            let force = PointImpulse { body: contact.body, arm: contact.arm(workspace), vector: force };
+            add_impulse(plan, workspace, force, column, &mut accelerations);
             stretches.push(stretch / self.speed);
             touching.push([normal, c[1]]);
         }

@@ -41,17 +41,17 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<[f64; 3]>, String> {
     Shown::new(&document).vertices((axes(root)?, [0.0; 3]))
 }
 
-/// The turn of the file's axes to z up and the scale of its unit to metres.
+/// The turn of the file's axes to z up and the scale of its unit to meters.
 fn axes(root: Node<'_, '_>) -> Result<Matrix, String> {
     let asset = |tag| child(child(root, "asset")?, tag);
-    let metres = asset("unit").and_then(|unit| unit.attribute("meter")).map_or(Ok(1.0), number)?;
+    let meters = asset("unit").and_then(|unit| unit.attribute("meter")).map_or(Ok(1.0), number)?;
     let turn = match asset("up_axis").and_then(|up| up.text()).map(str::trim) {
         Some("X_UP") => [[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]],
         Some("Y_UP") => [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
         Some("Z_UP") | None => IDENTITY,
         Some(other) => return Err(format!("unknown <up_axis> \"{other}\"")),
     };
-    Ok(turn.map(|row| row.map(|entry| metres * entry)))
+    Ok(turn.map(|row| row.map(|entry| meters * entry)))
 }
 
 /// A document, its elements by id, what was read of its geometries, and the vertices that its scene shows.

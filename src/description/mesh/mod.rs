@@ -12,7 +12,6 @@ mod obj;
 mod stl;
 
 use super::{Description, Geometry};
-use crate::error::Result;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -39,29 +38,22 @@ pub type Fetched = std::result::Result<Vec<u8>, String>;
 impl Description {
     /// Reads the collision meshes from what `fetch` finds under their names: STL (whose vertices are f32), OBJ and
     /// COLLADA (DAE), by the ending of the name. A mesh that cannot be read is kept as [`Mesh::LeftOut`], and
-    /// [`Robot::left_out`](crate::Robot::left_out) gives the reason.
-    ///
-    /// # Errors
-    /// Those of `fetch`, at the link that names the mesh.
-    pub fn read_meshes(&mut self, mut fetch: impl FnMut(&str) -> Result<Fetched>) -> Result<()> {
+    /// [`Robot::left_out`](crate::Robot::left_out) and a caution give the reason.
+    pub fn read_meshes(&mut self, mut fetch: impl FnMut(&str) -> Fetched) {
         let mut known: HashMap<String, Mesh> = HashMap::new();
         let mut bytes = 0;
         for link in &mut self.links {
-            let (name, location) = (&link.name, link.location);
             for collision in &mut link.collisions {
                 let Geometry::Mesh { file, mesh, .. } = &mut collision.geometry else { continue };
                 if let Some(known) = known.get(file) {
                     mesh.clone_from(known);
                     continue;
                 }
-                let fetched = fetch(file)
-                    .map_err(|error| error.at(super::link_place(name)).on(location.line, location.column))?;
-                let vertices = fetched.and_then(|fetched| read(file, &fetched, &mut bytes));
+                let vertices = fetch(file).and_then(|fetched| read(file, &fetched, &mut bytes));
                 *mesh = vertices.map_or_else(|why| Mesh::LeftOut { why }, |vertices| Mesh::Vertices(vertices.into()));
                 known.insert(file.clone(), mesh.clone());
             }
         }
-        Ok(())
     }
 }
 

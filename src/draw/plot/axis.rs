@@ -149,7 +149,8 @@ impl Span {
 
     /// The pixels of one unit.
     pub fn scale(&self) -> f64 {
-        self.length * (self.share(1.0) - self.share(0.0))
+        // Far from zero both have the same place.
+        self.length * ((self.shown(1.0) - self.shown(0.0)) / (self.high - self.low))
     }
 
     /// Makes the axis span so many times as much about its middle.

@@ -122,6 +122,21 @@ impl PlotLayer {
         self.0.push(Element::Shape { outline: CanvasOutline::Circle { center, radius }, fill, stroke });
     }
 
+    /// Whether everything has its place; nothing has one if the numbers that are drawn leave the range of f64.
+    pub fn is_placed(&self) -> bool {
+        let is_placed = |&(x, y): &Pixel| x.is_finite() && y.is_finite();
+        self.0.iter().all(|element| match element {
+            Element::Shape { outline: CanvasOutline::Circle { center, radius }, .. } => {
+                is_placed(center) && radius.is_finite()
+            }
+            Element::Shape { outline: CanvasOutline::Path { pieces, .. }, .. } => {
+                pieces.iter().flatten().all(is_placed)
+            }
+            Element::Text(text) => is_placed(&text.at),
+            Element::Window { corner, size, layer } => is_placed(corner) && is_placed(size) && layer.is_placed(),
+        })
+    }
+
     pub fn text(&mut self, text: TextLine) {
         self.0.push(Element::Text(text));
     }

@@ -1,4 +1,4 @@
-//! Colors that people with any color vision tell apart, on a screen and in gray print.
+//! Colors that people with any color vision distinguish, on a screen and in gray print.
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Color {

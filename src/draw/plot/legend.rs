@@ -43,11 +43,22 @@ pub(super) struct Legend<'p> {
     entries: &'p [LegendEntry],
     /// The lines of each name.
     lines: Vec<Vec<String>>,
-    columns: Vec<f64>,
-    /// The width of the widest key \[px\].
-    key: f64,
+    columns: Vec<Column>,
     /// The pixels of one unit of the first panel's x axis.
     scale: f64,
+}
+
+/// The widths of the widest key and the widest line of a column \[px\].
+#[derive(Debug, Clone, Copy)]
+struct Column {
+    key: f64,
+    name: f64,
+}
+
+impl Column {
+    fn width(self) -> f64 {
+        self.key + GAP + self.name
+    }
 }
 
 impl<'p> Legend<'p> {
@@ -56,13 +67,17 @@ impl<'p> Legend<'p> {
         let key = entries.iter().map(|entry| entry.key.width(scale)).fold(0.0, f64::max);
         let lines: Vec<Vec<String>> =
             entries.iter().map(|entry| font::lines(&entry.name, SIZE, width - key - GAP)).collect();
-        let widths = |count: usize| -> Vec<f64> {
-            let column = |at: usize| lines.iter().skip(at).step_by(count).flatten().map(|line| font::width(line, SIZE));
-            (0..count).map(|at| key + GAP + column(at).fold(0.0, f64::max)).collect()
+        let columns = |count: usize| -> Vec<Column> {
+            let column = |at: usize| {
+                let names = lines.iter().skip(at).step_by(count).flatten().map(|line| font::width(line, SIZE));
+                let keys = entries.iter().skip(at).step_by(count).map(|entry| entry.key.width(scale));
+                Column { key: keys.fold(0.0, f64::max), name: names.fold(0.0, f64::max) }
+            };
+            (0..count).map(column).collect()
         };
-        let fitting = (2..=entries.len()).rev().map(widths).find(|widths| total(widths) <= width);
-        let columns = fitting.unwrap_or_else(|| widths(1));
-        Self { entries, lines, columns, key, scale }
+        let fitting = (2..=entries.len()).rev().map(columns).find(|columns| total(columns) <= width);
+        let columns = fitting.unwrap_or_else(|| columns(1));
+        Self { entries, lines, columns, scale }
     }
 
     pub fn size(&self) -> Pixel {
@@ -79,21 +94,21 @@ impl<'p> Legend<'p> {
         let entries: Vec<(&LegendEntry, &Vec<String>)> = self.entries.iter().zip(&self.lines).collect();
         for (row, height) in entries.chunks(self.columns.len()).zip(self.rows()) {
             let (mut left, middle) = (left, top + 0.5 * ROW);
-            for ((entry, lines), width) in row.iter().zip(&self.columns) {
-                entry.key.draw((left, middle), entry.key.width(self.scale), out);
+            for ((entry, lines), column) in row.iter().zip(&self.columns) {
+                entry.key.draw((left, middle), self.scale, column.key, out);
                 for (at, line) in lines.iter().enumerate() {
                     let baseline = TextLine::baseline(middle, SIZE) + LINE * at as f64;
-                    out.text(TextLine::new((left + self.key + GAP, baseline), line, SIZE, Anchor::Start));
+                    out.text(TextLine::new((left + column.key + GAP, baseline), line, SIZE, Anchor::Start));
                 }
-                left += width + NEXT;
+                left += column.width() + NEXT;
             }
             top += height;
         }
     }
 }
 
-fn total(columns: &[f64]) -> f64 {
-    columns.iter().sum::<f64>() + NEXT * columns.len().saturating_sub(1) as f64
+fn total(columns: &[Column]) -> f64 {
+    columns.iter().map(|column| column.width()).sum::<f64>() + NEXT * columns.len().saturating_sub(1) as f64
 }
 
 impl LegendKey {
@@ -106,10 +121,12 @@ impl LegendKey {
         }
     }
 
-    fn draw(self, (x, y): Pixel, width: f64, out: &mut PlotLayer) {
+    /// Draws it from a pixel on, at most `most` wide, in whose middle a mark is.
+    fn draw(self, (x, y): Pixel, scale: f64, most: f64, out: &mut PlotLayer) {
+        let width = self.width(scale);
         match self {
             Self::Line(stroke) => out.line(vec![(x, y), (x + width, y)], stroke),
-            Self::Mark(mark, color) => mark.draw((x + 0.5 * width, y), color, MARK, out),
+            Self::Mark(mark, color) => mark.draw((x + 0.5 * most, y), color, MARK, out),
             Self::Fill(color) => {
                 out.rectangle((x, y - 6.0), (width, 12.0), Some(color), Some(Stroke::solid(Color::Gray, 0.8)));
             }

@@ -81,18 +81,18 @@ const GAP: f64 = 12.0;
 const TITLE: u32 = 16;
 
 impl Picture {
-    /// The picture as SVG; `None` if nothing in it can be drawn.
+    /// The picture as SVG; `None` if nothing in it can be drawn, or not to scale.
     pub fn svg(&self) -> Option<String> {
         self.render().map(|rendered| rendered.svg)
     }
 
-    /// The picture as SVG, with the places of its panels; `None` if nothing in it can be drawn.
+    /// The picture as SVG, with the places of its panels; `None` as for [`Picture::svg`].
     pub fn render(&self) -> Option<Rendered> {
         let (canvas, windows) = self.layout()?;
         Some(Rendered { svg: canvas.svg(), windows })
     }
 
-    /// The picture as PNG, twice as large as the SVG says; `None` if nothing in it can be drawn.
+    /// The picture as PNG, twice as large as the SVG says; `None` as for [`Picture::svg`].
     pub fn png(&self) -> Result<Option<Vec<u8>>> {
         self.layout().map(|(canvas, _)| png::png(&canvas)).transpose()
     }
@@ -133,7 +133,10 @@ impl Picture {
         let indent = if legend_width + columns[0].before <= width { columns[0].before } else { 0.0 };
         legend.draw((EDGE + indent, top), &mut layer);
         let size = ((width.max(legend_width) + 2.0 * EDGE).ceil(), (top + height + EDGE).ceil());
-        Some((Canvas { size, layer }, windows))
+        let is_scaled = |window: &PlotWindow| {
+            [window.x, window.y].into_iter().all(|(low, high)| low.is_finite() && high.is_finite() && low < high)
+        };
+        (layer.is_placed() && windows.iter().all(is_scaled)).then_some((Canvas { size, layer }, windows))
     }
 }
 
@@ -155,6 +158,24 @@ mod tests {
         let svg = marks(vec![(1e-6, 1e-15), (1e-3, 1e-7), (1.0, 0.0)]).svg().unwrap();
         assert!(svg.starts_with("<svg") && !svg.contains("NaN"));
         assert_eq!(svg.matches("<circle").count(), 3, "two points and the key");
+    }
+
+    #[test]
+    fn picture_without_scale_is_refused_and_none_has_nan() {
+        let outline = |size: f64| {
+            let points = vec![(0.0, -size), (size, 0.0), (-size, size)];
+            let shapes = vec![PlotShape::Marks { points, mark: Mark::Circle, color: Color::Blue, size: MARK }];
+            let panel = Panel { shapes, equal: true, ..Panel::new(PlotAxis::new("x [m]"), PlotAxis::new("z [m]")) };
+            Picture { title: "title".into(), rows: vec![vec![panel]], legend: Vec::new() }.svg()
+        };
+        for size in [1e-300, 1e-150, 1.0, 1e17, 1e150, 1e300] {
+            let svg = outline(size).unwrap_or_else(|| panic!("{size} can be scaled"));
+            assert!(
+                !svg.contains("NaN") && !svg.contains("inf") && svg.matches("<circle").count() == 3,
+                "{size}: {svg}"
+            );
+        }
+        assert_eq!(outline(1.7e308), None);
     }
 
     #[test]

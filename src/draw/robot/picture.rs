@@ -55,7 +55,7 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     if panels.is_empty() {
         panels.push(panel(String::new(), None));
     }
-    let sentence = words::verdict(analysis.verdict, count);
+    let sentence = words::verdict(analysis.verdict, &analysis.outcomes);
     Some(Picture {
         title: format!("{}: {sentence}", words::titled(&robot.name, &state.id)),
         rows: panels.chunks(COLUMNS).map(<[Panel]>::to_vec).collect(),
@@ -126,7 +126,7 @@ pub(in crate::draw) fn remarks(outcome: &Outcome) -> Vec<String> {
         format!("on a border: {}", zeros.join(", "))
     });
     let remarks = [
-        (outcome.family, "the end of a family"),
+        (outcome.family, "a corner of a family"),
         (!outcome.impulse_unique, "one of many impulses"),
         (!outcome.decided, "not excluded"),
         (outcome.decided && !outcome.proven, "not proven"),

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_wraps_at_the_edges_and_has_no_line_across_a_jump() {
+    fn angle_wraps_without_a_line_across_jumps() {
         let pieces = unbroken(&run(&[3.0, PI - 0.05, 0.15 - PI, -2.8]));
         let [(left, top), (entered, bottom)] = [pieces[0][2], pieces[1][0]];
         assert!((left - 1.25).abs() < 1e-12 && left == entered && pieces.len() == 2, "{pieces:?}");

@@ -71,19 +71,19 @@ impl ContactProblem {
         Ok(())
     }
 
-    /// Symmetry entry by entry, then definiteness by elimination with diagonal pivoting, both to n eps of the largest
-    /// entry. True if G is positive definite beyond doubt.
+    /// Symmetry entry by entry, then definiteness by elimination with diagonal pivoting, each entry to n eps of the
+    /// geometric mean of its two diagonal entries, so that units and mass ratios do not matter. True if G is positive
+    /// definite beyond doubt.
     pub(super) fn check_definite(&self) -> Result<bool> {
         let rows = 2 * self.contacts();
-        let largest = self.delassus.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-        let rounding = 4.0 * rows as f64 * f64::EPSILON * largest;
-        let mut rest = nalgebra::DMatrix::from_row_slice(rows, rows, &self.delassus);
+        let rounding = 4.0 * rows as f64 * f64::EPSILON;
+        let sizes: Vec<f64> = (0..rows).map(|i| self.delassus(i, i).max(0.0).sqrt()).collect();
         let mut symmetric = true;
         for i in 0..rows {
             for j in 0..i {
-                symmetric &= rest[(i, j)] == rest[(j, i)];
-                if (rest[(i, j)] - rest[(j, i)]).abs() > rounding {
-                    let (own, other) = (rest[(i, j)], rest[(j, i)]);
+                let (own, other) = (self.delassus(i, j), self.delassus(j, i));
+                symmetric &= own == other;
+                if (own - other).abs() > rounding * sizes[i] * sizes[j] {
                     let reason = format!("the Delassus matrix is not symmetric: {own} against {other}");
                     return Err(Error::new(Reason::Inconsistent(reason))
                         .at(format!("delassus[{i}][{j}]"))
@@ -91,16 +91,20 @@ impl ContactProblem {
                 }
             }
         }
+        // A row without mobility is zero; its entries keep their size.
+        let scale = |i: usize| if sizes[i] > 0.0 { sizes[i] } else { 1.0 };
+        let mut rest = nalgebra::DMatrix::from_fn(rows, rows, |i, j| self.delassus(i, j) / scale(i) / scale(j));
         let mut beyond_doubt = 0;
         for _ in 0..rows {
             let Some(pivot) = (0..rows).max_by(|&i, &j| rest[(i, i)].total_cmp(&rest[(j, j)])) else { break };
-            let indefinite = (0..rows).find(|&i| rest[(i, i)] < -rounding).map(|i| (i, i));
+            let allowed = |i: usize, j: usize| if sizes[i] * sizes[j] > 0.0 { rounding } else { 0.0 };
+            let indefinite = (0..rows).find(|&i| rest[(i, i)] < -allowed(i, i)).map(|i| (i, i));
             let stray = || {
                 let mut coupled = (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j)));
-                coupled.find(|&(i, j)| rest[(pivot, pivot)] <= rounding && rest[(i, j)].abs() > 4.0 * rounding)
+                coupled.find(|&(i, j)| rest[(pivot, pivot)] <= rounding && rest[(i, j)].abs() > 4.0 * allowed(i, j))
             };
             if let Some(place) = indefinite.or_else(stray) {
-                let (i, j) = self.offending(rounding).unwrap_or(place);
+                let (i, j) = self.offending(&sizes, rounding).unwrap_or(place);
                 let reason = "the Delassus matrix is indefinite: an impulse there would gain energy";
                 return Err(Error::new(Reason::Inconsistent(reason.into()))
                     .at(format!("delassus[{i}][{j}]"))
@@ -124,11 +128,12 @@ impl ContactProblem {
 
     /// The entry of an indefinite G that alone makes it so: a negative one on the diagonal, else the one that exceeds
     /// the geometric mean of its two diagonal entries by most.
-    fn offending(&self, rounding: f64) -> Option<(usize, usize)> {
+    fn offending(&self, sizes: &[f64], rounding: f64) -> Option<(usize, usize)> {
         let rows = 2 * self.contacts();
+        // Infinite for an entry next to a zero or a negative number on the diagonal, and no number for a zero there.
         let excess = |(i, j): (usize, usize)| {
-            let mean = (self.delassus(i, i) * self.delassus(j, j)).max(0.0).sqrt();
-            if i == j { -self.delassus(i, i) } else { self.delassus(i, j).abs() - mean }
+            let entry = if i == j { -self.delassus(i, i) } else { self.delassus(i, j).abs() };
+            entry / sizes[i] / sizes[j] - 1.0
         };
         let diagonal = (0..rows).map(|i| (i, i));
         let below = (0..rows).flat_map(|i| (0..i).map(move |j| (i, j)));

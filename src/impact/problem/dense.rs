@@ -96,7 +96,7 @@ impl ContactProblem {
         let speed = |row: &[f64]| row.iter().zip(velocity).map(|(j, v)| j * v).sum::<f64>();
         let before: Vec<Pair<f64>> =
             contact_jacobian.chunks_exact(2).map(|pair| [speed(&pair[0]), speed(&pair[1])]).collect();
-        let mut problem = Self::checked(delassus, (before.clone(), before), (friction, restitution))?;
+        let mut problem = Self::checked(delassus, before.clone(), before, friction, restitution)?;
         problem.origin = Origin::Dynamics(Box::new(Dynamics {
             mass_matrix: mass_matrix.to_vec(),
             contact_jacobian: contact_jacobian.to_vec(),
@@ -109,8 +109,7 @@ impl ContactProblem {
 /// Lower Cholesky factor of a dense symmetric matrix, by rows.
 fn dense_cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
     let size = matrix.len();
-    let largest = matrix.iter().flatten().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-    let rounding = 4.0 * size as f64 * f64::EPSILON * largest;
+    let rounding = 4.0 * size as f64 * f64::EPSILON;
     if let Some(place) = (0..size).find(|&i| matrix[i][i] < 0.0) {
         let (what, value) = ("an entry of the mass matrix's diagonal".into(), matrix[place][place]);
         return Err(Error::new(Reason::OutOfRange { what, allowed: "positive", value })
@@ -119,7 +118,7 @@ fn dense_cholesky(matrix: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
     let mut lower = vec![vec![0.0; size]; size];
     for i in 0..size {
         for j in 0..=i {
-            if (matrix[i][j] - matrix[j][i]).abs() > rounding {
+            if (matrix[i][j] - matrix[j][i]).abs() > rounding * matrix[i][i].sqrt() * matrix[j][j].sqrt() {
                 return Err(Error::new(Reason::Inconsistent("the mass matrix is not symmetric".into()))
                     .at(format!("mass_matrix[{i}][{j}]")));
             }

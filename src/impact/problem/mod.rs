@@ -140,8 +140,8 @@ impl ContactProblem {
     ///
     /// # Errors
     /// Lengths that do not fit, more contacts than [`MATRIX_LIMIT`], numbers that are not finite, negative friction,
-    /// restitution outside 0..1, and a Delassus matrix that is asymmetric or indefinite beyond the rounding of its
-    /// largest entry.
+    /// restitution outside 0..1, and a Delassus matrix that is asymmetric or indefinite: each entry counts against the
+    /// geometric mean of its own two diagonal entries, beyond rounding.
     pub fn new(
         delassus: Vec<f64>,
         velocity_before: Vec<Pair<f64>>,
@@ -154,7 +154,7 @@ impl ContactProblem {
         if delassus.len() != rows * rows {
             let entries = delassus.len();
             let reason =
-                format!("{contacts} contacts need a Delassus matrix of {rows} x {rows} entries, not {entries}");
+                format!("the Delassus matrix must have {rows} x {rows} entries, two rows per contact, not {entries}");
             return Err(Error::new(Reason::Inconsistent(reason))
                 .at("delassus")
                 .hint("give two rows and columns per contact: tangential, normal"));
@@ -163,7 +163,7 @@ impl ContactProblem {
             finite(entry, || format!("entry [{}][{}] of delassus", index / rows, index % rows))?;
         }
         let free = velocity_before.clone();
-        let problem = Self::checked(delassus, (velocity_before, free), (friction, restitution))?;
+        let problem = Self::checked(delassus, velocity_before, free, friction, restitution)?;
         if problem.check_definite()? || is_semidefinite(&problem) {
             return Ok(problem);
         }
@@ -184,8 +184,10 @@ impl ContactProblem {
     /// A problem from parts that the dynamics computed: G, c-, and c- with the change by applied impulses.
     pub(crate) fn checked(
         delassus: Vec<f64>,
-        (velocity_before, velocity_free): (Vec<Pair<f64>>, Vec<Pair<f64>>),
-        (friction, restitution): (Vec<impl Into<Law>>, Vec<f64>),
+        velocity_before: Vec<Pair<f64>>,
+        velocity_free: Vec<Pair<f64>>,
+        friction: Vec<impl Into<Law>>,
+        restitution: Vec<f64>,
     ) -> Result<Self> {
         let contacts = velocity_before.len();
         for (place, length) in [("friction", friction.len()), ("restitution", restitution.len())] {
@@ -211,14 +213,26 @@ mod tests {
 
     #[test]
     fn bad_matrix_is_refused_at_its_entry() {
-        let place = |delassus: &[f64]| {
+        let refused = |delassus: &[f64]| {
             let contacts = delassus.len().isqrt() / 2;
             let (friction, restitution) = (vec![Friction::Infinite; contacts], vec![0.0; contacts]);
             let problem = ContactProblem::new(delassus.to_vec(), vec![[0.0, -1.0]; contacts], friction, restitution);
             problem.err().map(|error| error.place().unwrap_or_default().to_owned())
         };
+        // Units of each row do not matter, and powers of two do not round.
+        let place = |delassus: &[f64]| {
+            let rows = delassus.len().isqrt();
+            let unit = |row: usize| [1.0, f64::exp2(-40.0), f64::exp2(33.0), 0.5][row];
+            let scaled: Vec<f64> =
+                delassus.iter().enumerate().map(|(at, entry)| unit(at / rows) * unit(at % rows) * entry).collect();
+            assert_eq!(refused(delassus), refused(&scaled), "{delassus:?}");
+            refused(delassus)
+        };
         assert_eq!(place(&[1.0, 2.0, 2.0, 4.0]), None, "singular is not indefinite");
         assert_eq!(place(&[2.0, 1.0, 1.0, f64::NAN]).as_deref(), Some(""));
+        assert_eq!(place(&[2.0, 1.0, 1.0 + 1e-14, 2.0]).as_deref(), Some("delassus[1][0]"), "asymmetric");
+        assert_eq!(place(&[2.0, 1.0, 1.0 + 1e-15, 2.0]), None, "asymmetric by rounding");
+        assert_eq!(place(&[2.0, 1e-20, 1e-20, 0.0]).as_deref(), Some("delassus[1][0]"));
         // 2 exceeds the geometric mean of 1 and 1.5.
         assert_eq!(place(&[1.0, 2.0, 2.0, 1.5]).as_deref(), Some("delassus[1][0]"));
         assert_eq!(place(&[0.0, 1.0, 1.0, 0.0]).as_deref(), Some("delassus[1][0]"));

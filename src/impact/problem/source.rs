@@ -38,11 +38,13 @@ pub struct Errors<'a> {
     pub delassus: f64,
     /// Of c- and c_free, per contact \[m/s\]; `None` if they are exact.
     pub velocity: Option<&'a [Pair<f64>]>,
+    /// What part of `delassus` and of `velocity` the errors are likely to reach.
+    pub likely: [f64; 2],
 }
 
 impl Errors<'_> {
-    pub const NONE: Self = Self { delassus: 0.0, velocity: None };
-    pub const UNKNOWN: Self = Self { delassus: f64::INFINITY, velocity: None };
+    pub const NONE: Self = Self { delassus: 0.0, velocity: None, likely: [1.0; 2] };
+    pub const UNKNOWN: Self = Self { delassus: f64::INFINITY, velocity: None, likely: [1.0; 2] };
 }
 
 /// A problem that is given as matrices is its own source: every f64 is meant as the number that it is.

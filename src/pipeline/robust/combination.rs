@@ -182,7 +182,7 @@ mod tests {
     proptest! {
         /// Against the elimination of the ordinary analysis.
         #[test]
-        fn numerators_over_the_determinant_are_what_elimination_gives(
+        fn numerators_match_elimination(
             root in prop::array::uniform32(-1.0..1.0f64), more in prop::array::uniform4(-1.0..1.0f64),
             before in prop::array::uniform6(-1.0..1.0f64), mu in 0.1..2.0f64,
         ) {

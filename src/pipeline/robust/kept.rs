@@ -50,7 +50,7 @@ impl KeptContacts<'_, '_> {
     /// The proven answer at a point, if its contacts are the same.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let Answer { impact, foot, resting, rows } = self.pipeline.answer(&state, None).ok()?;
+        let Answer { impact, foot, rows } = self.pipeline.answer(&state, None).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
                 let far = one.center - other.center;
@@ -61,7 +61,7 @@ impl KeptContacts<'_, '_> {
         // Elsewhere on a profile a named contact may have another normal.
         let mut contacts = impact.contacts.iter().zip(&self.answer.impact.contacts);
         let same_axes = contacts.all(|(one, other)| one.ground == other.ground);
-        let same_rests = impact.stance == self.answer.impact.stance && resting == self.answer.resting;
+        let same_rests = impact.stance == self.answer.impact.stance && impact.resting == self.answer.impact.resting;
         (same_foot && same_axes && same_rests && rows == self.answer.rows).then_some((state, impact.analysis?))
     }
 
@@ -76,7 +76,7 @@ impl KeptContacts<'_, '_> {
         (proven_modes(&analysis)? != expected).then(|| Counterexample {
             state,
             verdict: analysis.verdict,
-            outcomes: analysis.outcomes.into_iter().map(|outcome| outcome.modes).collect(),
+            outcomes: analysis.modes(),
         })
     }
 
@@ -93,7 +93,7 @@ impl KeptContacts<'_, '_> {
 
     /// The contact problems of all states of the box.
     pub fn problem<const N: usize>(&self, whole: &StateBox) -> UncertainProblem<Affine<N>> {
-        let Answer { impact, foot, resting, rows } = self.answer;
+        let Answer { impact, foot, rows } = self.answer;
         let (robot, scene) = (self.pipeline.robot, &self.state.scene);
         let exact = ExactState {
             robot,
@@ -103,13 +103,14 @@ impl KeptContacts<'_, '_> {
             foot: foot.as_ref(),
             stance: impact.stance,
             contacts: &impact.contacts,
-            resting,
+            resting: &impact.resting,
             constraints: Constraints { kept: &[], rows },
+            is_rank_certain: true,
             laws: &[],
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,
         };
-        let plan = whole.plan::<N>(robot, &scene.held, &scene.rotor_inertia);
+        let plan = whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia);
         let Contacts { delassus, before, free } = exact.contacts(Inputs {
             configuration: whole.configuration(&plan, &self.state.position),
             velocity: whole.velocity(&self.state.velocity),
@@ -120,12 +121,8 @@ impl KeptContacts<'_, '_> {
             let bounce = restitution * before[contact][1].min_zero();
             [free[contact][0], free[contact][1] + bounce]
         };
-        let law = |(&friction, &link): (&Friction, &usize)| match friction {
-            Friction::Infinite => Law::Unbounded,
-            Friction::Finite(mu) if mu == 0.0 && !whole.quantities.contains(&Quantity::Friction(link)) => {
-                Law::Frictionless
-            }
-            Friction::Finite(mu) => Law::Coulomb(whole.number(Quantity::Friction(link), mu)),
+        let law = |(friction, &link): (&Friction, &usize)| {
+            friction.map(|mu| whole.number::<N>(Quantity::Friction(link), mu)).into()
         };
         UncertainProblem {
             delassus,
@@ -137,11 +134,7 @@ impl KeptContacts<'_, '_> {
 
 /// The lists of modes of a proven analysis, sorted.
 pub(super) fn proven_modes(analysis: &Analysis) -> Option<Vec<Vec<Mode>>> {
-    let mut modes: Vec<Vec<Mode>> = analysis.outcomes.iter().map(|outcome| outcome.modes.clone()).collect();
-    modes.sort();
-    // Both ends of a family may have the same modes.
-    modes.dedup();
-    analysis.proven.then_some(modes)
+    analysis.proven.then(|| analysis.modes())
 }
 
 /// The state with every contact named, so that it stays one whatever its height.

@@ -75,7 +75,7 @@ fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expe
         if open.is_empty() {
             continue;
         }
-        if let Some(found) = search.counterexample(&own, first) {
+        if let Some(found) = search.counterexample(&own, if first { RANDOM_CORNERS } else { 0 }) {
             return Robustness::Not(Box::new(found));
         }
         first = false;
@@ -125,14 +125,13 @@ impl<const N: usize> BoxSearch<'_, '_, '_, N> {
         Examined { open, split: influence.iter().position(|&own| own == most && most > 0.0) }
     }
 
-    /// A state of the box whose outcomes are not the expected ones.
-    fn counterexample(&mut self, own: &StateBox, whole: bool) -> Option<Counterexample> {
+    /// A state of the box whose outcomes are not the expected ones, in its center or a corner; `random` more corners
+    /// are tried than the open combinations point to.
+    fn counterexample(&mut self, own: &StateBox, random: usize) -> Option<Counterexample> {
         let mut points = vec![own.center()];
         points.extend(self.ways.iter().map(|way| own.corner(way)));
-        if whole {
-            let mut random = 0x9e37_79b9_7f4a_7c15;
-            points.extend((0..RANDOM_CORNERS).map(|_| own.corner(&signs(&mut random, own.ends.len()))));
-        }
+        let mut seed = 0x9e37_79b9_7f4a_7c15;
+        points.extend((0..random).map(|_| own.corner(&signs(&mut seed, own.ends.len()))));
         for point in points {
             if self.tried.contains(&point) {
                 continue;

@@ -56,8 +56,8 @@ impl StateBox {
             }
         }
         for (joint, &width) in uncertainty.rotor_inertia.iter().enumerate() {
-            // A held joint has no equation of its own for its rotor to enter.
-            if !state.scene.held.contains(&joint) {
+            // A braked joint has no equation of its own for its rotor to enter.
+            if !state.scene.braked.contains(&joint) {
                 let value = state.scene.rotor_inertia.get(joint).copied().unwrap_or(0.0);
                 whole.add(Quantity::RotorInertia(joint), value, width, 0.0);
             }
@@ -171,8 +171,8 @@ impl StateBox {
     }
 
     /// The robot with all rotors in the box.
-    pub fn plan<const N: usize>(&self, robot: &Robot, held: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
-        let mut plan = Plan::new(robot, held, rotor_inertia);
+    pub fn plan<const N: usize>(&self, robot: &Robot, braked: &[usize], rotor_inertia: &[f64]) -> Plan<Affine<N>> {
+        let mut plan = Plan::new(robot, braked, rotor_inertia);
         for (body, own) in plan.bodies.iter_mut().zip(&robot.bodies) {
             let joint = match own.joint {
                 Some(ParentJoint::Joint(joint)) => joint,

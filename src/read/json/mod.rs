@@ -10,6 +10,7 @@
 
 mod value;
 
+use value::id_of;
 pub(crate) use value::{Value, id_in};
 
 use crate::read::expression::{FUNCTIONS, Fault, Names};
@@ -127,7 +128,16 @@ impl<'n> Node<'n> {
                 names.evaluate(text).map_err(|fault| self.refuse_expression(names, fault))
             }
             (_, Some(_)) => Err(self.expected("a number or an expression")),
-            (_, None) => Err(self.expected("a number")),
+            (_, None) => Err(self.expected_number("a number")),
+        }
+    }
+
+    /// Refuses a value that is no number; of a number in quotes with the remedy.
+    pub(crate) fn expected_number(&self, expected: &'static str) -> Error {
+        let error = self.expected(expected);
+        match self.as_text().filter(|text| text.trim().parse::<f64>().is_ok_and(f64::is_finite)) {
+            Some(text) => error.hint(format!("write {} without quotes", text.trim())),
+            None => error,
         }
     }
 
@@ -188,13 +198,23 @@ impl<'n> Node<'n> {
         matches!(self.value, Value::Object(_))
     }
 
-    /// An `id`: a string or a number.
+    /// An `id`: a string or a number; an integer of more than 64 bits is kept as the string of its digits.
     pub(crate) fn id(&self) -> Result<serde_json::Value> {
         match self.value {
+            Value::Number(number) if number.is_f64() => Ok(self.raw().and_then(id_of).unwrap_or(number.clone().into())),
             Value::Text(text) => Ok(serde_json::Value::String(text.as_ref().to_owned())),
             Value::Number(number) => Ok(serde_json::Value::Number(number.clone())),
             _ => Err(self.expected("a string or a number")),
         }
+    }
+
+    /// The text of a field's value and what follows it.
+    fn raw(&self) -> Option<&'n str> {
+        let PathStep::Field { parent: Node { way: PathStep::Root { text, .. }, .. }, key } = self.way else {
+            return None;
+        };
+        let behind = text.get(offset_in(text, key)? + key.len() + 2..)?;
+        Some(behind.trim_start().strip_prefix(':')?.trim_start())
     }
 
     /// Refuses a value of the wrong kind.

@@ -5,6 +5,7 @@ use crate::{Error, Reason};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::Number;
+use serde_json::value::RawValue;
 use serde_path_to_error::Segment;
 use std::borrow::Cow;
 use std::fmt;
@@ -107,7 +108,7 @@ pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
         fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
             while let Some(Key(key)) = map.next_key()? {
                 if key == "id" {
-                    *self.0 = map.next_value()?;
+                    *self.0 = id_of(map.next_value::<&RawValue>()?.get());
                     return Err(A::Error::custom("the rest is not needed"));
                 }
                 map.next_value::<IgnoredAny>()?;
@@ -119,19 +120,33 @@ pub(crate) fn id_in(text: &str) -> Option<serde_json::Value> {
     let mut id = None;
     // Whether the rest can be read does not matter here.
     let _ = serde_json::Deserializer::from_str(text).deserialize_map(IdVisitor(&mut id));
-    id.filter(|id| id.is_string() || id.is_number())
+    id
+}
+
+/// The id at the beginning of `text`, a string or a number; an integer of more than 64 bits becomes a string.
+pub(super) fn id_of(text: &str) -> Option<serde_json::Value> {
+    let end = text.find(|c: char| !matches!(c, '-' | '+' | '.' | 'e' | 'E' | '0'..='9')).unwrap_or(text.len());
+    let digits = &text[..end];
+    let is_integer = !digits.is_empty() && digits.bytes().all(|byte| matches!(byte, b'-' | b'0'..=b'9'));
+    match serde_json::from_str(if end == 0 { text } else { digits }).ok()? {
+        serde_json::Value::Number(number) if number.is_f64() && is_integer => Some(digits.into()),
+        id @ (serde_json::Value::String(_) | serde_json::Value::Number(_)) => Some(id),
+        _ => None,
+    }
 }
 
 /// serde_json's error in our words; the place is looked for only now, by reading once more.
 fn refusal(text: &str, error: &serde_json::Error) -> Error {
     let start: usize = text.split_inclusive('\n').take(error.line().max(1) - 1).map(str::len).sum();
-    let offset = start + error.column().saturating_sub(1);
+    let found = start + error.column().saturating_sub(1);
+    let whole = error.to_string();
+    // What begins with t, f or n is taken for true, false or null, and refused inside of the word.
+    let letters = text.as_bytes()[..found.min(text.len())].iter().rev().take_while(|byte| byte.is_ascii_alphabetic());
+    let offset = if whole.starts_with("expected ident") { found - letters.count() } else { found };
     let location = line_and_column(text.as_bytes(), offset);
     let syntax = |message: &str| Error::new(Reason::Syntax(message.to_owned())).on(location.0, location.1);
-    let whole = error.to_string();
     let refused = match whole.split(" at line ").next().unwrap_or_default() {
         "recursion limit exceeded" => return syntax("brackets are nested too deep"),
-        // What begins with t, f or n is taken for true, false or null.
         "expected ident" => syntax("expected value"),
         message => syntax(message),
     };
@@ -139,8 +154,14 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
     let begins = |words: &[&str]| words.iter().any(|word| rest.starts_with(word.as_bytes()));
     let refused = if error.is_eof() {
         refused.hint("the text ends too early: is it whole?")
-    } else if begins(&["NaN", "Infinity", "-Infinity"]) {
-        refused.hint("JSON has no NaN and no infinity; numbers are finite")
+    } else if begins(&["NaN", "nan", "Infinity", "-Infinity", "inf", "-inf", "Inf", "-Inf"]) {
+        refused.hint("JSON has no NaN and no infinity: numbers are finite, and friction alone may be \"infinite\"")
+    } else if begins(&["'"]) {
+        refused.hint("JSON has double quotes, as in {\"friction\": 0.8}")
+    } else if whole.starts_with("trailing comma") {
+        refused.hint("leave out the comma before the closing bracket")
+    } else if is_yaml(text) {
+        refused.hint("is this YAML? JSON has braces and double quotes, as in {\"friction\": 0.8}")
     } else if begins(&["//", "/*", "#"]) {
         refused.hint("JSON has no comments: leave it out")
     } else {
@@ -150,6 +171,12 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
         Err(error) => refused.at(known_part(error.path())),
         Ok(_) => refused,
     }
+}
+
+/// Whether a text that is no JSON begins as YAML does: with `---` or a plain word and a colon.
+fn is_yaml(text: &str) -> bool {
+    let word = text.trim_start().split_once(':').map_or("", |(word, _)| word);
+    text.starts_with("---") || !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || c == '_')
 }
 
 /// The path as far as its keys were read.

@@ -1,6 +1,6 @@
 //! Reads the header of a table: the meaning of each column, resolved once against the robot.
 
-use super::records::place_of;
+use super::records::{place_of, quoting_fault};
 use crate::read::json::line_and_column;
 use crate::robot::{Base, FreezeReason, Plane};
 use crate::{Error, Reason, Result, Robot};
@@ -28,11 +28,24 @@ pub enum Rates {
     Time,
 }
 
+/// The names of columns that are no coordinates.
+const OTHERS: [(&str, TableColumn); 5] = [
+    ("id", TableColumn::Id),
+    ("friction", TableColumn::Friction),
+    ("restitution", TableColumn::Restitution),
+    ("stance", TableColumn::Stance),
+    ("time", TableColumn::Carried),
+];
+
+/// The most columns of a table: each name is compared with those of all coordinates.
+const COLUMN_LIMIT: usize = 100_000;
+
 /// The columns of a table of states.
 #[derive(Debug, Clone)]
 pub struct Header {
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<TableColumn>,
+    missing: Vec<String>,
     pub(crate) time: Option<usize>,
     pub(crate) spatial: Option<SpatialColumns>,
 }
@@ -67,29 +80,85 @@ pub(crate) enum TableColumn {
 }
 
 impl Header {
-    /// Reads the first record of a table.
+    /// Reads the first record of a table; the columns named in `foreign` are carried through, whatever they resemble.
     ///
     /// # Errors
     /// A record that is not UTF-8 or names no coordinate, a column that stands twice, a column of a coordinate that the
-    /// robot does not have, a base in three dimensions that is incomplete or has a pitch as well, velocities that are
-    /// missing or superfluous (see [`Rates`]). The error gives the column's place in `record`, on line 1.
-    pub fn read(record: &[u8], robot: &Robot, rates: Rates) -> Result<Self> {
+    /// robot does not have, a column that is not read but resembles one that is missing, a base in three dimensions
+    /// that is incomplete or has a pitch as well, velocities that are missing or superfluous (see [`Rates`]). The error
+    /// gives the column's place in `record`, on line 1.
+    pub fn read(record: &[u8], robot: &Robot, rates: Rates, foreign: &[String]) -> Result<Self> {
         let record = record.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(record);
         let names = names(record)?;
+        if let Some(absent) = foreign.iter().find(|name| !names.contains(name)) {
+            let error = in_table(Reason::Missing(format!("column \"{}\", given as foreign,", short(absent))), "");
+            return Err(error.did_you_mean(absent, names.iter().map(String::as_str)));
+        }
         let mut columns = Vec::with_capacity(names.len());
         let mut seen = HashSet::new();
         for (at, name) in names.iter().enumerate() {
             let column = match seen.insert(name.as_str()) {
+                true if foreign.contains(name) => Ok(TableColumn::Carried),
                 true => column(name, robot),
                 false => Err(Reason::Duplicate { what: "column", name: short(name) }.into()),
             };
             columns.push(column.map_err(|error| in_column(error, record, at))?);
         }
         let time = names.iter().position(|name| name == "time");
-        let mut header = Self { names, columns, time, spatial: None };
+        let mut header = Self { names, columns, missing: Vec::new(), time, spatial: None };
         header.spatial = header.spatial(record, robot)?;
+        header.missing = header.absent(robot, rates);
+        header.check_foreign(record, foreign)?;
         header.check(record, robot, rates)?;
+        if header.place(TableColumn::Stance).is_some() {
+            let placed = ["q_base_x", "q_base_z", "v_base_x", "v_base_z"];
+            header.missing.retain(|name| !placed.contains(&name.as_str()));
+        }
         Ok(header)
+    }
+
+    /// Names of the columns of coordinates that the table does not have: these are 0 in all states. The base's x and z
+    /// are left out if stances may give them, velocities if they are computed.
+    pub fn missing(&self) -> &[String] {
+        &self.missing
+    }
+
+    /// Names of all columns of coordinates that the table could have and has not.
+    fn absent(&self, robot: &Robot, rates: Rates) -> Vec<String> {
+        let absent = |prefix: &'static str, moving: fn(usize) -> TableColumn| {
+            let absent = robot.coordinates().enumerate().filter(move |&(at, _)| self.place(moving(at)).is_none());
+            absent.map(move |(at, name)| (at, format!("{prefix}{}", prefixed(robot, name))))
+        };
+        // The quaternion has the pitch.
+        let positions = absent("q_", TableColumn::Position).filter(|(at, _)| self.spatial.is_none() || *at != 2);
+        let velocities = absent("v_", TableColumn::Velocity).filter(|_| rates == Rates::Columns);
+        positions.chain(velocities).map(|(_, name)| name).collect()
+    }
+
+    /// Refuses a column that is carried through and resembles one that is missing, unless it is said to be foreign.
+    fn check_foreign(&self, record: &[u8], foreign: &[String]) -> Result<()> {
+        let others = OTHERS.iter().map(|(name, _)| *name).filter(|name| !self.names.iter().any(|given| given == name));
+        let missing: Vec<&str> = self.missing.iter().map(String::as_str).chain(others).collect();
+        let carried = self.places(TableColumn::Carried).filter(|&at| !foreign.contains(&self.names[at]));
+        let resembling = carried.filter_map(|at| {
+            let name = &self.names[at];
+            let near: Vec<&str> = missing.iter().copied().filter(|missing| resembles(name, missing)).collect();
+            (!near.is_empty()).then_some((at, short(name), near))
+        });
+        let resembling: Vec<(usize, String, Vec<&str>)> = resembling.collect();
+        let Some((at, name, near)) = resembling.first() else { return Ok(()) };
+        let reason = format!("\"{name}\" is not read, and the table lacks {}", near.join(" and "));
+        let others = resembling[1..].iter().map(|(_, name, near)| format!("{} for {name}", near.join(" or ")));
+        let others = few(others.collect());
+        let also = if others.is_empty() { String::new() } else { format!(" also {others};") };
+        let hint = format!("did you mean {}?{also} if not, give `foreign: {name}`", near.join("? or "));
+        let error = Error::new(Reason::Inconsistent(reason)).hint(hint);
+        Err(in_column(error, record, *at))
+    }
+
+    /// How many columns there are.
+    pub fn count(&self) -> usize {
+        self.columns.len()
     }
 
     /// Whether there is a column `time`.
@@ -155,7 +224,10 @@ impl Header {
         };
         let has_time = self.has_time();
         match (rates, velocity) {
-            (_, None) if position.is_none() => missing("positions", "q_", "the first line must name the columns"),
+            (_, None) if position.is_none() => {
+                let known = few(self.missing.clone());
+                missing("positions", "q_", &format!("the first line must name the columns, of {known}"))
+            }
             (_, Some(at)) if self.is_spatial() => Err(in_column(spatial_velocity(), record, at)),
             (Rates::Columns, None) if self.is_spatial() && has_time => Err(in_table(
                 Reason::Missing("a source of velocities".into()),
@@ -199,6 +271,12 @@ fn spatial_velocity() -> Error {
 
 /// The names in the first record, without the space around them.
 fn names(record: &[u8]) -> Result<Vec<String>> {
+    if record.iter().filter(|&&byte| byte == b',').count() >= COLUMN_LIMIT {
+        return Err(Error::new(Reason::TooMany { what: "columns", limit: COLUMN_LIMIT }).on(1, 1));
+    }
+    if let Some((at, fault)) = quoting_fault(record) {
+        return Err(in_column(Error::new(Reason::Syntax(fault.into())), record, at));
+    }
     let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(record);
     let mut fields = csv::ByteRecord::new();
     let read =
@@ -242,13 +320,45 @@ fn column(name: &str, robot: &Robot) -> Result<TableColumn> {
     if let Some(coordinate) = name.strip_prefix("v_") {
         return self::coordinate("v_", coordinate, robot, TableColumn::Velocity);
     }
-    Ok(match name {
-        "id" => TableColumn::Id,
-        "friction" => TableColumn::Friction,
-        "restitution" => TableColumn::Restitution,
-        "stance" => TableColumn::Stance,
-        _ => TableColumn::Carried,
-    })
+    Ok(OTHERS.iter().find(|(other, _)| *other == name).map_or(TableColumn::Carried, |&(_, column)| column))
+}
+
+/// Whether a column `name` may be meant as the one that is called `known`: it is the same but for case and punctuation,
+/// names the coordinate alone or with another word for position or velocity, or has a letter or two wrong.
+fn resembles(name: &str, known: &str) -> bool {
+    let plain = |name: &str| {
+        let letter = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+        name.chars().map(letter).collect::<String>()
+    };
+    // Comparing takes the product of the lengths.
+    if name.len() > known.len() + 16 {
+        return false;
+    }
+    let (name, known) = (plain(name), plain(known));
+    let words = match known.as_bytes() {
+        [b'q', b'_', ..] => &["q", "pos", "position", "angle"][..],
+        [b'v', b'_', ..] => &["v", "vel", "velocity", "dq", "qd", "qdot"],
+        _ => &[],
+    };
+    if let (Some((_, coordinate)), false) = (known.split_once('_'), words.is_empty()) {
+        let alone = |name: &str| name == coordinate || Some(name) == coordinate.strip_prefix("base_");
+        let with_word = words.iter().any(|word| {
+            let before = name.strip_prefix(word).and_then(|rest| rest.strip_prefix('_'));
+            let behind = name.strip_suffix(word).and_then(|rest| rest.strip_suffix('_'));
+            before.is_some_and(alone) || behind.is_some_and(alone)
+        });
+        // Another quantity of this coordinate, such as a torque, is none of its state.
+        let other = name.strip_suffix(coordinate).is_some_and(|rest| rest.ends_with('_'));
+        if alone(&name) || with_word || other {
+            return alone(&name) || with_word;
+        }
+    }
+    let wrong = match known.len() {
+        0..4 => 0,
+        4..8 => 1,
+        _ => 2,
+    };
+    name.len().abs_diff(known.len()) <= wrong && strsim::osa_distance(&name, &known) <= wrong
 }
 
 /// The meaning of a coordinate's column: `moving` of its index in q if the robot has it.
@@ -281,6 +391,12 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
         None if robot.mimic_joints.iter().any(|mimic| mimic.joint.name == name) => return Ok(TableColumn::Ignored),
         None => {}
     }
+    if prefix == "v_" && name.starts_with("after_") {
+        let reason = Reason::Inconsistent("a velocity after an impact is not one of a state".into());
+        let hint =
+            format!("results are not read as states; give `foreign: {prefix}{}` to copy the column", short(name));
+        return Err(Error::new(reason).hint(hint));
+    }
     let known: Vec<String> = robot.coordinates().map(|known| format!("{prefix}{}", prefixed(robot, known))).collect();
     let unknown = Error::new(Reason::UnknownName { what: "coordinate", name: short(name) });
     Err(unknown.did_you_mean(&format!("{prefix}{}", short(name)), known.iter().map(String::as_str)))
@@ -289,6 +405,22 @@ fn coordinate(prefix: &str, name: &str, robot: &Robot, moving: fn(usize) -> Tabl
 /// A coordinate's name in columns, after `q_` and `v_`.
 pub(crate) fn prefixed(robot: &Robot, name: &str) -> String {
     if robot.joint(name).is_some() { name.to_owned() } else { format!("base_{name}") }
+}
+
+/// A list of names that may be long, for messages.
+fn few(mut names: Vec<String>) -> String {
+    const MOST: usize = 200;
+    let mut length = 0;
+    let fitting = names.iter().take_while(|name| {
+        length += name.len();
+        length <= MOST
+    });
+    let (fitting, all) = (fitting.count(), names.len());
+    names.truncate(fitting);
+    if fitting < all {
+        names.push(format!("{} more", all - fitting));
+    }
+    names.join(", ")
 }
 
 /// The beginning of a text that may be long, for messages.

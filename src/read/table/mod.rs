@@ -7,10 +7,14 @@
 //!
 //! The first record names the columns: `id`, `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>`, the same with `v_`,
 //! `friction` (a number or `infinite`), `restitution`, `stance` (a link) and `time`; a joint without a column is 0. All
-//! others, and `time`, are copied to the results. An empty cell is refused where a number belongs, because some
-//! programs write NaN so. It means "not given" in `id`, `friction`, `restitution` and `stance`. In a row with a stance
-//! the cells of `q_base_x`, `q_base_z`, `v_base_x` and `v_base_z` must be empty. A base in three dimensions has also
+//! others, and `time`, are copied to the results; one that resembles a missing column is refused. An empty cell is
+//! refused where a number belongs, because some programs write NaN so. It means "not given" in `id`, `friction`,
+//! `restitution` and `stance`. In a row with a stance the cells of `q_base_x`, `q_base_z`, `v_base_x` and `v_base_z`
+//! must be empty. A base in three dimensions has also
 //! `q_base_y`, and a quaternion instead of the pitch ([`crate::gait::spatial`]); its velocities come from the time.
+//!
+//! A quote that is not closed, is closed and followed by text, or has whole rows before its end refuses the row of its
+//! line, and the next line begins the next row.
 
 mod records;
 mod header;
@@ -18,5 +22,6 @@ mod rows;
 
 pub(crate) use header::prefixed;
 pub use header::{Header, Rates};
-pub use records::Quotes;
+pub(crate) use records::swallows_rows;
+pub use records::{Quotes, Quoting};
 pub use rows::{Carried, Row, Rows};

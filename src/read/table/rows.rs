@@ -1,7 +1,7 @@
 //! Reads the rows of a table as states.
 
 use super::header::{Header, SpatialColumns, TableColumn, short};
-use super::records::{Quotes, place_of};
+use super::records::{place_of, quoting_fault};
 use crate::gait::spatial::{Spatial, project};
 use crate::law::Friction;
 use crate::robot::Base;
@@ -59,7 +59,7 @@ impl Header {
 
 impl<'h> Rows<'h> {
     /// The row in `record`, which begins on `line` of the table and may end with a line break; `None` if it is blank. A
-    /// quote that is not closed is refused, and a line break outside of quotes.
+    /// quote that is not closed or followed by text is refused, and a line break outside of quotes.
     pub fn row<'r>(&'r mut self, record: &'r [u8], line: usize) -> Result<Option<Row<'r>>> {
         let raw = record.strip_suffix(b"\n").unwrap_or(record);
         let raw = raw.strip_suffix(b"\r").unwrap_or(raw);
@@ -67,9 +67,9 @@ impl<'h> Rows<'h> {
             return Ok(None);
         }
         let syntax = |reason: String| Error::new(Reason::Syntax(reason)).on(line, 1);
-        // The reader would ask for more, and take what is missing for the end of the file.
-        if !Quotes::default().closed_after(record) {
-            return Err(syntax("a quote is not closed".into()));
+        if let Some((at, fault)) = quoting_fault(raw) {
+            let error = refuse(self.header, raw, line, at, Reason::Syntax(fault.into()));
+            return Err(error.hint("a cell in quotes ends with its closing quote; a quote inside it is written twice"));
         }
         let bytes = self.reader.get_mut();
         bytes.set_position(0);
@@ -132,7 +132,8 @@ impl Row<'_> {
             return Err(Error::new(reason).on(self.line, 1));
         }
         let stance = self.stance(robot)?;
-        let scene = Scene { stance, loops: defaults.loops.clone(), ..Scene::default() };
+        let place_lowest = defaults.place_lowest && stance.is_none();
+        let scene = Scene { stance, place_lowest, loops: defaults.loops.clone(), ..Scene::default() };
         let mut state = State { id: self.id(), scene, ..State::zero(robot) };
         let mut friction = None;
         for (at, &column) in self.header.columns.iter().enumerate() {
@@ -256,8 +257,13 @@ impl Row<'_> {
     }
 
     fn refuse(&self, at: usize, reason: Reason) -> Error {
-        let (lines, column) = place_of(self.raw, at);
-        let name = self.header.names.get(at).map_or("", String::as_str);
-        Error::new(reason).at(short(name)).on(self.line + lines, column)
+        refuse(self.header, self.raw, self.line, at, reason)
     }
+}
+
+/// Refuses cell `at` of the record `raw`, which begins on `line`.
+fn refuse(header: &Header, raw: &[u8], line: usize, at: usize, reason: Reason) -> Error {
+    let (lines, column) = place_of(raw, at);
+    let name = header.names.get(at).map_or("", String::as_str);
+    Error::new(reason).at(short(name)).on(line + lines, column)
 }

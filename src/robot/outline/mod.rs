@@ -98,9 +98,6 @@ mod tests {
         let differs = shape.corners().len() != corners.len() || shape.corners().iter().zip(corners).any(far);
         assert!(!differs, "{geometry:?} {rpy:?}: {:?}", shape.corners());
         assert_eq!(shape.rim, Rim::Circle { radius });
-        if let Some(polygon) = shape.polygon().and_then(|polygon| polygon.as_convex_polygon()) {
-            assert_eq!(polygon.points().iter().map(|p| Vector::new(p.x, p.y)).collect::<Vec<_>>(), shape.corners());
-        }
     }
 
     /// The corners of a rectangle of these half sizes.

@@ -9,7 +9,7 @@
 mod text;
 
 use crate::accuracy::compliant::Comparison;
-use crate::accuracy::{CaseStudy, Factorization, Method, Work};
+use crate::accuracy::{CaseStudy, Factorization, Method, Work, quantile};
 use serde::Serialize;
 
 /// The results of every method on some cases.
@@ -129,7 +129,7 @@ fn of_the_proof(studies: &[CaseStudy]) -> Option<String> {
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
-    values.get(values.len().saturating_sub(1) / 2).copied()
+    (!values.is_empty()).then(|| quantile(&values, 0.5))
 }
 
 /// A ratio in two digits.

@@ -2,7 +2,7 @@
 
 use super::{Accuracy, Compliant, name_of};
 use crate::accuracy::compliant::{GREATEST_FRICTION, NEAR};
-use crate::accuracy::{CaseStudy, Factorization, Method, MethodErrors, Spread, Work};
+use crate::accuracy::{CaseStudy, Factorization, Method, MethodErrors, Spread, Work, quantile};
 use crate::write::Palette;
 use crate::write::table::{Table, number};
 use crate::write::words::grouped;
@@ -93,21 +93,17 @@ fn many(out: &mut String, studies: &[CaseStudy], Palette { strong, plain, .. }: 
         values.sort_by(f64::total_cmp);
         values
     };
-    let times = |method: &&Method| {
-        let medians = sorted(method, |method| Some(method.time?.median));
-        let at = |part: usize| medians[(medians.len() - 1) * part / 4];
-        span(Spread { lower_quartile: at(1), median: at(2), upper_quartile: at(3), samples: medians.len() })
-    };
-    let errors = |method: &&Method, part: usize| {
+    let times = |method: &&Method| span(Spread::of_sorted(&sorted(method, |method| Some(method.time?.median))));
+    let errors = |method: &&Method, share: f64| {
         let errors = sorted(method, |method| method.error?.delassus);
-        errors.get(errors.len().saturating_sub(1) * part / 2).map_or("-".into(), |&error| digits(error))
+        if errors.is_empty() { "-".into() } else { digits(quantile(&errors, share)) }
     };
     Table::default()
         .text("method", methods.iter().map(|method| name_of(method)))
         .text("from state to", methods.iter().map(|method| work(method.work)))
         .text("time", methods.iter().map(times))
-        .text("digits of G", methods.iter().map(|method| errors(method, 1)))
-        .text("fewest", methods.iter().map(|method| errors(method, 2)))
+        .text("digits of G", methods.iter().map(|method| errors(method, 0.5)))
+        .text("fewest", methods.iter().map(|method| errors(method, 1.0)))
         .write(out);
     out.push_str("  time: median [quartiles] of the cases; digits: -log10 of the largest error, free of units\n");
     list_left_out(out, studies);

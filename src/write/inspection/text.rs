@@ -2,6 +2,7 @@
 //! short.
 
 use super::{Inspection, JointRecord, MimicRecord};
+use crate::error::visible;
 use crate::planar::Vector;
 use crate::robot::FreezeReason;
 use crate::write::table::{Table, number, scale};
@@ -16,19 +17,40 @@ const INDENT: usize = 15;
 /// The room for a list of names, in characters.
 const NAMES: usize = 300;
 /// The room for the feet of one shape, in characters.
-const FEET: usize = 600;
+const FEET: usize = 200;
+/// The lines that fit a screen.
+const SCREEN: usize = 40;
+/// The lines of a part that are always shown: a blank one, its title, the names of its columns, two rows.
+const LEAST: usize = 5;
 /// The room for the links of a body, in characters.
 const LINKS: usize = 50;
 
 impl Inspection<'_> {
-    /// The same as text, with a line break at its end.
-    pub fn text(&self, palette: &Palette) -> String {
-        written(|out| self.write(palette, out))
+    /// The same as text, with a line break at its end: all of it, or what fits a screen.
+    pub fn text(&self, palette: &Palette, all: bool) -> String {
+        let head = written(|out| self.head(palette, out));
+        let bodies = written(|out| self.bodies(palette, out));
+        let joints = written(|out| self.joints(palette, out));
+        let left_out = written(|out| self.left_out(palette, out));
+        let mut sections = [bodies, joints, left_out]
+            .map(|text| Section { lines: text.lines().map(str::to_owned).collect(), left_out: 0 });
+        let lines = |sections: &[Section]| head.lines().count() + sections.iter().map(Section::height).sum::<usize>();
+        let is_cut = !all && lines(&sections) > SCREEN;
+        while is_cut && lines(&sections) + 1 > SCREEN {
+            let longest = sections.iter_mut().max_by_key(|section| section.lines.len());
+            let Some(longest) = longest.filter(|section| section.lines.len() > LEAST) else { break };
+            longest.lines.pop();
+            longest.left_out += 1;
+        }
+        let Palette { faint, plain, .. } = *palette;
+        let sections: String = sections.iter().map(Section::text).collect();
+        let rest = if is_cut { format!("{faint}The rest: `all`{plain}\n") } else { String::new() };
+        format!("{head}{sections}{rest}")
     }
 
-    fn write(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
+    fn head(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
         let Palette { strong, plain, .. } = *palette;
-        writeln!(out, "{strong}{}{plain}", self.name)?;
+        writeln!(out, "{strong}{}{plain}", visible(self.name))?;
         for caution in self.cautions {
             write!(out, "{strong}")?;
             entry("caution", caution, out)?;
@@ -44,13 +66,23 @@ impl Inspection<'_> {
         entry("base", &base, out)?;
         entry("joints", &self.joints_in_words(), out)?;
         entry("coordinates", &format!("{}: {}", self.coordinates.len(), self.coordinates.join(", ")), out)?;
-        entry("feet", &self.feet_in_words(), out)?;
+        entry("feet", &self.feet_in_words(), out)
+    }
 
+    fn hinges(&self) -> impl Iterator<Item = &JointRecord<'_>> + Clone {
+        self.joints.iter().chain(self.followers.iter().map(|follower| &follower.joint))
+    }
+
+    /// The size of the places in the tables \[m\].
+    fn lengths(&self) -> f64 {
+        let points = self.bodies.iter().map(|body| body.com).chain(self.hinges().map(|joint| joint.origin));
+        scale(points.flat_map(Vector::components))
+    }
+
+    fn bodies(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *palette;
         writeln!(out, "\n{strong}bodies{plain}")?;
-        let (bodies, joints) = (&self.bodies, &self.joints);
-        let hinges = || joints.iter().chain(self.followers.iter().map(|follower| &follower.joint));
-        let points = bodies.iter().map(|body| body.com).chain(hinges().map(|joint| joint.origin));
-        let lengths = scale(points.flat_map(Vector::components));
+        let (bodies, lengths) = (&self.bodies, self.lengths());
         let moments = scale(bodies.iter().map(|body| body.moment));
         Table::default()
             .text("body", bodies.iter().map(|body| body.name))
@@ -59,7 +91,12 @@ impl Inspection<'_> {
             .numbers("moment [kg m^2]", moments, bodies.iter().map(|body| body.moment))
             .text("links", bodies.iter().map(|body| words::list(&body.links, LINKS)))
             .write(out);
+        Ok(())
+    }
 
+    fn joints(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *palette;
+        let (joints, lengths, hinges) = (&self.joints, self.lengths(), || self.hinges());
         if hinges().next().is_some() {
             writeln!(out, "\n{strong}joints{plain}")?;
             let law = |&MimicRecord { mimicked, multiplier, offset, .. }: &MimicRecord| {
@@ -75,7 +112,11 @@ impl Inspection<'_> {
                 .pairs(["origin x [m]", "z [m]"], lengths, hinges().map(|joint| joint.origin.components()))
                 .write(out);
         }
+        Ok(())
+    }
 
+    fn left_out(&self, palette: &Palette, out: &mut String) -> std::fmt::Result {
+        let Palette { strong, plain, .. } = *palette;
         let massless: Vec<&str> = self.links.iter().filter(|link| !link.has_inertial).map(|link| link.name).collect();
         if !massless.is_empty() {
             writeln!(out, "\nWithout inertial, so massless: {}", words::list(&massless, NAMES))?;
@@ -111,7 +152,7 @@ impl Inspection<'_> {
         let parts = [
             (self.joints.len(), "kept"),
             (self.followers.len(), "kept as mimic joints"),
-            (self.held.len() - fixed - base, "held"),
+            (self.held.len() - fixed - base, "frozen"),
             (base, "part of the base"),
             (fixed, "fixed"),
         ];
@@ -125,8 +166,15 @@ impl Inspection<'_> {
             return "none: name them by `feet`, or in each state by \"contacts\"".to_owned();
         }
         let feet = self.feet.iter().map(|foot| (foot.in_words(), foot.link));
-        let groups =
-            words::grouped(feet).into_iter().map(|(shape, links)| format!("{} ({shape})", words::list(&links, FEET)));
+        let groups = words::grouped(feet).into_iter().map(|(shape, links)| {
+            // Each link once, however many of its shapes are alike.
+            let links = words::grouped(links.into_iter().map(|link| (link, ()))).into_iter();
+            let counted = |(link, shapes): (&str, Vec<()>)| match shapes.len() {
+                1 => link.to_owned(),
+                count => format!("{count} of {link}"),
+            };
+            format!("{} ({shape})", words::list(&links.map(counted).collect::<Vec<_>>(), FEET))
+        });
         groups.collect::<Vec<_>>().join(", ")
     }
 
@@ -143,12 +191,31 @@ impl Inspection<'_> {
     }
 }
 
+/// A part of the text, cut to fit.
+struct Section {
+    lines: Vec<String>,
+    /// How many of its lines are not shown.
+    left_out: usize,
+}
+
+impl Section {
+    fn height(&self) -> usize {
+        self.lines.len() + usize::from(self.left_out > 0)
+    }
+
+    fn text(&self) -> String {
+        let more = (self.left_out > 0).then(|| format!("  ... {} more lines\n", self.left_out));
+        self.lines.iter().map(|line| format!("{line}\n")).chain(more).collect()
+    }
+}
+
 /// A line of the head, broken between words.
 fn entry(label: &str, text: &str, out: &mut String) -> std::fmt::Result {
     wrapped(&format!("  {label:<12} "), INDENT, text, out)
 }
 
 fn wrapped(begin: &str, indent: usize, text: &str, out: &mut String) -> std::fmt::Result {
+    let text = visible(text);
     let mut words = text.split(' ');
     let mut line = begin.to_owned() + words.next().unwrap_or_default();
     for word in words {

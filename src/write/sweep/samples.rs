@@ -48,7 +48,7 @@ impl<'a> SampleRecord<'a> {
         let answered = solver.at(&self.point, |robot, state, pipeline| -> Result<()> {
             let impact = pipeline.impact(&state)?;
             Report::of_state(robot, &state, &impact, detail)?.append_json(detail, &mut result);
-            impact.analysed().map(drop)
+            impact.analyzed().map(drop)
         });
         let refused = answered.err();
         if let Some(error) = refused.as_ref().filter(|_| result.is_empty()) {
@@ -80,7 +80,7 @@ impl<'a> SampleRecord<'a> {
         });
         let Err(error) = answered else { return true };
         let sentence = ErrorObject::new(&error).to_string();
-        columns.append_error(None, &sentence, Some(&carried(&Err(error))), out);
+        columns.append_unnamed(&sentence, &carried(&Err(error)), out);
         false
     }
 }
@@ -89,5 +89,5 @@ impl<'a> SampleRecord<'a> {
 pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
     let through: Vec<&str> = parameters.chain(["region"]).collect();
-    Columns::with(model.robot, feet, &contacts.collect::<Vec<_>>(), &through, false)
+    Columns::without_lines(model.robot, feet, &contacts.collect::<Vec<_>>(), &through)
 }

@@ -1,6 +1,7 @@
 //! The regions of a study for people.
 
 use super::{Happening, MapSweep, Regions, Sweep};
+use crate::error::visible;
 use crate::sweep::{BorderCurve, EndedOutcome, Side, Transition, letter};
 use crate::write::{Palette, words, written};
 use crate::{Mode, Verdict};
@@ -18,13 +19,14 @@ impl Regions<'_> {
             Self::Map(map) => (map.parameters.join(" and "), map.regions.len(), map.samples, &map.notes),
         };
         let Palette { strong, plain, .. } = palette;
+        let (robot, names) = (visible(robot), visible(&names));
         let regions = if regions == 1 { "one region".to_owned() } else { format!("{regions} regions") };
         writeln!(out, "{strong}{robot}{plain} against {names}: {regions}, {samples} samples.\n")?;
         match self {
             Self::Along(sweep) => sweep.write(palette, out)?,
             Self::Map(map) => map.write(palette, out)?,
         }
-        notes.iter().try_for_each(|note| writeln!(out, "\nNote: {note}."))
+        notes.iter().try_for_each(|note| writeln!(out, "\nNote: {}.", visible(note)))
     }
 }
 
@@ -123,7 +125,7 @@ impl Transition {
         if all.is_empty() {
             return "the outcomes change, but no inequality of either side is seen to pass zero".to_owned();
         }
-        all.join("; ")
+        visible(&all.join("; ")).into_owned()
     }
 }
 

@@ -4,10 +4,11 @@ mod outcome;
 mod reasons;
 
 use self::outcome::graded;
-use super::result::{ContactRecord, Report};
+use super::result::{ContactRecord, NearestRecord, Report};
 use super::state::HoldsRecord;
 use super::table::{Table, is_residue, number, scale};
 use super::{Detail, Palette, words};
+use crate::error::visible;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
 use crate::planar::Vector;
 use crate::read::Problem;
@@ -81,17 +82,18 @@ impl<'w> Writer<'w> {
         if detail.brief {
             for (at, outcome) in outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.modes.is_empty()) {
                 let border = if outcome.border.is_some() { ", on a border" } else { "" };
-                let family = if outcome.family { ", the end of a family" } else { "" };
+                let family = if outcome.family { ", a corner of a family" } else { "" };
                 let words = self.in_words(&outcome.modes);
                 writeln!(self.out, "  {}  {words}{border}{family}{}", at + 1, graded(outcome))?;
             }
-            return Ok(());
+            return self.families();
         }
         for (at, outcome) in outcomes.iter().enumerate() {
             self.outcome(at + 1, outcome)?;
         }
+        self.families()?;
         self.velocities(outcomes);
-        self.why_nothing_else(outcomes.len())?;
+        self.why_nothing_else(outcomes)?;
         self.rejected();
         self.regions();
         self.matrices()?;
@@ -139,7 +141,7 @@ impl<'w> Writer<'w> {
     fn verdict(&mut self) -> std::fmt::Result {
         let Palette { strong, plain, .. } = *self.palette;
         let sentence = match (self.report.verdict, &self.report.outcomes) {
-            (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes.len()),
+            (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes),
             _ => "No outcomes are known.".to_owned(),
         };
         writeln!(self.out, "{strong}{sentence}{plain}")?;
@@ -180,7 +182,7 @@ impl<'w> Writer<'w> {
 
     fn matrices(&mut self) -> std::fmt::Result {
         if let Some(coordinates) = &self.report.coordinates {
-            writeln!(self.out, "\ncoordinates: {}", coordinates.join(", "))?;
+            writeln!(self.out, "\ncoordinates: {}", visible(&coordinates.join(", ")))?;
         }
         let matrices = [
             ("mass matrix", &self.report.mass_matrix),
@@ -222,7 +224,15 @@ impl<'w> Writer<'w> {
         if !struck && !self.report.notes.is_empty() {
             self.out.push('\n');
         }
-        self.report.notes.iter().try_for_each(|note| writeln!(self.out, "Note: {note}"))?;
+        // If nothing touches, a note gives the same numbers.
+        if let Some(NearestRecord { name, height, velocity: [_, normal] }) =
+            self.report.nearest.as_ref().filter(|_| struck)
+        {
+            let way = if *normal < 0.0 { "toward the ground" } else { "away from the ground" };
+            let (height, speed) = (number(*height), number(normal.abs()));
+            writeln!(self.out, "Nearest open foot: {}, {height} m high, moves {way} at {speed} m/s.", visible(name))?;
+        }
+        self.report.notes.iter().try_for_each(|note| writeln!(self.out, "Note: {}", visible(note)))?;
         if let Some(left_out) = self.report.left_out.as_ref().filter(|left_out| !left_out.is_empty()) {
             let Palette { faint, plain, .. } = *self.palette;
             let what: Vec<&str> = left_out.iter().map(|left| &*left.what).collect();
@@ -237,7 +247,7 @@ impl<'w> Writer<'w> {
 }
 
 fn touching(contacts: &[ContactRecord]) -> String {
-    let names: Vec<&str> = contacts.iter().map(|contact| &*contact.name).collect();
+    let names: Vec<_> = contacts.iter().map(|contact| visible(&contact.name)).collect();
     match &names[..] {
         [] => "nothing touches the ground.".to_owned(),
         [name] => format!("{name} touches the ground."),

@@ -1,6 +1,8 @@
 //! Each outcome, and the velocities after all of them.
 
 use super::Writer;
+use crate::error::visible;
+use crate::impact::Family;
 use crate::planar::Vector;
 use crate::write::Palette;
 use crate::write::table::{Table, number, scale};
@@ -34,15 +36,28 @@ impl Writer<'_> {
             self.out.push_str("  other impulses give the same velocities; these are the least\n");
         }
         if outcome.family {
-            self.out.push_str("  the end of a family: every velocity between its ends is an outcome, too\n");
+            self.out.push_str("  a corner of a family\n");
         }
         self.border(outcome)
+    }
+
+    /// One line per family: its modes and the numbers of the outcomes at its corners.
+    pub(super) fn families(&mut self) -> std::fmt::Result {
+        if !self.report.families.is_empty() {
+            self.out.push_str("\nFamilies: all velocities between their corners are outcomes, too\n");
+        }
+        for Family { modes, dimension, corners } in self.report.families.iter() {
+            let corners = corners.iter().map(|corner| (corner + 1).to_string()).collect::<Vec<_>>().join(", ");
+            let dimensions = if *dimension == 1 { String::new() } else { format!(", in {dimension} dimensions") };
+            writeln!(self.out, "  {}: between outcomes {corners}{dimensions}", self.in_words(modes))?;
+        }
+        Ok(())
     }
 
     /// What is exactly zero, and what lies beyond.
     fn border(&mut self, outcome: &Outcome) -> std::fmt::Result {
         let Some(border) = &outcome.border else { return Ok(()) };
-        let zeros = border.at_zero.iter().map(|zero| format!("{} has {}", zero.contact, zero.inequality));
+        let zeros = border.at_zero.iter().map(|zero| format!("{} has {}", visible(&zero.contact), zero.inequality));
         write!(self.out, "  exactly on a border: {}", zeros.collect::<Vec<_>>().join(", "))?;
         let beyond: Vec<String> = border.neighbours.iter().map(|modes| self.in_words(modes)).collect();
         let beyond = if beyond.is_empty() { String::new() } else { format!("; beyond it {}", beyond.join("; or ")) };

@@ -1,22 +1,22 @@
 //! Why there is nothing else.
 
 use super::Writer;
-use crate::impact::RejectionReason;
+use crate::impact::{Outcome, RejectionReason};
 use crate::law::Mode;
 use crate::planar::Pair;
 use crate::write::table::{Table, scale};
 use crate::write::words;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 impl Writer<'_> {
     /// One line: how many other combinations there are, and what is wrong with them.
-    pub(super) fn why_nothing_else(&mut self, outcomes: usize) -> std::fmt::Result {
-        let contacts = self.report.contacts.len();
-        if contacts == 0 || self.report.verdict.is_none() {
-            return Ok(());
-        }
-        // 4^n; the number of contacts is bounded long before this overflows.
-        let others = 4usize.saturating_pow(contacts as u32).saturating_sub(outcomes);
+    pub(super) fn why_nothing_else(&mut self, outcomes: &[Outcome]) -> std::fmt::Result {
+        let Some(analysis) = self.subject.analysis.filter(|_| !self.report.contacts.is_empty()) else { return Ok(()) };
+        // Corners of families may have the same modes, and a family those of a corner.
+        let families = self.report.families.iter().map(|family| &family.modes);
+        let outcomes = outcomes.iter().map(|outcome| &outcome.modes).chain(families).collect::<BTreeSet<_>>().len();
+        let others = analysis.effort.combinations().saturating_sub(outcomes);
         match (others, outcomes) {
             (0, _) => return Ok(()),
             (1, 0) => write!(self.out, "\nthe other combination of modes fails")?,
@@ -24,7 +24,7 @@ impl Writer<'_> {
             (_, 0) => write!(self.out, "\nAll {others} combinations of modes fail")?,
             _ => write!(self.out, "\nNothing else: the other {others} combinations of modes fail")?,
         }
-        let rejected = self.subject.analysis.map_or(&[][..], |analysis| &analysis.rejected).iter();
+        let rejected = analysis.rejected.iter();
         let mut reasons = words::grouped(rejected.map(|rejection| (in_general(rejection.because), ())));
         // The most frequent first.
         reasons.sort_by_key(|(_, all)| std::cmp::Reverse(all.len()));

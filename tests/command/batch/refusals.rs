@@ -126,12 +126,76 @@ fn a_byte_order_mark_belongs_to_no_name_and_no_line() {
 }
 
 #[test]
-fn an_empty_table_has_no_states() {
-    for input in ["", "\n \n"] {
-        assert_eq!(batch(&["-", "--input-format", "csv"], input).text(), "");
-        for form in ["csv", "ndjson"] {
-            let text = batch(&["-", "--input-format", form, "--output-format", "csv"], input).text();
-            assert!(text.starts_with("id,verdict,") && text.ends_with(",error\n"), "only the header: {text}");
+fn a_stray_quote_costs_no_row_but_its_own() {
+    let row = |id: usize| format!("{id},0.5,-1,{}note\n", if id % 400 == 50 { "\"" } else { "" });
+    let table = "id,q_base_z,v_base_z,note\n".to_owned() + &(0..1000).map(row).collect::<String>();
+    for threads in ["1", "4"] {
+        let run = batch(&["-", "--input-format", "csv", "--friction", "1", "--threads", threads], table.as_str());
+        let answers = run.lines();
+        assert_eq!((run.status, answers.len()), (1, 1000));
+        for (id, answer) in answers.iter().enumerate() {
+            assert_eq!(answer["line"], id + 2);
+            let quoted = answer["error"]["message"] == "a quote is not closed";
+            let named = answer["id"].as_str() == Some(id.to_string().as_str());
+            assert!(if id % 400 == 50 { quoted } else { named }, "{answer}");
         }
+        assert!(run.stderr.contains("\n1000 states: 997 unique, 3 refused\n"), "{}", run.stderr);
     }
+}
+
+#[test]
+fn quotes_around_several_rows_cost_only_their_own() {
+    let row = |id: usize| match id {
+        100 => "\"100,0.5,-1,note\n".to_owned(),
+        130 => "130,0.5,-1,note\"\n".to_owned(),
+        150 => "150,0.5,-1,\"note\n".to_owned(),
+        180 => "180,0.5,-1,note\"\n".to_owned(),
+        // Text of two lines is no row.
+        _ if id % 50 == 7 => format!("{id},0.5,-1,\"a note,\nof two lines\"\n"),
+        _ => format!("{id},0.5,-1,note\n"),
+    };
+    let table = "id,q_base_z,v_base_z,note\n".to_owned() + &(0..200).map(row).collect::<String>();
+    let run = batch(&["-", "--input-format", "csv", "--friction", "1"], table);
+    let answers = run.lines();
+    let refused: Vec<usize> = (0..answers.len()).filter(|&at| answers[at].get("error").is_some()).collect();
+    assert_eq!((answers.len(), refused), (200, vec![100, 150]), "{}", run.stderr);
+}
+
+#[test]
+fn a_column_that_resembles_a_missing_one_is_refused() {
+    let given = "q_base_x,q_base_pitch,v_base_x,v_base_pitch";
+    let table = |columns: &str| {
+        format!("q_base_z,{columns}\n{}\n", vec!["0.5"; 1 + columns.matches(',').count() + 1].join(","))
+    };
+    let arguments = ["-", "--input-format", "csv", "--friction", "1"];
+    for (columns, hint) in [
+        ("V_BASE_Z", "did you mean v_base_z? if not, give --foreign V_BASE_Z"),
+        ("v-base-z", "did you mean v_base_z?"),
+        ("base_z", "did you mean v_base_z?"),
+        ("base_z_vel", "did you mean v_base_z?"),
+        ("v_base_z,restituion", "did you mean restitution?"),
+        ("v_base_z,ID,Stance", "did you mean id? also stance for Stance; if not"),
+        ("pitch", "did you mean q_base_pitch? or v_base_pitch?"),
+    ] {
+        let given = if columns == "pitch" { "v_base_z" } else { given };
+        let stderr = batch(&arguments, table(&format!("{given},{columns}"))).refusal(1);
+        assert!(stderr.contains(&format!("\nhint: {hint}")), "{columns}: {stderr}");
+    }
+    // It is near no column that the table lacks, or said to be foreign.
+    for (columns, more) in [
+        ("v_base_z,base_z,a_base_z,tau_base_z,phase", &[][..]),
+        ("v_base_z,Time", &["--foreign", "Time"]),
+        ("v_base_z,q_wheel,v_after_base_z", &["--foreign", "q_wheel", "--foreign", "v_after_base_z"]),
+    ] {
+        batch(&[&arguments, more].concat(), table(&format!("{given},{columns}"))).text();
+    }
+    let absent = batch(&[&arguments[..], &["--foreign", "nobody"]].concat(), table(given)).refusal(1);
+    assert!(absent.contains("column \"nobody\", given as foreign, is missing"), "{absent}");
+}
+
+#[test]
+fn a_result_is_not_read_as_states() {
+    let results = batch(&["-", "--friction", "1", "--output-format", "csv"], strike(1, 0.0)).stdout;
+    let stderr = batch(&["-", "--input-format", "csv", "--friction", "1"], results).refusal(1);
+    assert!(stderr.contains("hint: results are not read as states; give --foreign v_after_base_x"), "{stderr}");
 }

@@ -39,6 +39,7 @@ fn the_summary_counts_and_names() {
             {"id": 2, "line": 2, "margin": null},
         ],
         "more_friction": {"states": 2, "greatest": {"id": 3, "line": 3, "friction": 2.0}},
+        "resting": 0,
         "modes": [count(&["stick"], 2), count(&["slide+"], 1), count(&["slide-"], 1), count(&[], 1)],
         "other_modes": 0,
     });
@@ -69,11 +70,42 @@ fn a_summary_that_cannot_be_written_is_refused_first() {
     assert!(stderr.starts_with("error: the output cannot be written: nowhere/at/all.json: "), "{stderr}");
 }
 
-/// The walk of the README: a foot that stands rests, also where its speed is zero by rounding alone.
+/// Walk of the README: a foot that stands rests, although rounding moves it.
+const WALK: [&str; 4] = ["batch", "urdf/ramone.urdf", "--friction", "0.6"];
+
 #[test]
 fn the_example_s_walk_has_its_two_touchdowns() {
-    let arguments = ["examples/gait/ramone_walk.csv", "--friction", "0.6", "--resting-speed", "1e-9", "--brief"];
-    let summary = heelstrike_reads(&[&["batch", "urdf/ramone.urdf"], &arguments[..]].concat(), "").stderr;
-    assert!(summary.contains("102 states: 2 unique, 100 without impact\n"), "{summary}");
-    assert!(summary.contains("smallest margins: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)\n"), "{summary}");
+    let summary = heelstrike_reads(&[&WALK[..], &["examples/gait/ramone_walk.csv", "--brief"]].concat(), "").stderr;
+    let expected = "\
+102 states: 2 unique, 100 without impact
+smallest margins: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)
+slow contacts are taken as exactly at rest: 102; --resting-speed 0 takes none so
+";
+    assert!(summary.starts_with(expected), "{summary}");
+}
+
+#[test]
+fn the_walk_at_its_word_is_ambiguous_by_rounding() {
+    let strict = ["examples/gait/ramone_walk.csv", "--resting-speed", "0", "--brief"];
+    let summary = heelstrike_reads(&[&WALK[..], &strict].concat(), "").stderr;
+    assert!(summary.starts_with("102 states: 46 unique, 2 ambiguous, 54 without impact\n"), "{summary}");
+    assert!(!summary.contains("at rest"), "{summary}");
+}
+
+/// Tables with so many decimals are known to half a unit of the last one; with four it may be meant.
+#[test]
+fn a_walk_of_six_decimals_has_the_same_touchdowns() {
+    let table = read("examples/gait/ramone_walk.csv");
+    let rounded = |decimals: usize| {
+        let cell = |cell: &str| cell.parse::<f64>().map_or(cell.to_owned(), |number| format!("{number:.decimals$}"));
+        let line = |line: &str| line.split(',').map(cell).collect::<Vec<_>>().join(",") + "\n";
+        let table: String = table.lines().map(line).collect();
+        let arguments = ["-", "--input-format", "csv", "--contact-tolerance", "1e-4", "--brief"];
+        heelstrike_reads(&[&WALK[..], &arguments].concat(), table).stderr
+    };
+    for decimals in [6, 8, 10] {
+        let summary = rounded(decimals);
+        assert!(summary.starts_with("102 states: 2 unique, 100 without impact\n"), "{decimals}: {summary}");
+    }
+    assert!(!rounded(4).contains("at rest"));
 }

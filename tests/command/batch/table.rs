@@ -3,7 +3,7 @@
 use super::*;
 
 /// A header and many rows with a carried column, in which line breaks stand in quotes; every tenth row is broken.
-fn many() -> String {
+pub(super) fn many() -> String {
     let row = |id: usize| match id {
         _ if id % 10 == 9 => format!("{id},oops,0.5,0,-1,broken\n"),
         _ if id % 7 == 3 => format!("{id},0,0.5,{},-1,\"two\nlines\"\n", id as f64 * 1.1e-3),
@@ -38,7 +38,10 @@ fn the_form_follows_the_ending_unless_it_is_given() {
     assert_eq!((run.status, run.stdout.len()), (0, 0), "{}", run.stderr);
     let written = read(&table);
     let header = written.lines().next().expect("a header");
-    assert!(header.starts_with("id,verdict,outcome,") && header.ends_with(",note,border,family,error"), "{header}");
+    assert!(
+        header.starts_with("id,line,verdict,outcome,") && header.ends_with(",note,border,family,families,error"),
+        "{header}"
+    );
     let lines = batch(&[&rows, "--friction", "1"], "").lines();
     assert_eq!((&lines[0]["verdict"], &lines[0]["carried"]["note"]), (&json!("unique"), &json!("kept")));
     let given = batch(&[&rows, "--friction", "1", "-o", &table, "--output-format", "ndjson"], "");
@@ -73,7 +76,8 @@ fn velocities_are_the_same_for_any_threads() {
 
 #[test]
 fn the_note_of_no_touchdown_says_what_would_count() {
-    let still = "time,q_base_z,v_base_z\n0,0.5,0\n0.1,0.5,0\n";
+    let still =
+        "time,q_base_x,q_base_z,q_base_pitch,v_base_x,v_base_z,v_base_pitch\n0,0,0.5,0,0,0,0\n0.1,0,0.5,0,0,0,0\n";
     let note = |options: &[&str]| {
         let always = ["-", "--input-format", "csv", "--friction", "1", "--touchdowns"];
         batch(&[&always, options].concat(), still).refusal(0)
@@ -83,4 +87,29 @@ fn the_note_of_no_touchdown_says_what_would_count() {
     assert_eq!(note(&[]), expected);
     let expected = expected.replace("0.0200", "0.0300").replace("0.0120", "0.0250");
     assert_eq!(note(&["--drop", "0.025", "--ground-height", "0.03"]), expected);
+}
+
+#[test]
+fn formulas_are_text_in_safe_tables() {
+    let table = "id,q_base_z,v_base_x,v_base_z,friction,@note\n=1+1,0.5,-0.5,-1,0.8,+a\n-7,0.5,-0.5,-1,0.8,-1e3\n\
+                 =x,0.5,oops,-1,0.8,\"-a,b\"\n";
+    let arguments = ["-", "--input-format", "csv", "--output-format", "csv", "--refused", "ok"];
+    let cells = |more: &[&str]| -> Vec<Vec<String>> {
+        let run = batch(&[&arguments[..], more].concat(), table).well();
+        let rows = csv::ReaderBuilder::new().has_headers(false).from_reader(run.stdout.as_bytes()).into_records();
+        rows.map(|row| row.expect("a row").iter().map(str::to_owned).collect()).collect()
+    };
+    let (plain, safe) = (cells(&[]), cells(&["--csv-safe"]));
+    let note = plain[0].iter().position(|name| name == "@note").expect("the copied column");
+    assert_eq!([0, 1, 2, 3].map(|row| plain[row][note].as_str()), ["@note", "+a", "-1e3", "-a,b"]);
+    assert_eq!([0, 1, 2, 3].map(|row| safe[row][note].as_str()), ["'@note", "'+a", "-1e3", "'-a,b"]);
+    assert_eq!([1, 2, 3].map(|row| safe[row][0].as_str()), ["'=1+1", "-7", "'=x"]);
+    // Nothing else differs, numbers below zero included.
+    for (row, (plain, safe)) in plain.iter().zip(&safe).enumerate() {
+        let differ = plain.iter().zip(safe).filter(|(plain, safe)| plain != safe);
+        assert_eq!(differ.count(), [1, 2, 0, 2][row], "{safe:?}");
+    }
+    assert!(plain[1].iter().any(|cell| cell.starts_with("-0.")), "{plain:?}");
+    let refusal = batch(&["-", "--csv-safe"], strike(1, 0.5)).refusal(2);
+    assert!(refusal.contains("--csv-safe: it is for CSV"), "{refusal}");
 }

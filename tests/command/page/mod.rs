@@ -36,7 +36,7 @@ fn axis(data: &Value, axis: usize) -> Vec<f64> {
     serde_json::from_value(data["axes"][axis]["values"].clone()).expect("numbers")
 }
 
-/// The minimalistic biped beside its border at pi / 6, where its trailing foot stops sliding.
+/// The minimalistic biped next to its border at pi / 6, where its trailing foot stops sliding.
 fn near_a_border() -> Value {
     walker(json!({"alpha": {"from": 0.5, "to": 0.55, "steps": 3}}))
 }
@@ -182,7 +182,7 @@ fn a_batch_draws_its_margins_as_svg() {
 fn a_page_of_nothing_is_refused() {
     let path = place("nothing.html");
     let stderr = heelstrike(&["batch", RAMONE, "-", "--plot", &path]).refusal(1);
-    assert_eq!(stderr, "error: --plot: there is nothing to draw\nhint: the input holds no states\n");
+    assert_eq!(stderr, "error: <stdin>: a state is missing\nhint: the input is empty\n");
     assert!(!Path::new(&path).exists());
 }
 

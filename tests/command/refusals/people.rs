@@ -15,6 +15,16 @@ fn what_a_bolted_robot_cannot_have_is_refused() {
 }
 
 #[test]
+fn the_file_is_named_also_where_its_text_is_right() {
+    let deep = r#"{"friction": 1, "position": {"base": {"z": -5}}}"#;
+    let study = format!(r#"{{"parameters": {{"a": {{"from": 0, "to": 1, "steps": 3}}}}, "state": {deep}}}"#);
+    for (command, input) in [("accuracy", deep), ("impact", deep), ("sweep", &study)] {
+        let stderr = heelstrike_reads(&[command, RAMONE, "-"], input).stderr;
+        assert!(stderr.contains("<stdin>"), "{command}: {stderr}");
+    }
+}
+
+#[test]
 fn other_fields_of_a_problem_are_ignored() {
     let problem =
         r#"{"delassus": [[2, 1], [1, 2]], "velocity_before": [[0, -1]], "friction": 1, "source": {"a": 1, "a": 2}}"#;

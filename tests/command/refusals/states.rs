@@ -32,6 +32,8 @@ friction: 1
 {"velocity": {"base": {"qw": 1}}}
 {"position": [0, 0.44, 0]}
 {"stance": "left_fot"}
+{"place": "lowset"}
+{"place": "lowest", "stance": "left_foot"}
 {"position": {"joints": {"left_hipp": 0}}}
 {"friction": {"left_leg": 1}}
 {"held": ["torso"]}
@@ -148,7 +150,7 @@ fn problems_are_refused_word_for_word() {
     let many = format!(r#"{{"mass_matrix": [[1]], "velocity": [1], "friction": 1, "contact_jacobian": [{many}]}}"#);
     assert_refused("problems", lines(PROBLEMS, "@").chain([many]), &["solve", "-"], |text| {
         let problem = Problem::from_json(text, &Defaults::default())?;
-        heelstrike::impact::analyse(&problem.contact, false).map(drop)
+        heelstrike::impact::analyze(&problem.contact, heelstrike::impact::ListedRejections::Nothing).map(drop)
     });
 }
 

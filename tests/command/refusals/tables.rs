@@ -15,7 +15,7 @@ fn hostile_inputs_are_refused_within_memory_and_time() {
         (CSV, "a row of a million cells", format!("{header}{}\n", many("1", 1_000_000))),
         (CSV, "a cell of 10 MB", format!("{header}1,{},0\n", "9".repeat(10_000_000))),
         (CSV, "a number of a million digits", format!("{header}1,{}e,0\n", "9".repeat(1_000_000))),
-        (CSV, "a quote that is never closed", format!("{header}\"{}", "1,2,3\n".repeat(2_800_000))),
+        (CSV, "quotes that are never closed", format!("{header}{}", "a\",\"b\n".repeat(20_000))),
         (CSV, "only quotes", "\"".repeat(10_000_000)),
         (CSV, "only zero bytes", "\0".repeat(10_000_000)),
         (CSV, "a header without end", "q_base_z,".repeat(5_000_000)),

@@ -187,7 +187,7 @@ proptest! {
     /// Two legs of five bars, one behind the other: the order of the loops and of their ends is the order and the sign
     /// of their impulses and nothing else.
     #[test]
-    fn order_and_ends_of_loops_are_those_of_their_impulses((q, v) in case()) {
+    fn loop_impulses_follow_order_and_ends((q, v) in case()) {
         let mechanism = with_leg(cut_at_the_pin(), "hind_", 0.7);
         let both = |list: &[f64]| [list, &list[3..]].concat();
         let loops = [[PIN, HIND_PIN], [HIND_PIN, [PIN[1], PIN[0]]]];

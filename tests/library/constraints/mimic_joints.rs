@@ -81,7 +81,7 @@ proptest! {
 
 /// The same robot with all joints free gives M_all, which T reduces.
 #[test]
-fn tying_by_the_tool_s_own_free_matrices_gives_the_same() {
+fn mimic_joint_equals_tied_free_matrices() {
     let tied = mechanism();
     let mut free = tied.clone();
     free.links.iter_mut().for_each(|link| link.follows = None);

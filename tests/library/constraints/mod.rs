@@ -7,6 +7,7 @@ mod four_bar;
 mod mimic_joints;
 mod redundant;
 mod refusals;
+mod singular;
 
 use crate::support::impact;
 use heelstrike::pipeline::{Impact, Matrices, Options};

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 #[test]
-fn states_that_break_a_loop_are_refused_word_for_word() {
+fn state_that_breaks_a_loop_is_refused() {
     let mechanism = parallelogram(&CRANKS);
     let robot = bolted(&mechanism);
     let sound = state(&mechanism, 0.6, -2.0, json!([pin("rear", WIDTH)]));
@@ -28,8 +28,8 @@ fn states_that_break_a_loop_are_refused_word_for_word() {
         // The rear crank 0.1 rad further: its end is 2 l sin(0.05) away.
         ("an open pose", json!({"position": {"joints": {"front": 0.6, "rear": 0.7, "coupler": -0.6}}})),
         ("opening velocities", json!({"velocity": rate})),
-        // The rate of a held joint is what it is: a loop of held joints alone must already be kept by them.
-        ("opening held joints", json!({"velocity": rate, "held": ["front", "rear", "coupler"]})),
+        // The rate of a braked joint is what it is: a loop of braked joints alone must already be kept by them.
+        ("opening braked joints", json!({"velocity": rate, "held": ["front", "rear", "coupler"]})),
     ] {
         let mut state = sound.clone();
         state.as_object_mut().expect("an object").extend(change.as_object().expect("an object").clone());
@@ -49,5 +49,7 @@ fn a_massless_coordinate_that_only_a_loop_holds() {
     let reason = "the mass matrix is singular: nothing resists a motion of joint \"rear\"";
     let remedy = "it needs inertia of its own, whatever the loops hold: give its links a mass or it a `rotor_inertia`, \
                   however small, or name it in `held`";
-    assert_eq!((error.reason().to_string().as_str(), error.remedy()), (reason, Some(remedy)));
+    assert_eq!(error.reason().to_string(), reason);
+    let found = error.remedy().unwrap_or_default();
+    assert!(found.starts_with("link \"") && found.ends_with(&format!(" has no <inertial>: {remedy}")), "{found}");
 }

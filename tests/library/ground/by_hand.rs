@@ -27,17 +27,17 @@ fn a_sole_with_its_weight_beyond_the_edge_tips() {
 }
 
 #[test]
-fn a_sole_or_disc_on_a_corner_is_struck_toward_its_middle() {
+fn foot_on_corner_is_struck_toward_its_middle() {
     // The middle of a sole on an edge, the nose 0.3 rad down beyond it: its own normal. A ridge too steep for the disc
-    // to touch beside its top: the line to its center.
+    // to touch next to its top: the line to its center.
     let (edge, ridge) = (step(0.0, -1.0), [[-0.1, -2.0], [0.0, 0.0], [0.1, -2.0]]);
     let discs = [-0.7, -0.2, 0.4, 1.2].map(|angle| (disc(), 0.5, angle, 0.0, &ridge[..]));
     for (robot, r, angle, pitch, profile) in [(sole(), 0.1, 0.3, 0.3, &edge[..])].into_iter().chain(discs) {
         let (sin, cos) = f64::sin_cos(angle);
         let found = impact(&robot, state([r * sin, r * cos, pitch], FALLING, "infinite", profile));
         assert_touches(&found, &[[[0.0, 0.0], [sin, cos]]]);
-        // Seen along t = (cos, -sin) and n = (sin, cos): c = (sin, -cos). The normal goes through the CoG, r away: L_n =
-        // m cos, L_t = -sin / (1 / m + r^2 / I); the point at -r n turns it by I w = -r L_t.
+        // Seen along t = (cos, -sin) and n = (sin, cos): c = (sin, -cos). The normal goes through the CoG, r away: L_n
+        // = m cos, L_t = -sin / (1 / m + r^2 / I); the point at -r n turns it by I w = -r L_t.
         let (impulse, after) = only_outcome(&found);
         let [t, n] = [-sin / (0.5 + r * r / 0.5), 2.0 * cos];
         assert_close(&impulse[0], &[t, n]);
@@ -76,7 +76,7 @@ fn a_toe_against_a_riser_touches_tread_and_riser() {
         let Vector { x, z } = contact.normal();
         assert!(x == -1.0 && (z - 2e-9).abs() < 1e-15, "{:?}", contact.normal());
     }
-    // A riser of 1e-9 m a half metre leans by 2e-9.
+    // A riser of 1e-9 m a half meter leans by 2e-9.
     let after = only_outcome(&found).1;
     assert!(after.iter().all(|speed| speed.abs() < 1e-8), "{after:?}");
 }

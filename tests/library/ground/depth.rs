@@ -1,6 +1,7 @@
 //! Where there is no ground, and where a foot is in it.
 
 use super::*;
+use heelstrike::reductions::Reductions;
 
 #[test]
 fn over_a_gap_and_beyond_an_end_there_is_nothing() {
@@ -9,10 +10,13 @@ fn over_a_gap_and_beyond_an_end_there_is_nothing() {
     assert!(over.contacts.is_empty());
     assert_eq!(over.analysis.unwrap().verdict, Verdict::NoContact);
     assert_eq!(over.notes.len(), 1);
-    assert!(over.notes[0].contains("the nearest foot, body, is 0.09999"), "{:?}", over.notes);
-    // A sole bridges it: both edges carry.
-    let bridge = impact(&sole(), state([0.0, 0.1, 0.0], FALLING, 1, &gap));
-    assert_eq!(bridge.contacts.len(), 4);
+    assert!(over.notes[0].contains("the lowest foot, body, is 0.1 m"), "{:?}", over.notes);
+    // A sole bridges it: both edges carry, and act through the sole's ends.
+    let bridge = |merge: bool| {
+        let options = Options { reductions: Reductions { merge, ..Reductions::ALL }, ..Options::default() };
+        try_impact(&sole(), options, state([0.0, 0.1, 0.0], FALLING, 1, &gap)).expect("an answer")
+    };
+    assert_eq!([false, true].map(|merge| bridge(merge).contacts.len()), [4, 2]);
     let beyond = impact(&sole(), state([1.1, 0.1, 0.0], FALLING, 1, &gap));
     assert_touches(&beyond, &[[[0.9, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 1.0]]]);
     assert_eq!(beyond.notes, ["body reaches beyond the end of the ground's profile at x = 1.0 m: there is no ground"]);

@@ -9,7 +9,9 @@ mod corners;
 mod depth;
 mod invariances;
 mod level;
+mod nearest;
 mod scenes;
+mod soles;
 
 use crate::support::impact::{impact, outcomes, robot, try_impact, velocities_after};
 use crate::support::scaled::near;

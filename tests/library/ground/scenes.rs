@@ -44,7 +44,7 @@ fn a_straight_profile_is_a_slope() {
         let rise = 3.0 * slope.tan();
         let grounds =
             [format!(r#"{{"slope": {slope:?}}}"#), format!(r#"{{"profile": [[-3, {:?}], [3, {rise:?}]]}}"#, -rise)];
-        // Feet half a metre or less above and in the ground touch, so that there are two.
+        // Feet half a meter or less above and in the ground touch, so that there are two.
         let wide = || Options { contact_tolerance: Some(0.5), ..Options::default() };
         let [sloped, straight] = grounds.map(|ground| {
             let state = format!(
@@ -104,7 +104,7 @@ fn a_circle_that_stands_in_a_notch_rests_on_one_side() {
 }
 
 #[test]
-fn a_box_of_uncertainty_keeps_the_contacts_of_its_state() {
+fn uncertain_state_keeps_its_contacts() {
     let with = |mut state: Value, uncertainty: Value| {
         state["uncertainty"] = uncertainty;
         impact(&disc(), state)

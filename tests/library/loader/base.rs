@@ -10,7 +10,7 @@ const Y: (&str, &str) = ("prismatic", "0 1 0");
 const Z: (&str, &str) = ("prismatic", "0 0 1");
 const FIXED: (&str, &str) = ("fixed", "1 0 0");
 
-/// How the root is held, the body that the robot begins with, and its joints.
+/// How the root is attached, the body that the robot begins with, and its joints.
 fn found(robot: &Robot) -> (Base, &str, Vec<&str>) {
     (robot.base, &robot.bodies[0].name, names(robot))
 }
@@ -21,7 +21,7 @@ fn world(text: &str) -> String {
 }
 
 #[test]
-fn the_root_floats_or_is_bolted_by_its_mass_and_joints() {
+fn root_floats_by_its_mass_and_joints() {
     let mass = "the root has mass";
     let alone = "the root is massless and joint \"j\" alone carries the robot";
     let several = "the root is massless, but several joints carry the robot";
@@ -30,7 +30,7 @@ fn the_root_floats_or_is_bolted_by_its_mass_and_joints() {
     for (text, expected, kg, because) in [
         // However little it weighs.
         (chain(&[0.001, 1.0], &[PITCH]), (Base::Floating, "a", vec!["j"]), 1.001, Some(mass)),
-        // Massless by itself, but fixed to what has mass; a joint that is held fixes as well.
+        // Massless by itself, but fixed to what has mass; a joint that is frozen fixes as well.
         (fixed.clone(), (Base::Floating, "a", vec!["k"]), 2.0, None),
         (chain(&[0.0, 1.0, 1.0], &[ROLL, PITCH]), (Base::Floating, "a", vec!["k"]), 2.0, None),
         // A rail, a single hinge, two of them.
@@ -44,7 +44,7 @@ fn the_root_floats_or_is_bolted_by_its_mass_and_joints() {
         // A root of this name is bolted, with what is fixed to it, unless a whole chain frees it.
         (world(&fixed), (Base::Fixed, "world", vec!["k"]), 1.0, Some("the root is named world")),
         (world(&chain(&[5.0, 0.0, 0.0, 1.0], &[X, Z, PITCH])), (Base::Floating, "d", vec![]), 1.0, None),
-        // A whole chain in three dimensions: the yaw behind the pitch is held, so that the root is the link between.
+        // A whole chain in three dimensions: the yaw behind the pitch is frozen, so that the root is the link between.
         (
             chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0], &[X, Y, Z, ROLL, PITCH, YAW, PITCH]),
             (Base::Floating, "f", vec!["p"]),
@@ -106,7 +106,7 @@ fn a_planar_or_floating_joint_is_the_base_itself() {
 }
 
 #[test]
-fn the_world_has_no_mass_no_feet_and_needs_no_definition() {
+fn world_has_no_mass_and_needs_no_definition() {
     let heavy = world(&chain(&[5.0, 1.0], &[PITCH])).replace(
         "<link name=\"world\">",
         "<link name=\"world\"><collision><geometry><box size=\"9 9 1\"/></geometry></collision>",
@@ -137,7 +137,7 @@ fn the_base_can_be_asked_for() {
 }
 
 #[test]
-fn a_chain_that_weighs_next_to_nothing_gets_a_caution() {
+fn nearly_massless_chain_gets_a_caution() {
     let robot = load(&chain(&[1e-3, 1e-3, 1e-3, 2.0, 1.0], &[X, Z, PITCH, PITCH]));
     assert_eq!(found(&robot), (Base::Floating, "a", vec!["j", "k", "l", "m"]));
     let caution = only_caution(&robot);

@@ -1,6 +1,6 @@
 //! URDF text -> robot: what is read, to which digits, what is merged, skipped or refused, and with which words.
 //!
-//! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested beside its code.
+//! Here belongs what a user sees of the loader through `Robot`; details of one stage are tested next to its code.
 
 use crate::support::command::read;
 use crate::support::impact::{reduced as reduce, robot as load};
@@ -29,7 +29,7 @@ fn disc(link: &Link) -> ([f64; 2], f64) {
     }
 }
 
-/// With these joints held at values.
+/// With these joints frozen at values.
 fn holding(text: &str, hold: &[(usize, f64)]) -> Robot {
     reduce(text, &Reduction { hold: hold.to_vec(), ..Reduction::default() })
 }
@@ -307,7 +307,8 @@ fn fixed_links_are_merged_with_their_turned_inertia() {
         link("a", 1.0, [0.0, 4.0], 0.5, ""),
         link("c", 1.0, [0.0; 2], 1.0, "")
     ));
-    // The fixed joint turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment izz.
+    // The fixed joint turns b's x to the root's -z, y to -x and z to y: b's CoG is at (2 - 7, 5 + 1, 0), its moment
+    // izz.
     let robot = load(&text);
     let body = &robot.bodies[0];
     assert_eq!((robot.bodies.len(), body.mass), (2, 4.0));

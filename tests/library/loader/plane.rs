@@ -7,6 +7,17 @@ fn in_plane(plane: Plane) -> Reduction {
     Reduction { plane: Some(plane), ..Reduction::default() }
 }
 
+/// The last four joints of a chain of seven as two arms that hang from `a`.
+fn with_arms(chain: &str) -> String {
+    let raised = |text: &str, from: char, to: char, place: &str| {
+        let ends = |parent: char, place: &str| {
+            format!("<parent link=\"{parent}\"/><child link=\"{to}\"/><origin xyz=\"{place}\"/>")
+        };
+        text.replace(&ends(from, "0 0 -1"), &ends('a', place))
+    };
+    raised(&raised(chain, 'd', 'e', "0 1 0"), 'f', 'g', "0 -1 0")
+}
+
 fn still<'a>(robot: &'a Robot, joint: &str) -> &'a FreezeReason {
     &robot.frozen(joint).expect("a frozen joint").reason
 }
@@ -29,12 +40,25 @@ fn the_common_direction_of_hinges_gives_the_plane() {
 }
 
 #[test]
-fn without_a_common_direction_the_plane_is_x_z() {
+fn plane_without_a_common_direction_is_that_of_legs() {
     let robot = load(&massive(&[("continuous", "1 0 0"), ROLL, PITCH]));
-    assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::XZ, PlaneReason::Usual));
+    assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::YZ, PlaneReason::Legs));
+    assert_eq!((robot.reading.better_plane, names(&robot)), (None, vec!["j", "k"]));
+    // Of equally many the usual one.
+    let robot = load(&massive(&[ROLL, PITCH]));
+    assert_eq!((robot.reading.plane, robot.reading.plane_because), (Plane::XZ, PlaneReason::Legs));
+    // Two arms, whose ends are higher than the foot, do not count.
+    let arms = with_arms(&massive(&[PITCH, PITCH, PITCH, ROLL, ROLL, ROLL, ROLL]));
+    let robot = load(&arms);
+    assert_eq!((robot.reading.plane, names(&robot)), (Plane::XZ, vec!["j", "k", "l"]));
+    // An axis that lies between them is nearer to the normal of one.
+    let oblique = ("revolute", "0 1 0.4");
+    let robot = load(&massive(&[ROLL, oblique, oblique]));
+    assert_eq!(robot.reading.plane, Plane::XZ);
+
+    let robot = reduce(&massive(&[ROLL, ROLL, PITCH]), &in_plane(Plane::XZ));
     assert_eq!((robot.reading.better_plane, names(&robot)), (Some((Plane::YZ, 2)), vec!["l"]));
     assert!(robot.reading.plane_in_words().ends_with("plane yz would keep 2 joints"));
-
     let given = reduce(&massive(&[("continuous", "1 0 0"), PITCH]), &in_plane(Plane::YZ));
     assert_eq!((given.reading.plane_because, names(&given)), (PlaneReason::Asked, vec!["j"]));
     // No hinge has a direction.
@@ -77,13 +101,13 @@ fn joints_that_leave_the_plane_are_frozen_at_zero() {
     assert_eq!(bodies, [("a", 2.0, [0.0, -0.5]), ("c", 2.0, [0.0, -0.5]), ("e", 1.0, [0.0, 0.0])]);
     assert_eq!(robot.joints[0].origin, [0.0, -2.0]);
     let expected = [
-        left_out("joint \"j\"", "held at zero, its axis being 90.00 degrees off the plane's normal: welded into a"),
-        left_out("joint \"l\"", "held at zero, its axis being 4.50 degrees off the plane's normal: welded into c"),
+        left_out("joint \"j\"", "frozen at zero, its axis being 90.00 degrees off the plane's normal: welded into a"),
+        left_out("joint \"l\"", "frozen at zero, its axis being 4.50 degrees off the plane's normal: welded into c"),
     ];
     assert_eq!(robot.left_out, expected);
 
     let slides = reduce(&massive(&[("prismatic", "0 1 0"), ("prismatic", "1 0 1")]), &Reduction::default());
-    let why = "held at zero, its axis being 90.00 degrees off the plane: welded into a";
+    let why = "frozen at zero, its axis being 90.00 degrees off the plane: welded into a";
     assert_eq!(slides.left_out, [left_out("joint \"j\"", why)]);
     assert_eq!(names(&slides), ["k"]);
 }
@@ -100,14 +124,14 @@ fn frozen_joints_keep_their_values() {
     // The origin of k, 1 m down in b's frame, lies 1 m to the left: dropped.
     assert_at(robot.joints[0].origin, [0.0, -1.0]);
 
-    // A slide that is held carries its child along: 1 m down and 0.25 m up.
+    // A slide that is frozen carries its child along: 1 m down and 0.25 m up.
     let robot = reduce(&text, &hold(&[(2, 0.25)]));
     assert_eq!(names(&robot), [""; 0]);
     assert_eq!(robot.links[3].point::<f64>([0.0; 3]), [0.0, -2.75]);
-    let why = "held at 0.25 as asked: welded into a";
+    let why = "frozen at 0.25 as asked: welded into a";
     assert!(robot.left_out.contains(&left_out("joint \"l\"", why)), "{:?}", robot.left_out);
 
-    // A joint of the plane can be held as well, and then gives no plane.
+    // A joint of the plane can be frozen as well, and then gives no plane.
     let robot = holding(&massive(&[ROLL, YAW]), &[(0, 0.0)]);
     assert_eq!((robot.reading.plane, names(&robot)), (Plane::XY, vec!["k"]));
 
@@ -121,11 +145,11 @@ fn what_cannot_be_held_is_refused() {
     let text = massive(&[("fixed", "0 1 0"), PITCH, ("floating", "0 1 0")]);
     let mimic = with_mimic(&text.replace("fixed", "revolute"), "j", "joint=\"k\"");
     for (text, hold, refusal) in [
-        (&text, &[(0, 0.0)][..], "6:1: joint \"j\": it cannot be held at a value: it is fixed"),
-        (&text, &[(2, 0.0)], "8:1: joint \"l\": it cannot be held at a value: it is floating"),
-        (&text, &[(1, 0.0), (1, 1.0)], "7:1: joint \"k\": held joint \"k\" is given twice"),
-        (&text, &[(1, f64::NAN)], "7:1: joint \"k\": the value at which it is held must be a finite number, not NaN"),
-        (&mimic, &[(0, 0.0)], "6:1: joint \"j\": it cannot be held by itself: it follows joint \"k\""),
+        (&text, &[(0, 0.0)][..], "6:1: joint \"j\": it cannot be frozen at a value: it is fixed"),
+        (&text, &[(2, 0.0)], "8:1: joint \"l\": it cannot be frozen at a value: it is floating"),
+        (&text, &[(1, 0.0), (1, 1.0)], "7:1: joint \"k\": frozen joint \"k\" is given twice"),
+        (&text, &[(1, f64::NAN)], "7:1: joint \"k\": the value at which it is frozen must be a finite number, not NaN"),
+        (&mimic, &[(0, 0.0)], "6:1: joint \"j\": it cannot be frozen by itself: it follows joint \"k\""),
     ] {
         let description = Description::from_urdf(text).expect("a description");
         let reduction = Reduction { hold: hold.to_vec(), ..Reduction::default() };
@@ -139,9 +163,9 @@ fn joints_without_one_axis_are_frozen_with_a_caution() {
         let word = kind.replace("ball", "spherical");
         let robot = load(&massive(&[PITCH, (kind, "0 1 0")]));
         assert_eq!(names(&robot), ["j"]);
-        let why = format!("held at zero, being {word}: welded into b");
+        let why = format!("frozen at zero, being {word}: welded into b");
         assert_eq!(robot.left_out, [left_out("joint \"k\"", &why)]);
-        let caution = "k could move in the plane and is held all the same, having no single axis: replace it by revolute \
+        let caution = "k could move in the plane and is frozen all the same, having no single axis: replace it by revolute \
                        and prismatic joints";
         assert_eq!(robot.reading.cautions, [caution]);
     }
@@ -155,25 +179,101 @@ fn axes_that_are_all_a_little_off_get_a_caution() {
     let robot = load(&text);
     assert!(robot.joints.is_empty());
     let caution = only_caution(&robot);
-    let held = "2 of 3 joints that could move are held only because their axes are 5.0 degrees off the plane (k, l); to keep them";
+    let held = "2 of 3 joints that could move are frozen only because their axes are 5.0 degrees off the plane (k, l); to keep them";
     // From y + z tan 5 degrees back to y is a turn about x by minus 5 degrees.
     assert_eq!(caution, format!("{held}: `hold: j=-0.087266`"));
     assert_eq!(names(&holding(&text, &[(0, -0.087266)])), ["k", "l"]);
 
-    // A mounting that is tilted cannot be held elsewhere.
+    // A mounting that is tilted cannot be frozen elsewhere.
     let mounted = massive(&[("fixed", "1 0 0"), PITCH, PITCH, ROLL])
         .replace("<child link=\"b\"/><origin", "<child link=\"b\"/><origin rpy=\"0.0872665 0 0\"");
     let robot = load(&mounted);
     let caution = only_caution(&robot);
     assert!(caution.ends_with("(k, l); to keep them: straighten the rpy of j"), "{caution}");
 
-    // Two shoulders among four joints that stay are no reason to shout.
-    let robot = load(&massive(&[PITCH, PITCH, PITCH, PITCH, tilted, tilted]));
+    // Two shoulders are no reason to shout.
+    let robot = load(&with_arms(&massive(&[PITCH, PITCH, PITCH, tilted, PITCH, tilted, PITCH])));
     assert!(robot.reading.cautions.is_empty(), "{:?}", robot.reading.cautions);
 
-    let aside = load(&massive(&[ROLL, YAW]));
+    let aside = load(&massive(&[("revolute", "1 1 2"), YAW]));
     let caution = only_caution(&aside);
     assert!(caution.starts_with("no joint moves in this plane"), "{caution}");
+}
+
+#[test]
+fn oblique_axis_of_a_leg_gets_a_caution() {
+    // tan 40 degrees; its origin is in line, its axis is not.
+    let robot = load(&massive(&[("revolute", "0 1 0.839099631"), PITCH, PITCH]));
+    assert_eq!(names(&robot), ["k", "l"]);
+    let expected = "1 of 3 joints that could move are frozen only because their axes are 40.0 degrees off the plane (j); to \
+                    keep them: straighten the axis of j";
+    assert_eq!(only_caution(&robot), expected);
+}
+
+#[test]
+fn each_hinge_has_one_remedy() {
+    // As Digit has it: hinges behind an abduction that are tilted by 0.375 rad, to the left and to the right.
+    let leg = |side: &str, tilt: f64| {
+        let [hip, knee, ankle] = ["hip", "knee", "ankle"].map(|name| format!("{side}_{name}"));
+        let part = |name: &str| link(name, 1.0, [0.0; 2], 1.0, "");
+        let hinge = |name: &str, ends: [&str; 2], rpy: f64, axis: &str| {
+            let place = format!("<origin xyz=\"0 0 -0.5\" rpy=\"{rpy} 0 0\"/><axis xyz=\"{axis}\"/>");
+            let ends = format!("<parent link=\"{}\"/><child link=\"{}\"/>", ends[0], ends[1]);
+            format!("<joint name=\"{name}\" type=\"revolute\">{ends}{place}</joint>")
+        };
+        let (upper, lower, foot) = (format!("{side}_upper"), format!("{side}_lower"), format!("{side}_foot"));
+        let (thigh, abduct) = (format!("{side}_thigh"), format!("{side}_abduct"));
+        [
+            [&upper, &thigh, &lower, &foot].map(|name| part(name)).concat(),
+            hinge(&abduct, ["torso", &upper], 0.0, "1 0 0"),
+            hinge(&hip, [&upper, &thigh], tilt, "0 1 0"),
+            hinge(&knee, [&thigh, &lower], 0.0, "0 1 0"),
+            hinge(&ankle, [&lower, &foot], 0.0, "0 -1 0"),
+        ]
+        .concat()
+    };
+    let torso = link("torso", 5.0, [0.0; 2], 1.0, "");
+    let text = urdf::robot(&[torso, leg("left", 0.375), leg("right", -0.375)]);
+    let robot = load(&text);
+    assert!(robot.joints.is_empty());
+    let expected = "6 of 8 joints that could move are frozen only because their axes are 21.5 degrees off the plane (left_hip, \
+                    left_knee, left_ankle, 3 more); to keep them: `hold: left_abduct=-0.375000`, `hold: \
+                    right_abduct=0.375000`";
+    assert_eq!(only_caution(&robot), expected);
+    let held = holding(&text, &[(0, -0.375), (4, 0.375)]);
+    assert_eq!(names(&held), ["left_hip", "left_knee", "left_ankle", "right_hip", "right_knee", "right_ankle"]);
+    assert!(held.reading.cautions.is_empty());
+}
+
+#[test]
+fn axis_tolerance_keeps_axes_that_are_off_by_digits() {
+    let text = massive(&[PITCH, ("revolute", "0 1 0.0016"), PITCH]);
+    let robot = load(&text);
+    assert_eq!(names(&robot), ["j", "l"]);
+    let expected = "1 of 3 joints that could move are frozen only because their axes are 0.092 degrees off the plane (k); to \
+                    keep them: `axis_tolerance: 1.8e-3`";
+    assert_eq!(only_caution(&robot), expected);
+    let robot = reduce(&text, &Reduction { axis_tolerance: Some(1.8e-3), ..Reduction::default() });
+    assert_eq!((names(&robot), robot.reading.plane_because), (vec!["j", "k", "l"], PlaneReason::CommonAxis));
+    let why = "its axis is 1.6e-3 rad off the plane's normal: taken as exactly on it";
+    assert_eq!(robot.left_out, [left_out("joint \"k\"", why)]);
+}
+
+#[test]
+fn missing_axis_is_named_with_its_line() {
+    let robot = load(&massive(&[PITCH, ROLL]).replace("<axis xyz=\"1 0 0\"/>", ""));
+    let expected =
+        "without an <axis>, and so about or along x: k on line 6; name the axis, as in <axis xyz=\"0 1 0\"/>";
+    assert_eq!(only_caution(&robot), expected);
+}
+
+#[test]
+fn link_without_inertial_is_named_when_m_is_singular() {
+    let text = chain(&[1.0, 1.0, 0.0], &[PITCH, PITCH]);
+    let error = crate::support::impact::try_impact(&load(&text), Default::default(), "{}").expect_err("singular");
+    let expected = "link \"c\" on line 4 of the robot's file has no <inertial>: name the joint in `held`, or give it a \
+                    `rotor_inertia`";
+    assert_eq!(error.remedy(), Some(expected));
 }
 
 // Mimic joints.
@@ -205,13 +305,13 @@ fn a_mimic_joint_of_a_frozen_joint_is_frozen_with_it() {
     assert_eq!(still(&robot, "k"), &FreezeReason::Follows { mimicked: "j".into() });
     assert_eq!(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), [0.0, -3.0]);
 
-    // A mimicked joint that is held at a value takes its mimic joint along: 2 * 0.2 + 0.1.
+    // A mimicked joint that is frozen at a value takes its mimic joint along: 2 * 0.2 + 0.1.
     let robot = holding(&mimic("0 1 0"), &[(0, 0.2)]);
     let (first, both): (f64, f64) = (0.2, 0.2 + 2.0 * 0.2 + 0.1);
     let expected = [-first.sin() - both.sin(), -1.0 - first.cos() - both.cos()];
     assert_at(robot.links[2].point::<f64>([0.0, 0.0, -1.0]), expected);
 
-    // A mimic joint off the plane is held as such; the mimicked one stays.
+    // A mimic joint off the plane is frozen as such; the mimicked one stays.
     let robot = load(&with_mimic(&massive(&[PITCH, ROLL]), "k", "joint=\"j\""));
     assert_eq!((names(&robot), robot.mimic_joints.len()), (vec!["j"], 0));
     assert!(matches!(still(&robot, "k"), FreezeReason::OffPlane { .. }));

@@ -54,3 +54,38 @@ fn an_inertia_that_no_body_has_is_listed() {
     // A point mass is a body.
     assert_eq!(load(&link(0.0, 0.0, 0.0)).left_out, []);
 }
+
+#[test]
+fn foreign_elements_at_a_shape_are_passed_over() {
+    let geometry = |inside: &str| {
+        let link = LINK.replace("</link>", &format!("<collision><geometry>{inside}</geometry></collision></link>"));
+        Robot::from_urdf(&format!("<robot name=\"r\">{link}</robot>"))
+    };
+    let shapes = |inside: &str| geometry(inside).expect("a robot").links[0].shapes.len();
+    assert_eq!(shapes("<drake:declare_convex/><sphere radius=\"1\"/>"), 1);
+    assert_eq!(shapes("<sphere radius=\"1\"/><drake:declare_convex/>"), 1);
+    assert_eq!(shapes("<drake:capsule radius=\"1\" length=\"2\"/>"), 1);
+    assert!(geometry("<sphere radius=\"1\"/><sphere radius=\"2\"/>").is_err());
+}
+
+#[test]
+fn moment_that_is_negative_by_rounding_is_zero() {
+    let link = |iyy: f64| {
+        let inertia = format!("<inertia ixx=\"1e-3\" iyy=\"{iyy:e}\" izz=\"1e-3\"/>");
+        Robot::from_urdf(&robot(&format!("<link name=\"a\"><inertial><mass value=\"1\"/>{inertia}</inertial></link>")))
+    };
+    let robot = link(-5e-20).expect("a robot");
+    assert_eq!(robot.bodies[0].moment, 0.0);
+    let why = "its moment about the plane's normal is -5e-20 kg m^2, which is rounding: taken as 0";
+    assert_eq!(robot.left_out, [left_out("link \"a\"", why)]);
+    assert!(link(-5e-10).is_err());
+}
+
+#[test]
+fn hyphens_in_a_comment_are_named_with_their_place() {
+    let text = format!("<robot>\n<!-- a - comment -->\n{LINK}<!-- the -- second -->\n</robot>");
+    let error = Robot::from_urdf(&text).expect_err("no XML");
+    let column = LINK.len() + 10;
+    assert_eq!(error.to_string(), format!("3:{column}: a comment holds --, which XML does not allow"));
+    assert_eq!(error.remedy(), Some("remove one of the hyphens, or the comment"));
+}

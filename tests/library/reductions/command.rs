@@ -1,6 +1,10 @@
 //! `--no-reduction` on the command line, and what results say of it.
 
 use crate::support::command::heelstrike_reads;
+use crate::support::impact::{impact, robot};
+use crate::support::urdf;
+use heelstrike::Impact;
+use heelstrike::write::LeftOutRecord;
 use serde_json::{Value, json};
 
 const RAMONE: &str = "urdf/ramone.urdf";
@@ -26,7 +30,7 @@ fn left_out(result: &Value) -> Vec<[&str; 2]> {
 
 #[test]
 fn a_result_lists_what_its_scene_did_not_need() {
-    let held = ["joint \"left_knee\"", "held: it keeps its rate and has no column"];
+    let held = ["joint \"left_knee\"", "braked: it keeps its rate and has no column"];
     let high = ["1 shape out of reach", "too high to reach the ground"];
     for (friction, more) in [
         (json!(0.0), Some(["tangential impulse of right_foot", "friction 0"])),
@@ -50,6 +54,38 @@ fn reductions_are_switched_off_together_or_by_name() {
     let why = "fixed: it has no coordinate, and moves a body of its own, left_foot";
     assert!(left_out(&all).contains(&["joint \"left_ankle\"", why]), "{all}");
     assert_eq!(held["outcomes"][0]["modes"], all["outcomes"][0]["modes"]);
+}
+
+#[test]
+fn inner_points_are_reported_and_listed_ones_kept() {
+    // A foot with a plate welded on, both level, and another with other friction.
+    let foot = |name: &str, width: f64| {
+        urdf::link(name, 1.0, [0.0; 2], 0.1, &urdf::collision([0.0; 2], &format!("box size=\"{width} 0.1 0.2\"")))
+    };
+    let weld = |to: &str| urdf::joint(format!("to_{to}"), urdf::Axis::Fixed, ["foot", to], [0.0; 2], "");
+    let robot = robot(&urdf::robot(&[
+        foot("foot", 0.4),
+        foot("plate", 0.2),
+        weld("plate"),
+        foot("rubber", 0.3),
+        weld("rubber"),
+    ]));
+    let mut state = json!({"position": {"base": {"z": 0.1}}, "velocity": {"base": {"z": -1.0}},
+        "friction": {"default": 0.5, "rubber": 0.7}});
+    let found = impact(&robot, &state);
+    let names = |impact: &Impact| impact.contacts.iter().map(|contact| contact.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&found), ["foot/0", "foot/1", "rubber/0", "rubber/1"]);
+    let merged = [
+        "2 contact points next to foot/0, foot/1",
+        "the outer points of the same body on straight ground act for them",
+    ];
+    let left_out = LeftOutRecord::of_impact(&robot, &found);
+    assert!(left_out.iter().any(|left| [&*left.what, &*left.why] == merged), "{left_out:?}");
+    state["contacts"] = json!([-0.2, 0.0, 0.2].map(|x| json!({"link": "foot", "offset": [x, 0.0, -0.1]})));
+    assert_eq!(names(&impact(&robot, &state)), ["foot/0", "foot/1", "foot/2"]);
+    // What stands stays.
+    let standing = impact(&robot, json!({"stance": "plate", "friction": 0.5}));
+    assert_eq!((names(&standing).join(" "), standing.stance), ("foot/0 foot/1 plate".to_owned(), Some(2)));
 }
 
 #[test]

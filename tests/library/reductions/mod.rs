@@ -3,5 +3,6 @@
 
 mod command;
 mod comparison;
+mod merge;
 mod robots;
 mod trees;

@@ -1,4 +1,4 @@
-//! Random trees with fixed joints, massless links, joints that leave the plane or are held, shapes high above the
+//! Random trees with fixed joints, massless links, joints that leave the plane or are braked, shapes high above the
 //! ground, and one contact or several with all kinds of friction.
 
 use heelstrike::reductions::Reductions;

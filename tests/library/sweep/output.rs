@@ -118,7 +118,7 @@ fn tables_add_parameter_and_region_to_those_of_batch() {
     assert_eq!(status, 0);
     let mut lines = stdout.lines();
     let header = "id,verdict,outcome,margin,proven,mode_left_leg,p_left_leg_t,p_left_leg_n,mode_right_leg,p_right_leg_t,\
-                  p_right_leg_n,v_base_x,v_base_z,v_base_pitch,v_hip,alpha,region,border,family,error";
+                  p_right_leg_n,v_after_base_x,v_after_base_z,v_after_base_pitch,v_after_hip,alpha,region,border,family,families,error";
     assert_eq!(lines.next(), Some(header));
     // 0.001, 0.524, 1.047 and 1.57; the last one has three outcomes.
     let rows: Vec<&str> = lines.collect();

@@ -6,7 +6,7 @@ use crate::sweep::command::{Sweep, assert_begins, kneed, straight, sweep};
 use serde_json::json;
 
 #[test]
-fn every_border_of_the_reference_is_found_from_50_samples() {
+fn reference_borders_are_found_from_50_samples() {
     let mut borders = 0;
     for Model { name, urdf, inertia, kneed: bends } in MODELS {
         let number = |inertia: &str| inertia.parse().expect("a number");

@@ -4,11 +4,12 @@
 
 mod motion;
 mod sagittal;
+mod simulated;
 
 use crate::support::command::{heelstrike, read};
 use crate::support::impact::{outcomes, robot};
 use crate::support::scaled::near;
-use heelstrike::gait::{At, Difference, Landing, Sample, Sampled, Touching, find, rates};
+use heelstrike::gait::{At, Difference, Heights, Landing, Sample, Sampled, Touching, find, rates};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::read::table::{Header, Rates};
 use heelstrike::state::NamedContact;
@@ -23,7 +24,7 @@ const WALK: &str = "tests/data/gaits/rabbit_walk.csv";
 fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
     let mut lines = (1..).zip(table.lines());
     let (_, first) = lines.next().unwrap();
-    let header = Header::read(first.as_bytes(), robot, from).unwrap();
+    let header = Header::read(first.as_bytes(), robot, from, &[]).unwrap();
     let mut rows = header.rows();
     lines
         .map(|(line, record)| {
@@ -38,13 +39,15 @@ fn samples(table: &str, robot: &Robot, from: Rates) -> Vec<Sampled<usize>> {
 
 /// The touchdowns of samples of which none is refused.
 fn touchdowns(
+    heights: Heights,
     robot: &Robot,
     feet: &[NamedContact],
     samples: Vec<Sampled<usize>>,
     at: At,
     touching: Touching,
 ) -> Vec<Sample<usize>> {
-    find(samples.into_iter(), robot, feet, at, touching).unwrap().map(Result::unwrap).collect()
+    let found = find(samples.into_iter(), robot, feet, at, touching).unwrap().meaning(heights);
+    found.map(Result::unwrap).collect()
 }
 
 /// The touchdowns of the rabbit.
@@ -52,7 +55,7 @@ fn rabbit(at: At, touching: Touching) -> Vec<Sample<usize>> {
     let robot = robot(&read(RABBIT));
     let foot = |link| NamedContact { link: robot.link(link).unwrap(), offset: [0.0, 0.0, 0.4], radius: 0.0 };
     let samples = samples(&read(WALK), &robot, Rates::Columns);
-    touchdowns(&robot, &["right_shin", "left_shin"].map(foot), samples, at, touching)
+    touchdowns(Heights::Recorded, &robot, &["right_shin", "left_shin"].map(foot), samples, at, touching)
 }
 
 #[test]
@@ -100,7 +103,7 @@ fn assert_close(found: &[f64], expected: &Value, within: f64) {
 }
 
 #[test]
-fn rows_of_one_time_are_taken_as_they_are_also_by_crossing() {
+fn rows_of_one_time_are_taken_as_they_are() {
     let [row, crossing] = [At::Row, At::Crossing].map(|at| rabbit(at, Touching::Strike));
     assert_eq!(row.len(), 4);
     for (row, crossing) in row.iter().zip(&crossing) {
@@ -159,11 +162,12 @@ fn batch(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_command_prints_row_and_foot_of_a_touchdown() {
+fn the_command_prints_line_and_foot_of_a_touchdown() {
     let lines = batch(&["--at", "row"]);
     let results: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let rows: Vec<u64> = results.iter().map(|result| result["touchdown"]["row"].as_u64().unwrap()).collect();
-    assert_eq!(rows, [89, 328, 593, 845]);
+    assert_eq!(rows, [91, 330, 595, 847], "lines of the file");
+    assert!(results.iter().zip(rows).all(|(result, row)| result["line"] == row));
     let touchdown = &results[1]["touchdown"];
     assert_eq!(touchdown["striking"], "left_shin");
     assert_eq!((&touchdown["at"], &touchdown["touching"]), (&"row".into(), &"slow:0.35,0.02".into()));
@@ -177,7 +181,7 @@ fn the_command_writes_touchdowns_as_a_table() {
     let rows: Vec<BTreeMap<String, String>> =
         csv::Reader::from_reader(table.as_bytes()).deserialize().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 4);
-    for (row, (number, striking)) in rows.iter().zip([(89, "right"), (328, "left"), (593, "right"), (845, "left")]) {
+    for (row, (number, striking)) in rows.iter().zip([(91, "right"), (330, "left"), (595, "right"), (847, "left")]) {
         assert_eq!(row["touchdown_row"], number.to_string());
         assert_eq!(row["touchdown_striking"], format!("{striking}_shin"));
         assert_eq!(row[&format!("mode_{striking}_shin")], "stick");

@@ -4,11 +4,11 @@ use super::{samples, touchdowns};
 use crate::support::impact::robot;
 use crate::support::urdf::{self, Axis, collision, joint, link};
 use heelstrike::Robot;
-use heelstrike::gait::{At, Difference, Landing, SMALL, Sample, Sampled, Thresholds, Touching, find, rates};
+use heelstrike::gait::{At, Difference, Heights, Landing, SMALL, Sample, Sampled, Thresholds, Touching, find, rates};
 use heelstrike::read::table::Rates;
 
 /// A block and two feet, at x = 0 and x = 1, that slide along z on joints of their own; in a unit of length of which
-/// `scale` make a metre.
+/// `scale` make a meter.
 fn lift(scale: f64) -> Robot {
     let ball = collision([0.0; 2], &format!("sphere radius=\"{}\"", 0.1 * scale));
     let foot = |name: &str, x: f64| {
@@ -38,7 +38,7 @@ fn lifted_at(scale: f64, rows: &[[f64; 3]], at: At, touching: Touching) -> Vec<S
     let mut table = "time,q_base_z,q_ja,q_jb\n".to_owned();
     // The sphere's lowest point is its radius below its link.
     table.extend(rows.iter().map(|[time, a, b]| format!("{time},{},{a},{b}\n", 0.1 * scale)));
-    touchdowns(&robot, &[], differences(&table, &robot, Difference::Backward), at, touching)
+    touchdowns(Heights::Recorded, &robot, &[], differences(&table, &robot, Difference::Backward), at, touching)
 }
 
 #[track_caller]
@@ -105,7 +105,14 @@ fn rates_before_another_foots_impact_are_not_used() {
     let stopped = [[0.04, 0.004, 0.0], [0.05, 0.004, 0.0]];
     let mut table = "time,q_base_z,q_ja,v_ja\n".to_owned();
     table.extend(rows.iter().chain(&stopped).map(|[time, a, rate]| format!("{time},0.1,{a},{rate}\n")));
-    let found = touchdowns(&robot, &[], samples(&table, &robot, Rates::Columns), At::Crossing, Touching::Strike);
+    let found = touchdowns(
+        Heights::Recorded,
+        &robot,
+        &[],
+        samples(&table, &robot, Rates::Columns),
+        At::Crossing,
+        Touching::Strike,
+    );
     let [Sample { state, time, .. }] = &found[..] else { panic!("one touchdown: {found:?}") };
     assert_near(*time, 0.03 + (0.01 - 0.004 - above()), 1e-12);
     assert_near(state.velocity[3], -1.0, 1e-12);
@@ -141,7 +148,7 @@ fn the_velocity_at_the_crossing_is_that_of_the_fall() {
             ("backward", differences(&bare, &robot, Difference::Backward)),
             ("central", differences(&bare, &robot, Difference::Central)),
         ] {
-            let found = touchdowns(&robot, &[], samples, At::Crossing, Touching::Strike);
+            let found = touchdowns(Heights::Recorded, &robot, &[], samples, At::Crossing, Touching::Strike);
             assert_eq!(found.len(), 1, "{from}, phase {phase}");
             let (velocity, time) = (found[0].state.velocity[1], found[0].time);
             assert!((velocity + strikes).abs() < 0.01 * strikes, "{from}, phase {phase}: {velocity} m/s");
@@ -195,7 +202,7 @@ fn a_point_that_the_foot_keeps_up_does_not_strike() {
         let pitch = |row: u32| -(0.3 - 0.03 * f64::from(row)).max(rest);
         table.extend((0..15).map(|row| format!("{},-0.003,{}\n", f64::from(row) * 0.01, pitch(row))));
         let samples = differences(&table, &robot, Difference::Backward);
-        let found = touchdowns(&robot, &[], samples, At::Row, "near:0.05".parse().unwrap());
+        let found = touchdowns(Heights::Recorded, &robot, &[], samples, At::Row, "near:0.05".parse().unwrap());
         assert_eq!(found.len(), 1, "rest at {rest}: {found:?}");
         let contacts = found[0].state.scene.contacts.as_ref().unwrap();
         let along: Vec<f64> = contacts.iter().map(|contact| (contact.offset[0] * 1e3).round()).collect();

@@ -51,7 +51,7 @@ fn positions(table: &str) -> Vec<Vec<f64>> {
 }
 
 fn close(found: &[Vec<f64>], expected: &[Vec<f64>]) {
-    // Digits of sums of up to ten metres.
+    // Digits of sums of up to ten meters.
     assert!(near(&found.concat(), &expected.concat(), 1e-13), "{found:?} {expected:?}");
 }
 
@@ -96,7 +96,7 @@ fn refused_rows_stay_and_a_circle_has_no_heading() {
 }
 
 #[test]
-fn recorded_robots_are_where_the_reduced_tables_have_them() {
+fn recorded_robots_match_the_reduced_tables() {
     for (name, gait, at_x) in [("a1", "a1_walk", 5e-9), ("h1", "h1_walk", 5e-9), ("h1", "h1_run", 5e-8)] {
         let robot = robot(&read(&format!("tests/data/robots/{name}/{name}.urdf")));
         let (found, _) = projected(&read(&format!("tests/data/gaits/{gait}.3d.csv")), &robot);

@@ -30,7 +30,7 @@ fn holds(impact: &Impact) -> Option<bool> {
 }
 
 #[test]
-fn a_ball_holds_as_far_as_its_friction_and_speed_reach() {
+fn ball_holds_within_its_friction_and_speed() {
     let velocity = |base: Value| json!({"velocity": {"base": base}});
     for (friction, uncertainty, expected) in [
         (json!(0.5), json!({"friction": 0.0}), true),
@@ -64,7 +64,7 @@ fn a_ball_holds_as_far_as_its_friction_and_speed_reach() {
 }
 
 #[test]
-fn without_an_impact_the_answer_holds_on_the_whole_box() {
+fn no_impact_holds_on_the_whole_box() {
     let state = json!({"stance": "left_foot", "friction": 0.8, "position": {"joints": {"left_hip": 0.3, "left_knee": -0.4,
         "right_knee": -1.5}}, "velocity": {"base": {"pitch": 0.2}},
         "uncertainty": {"position": 1e-2, "velocity": 1e-2, "friction": 1e-2, "rotor_inertia": 1e-3}});
@@ -77,7 +77,7 @@ fn without_an_impact_the_answer_holds_on_the_whole_box() {
 }
 
 #[test]
-fn dependent_contacts_and_unproven_answers_stay_unknown() {
+fn dependent_or_unproven_answer_stays_unknown() {
     // Both contacts are at one place.
     let twice = json!([{"link": "left_foot"}, {"link": "left_foot"}]);
     let state = json!({"velocity": {"base": {"z": -1.0}}, "friction": 0.8, "contacts": twice,

@@ -146,7 +146,7 @@ impl fmt::Display for Census {
     }
 }
 
-/// Random states for each four that lie beside one border.
+/// Random states for each four that lie next to one border.
 const RANDOM_IN_BLOCK: u64 = 8;
 
 /// States of a block: two in three are random.
@@ -195,7 +195,10 @@ fn answer_state(
     add: &mut impl FnMut(&'static str, u64),
 ) -> Finding {
     add("number", 1);
-    let Some(answer) = oracle::answer(&model.robot, state) else {
+    let found = pipeline.impact(state);
+    // What the product takes as exactly at rest is so; that it is slow enough for that is tested elsewhere.
+    let resting = found.as_ref().map_or(&[][..], |impact| &impact.resting);
+    let Some(answer) = oracle::answer(&model.robot, state, resting) else {
         add("unknown", 1);
         return Finding::Unknown;
     };
@@ -213,7 +216,7 @@ fn answer_state(
         "the oracle's own indices do not add up to one: {answer:?}\n{}",
         state.to_json(&model.robot)
     );
-    let Ok(analysis) = pipeline.impact(state).and_then(Impact::into_analysis) else {
+    let Ok(analysis) = found.and_then(Impact::into_analysis) else {
         add("refused", 1);
         return Finding::Unknown;
     };

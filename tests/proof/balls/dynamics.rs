@@ -182,13 +182,13 @@ impl<N: Number> Factor<N> {
 
 /// The contact problem of a state whose contacts are named; `None` if the mass matrix is not positive for certain.
 ///
-/// A stance must name a link with one contact.
-pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<Problem<N>> {
+/// A stance must name a link with one contact; those that are `resting` are exactly at rest, too.
+pub fn problem<N: Number>(robot: &Robot, state: &State, resting: &[bool], bits: usize) -> Option<Problem<N>> {
     let number = |value: f64| N::new(value, bits);
     let scene = &state.scene;
     let poses = poses::<N>(robot, &state.position, bits);
     let free: Vec<usize> = (0..robot.dofs())
-        .filter(|coordinate| !scene.held.iter().any(|held| robot.base_dofs() + held == *coordinate))
+        .filter(|coordinate| !scene.braked.iter().any(|held| robot.base_dofs() + held == *coordinate))
         .collect();
 
     let mut mass_matrix = vec![vec![number(0.0); free.len()]; free.len()];
@@ -255,7 +255,8 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, bits: usize) -> Option<P
         }
     }
     let before = |(at, row): (usize, &Vec<N>)| {
-        if stance == Some(at / 2) { number(0.0) } else { dot(row.iter().zip(&velocity), bits) }
+        let rests = stance == Some(at / 2) || resting.get(at / 2) == Some(&true);
+        if rests { number(0.0) } else { dot(row.iter().zip(&velocity), bits) }
     };
     let before: Vec<N> = rows.iter().flatten().enumerate().map(before).collect();
 

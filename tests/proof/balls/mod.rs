@@ -5,7 +5,7 @@
 //! one linear solve per list of modes. It takes from the library only the numbers of the reduced robot and of the
 //! state.
 //!
-//! A million states, a third of them beside a border, counted by robot:
+//! A million states, a third of them next to a border, counted by robot:
 //!
 //! ```text
 //!     HEELSTRIKE_STATES=1000000 cargo test --release --test proof -- --nocapture states_are_decided_rightly
@@ -14,6 +14,7 @@
 //! `HEELSTRIKE_THREADS` sets the number of threads. A state that fails is printed as `heelstrike impact` reads it.
 
 mod census;
+mod digits;
 mod dynamics;
 mod linear;
 mod number;
@@ -51,13 +52,13 @@ fn states_are_decided_rightly() {
     let void = all("unknown") + all("refused");
     assert!(void * 200 <= count, "{void} states without an answer");
     let [near, random] = ["near", "random"].map(|kind| census.count(kind, "number"));
-    assert!(near * 3 >= count, "{near} of {count} states are beside a border");
+    assert!(near * 3 >= count, "{near} of {count} states are next to a border");
     let ambiguous = census.count("random", "ambiguous");
     assert!(ambiguous * 50 >= random, "{ambiguous} of {random} are ambiguous");
 }
 
 /// The number in an environment variable.
-fn environment<T: std::str::FromStr>(name: &str, default: T) -> T {
+pub fn environment<T: std::str::FromStr>(name: &str, default: T) -> T {
     let value = std::env::var(name).ok();
     value.map_or(default, |value| value.parse().unwrap_or_else(|_| panic!("{name} is no number: {value}")))
 }
@@ -70,7 +71,7 @@ fn a_mistake_is_found() {
         let mut random = Random::new(7);
         for _ in 0..40 {
             let state = model.random(&mut random);
-            let Some(answer) = oracle::answer(&model.robot, &state) else { continue };
+            let Some(answer) = oracle::answer(&model.robot, &state, &[]) else { continue };
             let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
             let Ok(right) = impact.and_then(Impact::into_analysis) else { continue };
             if !matches!(compare(&answer, &right), Finding::Proven | Finding::Same) {
@@ -117,7 +118,7 @@ fn states_are_written_as_they_are() {
             let text = state.to_json(&model.robot);
             let read = State::from_json(&text, &model.robot, &Defaults::default());
             let read = read.unwrap_or_else(|error| panic!("{error}\n{text}"));
-            assert_eq!(oracle::answer(&model.robot, &read), oracle::answer(&model.robot, &state), "{text}");
+            assert_eq!(oracle::answer(&model.robot, &read, &[]), oracle::answer(&model.robot, &state, &[]), "{text}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The numbers of the oracle: balls of any precision, and f64 to look for borders with.
 
-use astro_float::{BigFloat, Consts, RoundingMode, Sign};
+use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
 use std::cell::RefCell;
 use std::cmp::Ordering;
 

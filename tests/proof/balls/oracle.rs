@@ -6,8 +6,9 @@
 //! impulses that are left free are eliminated from the inequalities one by one (Fourier and Motzkin).
 
 use crate::balls::dynamics::{Problem, problem};
-use crate::balls::linear::{Affine, Inequality, Solved, Zero, feasible, solve};
+use crate::balls::linear::{Affine, Inequality, Solution, Solved, Zero, feasible, solve};
 use crate::balls::number::{Ball, Number};
+use crate::support::digits::{Truth, needed};
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::robot::Robot;
 use heelstrike::state::State;
@@ -46,25 +47,25 @@ pub struct Answer {
     pub bits: usize,
 }
 
-/// Every outcome of the contacts that the state names; `None` if the mass matrix is singular.
-pub fn answer(robot: &Robot, state: &State) -> Option<Answer> {
+/// Every outcome of the contacts that the state names, some of them `resting`; `None` if the mass matrix is singular.
+pub fn answer(robot: &Robot, state: &State, resting: &[bool]) -> Option<Answer> {
     let mut outcomes = Vec::new();
     let mut dependent = false;
     let mut open: Option<Vec<Vec<Mode>>> = None;
     for bits in BITS {
-        let problem = problem::<Ball>(robot, state, bits)?;
+        let problem = problem::<Ball>(robot, state, resting, bits)?;
         let last = bits == BITS[BITS.len() - 1];
         let lists = open.take().unwrap_or_else(|| lists(problem.friction.len()));
         let mut left = Vec::new();
         for modes in lists {
             match judge(&problem, &modes, Zero { last }) {
-                Judgement::Outcome(index) => {
+                Judgment::Outcome(index) => {
                     dependent |= index == Index::Redundant;
                     outcomes.push(Outcome { modes, index });
                 }
-                Judgement::None => {}
-                Judgement::Dependent => dependent = true,
-                Judgement::Open => left.push(modes),
+                Judgment::None => {}
+                Judgment::Dependent => dependent = true,
+                Judgment::Open => left.push(modes),
             }
         }
         if left.is_empty() || last {
@@ -78,10 +79,61 @@ pub fn answer(robot: &Robot, state: &State) -> Option<Answer> {
 
 /// The lists of modes that f64 takes for outcomes; nothing is proven by them.
 pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
-    let Some(problem) = problem::<f64>(robot, state, 0) else { return Vec::new() };
+    let Some(problem) = problem::<f64>(robot, state, &[], 0) else { return Vec::new() };
     let mut lists = lists(problem.friction.len());
-    lists.retain(|modes| matches!(judge(&problem, modes, Zero { last: false }), Judgement::Outcome(_)));
+    lists.retain(|modes| matches!(judge(&problem, modes, Zero { last: false }), Judgment::Outcome(_)));
     lists
+}
+
+/// The numbers of an outcome with these modes, of a state without applied impulses; `None` if its equations depend on
+/// each other.
+pub fn truth(robot: &Robot, state: &State, modes: &[Mode]) -> Option<Truth> {
+    let bits = BITS[BITS.len() - 1];
+    let problem = problem::<Ball>(robot, state, &[], bits)?;
+    let zero = Zero { last: true };
+    let [speed, mobility] =
+        [largest(problem.free.iter()), largest((0..problem.free.len()).map(|i| &problem.delassus[i][i]))];
+    let resting = resting(&problem, zero, speed)?;
+    let (unknowns, equations, _) = equations(&problem, modes);
+    let row = |&row: &usize| -> Vec<Ball> {
+        let effects = unknowns.iter().map(|unknown| unknown.effect(&problem, row));
+        effects.chain([resting[row].negative()]).collect()
+    };
+    let solved = solve(equations.iter().map(row).collect(), zero, mobility, speed, bits);
+    let Solved::Solution(Solution { values, free: 0, .. }) = solved else { return None };
+    let mut impulse = vec![Ball::new(0.0, bits); resting.len()];
+    let mut after = problem.free.clone();
+    for (unknown, value) in unknowns.iter().zip(&values) {
+        impulse[unknown.row] = value.constant.clone();
+        if let Some(slope) = &unknown.slope {
+            impulse[unknown.row - 1] = value.constant.times(slope);
+        }
+        for (row, entry) in after.iter_mut().enumerate() {
+            *entry = entry.plus(&value.constant.times(&unknown.effect(&problem, row)));
+        }
+    }
+    let work = impulse.iter().zip(problem.free.iter().zip(&after)).map(|(l, (c, after))| l.times(&c.plus(after)));
+    let loss = work.fold(Ball::new(0.0, bits), |sum, work| sum.plus(&work)).times(&Ball::new(-0.5, bits));
+    // What 832 bits leave of zero.
+    let number = |ball: &Ball, scale: f64| match zero.sign(ball, scale) {
+        Some(Ordering::Greater) => ball.size(),
+        Some(Ordering::Less) => -ball.size(),
+        _ => 0.0,
+    };
+    let pairs =
+        |rows: &[Ball], scale: f64| rows.chunks(2).map(|c| [number(&c[0], scale), number(&c[1], scale)]).collect();
+    let push = speed / mobility;
+    let pushes: Vec<[f64; 2]> = pairs(&impulse, push);
+    let diagonal: Vec<Ball> = (0..resting.len()).map(|row| problem.delassus[row][row].clone()).collect();
+    Some(Truth {
+        of_robot: true,
+        mobility: pairs(&diagonal, 0.0).into_iter().map(|pair| pair.map(f64::sqrt)).collect(),
+        before: pairs(&problem.free, speed),
+        after: pairs(&after, speed),
+        energy_loss: number(&loss, push * speed),
+        friction_needed: needed(modes, &pushes),
+        impulse: pushes,
+    })
 }
 
 /// All 4^n lists of modes.
@@ -91,7 +143,7 @@ fn lists(contacts: usize) -> Vec<Vec<Mode>> {
 }
 
 /// What a list of modes comes to.
-enum Judgement {
+enum Judgment {
     Outcome(Index),
     None,
     /// No outcome, of equations that depend on each other.
@@ -179,12 +231,12 @@ fn resting<N: Number>(problem: &Problem<N>, zero: Zero, scale: f64) -> Option<Ve
 }
 
 /// Solves the equations of `modes` and tests their strict inequalities.
-fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgement {
+fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgment {
     let bits = problem.bits;
     let speed = largest(problem.free.iter());
     let mobility = largest((0..problem.delassus.len()).map(|i| &problem.delassus[i][i]));
     let push = speed / mobility;
-    let Some(resting) = resting(problem, zero, speed) else { return Judgement::Open };
+    let Some(resting) = resting(problem, zero, speed) else { return Judgment::Open };
     let (unknowns, equations, index) = equations(problem, modes);
     let row = |&row: &usize| {
         let mut entries: Vec<N> = unknowns.iter().map(|unknown| unknown.effect(problem, row)).collect();
@@ -192,8 +244,8 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgeme
         entries
     };
     let solution = match solve(equations.iter().map(row).collect(), zero, mobility, speed, bits) {
-        Solved::Open => return Judgement::Open,
-        Solved::Contradictory => return Judgement::Dependent,
+        Solved::Open => return Judgment::Open,
+        Solved::Contradictory => return Judgment::Dependent,
         Solved::Solution(solution) => solution,
     };
     let free = solution.free;
@@ -250,14 +302,14 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgeme
             (Some(Ordering::Equal), Comparison::Zero) => {}
             (Some(Ordering::Equal), Comparison::NotNegative) => border = true,
             (Some(Ordering::Greater), Comparison::Positive | Comparison::NotNegative) => {}
-            _ => return Judgement::None,
+            _ => return Judgment::None,
         }
     }
     if free == 0 {
         return match (open, border) {
-            (true, _) => Judgement::Open,
-            (false, true) => Judgement::Outcome(Index::Border),
-            (false, false) => Judgement::Outcome(Index::Sign(index * solution.sign)),
+            (true, _) => Judgment::Open,
+            (false, true) => Judgment::Outcome(Index::Border),
+            (false, false) => Judgment::Outcome(Index::Sign(index * solution.sign)),
         };
     }
     // Where what is free changes a velocity, every value of it is an outcome of its own.
@@ -266,9 +318,9 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgeme
         (0..resting.len()).any(moved)
     };
     match feasible(inequalities, zero, push) {
-        Some(false) => Judgement::Dependent,
-        Some(true) if !family() => Judgement::Outcome(Index::Redundant),
-        _ => Judgement::Open,
+        Some(false) => Judgment::Dependent,
+        Some(true) if !family() => Judgment::Outcome(Index::Redundant),
+        _ => Judgment::Open,
     }
 }
 

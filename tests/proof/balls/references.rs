@@ -43,7 +43,7 @@ fn the_papers_outcomes_are_found() {
                 let mut value = model.state(alpha.parse().expect("an angle"), at.pose.as_ref(), friction);
                 value["contacts"] = json!(contacts);
                 let state = state(&value, &robot);
-                let problem = problem::<Ball>(&robot, &state, 256).expect("a regular mass matrix");
+                let problem = problem::<Ball>(&robot, &state, &[], 256).expect("a regular mass matrix");
                 // As many digits as the rounding of the reference's pose leaves.
                 for (found, should) in [
                     (nearest(problem.delassus.iter().flatten()), at.delassus.concat()),
@@ -52,7 +52,7 @@ fn the_papers_outcomes_are_found() {
                     differences.compare(&place, &found, &should, 1e-12 * largest(&should));
                 }
                 let mut expected: Vec<_> = outcomes.iter().map(|outcome| outcome.modes.to_vec()).collect();
-                let answer = answer(&robot, &state).expect("a regular mass matrix");
+                let answer = answer(&robot, &state, &[]).expect("a regular mass matrix");
                 let found: Vec<_> = answer.outcomes.into_iter().map(|outcome| outcome.modes).collect();
                 expected.sort();
                 assert_eq!((found, answer.open), (expected, 0), "{place}");
@@ -75,7 +75,7 @@ fn matrices_are_those_of_pinocchio() {
         let mut state = state(&json!({"friction": 1.0, "contacts": contacts}), &robot);
         for (number, config) in variant["configs"].as_array().expect("configurations").iter().enumerate() {
             (state.position, state.velocity) = (parsed(&config["q"]), parsed(&config["v"]));
-            let problem = problem::<Ball>(&robot, &state, 256).expect("a regular mass matrix");
+            let problem = problem::<Ball>(&robot, &state, &[], 256).expect("a regular mass matrix");
             let should = parsed::<Vec<Vec<f64>>>(&config["G"]).concat();
             let found = nearest(problem.delassus.iter().flatten());
             // The reference is f64 itself.
@@ -97,7 +97,7 @@ fn exact_borders_are_found() {
             "friction": friction,
             "contacts": [{"link": "block", "offset": [0, 0, 0]}],
         });
-        let answer = answer(&robot, &state(&value, &robot)).expect("a regular mass matrix");
+        let answer = answer(&robot, &state(&value, &robot), &[]).expect("a regular mass matrix");
         assert_eq!(answer.open, 0, "{value}");
         answer.outcomes.into_iter().map(|outcome| (outcome.modes[0], outcome.index)).collect::<Vec<_>>()
     };
@@ -105,7 +105,7 @@ fn exact_borders_are_found() {
     assert_eq!(outcomes(json!(1.0), [-3.0, -3.0]), [(Stick, Index::Border)]);
     assert_eq!(outcomes(json!(1.0), [1.0, -1.0]), [(Stick, Index::Border)]);
     assert_eq!(outcomes(json!("infinite"), [-2.0, -1.0]), [(Stick, Index::Border)]);
-    // One unit in the last place beside it is no border.
+    // One unit in the last place next to it is no border.
     let less = 1.0_f64.next_down();
     assert_eq!(outcomes(json!(1.0), [-3.0, -3.0 * less]), [(SlideMinus, Index::Sign(1))]);
     assert_eq!(outcomes(json!(1.0_f64.next_up()), [-3.0, -3.0]), [(Stick, Index::Sign(1))]);

@@ -33,6 +33,24 @@ fn telescope() -> String {
     ])
 }
 
+/// A chain of ten links with masses of 1e-4 to 1e4 kg, which points of its last links strike.
+pub fn chain(random: &mut Random) -> Model {
+    let links = (0..10).map(|link| {
+        let mass = random.decades(-4.0, 4.0);
+        urdf::link(format!("link_{link}"), mass, [0.0, -random.between(0.1, 0.9)], 0.02 * mass, "")
+    });
+    let mut parts: Vec<String> = links.collect();
+    parts.extend((1..10).map(|link| {
+        let ends = [link - 1, link].map(|end| format!("link_{end}"));
+        let joint = format!("joint_{link}");
+        urdf::joint(joint, Axis::Revolute(1.0), [&ends[0], &ends[1]], [0.0, -1.0], "")
+    }));
+    let robot = Robot::from_urdf(&urdf::robot(&parts)).unwrap_or_else(|error| panic!("{error}"));
+    let foot = |link: usize| NamedContact { link, offset: [0.1, 0.0, -1.0], radius: 0.0 };
+    let feet = [9, 7, 4].map(|link| foot(robot.link(&format!("link_{link}")).unwrap_or(link))).to_vec();
+    Model { name: "chain", robot, feet, touching: 2, most: 3 }
+}
+
 /// The robots, each with up to four feet.
 pub fn models() -> Vec<Model> {
     let model = |name, urdf: &str, touching, feet: &[(&str, [f64; 3], f64)]| {
@@ -159,7 +177,7 @@ impl Model {
             scene.restitution = ByLink { default: None, links: links.into_iter().map(bounce).collect() };
         }
         if random.once_in(10) && !self.robot.joints.is_empty() {
-            scene.held = vec![random.whole(0, self.robot.joints.len() as i64 - 1) as usize];
+            scene.braked = vec![random.whole(0, self.robot.joints.len() as i64 - 1) as usize];
         }
         if random.once_in(10) {
             scene.rotor_inertia = self.robot.joints.iter().map(|_| random.decades(-4.0, -1.0)).collect();
@@ -234,7 +252,7 @@ impl Parameter {
     }
 }
 
-/// States beside one border: both neighbouring f64 between which the outcomes change, and one further off on either
+/// States next to one border: both neighboring f64 between which the outcomes change, and one further off on either
 /// side, 1e-15 to 1e-6 of the parameter away.
 pub fn beside_a_border(model: &Model, random: &mut Random) -> [State; 4] {
     loop {
@@ -263,11 +281,11 @@ pub fn beside_a_border(model: &Model, random: &mut Random) -> [State; 4] {
 
 /// The modes of all outcomes; `None` if they are undecided.
 fn modes(model: &Model, state: &State) -> Option<Vec<Vec<Mode>>> {
-    let answer = oracle::answer(&model.robot, state).filter(|answer| answer.open == 0)?;
+    let answer = oracle::answer(&model.robot, state, &[]).filter(|answer| answer.open == 0)?;
     Some(answer.outcomes.into_iter().map(|outcome| outcome.modes).collect())
 }
 
-/// Two neighbouring f64 from `a` to `b` that `property` distinguishes; `None` if it does not distinguish `a` from `b`.
+/// Two neighboring f64 from `a` to `b` that `property` distinguishes; `None` if it does not distinguish `a` from `b`.
 fn bisect<T: PartialEq>(mut a: f64, mut b: f64, property: impl Fn(f64) -> T) -> Option<[f64; 2]> {
     let at_a = property(a);
     if property(b) == at_a {

@@ -1,7 +1,10 @@
 //! The crate against the exact oracle of this folder: what is compared with rational arithmetic belongs here.
 
 mod case;
+mod cells;
+mod digits;
 mod enumeration;
+mod redundant;
 mod self_test;
 mod tree;
 
@@ -66,14 +69,14 @@ fn numbers(values: &[RBig]) -> Vec<f64> {
 }
 
 /// The crate's analysis of a problem.
-fn analyse_problem(problem: &Problem, seed: u64) -> Analysis {
+fn analyze_problem(problem: &Problem, seed: u64) -> Analysis {
     let contact_problem = ContactProblem::new(
         numbers(&problem.delassus.concat()),
         problem.velocity_before.chunks(2).map(|c| [to_f64(&c[0]), to_f64(&c[1])]).collect(),
         problem.friction.iter().map(rounded).collect(),
         numbers(&problem.restitution),
     );
-    let analysis = contact_problem.and_then(|problem| impact::analyse(&problem, false));
+    let analysis = contact_problem.and_then(|problem| impact::analyze(&problem, impact::ListedRejections::Nothing));
     analysis.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{problem:?}"))
 }
 
@@ -109,7 +112,7 @@ fn matrices_have_exact_outcomes() {
         if all.clearance() < 1e-9 {
             return [0, 0];
         }
-        let analysis = analyse_problem(&problem, seed);
+        let analysis = analyze_problem(&problem, seed);
         compare(&problem, &all, analysis.verdict, &analysis.outcomes)
             .unwrap_or_else(|difference| panic!("seed {seed}: {difference}\n{}", solve_json(&problem)));
         [1, u64::from(analysis.outcomes.len() > 1)]
@@ -178,11 +181,11 @@ fn matrices_beside_borders_have_exact_outcomes() {
     let [compared, borders, near, undecided] = total(16_000, |seed| {
         let Some(problem) = beside_borders(&mut Random::new(seed)) else { return [0; 4] };
         let all = enumerate(&problem);
-        // With det A = 0 and more than one solution the exact oracle does not tell which is admissible.
+        // With det A = 0 and more than one solution the exact oracle does not say which is admissible.
         if all.dependent > 0 {
             return [0; 4];
         }
-        let analysis = analyse_problem(&problem, seed);
+        let analysis = analyze_problem(&problem, seed);
         // At friction 0 the oracle has no slack for L_t = 0, and so no index.
         let frictionless = problem.friction.contains(&Some(RBig::ZERO));
         // Without any velocity no slack has a size, and all are zero.
@@ -201,7 +204,7 @@ fn matrices_beside_borders_have_exact_outcomes() {
         let clearance = all.clearance();
         [1, border, u64::from(clearance > 0.0 && clearance < 1e-9), 0]
     });
-    let counts = format!("{compared} compared, {borders} on and {near} beside a border, {undecided} undecided");
+    let counts = format!("{compared} compared, {borders} on and {near} next to a border, {undecided} undecided");
     assert!(compared >= 10_000 && borders > 5_000 && near > 1_000 && undecided * 300 < compared, "{counts}");
 }
 
@@ -233,7 +236,7 @@ fn robot(number: u64) -> (Tree, Robot, Vec<(Case, Enumeration)>) {
 }
 
 /// The crate's analysis of a case, from the cosines and sines of its angles.
-fn analyse(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
+fn analyze(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
     let configuration = Configuration {
         cos: numbers(&case.motions.cos),
         sin: numbers(&case.motions.sin),
@@ -244,7 +247,10 @@ fn analyse(robot: &Robot, case: &Case) -> heelstrike::Result<Analysis> {
     let contacts = scene.contacts.unwrap_or_default();
     let mut pipeline = Pipeline::new(robot, Options::default());
     let restitution = numbers(&case.problem.restitution);
-    impact::analyse(&pipeline.contact_problem(&configuration, &velocity, &contacts, friction, restitution)?, false)
+    impact::analyze(
+        &pipeline.contact_problem(&configuration, &velocity, &contacts, friction, restitution)?,
+        impact::ListedRejections::Nothing,
+    )
 }
 
 #[test]
@@ -254,7 +260,7 @@ fn trees_have_exact_outcomes() {
         let mut counts = [0, 0, 0];
         for (case, all) in &cases {
             let fail = |difference: &str| -> ! { panic!("{}", report(&tree, &robot, case, difference)) };
-            let analysis = analyse(&robot, case).unwrap_or_else(|error| fail(&error.to_string()));
+            let analysis = analyze(&robot, case).unwrap_or_else(|error| fail(&error.to_string()));
             compare(&case.problem, all, analysis.verdict, &analysis.outcomes)
                 .unwrap_or_else(|difference| fail(&difference));
             counts = added(counts, [true, analysis.outcomes.len() > 1, case.contacts.len() > 2].map(u64::from));

@@ -1,6 +1,7 @@
 //! The oracle against what is known about it without the crate.
 
 use super::case::Case;
+use super::cells::{cells, impulse_range};
 use super::enumeration::{Enumeration, Friction, Problem, enumerate};
 use super::tree::{Body, Motion, Motions, Tree};
 use crate::support::random::Random;
@@ -213,4 +214,45 @@ fn mass_matrices_give_the_energy_of_the_bodies() {
         let mass_matrix = tree.mass_matrix(&placed);
         assert_eq!(super::tree::kinetic_energy(&mass_matrix, &motions.velocity), twice / ratio(2, 1), "seed {seed}");
     }
+}
+
+#[test]
+fn cells_of_regular_contacts_are_their_outcomes() {
+    let mut compared = 0;
+    for case in cases(150) {
+        let (seed, all) = (case.seed, case.enumerate());
+        if all.dependent > 0 {
+            continue;
+        }
+        let mut expected: Vec<_> =
+            all.outcomes().map(|own| (own.modes.clone(), own.velocity_after.exact(), own.impulse.exact())).collect();
+        let own = cells(&case.problem).into_iter().map(|cell| {
+            assert_eq!((cell.dimension, cell.corners.len()), (0, 1), "seed {seed}");
+            let range = impulse_range(&case.problem, &cell.modes, &cell.corners[0]);
+            let [least, most] = [0, 1].map(|end| range.iter().map(|ends| ends[end].clone().unwrap()).collect());
+            assert_eq!(least, most, "seed {seed}");
+            (cell.modes, cell.corners[0].clone(), most)
+        });
+        let mut found: Vec<(Vec<Mode>, Vec<RBig>, Vec<RBig>)> = own.collect();
+        expected.sort();
+        found.sort();
+        assert_eq!(found, expected, "seed {seed}");
+        compared += found.len();
+    }
+    assert!(compared > 100, "only {compared} outcomes");
+}
+
+/// Two of the paper's bodies at their critical friction: either may rest, slide as before, or anything between.
+#[test]
+fn cells_of_an_area_have_its_edges_and_corners() {
+    let one = RBig::ONE;
+    let delassus = matrix(&[&[2, 1, 0, 0], &[1, 2, 0, 0], &[0, 0, 2, 1], &[0, 0, 1, 2]]);
+    let velocity_before = vec![one.clone(), RBig::ZERO, one, RBig::ZERO];
+    let (friction, restitution) = (vec![Some(ratio(2, 1)); 2], vec![RBig::ZERO; 2]);
+    let cells = cells(&Problem { delassus, velocity_before, friction, restitution });
+    let mut found: Vec<_> = cells.into_iter().map(|cell| (cell.modes, cell.dimension, cell.corners.len())).collect();
+    found.sort();
+    let [rests, slides] = [Mode::Stick, Mode::SlidePlus];
+    let expected = [([rests, rests], 0, 1), ([rests, slides], 1, 2), ([slides, rests], 1, 2), ([slides, slides], 2, 4)];
+    assert_eq!(found, expected.map(|(modes, dimension, corners)| (modes.to_vec(), dimension, corners)));
 }

@@ -7,7 +7,7 @@ press("End", "PageDown");
 const beyond = seen();
 press("End", "ArrowUp", "ArrowUp", "ArrowUp", "ArrowUp");
 const last = [...seen(), ...dot()];
-// A click beside the middle of the map.
+// A click next to the middle of the map.
 const [x, y] = [start[3] + 0.52 * (last[3] - start[3]), start[4] + 0.48 * (last[4] - start[4])];
 one("#plots svg").dispatchEvent(new PointerEvent("pointerdown", { clientX: x, clientY: y, buttons: 1, bubbles: true }));
 const clicked = [...seen(), ...dot()];

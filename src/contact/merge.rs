@@ -1,0 +1,73 @@
+//! Points of one rigid body on one straight line of ground act through the outer two of them.
+//!
+//! ```text
+//!     p = (1 - s) a + s b:    a force at p = (1 - s) of it at a + s of it at b,     c_n(p) = (1 - s) c_n(a) + s c_n(b)
+//! ```
+//!
+//! With the same friction the parts at a and b stay in their cones. c_t is the same all along the line, and Newton's
+//! bounce e min(c_n, 0) is concave, so that p is closed only where a and b are. Points that the contact tolerance lets
+//! be off the line change nothing either, as long as e = 0 and both edges of p's friction cone meet the line between a
+//! and b.
+
+use super::Contact;
+use crate::planar::Vector;
+
+/// Contacts of one body and those that act for them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Merged {
+    /// How many are left out.
+    pub inner: usize,
+    /// Those that act for them, among the contacts that remain: the rearmost and the foremost, or one if all coincide.
+    pub outer: Vec<usize>,
+    /// How far the inner ones are off the straight line between the outer ones, at most \[m\]; 0 if by rounding alone.
+    pub off: f64,
+}
+
+/// Leaves out of all contacts that are `together` those between the outer two, but none that `stays`; places are the
+/// same up to `rounding` \[m\].
+pub(super) fn merge(
+    contacts: &mut Vec<Contact>,
+    together: impl Fn(&Contact, &Contact) -> bool,
+    stays: impl Fn(&Contact) -> bool,
+    rounding: f64,
+) -> Vec<Merged> {
+    let mut merged = Vec::new();
+    let mut remains = vec![true; contacts.len()];
+    for first in 0..contacts.len() {
+        let is_together = |&at: &usize| together(&contacts[first], &contacts[at]);
+        if (0..first).any(|at| is_together(&at)) {
+            continue;
+        }
+        let members = || (first..contacts.len()).filter(is_together);
+        // [tangential, normal]
+        let place = |at: usize| Vector::axes().map(|axis| contacts[first].ground.apply(axis).dot(contacts[at].point));
+        // Of several at one end the lowest.
+        let end = |way: f64| {
+            let most = members().map(|at| way * place(at)[0]).fold(f64::NEG_INFINITY, f64::max);
+            let last = members().filter(|&at| way * place(at)[0] >= most - rounding);
+            last.min_by(|&a, &b| place(a)[1].total_cmp(&place(b)[1])).unwrap_or(first)
+        };
+        let (rear, front) = (end(-1.0), end(1.0));
+        let [[from, low], [to, high]] = [place(rear), place(front)];
+        let coincide = to - from <= rounding;
+        let outer = if coincide { vec![rear] } else { vec![rear, front] };
+        let slope = if coincide { 0.0 } else { (high - low) / (to - from) };
+        let inner: Vec<usize> = members().filter(|at| !outer.contains(at) && !stays(&contacts[*at])).collect();
+        if inner.is_empty() {
+            continue;
+        }
+        let off = |&at: &usize| {
+            let [along, height] = place(at);
+            (height - low - slope * (along - from)).abs()
+        };
+        let off = inner.iter().map(off).filter(|&off| off > rounding).fold(0.0, f64::max);
+        merged.push(Merged { inner: inner.len(), outer, off });
+        inner.into_iter().for_each(|at| remains[at] = false);
+    }
+    for own in merged.iter_mut().flat_map(|merged| &mut merged.outer) {
+        *own = remains[..*own].iter().filter(|&&remains| remains).count();
+    }
+    let mut remains = remains.into_iter();
+    contacts.retain(|_| remains.next().unwrap_or(true));
+    merged
+}

@@ -1,0 +1,119 @@
+//! The open foot that is nearest to the ground, and how far a robot must rise to put its lowest foot on it.
+
+use super::Contact;
+use super::detect::Footing;
+use super::feet::Foot;
+use super::placement::Placement;
+use super::point::{Point, Touch, points};
+use super::profile::{self, Closeness};
+use super::surface::Surface;
+use crate::error::{Error, Reason, Result};
+
+/// A sole whose other end is lower than this part of the way to it is meant to be flat on the ground.
+const FLAT: f64 = 0.1;
+
+impl Footing<'_> {
+    /// The lowest foot that does not touch, as the contact that it would make; `None` if every foot touches. A body
+    /// that makes one of the `contacts` alone also has an open foot if its sole is nearly flat on the ground.
+    pub fn nearest(&self, contacts: &[Contact]) -> Option<Contact> {
+        let Self { placement, surface, .. } = self;
+        let mut nearest: Option<Contact> = None;
+        for foot in self.feet.iter() {
+            let gap = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.gap);
+            if surface.least_gap(foot, placement) >= gap {
+                continue;
+            }
+            let body = |body: usize| self.robot.rigid_body(body);
+            let mut of_body = contacts.iter().filter(|contact| body(contact.body) == body(foot.body));
+            let touch = match (of_body.next(), of_body.next()) {
+                (None, _) => surface.first_touch(foot, placement, surface.rounding(placement, self.feet.size())),
+                (Some(contact), None) => surface.raised_end(foot, placement, contact),
+                _ => None,
+            };
+            if let Some(touch) = touch.filter(|touch| touch.gap < gap) {
+                nearest = Some(Contact::of_touch(foot.link, placement, touch));
+            }
+        }
+        nearest
+    }
+
+    /// How far the robot must rise along z so that the lowest of its feet, or of the named contacts, is on the ground
+    /// \[m\].
+    ///
+    /// # Errors
+    /// [`Reason::Inconsistent`] if no foot is above the ground.
+    pub fn rise(&self) -> Result<f64> {
+        let gap = |rise: f64| {
+            let placement = &self.placement.raised(rise);
+            match self.named() {
+                Some(named) => {
+                    let gap = |contact| self.surface.touch(placement, Point::named(self.robot, contact), 0.0).gap;
+                    named.iter().map(gap).fold(f64::INFINITY, f64::min)
+                }
+                None => {
+                    let gaps = self.feet.iter().map(|foot| self.surface.clearance(foot, placement));
+                    gaps.fold(f64::INFINITY, f64::min)
+                }
+            }
+        };
+        let rise = match self.surface {
+            Surface::HalfPlane(plane) => Some(-gap(0.0) / plane.normal().z),
+            Surface::Profile(_) => first_above(gap, self.feet.size()),
+        };
+        rise.filter(|rise| rise.is_finite()).ok_or_else(|| {
+            let error = Error::new(Reason::Inconsistent("no foot is above the ground".into())).at("place");
+            error
+                .hint("name a contact point by `contacts` in the state or by `feet`, or move the base above the ground")
+        })
+    }
+}
+
+/// The least rise at which the `gap`, which grows with it, is positive; the search begins with steps of `size` \[m\].
+fn first_above(gap: impl Fn(f64) -> f64, size: f64) -> Option<f64> {
+    let steps = || std::iter::successors(Some(size), |step| Some(2.0 * step)).take_while(|step| step.is_finite());
+    let mut below = steps().map(|step| -step).find(|&rise| gap(rise) <= 0.0)?;
+    let mut above = steps().find(|&rise| gap(rise) > 0.0)?;
+    loop {
+        let middle = below + (above - below) / 2.0;
+        match middle {
+            _ if middle <= below || middle >= above => return Some(above),
+            _ if gap(middle) > 0.0 => above = middle,
+            _ => below = middle,
+        }
+    }
+}
+
+impl Surface {
+    /// A height \[m\] that no point of a foot is below; it costs less than the foot's points.
+    fn least_gap(&self, foot: &Foot, placement: &Placement) -> f64 {
+        match self {
+            Self::HalfPlane(plane) => plane.least_gap(foot, placement),
+            Self::Profile(_) => f64::NEG_INFINITY,
+        }
+    }
+
+    /// Where a foot that does not touch is nearest to the ground.
+    fn first_touch(&self, foot: &Foot, placement: &Placement, rounding: f64) -> Option<Touch> {
+        let lowest = |a: &Touch, b: &Touch| a.gap.total_cmp(&b.gap);
+        match self {
+            Self::HalfPlane(plane) => points(foot).map(|point| plane.touch(placement, point)).min_by(lowest),
+            Self::Profile(terrain) => {
+                let reach = self.clearance(foot, placement).abs() + 2.0 * rounding;
+                let touches =
+                    profile::touching(terrain, foot, placement, Closeness { tolerance: reach, rounding }).ok()?;
+                touches.into_iter().min_by(lowest)
+            }
+        }
+    }
+
+    /// The lowest open point of a foot whose link makes this one contact, if its sole is nearly flat on a plane.
+    fn raised_end(&self, foot: &Foot, placement: &Placement, contact: &Contact) -> Option<Touch> {
+        let Self::HalfPlane(plane) = self else { return None };
+        let flat = |touch: &Touch| {
+            let way = plane.along(placement.world(touch.circle.body, touch.circle.center) - contact.point);
+            touch.gap > 0.0 && touch.gap < FLAT * way.abs()
+        };
+        let touches = points(foot).map(|point| plane.touch(placement, point)).filter(flat);
+        touches.min_by(|a, b| a.gap.total_cmp(&b.gap))
+    }
+}

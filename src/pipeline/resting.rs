@@ -1,0 +1,182 @@
+//! Contacts that rest as far as their velocity is known: a foot that stands in a simulation has c = J v of some 1e-17
+//! m/s, whose signs say nothing.
+//!
+//! ```text
+//!     |c| <= rounding of J v + D,   D = sum of A_k dv_k + sum of |u_k| dq_k   where |c| <= 1e-4 sum of A_k |v_k|, else 0
+//! ```
+//!
+//! over all coordinates k that move the contact: A_k is its arm from the joint, stretched, and u_k the velocity of the
+//! joint's axis, by which the velocity of a contact that rests changes with an angle. dv_k and dq_k are half units of the
+//! numbers' last decimal places ([`half_units`]). With a stance the terms of its foot count twice more.
+
+use super::Pipeline;
+use crate::contact::Contact;
+use crate::dynamics::plan::JointMotion;
+use crate::dynamics::point_velocity;
+use crate::planar::{Pair, Vector};
+use crate::state::State;
+use std::fmt;
+use std::ops::RangeInclusive;
+
+/// Only if no more than this part of what its terms add up to is left of a velocity, digits of the state explain it.
+const CANCELED: f64 = 1e-4;
+/// Numbers with so many significant digits were rounded to them; with fewer they are meant, with more they are f64.
+const ROUNDED: RangeInclusive<usize> = 6..=15;
+
+/// The stance of a state.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Standing<'a> {
+    pub foot: Option<&'a Contact>,
+    /// Its place among the contacts.
+    pub place: Option<usize>,
+}
+
+/// Why a contact is taken as resting, with the speed below which it is \[m/s\].
+enum Because {
+    Option(f64),
+    Rounding(f64),
+    Digits(f64),
+}
+
+impl Pipeline<'_> {
+    /// Takes contacts that rest as exactly at rest, and notes them; gives which. `velocity` is dq/dt; the contacts'
+    /// velocities and their bounds must be known.
+    pub(super) fn take_as_resting(
+        &mut self,
+        state: &State,
+        velocity: &[f64],
+        contacts: &[Contact],
+        Standing { foot, place }: Standing,
+        notes: &mut Vec<String>,
+    ) -> Vec<bool> {
+        let mut resting = vec![false; contacts.len()];
+        for (index, contact) in contacts.iter().enumerate() {
+            let [slow, bound] =
+                [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]].map(length);
+            // A stance is exactly at rest, and so are other contacts of its body if that does not turn.
+            if place == Some(index) || (slow == 0.0 && foot.is_some_and(|foot| foot.body == contact.body)) {
+                continue;
+            }
+            let because = match self.options.resting_speed {
+                Some(limit) => (slow < limit).then_some(Because::Option(limit)),
+                None if bound == 0.0 || state.uncertainty.is_some() => None,
+                None if slow <= bound => Some(Because::Rounding(bound)),
+                None => {
+                    let digits = self.digits(state, velocity, slow, contact, foot);
+                    digits.map(|digits| bound + digits).filter(|&limit| slow <= limit).map(Because::Digits)
+                }
+            };
+            let name = &contact.name;
+            if let Some(because) = because {
+                resting[index] = true;
+                self.assembly.workspace.contact_velocity[index] = [0.0; 2];
+                self.bounds.velocity[index] = [0.0; 2];
+                if slow > 0.0 || self.options.resting_speed.is_none() {
+                    notes.push(format!(
+                        "{name} moves at {slow:.1e} m/s and is taken as exactly at rest ({because}); the velocities of \
+                         base and joints are not changed for it"
+                    ));
+                }
+            } else if bound > 0.0 && slow <= bound {
+                notes.push(format!(
+                    "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
+                     say so by `stance` or `resting_speed`"
+                ));
+            }
+        }
+        resting
+    }
+
+    /// How fast a contact that rests may move by what the state's numbers were rounded to \[m/s\]; `None` if it moves too
+    /// fast for that.
+    fn digits(
+        &self,
+        state: &State,
+        velocity: &[f64],
+        slow: f64,
+        contact: &Contact,
+        foot: Option<&Contact>,
+    ) -> Option<f64> {
+        let (plan, workspace) = (&self.assembly.plan, &self.assembly.workspace);
+        let stretched = |rates: &[f64]| {
+            let speed = |contact: &Contact| self.bounds.speed(plan, contact.arm(self.robot), rates);
+            speed(contact) + foot.map_or(0.0, |foot| 2.0 * speed(foot))
+        };
+        if slow > CANCELED * stretched(velocity) {
+            return None;
+        }
+        let [turns, mut rates] = [&state.position, &state.velocity].map(|numbers| half_units(numbers));
+        if foot.is_some() {
+            // They are placeholders.
+            rates[..2].fill(0.0);
+        }
+        let turned = |contact: &Contact| -> f64 {
+            let axes = plan.way_to_root(contact.body).filter_map(|(index, body)| match body.motion {
+                JointMotion::Root if plan.floating => Some((index, turns[2])),
+                JointMotion::Revolute { rate, .. } => Some((index, turns[body.coordinate] * rate.abs())),
+                _ => None,
+            });
+            axes.map(|(index, turn)| turn * point_velocity(plan, index, Vector::zero(), velocity, workspace).length())
+                .sum()
+        };
+        Some(stretched(&rates) + turned(contact) + foot.map_or(0.0, |foot| 2.0 * turned(foot)))
+    }
+}
+
+impl fmt::Display for Because {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Option(limit) => write!(f, "resting speed {limit} m/s"),
+            Self::Rounding(limit) => write!(f, "its velocity is rounded by up to {limit:.1e} m/s"),
+            Self::Digits(limit) => write!(f, "by the digits of the state it is known to {limit:.1e} m/s"),
+        }
+    }
+}
+
+fn length(pair: Pair<f64>) -> f64 {
+    libm::hypot(pair[0], pair[1])
+}
+
+/// Half a unit in the last decimal place to which each number was rounded: its own if it has six to fifteen significant
+/// digits (in the shortest decimal that is the number); if it has fewer, the finest of the others, because the zeros at
+/// its end are lost; else 0.
+fn half_units(numbers: &[f64]) -> Vec<f64> {
+    let last_places: Vec<(usize, i32)> = numbers.iter().map(|&number| last_place(number)).collect();
+    let finest = last_places.iter().filter(|(digits, _)| ROUNDED.contains(digits)).map(|&(_, place)| place).min();
+    let half = |place: i32| 0.5 * libm::exp10(f64::from(place));
+    let half_unit = |&(digits, place): &(usize, i32)| match finest {
+        Some(_) if ROUNDED.contains(&digits) => half(place),
+        Some(finest) if digits < *ROUNDED.start() => half(finest),
+        _ => 0.0,
+    };
+    last_places.iter().map(half_unit).collect()
+}
+
+/// How many significant digits a number has in the shortest decimal, and the power of ten of the last one.
+fn last_place(number: f64) -> (usize, i32) {
+    let text = format!("{number:e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let digits = mantissa.bytes().filter(u8::is_ascii_digit).count();
+    (digits, exponent.parse::<i32>().unwrap_or(0) - (digits as i32 - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_with_many_decimals_are_rounded_to_them() {
+        let half = |numbers: &[f64]| half_units(numbers);
+        // As `%.6f` writes them.
+        assert_eq!(half(&[0.566082, -1.191566, 0.5, 0.0]), [5e-7; 4]);
+        // As `%.6g` does.
+        assert_eq!(half(&[0.00123457, -5.88049, 1234.56]), [5e-9, 5e-6, 5e-3]);
+    }
+
+    #[test]
+    fn short_numbers_are_meant_and_long_ones_are_f64() {
+        assert_eq!(half_units(&[1.0, -0.25, 12345.0, 0.0]), [0.0; 4]);
+        assert_eq!(half_units(&[0.1 + 0.2, 1.0 / 3.0, 1.0]), [0.0; 3]);
+        assert_eq!(half_units(&[0.1 + 0.2, 0.123456, 1.0]), [0.0, 5e-7, 5e-7]);
+    }
+}

@@ -1,0 +1,138 @@
+//! Outputs of runs that were killed, cut off or refused: they are continued to the same bytes, or stay as they were.
+
+use super::*;
+use crate::support::random::Random;
+use std::fs;
+
+/// The inputs and formats that are interrupted, and the options for each.
+fn cases() -> [(&'static str, String, &'static [&'static str]); 4] {
+    let lines: String = many().lines().take(200).map(|line| format!("{line}\n")).collect();
+    let table: String = table::many().lines().take(200).map(|line| format!("{line}\n")).collect();
+    // A disc that falls and stops, again and again.
+    let fall = |row: usize| format!("{row},0,{},0\n", 0.5 + 0.1 * (9 - (row % 20).min(9)) as f64);
+    let falls = "time,q_base_x,q_base_z,q_base_pitch\n".to_owned() + &(0..400).map(fall).collect::<String>();
+    [
+        ("lines.ndjson", lines.clone(), &["--brief"]),
+        ("lines.csv", lines, &["--output-format", "csv"]),
+        ("table.csv", table, &["--input-format", "csv", "--output-format", "csv"]),
+        ("falls.ndjson", falls, &["--input-format", "csv", "--touchdowns", "--velocity", "backward"]),
+    ]
+}
+
+/// Runs a batch into `output`.
+fn into(output: &str, input: &str, options: &[&str]) -> Run {
+    batch(&[&["-", "--friction", "0.5", "-o", output], options].concat(), input)
+}
+
+#[test]
+fn a_cut_output_is_continued_to_the_same_bytes() {
+    let mut random = Random::new(17);
+    for (name, input, options) in cases() {
+        let (whole, cut) = (place(&format!("whole-{name}")), place(&format!("cut-{name}")));
+        let undisturbed = into(&whole, &input, options);
+        let expected = fs::read(&whole).expect("an output");
+        assert!(expected.len() > 1000, "{name}: {}", expected.len());
+        for round in 0..8 {
+            let end = random.whole(0, expected.len() as i64) as usize;
+            // What was written before the end is in a part, unless the input ended early.
+            let there = if round % 2 == 0 { format!("{cut}.part") } else { cut.clone() };
+            fs::write(&there, &expected[..end]).expect("a file");
+            let run = into(&cut, &input, &[options, &["--resume"]].concat());
+            assert_eq!(run.status, undisturbed.status, "{name}, {end} bytes: {}", run.stderr);
+            assert!(fs::read(&cut).expect("an output") == expected, "{name}, {end} bytes");
+            assert!(!fs::exists(format!("{cut}.part")).expect("known"), "{name}");
+            fs::remove_file(&cut).expect("it is there");
+        }
+    }
+}
+
+#[test]
+fn a_killed_run_is_continued_to_the_same_bytes() {
+    for (format, count) in [("ndjson", 3), ("csv", 3)] {
+        let (states, output) = (file(&format!("{format}.in"), many()), place(&format!("killed.{format}")));
+        let options = [&states, "--friction", "0.5", "--output-format", format];
+        let expected = batch(&options, "");
+        for round in 1..=count {
+            let _ = fs::remove_file(&output);
+            let part = format!("{output}.part");
+            let mut command = batching(&options);
+            command.args(["-o", &output, "--threads", "2"]).stdout(Stdio::null()).stderr(Stdio::null());
+            let mut child = command.spawn().expect("it runs");
+            let least = (round * expected.stdout.len() / 8) as u64;
+            let written = || fs::metadata(&part).map_or(0, |part| part.len());
+            while child.try_wait().expect("known").is_none() && written() < least {
+                std::thread::sleep(std::time::Duration::from_micros(200));
+            }
+            let _ = child.kill();
+            child.wait().expect("it ends");
+            let run = batch(&[&options[..], &["-o", &output, "--resume"]].concat(), "");
+            assert_eq!((run.status, read(&output) == expected.stdout), (1, true), "{format} {round}: {}", run.stderr);
+        }
+    }
+}
+
+#[test]
+fn a_summary_of_a_resumed_run_is_of_all_states() {
+    let (_, input, _) = &cases()[0];
+    let (output, summary) = (place("all.ndjson"), place("all.json"));
+    into(&output, input, &["--summary", &summary]);
+    let (expected, whole) = (read(&summary), read(&output));
+    fs::rename(&output, format!("{output}.part")).expect("a file");
+    fs::write(format!("{output}.part"), &whole[..whole.len() / 2]).expect("a file");
+    into(&output, input, &["--summary", &summary, "--resume"]);
+    assert_eq!((read(&summary), read(&output)), (expected, whole));
+}
+
+#[test]
+fn answers_of_another_run_are_not_continued() {
+    let (_, input, _) = &cases()[0];
+    let output = place("other.ndjson");
+    into(&output, input, &[]);
+    let before = read(&output);
+    for (input, options) in [(input.as_str(), &["--brief", "--resume"][..]), (&strike(1, 0.0), &["--resume"])] {
+        let stderr = into(&output, input, options).refusal(1);
+        assert!(stderr.contains("it does not hold these answers"), "{stderr}");
+        assert_eq!(read(&output), before);
+    }
+    assert_eq!(batch(&["-", "--resume"], "").status, 2, "an output is needed");
+}
+
+#[test]
+fn a_refused_input_replaces_no_old_result() {
+    let kept = file("kept.ndjson", "an old result");
+    for arguments in [
+        &["batch", &disc(), "-"][..],
+        &["impact", "urdf/block.urdf", "-", "--format", "json"],
+        &["impact", "urdf/block.urdf", "-", "--format", "text"],
+        &["solve", "-"],
+        &["sweep", "urdf/block.urdf", "-"],
+    ] {
+        let run = heelstrike_reads(&[arguments, &["-o", &kept]].concat(), "{\"frictoin\": 1}\n");
+        assert_eq!((run.status, read(&kept).as_str()), (1, "an old result"), "{arguments:?}");
+        assert!(!fs::exists(format!("{kept}.part")).expect("known"), "{arguments:?}");
+    }
+    // Refusals that are answers replace it.
+    batch(&["-", "-o", &kept, "--refused", "ok"], "oops\n").well();
+    assert!(read(&kept).starts_with("{\"line\":1,\"error\""));
+}
+
+/// The limit on a file's size makes writing fail as a full disk does.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_the_old_result_and_a_part() {
+    let states = file("disk.ndjson", many());
+    let output = file("disk.out.ndjson", "an old result");
+    let whole = batch(&[&states, "--friction", "0.5"], "").stdout;
+    for blocks in ["8", "64"] {
+        let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+        let arguments = ["batch", &disc(), &states, "--friction", "0.5", "-o", &output];
+        let mut shell = Command::new("bash");
+        let run =
+            shell.args(["-c", &script, env!("CARGO_BIN_EXE_heelstrike")]).args(arguments).output().expect("it runs");
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.code() == Some(1) && stderr.contains("--resume continues them"), "{stderr}");
+        assert_eq!(read(&output), "an old result");
+    }
+    assert_eq!(batch(&[&states, "--friction", "0.5", "-o", &output, "--resume"], "").status, 1);
+    assert!(read(&output) == whole);
+}

@@ -1,0 +1,124 @@
+//! The lowest foot that does not touch, and the robot that is put on its lowest foot.
+
+use super::{FALLING, assert_close, assert_same_outcomes, sole, state, step};
+use crate::support::impact::{impact, robot, try_impact};
+use crate::support::urdf::{self, Axis, POINT, collision, joint, link};
+use heelstrike::pipeline::{Impact, NearestFoot, Options};
+use heelstrike::{Reason, Robot};
+use serde_json::{Value, json};
+
+/// A body with a point at its CoG, and another link that is fixed to it with a point 1 m ahead and `height` above.
+fn two_feet(height: f64) -> Robot {
+    robot(&urdf::robot(&[
+        link("body", 2.0, [0.0; 2], 0.5, &collision([0.0; 2], POINT)),
+        link("other", 1.0, [0.0; 2], 0.5, &collision([1.0, height], POINT)),
+        joint("weld", Axis::Fixed, ["body", "other"], [0.0; 2], ""),
+    ]))
+}
+
+/// Moving at (0, -0.6) m/s and 0.5 rad/s.
+fn striking(z: f64, more: Value) -> Value {
+    let mut state = json!({"position": {"base": {"z": z}}, "velocity": {"base": {"z": -0.6, "pitch": 0.5}}});
+    state.as_object_mut().unwrap().extend(more.as_object().cloned().unwrap_or_default());
+    state
+}
+
+fn nearest(impact: &Impact) -> NearestFoot {
+    impact.nearest.expect("an open foot")
+}
+
+#[test]
+fn near_miss_is_named_with_height_and_velocity() {
+    let impact = impact(&two_feet(3e-5), striking(0.0, json!({})));
+    assert_eq!(impact.contacts.len(), 1);
+    let NearestFoot { link, height, velocity } = nearest(&impact);
+    assert_eq!(link, 1);
+    assert_close(&[height, velocity[0], velocity[1]], &[3e-5, 1.5e-5, -1.1]);
+    let expected = "other nearly touches, 3e-5 m above the ground: to let it touch, give `contact_tolerance: 3.3e-5`, or \
+                    correct the pose";
+    assert_eq!(impact.notes, [expected]);
+}
+
+#[test]
+fn far_or_leaving_foot_is_no_near_miss() {
+    for (height, up) in [(0.05, json!({})), (3e-5, json!({"velocity": {"base": {"z": 0.6}}}))] {
+        let impact = impact(&two_feet(height), striking(0.0, up));
+        assert_close(&[nearest(&impact).height], &[height]);
+        assert!(impact.notes.is_empty(), "{:?}", impact.notes);
+    }
+}
+
+#[test]
+fn nearest_is_absent_when_every_foot_touches() {
+    assert_eq!(impact(&two_feet(0.0), striking(0.0, json!({}))).nearest, None);
+    assert_eq!(impact(&sole(), json!({"position": {"base": {"z": 0.1}}})).nearest, None);
+}
+
+#[test]
+fn raised_end_of_a_flat_sole_is_an_open_foot() {
+    // The rear end of the sole is 0.4 m behind the front end, which touches.
+    let tilted = |pitch: f64| {
+        let z = 0.2 * pitch.sin() + 0.1 * pitch.cos();
+        impact(&sole(), json!({"position": {"base": {"z": z, "pitch": pitch}}}))
+    };
+    assert_close(&[nearest(&tilted(1e-3)).height], &[0.4 * 1e-3_f64.sin()]);
+    assert_eq!(tilted(0.3).nearest, None, "a block on its edge");
+}
+
+#[test]
+fn nearest_over_a_profile_is_found_at_its_edge() {
+    // The stair's edge is under the middle of the sole.
+    let over = state([0.0, 0.35, 0.0], FALLING, 0.5, &step(0.0, 0.2));
+    let NearestFoot { height, velocity, .. } = nearest(&impact(&sole(), over));
+    assert_close(&[height, velocity[0], velocity[1]], &[0.05, 0.0, -1.0]);
+}
+
+#[test]
+fn foot_in_the_air_is_named_with_a_remedy() {
+    let impact = impact(&two_feet(0.5), striking(1e-3, json!({})));
+    let expected = "nothing touches the ground: the lowest foot, body, is 0.001 m above it and moves toward it at \
+                    6.000e-1 m/s; to let it touch, put it there by `place: lowest`, or give `contact_tolerance: 1.1e-3`";
+    assert_eq!(impact.notes, [expected]);
+}
+
+#[test]
+fn lowest_foot_is_put_on_the_ground() {
+    let robot = two_feet(-0.25);
+    for ground in [json!({"slope": 0.0}), json!({"slope": 0.3}), json!({"profile": step(0.75, 0.2)})] {
+        // How high the second foot must be, 0.25 m below the first and 1 m ahead.
+        let rise = match &ground["slope"] {
+            Value::Null => 0.45,
+            slope => 0.25 + slope.as_f64().unwrap().tan(),
+        };
+        let placed = impact(&robot, striking(7.0, json!({"ground": ground, "place": "lowest"})));
+        let by_hand = impact(&robot, striking(rise, json!({"ground": ground})));
+        assert_same_outcomes(&placed, &by_hand);
+        assert_eq!(placed.contacts[0].name, "other");
+        assert_close(&[placed.contacts[0].gap], &[0.0]);
+        let buried = impact(&robot, striking(-7.0, json!({"ground": ground, "place": "lowest"})));
+        assert_same_outcomes(&buried, &by_hand);
+    }
+}
+
+#[test]
+fn lowest_foot_beyond_the_profile_is_refused() {
+    let beyond = json!({"position": {"base": {"x": 9}}, "place": "lowest", "ground": {"profile": step(0.0, 0.2)}});
+    let error = try_impact(&two_feet(0.0), Options::default(), beyond).expect_err("no ground");
+    assert_eq!((error.place(), error.reason().to_string().as_str()), (Some("place"), "no foot is above the ground"));
+}
+
+#[test]
+fn deep_foot_is_refused_with_its_velocity() {
+    let refused = |more| {
+        let error = try_impact(&two_feet(-0.25), Options::default(), striking(0.0, more)).expect_err("too deep");
+        let Reason::Penetration { velocity: Some(velocity), .. } = error.reason() else { panic!("{error}") };
+        (*velocity, error.remedy().expect("a remedy").to_owned())
+    };
+    let (velocity, remedy) = refused(json!({}));
+    assert_close(&velocity, &[-0.125, -1.1]);
+    assert!(remedy.starts_with("raise the base by 0.25 m"), "{remedy}");
+    // With a stance the base's place is not the user's to change; the foot turns about the one that stands.
+    let (velocity, remedy) = refused(json!({"stance": "body", "position": {}, "velocity": {"base": {"pitch": 0.5}}}));
+    assert_close(&velocity, &[-0.125, -0.5]);
+    assert!(remedy.contains("stand on other") && !remedy.contains("raise"), "{remedy}");
+}

@@ -1,0 +1,110 @@
+//! Soles of meshes, whose facets are a micrometer apart: which corners stand.
+
+use super::*;
+use heelstrike::description::Description;
+use heelstrike::robot::Reduction;
+
+/// A biped whose feet, hinged at the ends of straight legs 0.9 m long, have soles through these points \[m\] of an OBJ.
+fn biped(left: &[[f64; 2]], right: &[[f64; 2]]) -> Robot {
+    let vertices = |sole: &[[f64; 2]]| -> String {
+        // The top of the foot, and its sole.
+        let outline = [[-0.08, 0.05], [0.14, 0.05]].into_iter().chain(sole.iter().copied());
+        let vertices: String = outline.map(|[x, z]| format!("v {x} 0.05 {z}\nv {x} -0.05 {z}\n")).collect();
+        let face: String = (1..=2 * sole.len() + 4).map(|vertex| format!(" {vertex}")).collect();
+        format!("{vertices}f{face}\n")
+    };
+    let mut elements = vec![urdf::link("torso", 20.0, [0.0, 0.2], 1.0, "")];
+    for side in ["left", "right"] {
+        let mesh = urdf::collision([0.0; 2], &format!("mesh filename=\"{side}.obj\""));
+        elements.push(urdf::link(format!("{side}_leg"), 4.0, [0.0, -0.4], 0.1, ""));
+        elements.push(urdf::link(format!("{side}_foot"), 1.0, [0.03, -0.02], 0.01, &mesh));
+        let (leg, foot) = (format!("{side}_leg"), format!("{side}_foot"));
+        elements.push(urdf::joint(format!("{side}_hip"), urdf::HINGE, ["torso", &leg], [0.0; 2], ""));
+        elements.push(urdf::joint(format!("{side}_ankle"), urdf::HINGE, [&leg, &foot], [0.0, -0.9], ""));
+    }
+    let mut description = Description::from_urdf(&urdf::robot(&elements)).expect("a description");
+    let read = |file: &str| Ok(vertices(if file == "left.obj" { left } else { right }).into_bytes());
+    description.read_meshes(read);
+    Robot::reduce(&description, &Reduction::default()).expect("a robot")
+}
+
+/// Facets 1 to 2 micrometers apart, as those of XBot-L, atom01 and MagicBot are (the last one's sole is tilted, too).
+const UNEVEN: [[[f64; 2]; 4]; 3] = [
+    [[-0.071, -0.05 + 1.54e-6], [-0.047, -0.05 + 9e-7], [0.067, -0.05 + 5e-8], [0.131, -0.05]],
+    [[-0.071, -0.05 + 2.28e-6], [-0.068, -0.05 + 1.28e-6], [0.030, -0.05], [0.131, -0.05 + 2.28e-6]],
+    [[-0.071, -0.05 + 4.0e-5], [0.093, -0.05 + 9.9e-6], [0.130, -0.05], [0.131, -0.05 + 1.9e-7]],
+];
+const EVEN: [[f64; 2]; 4] = [[-0.071, -0.05], [-0.047, -0.05], [0.067, -0.05], [0.131, -0.05]];
+
+fn falling() -> Value {
+    json!({"position": {"base": {"z": 0.95}}, "velocity": {"base": {"z": -1.0}}, "friction": 0.8})
+}
+
+#[test]
+fn a_symmetric_fall_on_uneven_soles_is_symmetric() {
+    for (uneven, profile) in UNEVEN.iter().flat_map(|sole| [(sole, false), (sole, true)]) {
+        let mut state = falling();
+        if profile {
+            state["ground"] = json!({"profile": [[-1.0, 0.0], [1.0, 0.0]]});
+        }
+        let found = impact(&biped(uneven, &EVEN), &state);
+        let names: Vec<&str> = found.contacts.iter().map(|contact| contact.name.as_str()).collect();
+        assert_eq!(names, ["left_foot/0", "left_foot/1", "right_foot/0", "right_foot/1"]);
+        for (contact, x) in found.contacts.iter().zip([-0.071, 0.131, -0.071, 0.131]) {
+            assert_eq!(contact.point.x, x, "{}", contact.name);
+        }
+        assert!(found.analysis.as_ref().is_some_and(|analysis| analysis.proven));
+        for outcome in outcomes(&found) {
+            assert_eq!(outcome.modes[..2], outcome.modes[2..]);
+            let [left_hip, left_ankle, right_hip, right_ankle] = outcome.velocity().skip(3).collect::<Vec<_>>()[..]
+            else {
+                panic!("four joints")
+            };
+            // As far apart as the soles, 4e-5 m, are for legs of 1 m that fall at 1 m/s.
+            assert!(near(&[left_hip, left_ankle], &[right_hip, right_ankle], 4e-4), "{outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn a_stance_rests_on_the_corners_that_touch() {
+    for uneven in &UNEVEN {
+        let state = json!({"position": {"joints": {"right_hip": -0.5}}, "velocity": {"joints": {"right_hip": 0.3}},
+            "stance": "left_foot", "friction": 0.8});
+        let found = impact(&biped(uneven, &EVEN), &state);
+        assert_eq!(touches(&found).len(), 2);
+        assert_eq!((found.contacts[0].point.x, found.stance), (0.0, Some(0)));
+        assert!((found.contacts[1].point.x - 0.202).abs() < 1e-12);
+        // The lowest corner is on the ground, and none is beneath it.
+        let gaps = [uneven[0], uneven[3]].map(|[_, z]| z + 0.05);
+        assert_close(&[found.contacts[0].gap, found.contacts[1].gap], &gaps);
+        assert_eq!(found.velocity_before, [[0.0; 2]; 2]);
+        assert_eq!(found.analysis.expect("an analysis").verdict, Verdict::NoImpact);
+    }
+}
+
+#[test]
+fn a_tolerance_that_is_given_is_meant() {
+    let within = |tolerance: f64| {
+        let options = Options { contact_tolerance: Some(tolerance), ..Options::default() };
+        let found = try_impact(&biped(&UNEVEN[0], &EVEN), options, falling()).expect("an answer");
+        found.contacts[..found.contacts.len() - 2].iter().map(|contact| contact.point.x).collect::<Vec<_>>()
+    };
+    assert_eq!(within(0.0), [0.131]);
+    assert_eq!(within(3e-7), [0.067, 0.131]);
+    assert_eq!(within(1.2e-6), [-0.047, 0.131]);
+    assert_eq!(within(2e-6), [-0.071, 0.131]);
+    // Not the upper end of a side of more than 45 degrees.
+    assert_eq!(within(0.2), [-0.071, 0.131]);
+}
+
+#[test]
+fn a_foot_that_just_misses_is_noted() {
+    let lift = |by: f64| EVEN.map(|[x, z]| [x, z + by]);
+    for (by, noted) in [(2e-5, true), (8e-4, true), (2e-2, false)] {
+        let found = impact(&biped(&lift(by), &EVEN), falling());
+        assert_eq!(found.contacts.len(), 2);
+        let note = found.notes.iter().find(|note| note.starts_with("left_foot nearly touches, "));
+        assert_eq!(note.is_some(), noted, "{by}: {:?}", found.notes);
+    }
+}

@@ -1,0 +1,62 @@
+//! Joints outside the limits of the robot's file: noted, or refused where that is asked for.
+
+use crate::support::impact::{robot, try_impact};
+use crate::support::urdf::{self, Axis, HINGE, joint, link};
+use heelstrike::Robot;
+use heelstrike::pipeline::Options;
+use serde_json::json;
+
+/// A body with the joint `hip`, whose limit is `limit`, and `calf`, which mimics it threefold.
+fn limited(axis: Axis, limit: &str) -> Robot {
+    let mimic = r#"<mimic joint="hip" multiplier="3"/>"#;
+    let parts = [
+        link("body", 2.0, [0.0; 2], 0.5, ""),
+        link("leg", 1.0, [0.0, -0.1], 0.5, ""),
+        link("tail", 1.0, [0.0, -0.1], 0.5, ""),
+        joint("hip", axis, ["body", "leg"], [0.0; 2], "").replace(r#"lower="-9" upper="9""#, limit),
+        joint("calf", HINGE, ["body", "tail"], [0.0; 2], mimic),
+    ];
+    robot(&urdf::robot(&parts))
+}
+
+/// The notes on the limits with the hip at `position`.
+fn notes(robot: &Robot, position: f64) -> Vec<String> {
+    let state = json!({"position": {"joints": {"hip": position}}});
+    let impact = try_impact(robot, Options::default(), state).expect("an answer");
+    impact.notes.into_iter().filter(|note| note.contains("outside")).collect()
+}
+
+#[test]
+fn joint_outside_its_limits_is_noted() {
+    let robot = limited(HINGE, r#"lower="-2" upper="2.5""#);
+    assert_eq!(notes(&robot, -2.25), ["hip = -2.25 rad is outside [-2, 2.5]"]);
+    let degrees = "hip = -25 rad is outside [-2, 2.5]; degrees?";
+    assert_eq!(notes(&robot, -25.0), [degrees, "calf = -75 rad is outside [-9, 9]; degrees?"]);
+    let slide = limited(Axis::Prismatic([0.0, 1.0]), r#"lower="-2" upper="2.5""#);
+    assert_eq!(notes(&slide, 2.75), ["hip = 2.75 m is outside [-2, 2.5]"]);
+}
+
+#[test]
+fn rounding_and_missing_limits_are_not_noted() {
+    let robot = limited(HINGE, r#"lower="-2" upper="2.5""#);
+    // As f32 has it.
+    assert!(notes(&robot, f64::from(2.5_f32.next_up())).is_empty());
+    assert_eq!(notes(&robot, 2.5 + 1e-5).len(), 1);
+    for limit in ["", r#"lower="0" upper="0""#, r#"lower="2" upper="-2""#, r#"lower="x" upper="1""#] {
+        assert!(notes(&limited(HINGE, limit), 2.75).is_empty(), "{limit}");
+    }
+    // One end that is not given is 0.
+    assert_eq!(notes(&limited(HINGE, r#"upper="2""#), -0.5), ["hip = -0.5 rad is outside [0, 2]"]);
+}
+
+#[test]
+fn strict_limits_refuse_with_place_and_remedy() {
+    let robot = limited(HINGE, r#"lower="-2" upper="2.5""#);
+    let options = Options { strict_limits: true, ..Options::default() };
+    let state = |hip: f64| json!({"position": {"joints": {"hip": hip}}});
+    let error = try_impact(&robot, options.clone(), state(-2.25)).expect_err("outside");
+    assert_eq!(error.place(), Some("position.joints.hip"));
+    assert_eq!(error.reason().to_string(), "hip = -2.25 rad is outside [-2, 2.5]");
+    assert!(error.remedy().is_some_and(|remedy| remedy.contains("`strict_limits`")));
+    assert!(try_impact(&robot, options, state(2.25)).is_ok());
+}

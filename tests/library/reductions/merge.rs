@@ -1,0 +1,133 @@
+//! Points of one body on one line of ground: the outer two act for all of them.
+
+use heelstrike::Robot;
+use heelstrike::pipeline::{Impact, LeftOut, Options};
+use heelstrike::reductions::Reductions;
+use heelstrike::state::NamedContact;
+use serde_json::{Value, json};
+
+use super::comparison::floating;
+use crate::support::impact::{outcomes, try_impact};
+use crate::support::mechanism::{Mechanism, Point};
+use crate::support::parallel::total;
+use crate::support::random::Random;
+use crate::support::scaled::{largest, near};
+
+/// A robot, points of it that lie on the ground, and a state.
+struct Case {
+    robot: Robot,
+    feet: Vec<NamedContact>,
+    state: Value,
+    /// Its largest rate before the impact.
+    rate: f64,
+}
+
+/// Up to which height points of the cases touch \[m\].
+const TOLERANCE: f64 = 0.05;
+
+/// Three links, the root of which stands with three to five points, at times another with one. They are on level ground
+/// exactly; without bounce and with finite friction inner ones may be off it as far as their cones let them.
+fn case(seed: u64) -> Case {
+    let mut random = Random::new(seed);
+    let mut point = |size: f64| -> Point { [random.between(-size, size), random.between(-size, size)] };
+    let [root, hip, thigh, knee, shin] = [0.3, 0.5, 0.2, 0.5, 0.2].map(&mut point);
+    let mechanism = Mechanism::of(random.between(1.0, 5.0), root, random.between(0.05, 0.5))
+        .with("thigh", "root", hip, random.between(0.5, 2.0), thigh)
+        .with("shin", if random.once_in(2) { "root" } else { "thigh" }, knee, random.between(0.2, 1.0), shin);
+    let mut numbers = || -> Vec<f64> { (0..5).map(|_| random.between(-1.0, 1.0)).collect() };
+    let (mut q, mut v) = (numbers(), numbers());
+    if random.once_in(4) {
+        // A body that falls straight.
+        v = vec![0.0, -1.0, 0.0, 0.0, 0.0];
+    }
+    q[..3].fill(0.0);
+    let height = random.between(0.2, 1.0);
+    let bounce = if random.once_in(2) { 0.0 } else { random.between(0.0, 1.0) };
+    let friction = [Some(0.0), Some(random.between(0.05, 2.0)), None][random.whole(0, 2) as usize];
+    let mut places: Vec<f64> = (0..random.whole(3, 5)).map(|_| random.between(-0.3, 0.3)).collect();
+    places.sort_by(f64::total_cmp);
+    let [rear, front] = [places[0], places[places.len() - 1]];
+    let mut feet: Vec<NamedContact> = (places.iter())
+        .map(|&x| {
+            let room = (x - rear).min(front - x) / friction.unwrap_or(f64::INFINITY).max(1e-3);
+            let off = if bounce == 0.0 { room.min(TOLERANCE) * random.between(-1.0, 1.0) } else { 0.0 };
+            NamedContact { link: 0, offset: [x, 0.0, off - height], radius: 0.0 }
+        })
+        .collect();
+    if random.once_in(3) {
+        // What of the shin lies in the world at (x, -height).
+        let (link, x) = (2, random.between(-0.3, 0.3));
+        let [origin, along, up] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|own| mechanism.point(&q, link, own));
+        let at = |end: Point| (end[0] - origin[0]) * (x - origin[0]) - (end[1] - origin[1]) * (height + origin[1]);
+        let place = mechanism.links[link].place;
+        feet.push(NamedContact { link, offset: [at(along) - place[0], 0.0, at(up) - place[1]], radius: 0.0 });
+    }
+    let joints = |of: &[f64]| json!({"thigh": of[3], "shin": of[4]});
+    let state = json!({
+        "position": {"base": {"z": height}, "joints": joints(&q)},
+        "velocity": {"base": {"x": v[0], "z": v[1], "pitch": v[2]}, "joints": joints(&v)},
+        "friction": friction.map_or(json!("infinite"), |mu| json!(mu)), "restitution": bounce,
+    });
+    Case { robot: floating(&mechanism.urdf(0), Reductions::ALL), feet, state, rate: largest(&v) }
+}
+
+/// What differs between the answers with and without merging: the verdict, the modes of the contacts that remain, or
+/// velocities after the impact and the sum of all impulses by more than 1e-12 of scale. And how many points are merged.
+fn compare(Case { robot, feet, state, rate }: Case) -> Result<usize, String> {
+    let answer = |merge: bool| -> Impact {
+        let reductions = Reductions { merge, ..Reductions::ALL };
+        let options =
+            Options { feet: feet.clone(), contact_tolerance: Some(TOLERANCE), reductions, ..Options::default() };
+        try_impact(&robot, options, &state).unwrap_or_else(|error| panic!("{error}\n{state}"))
+    };
+    let [merged, whole] = [true, false].map(answer);
+    let inner = merged.left_out.iter().map(|left| if let LeftOut::Merged(own) = left { own.inner } else { 0 }).sum();
+    assert_eq!((merged.contacts.len() + inner, whole.contacts.len()), (feet.len(), feet.len()));
+    // The places of those that remain.
+    let remain: Vec<usize> = (merged.contacts.iter())
+        .map(|own| whole.contacts.iter().position(|other| own.center == other.center && own.link == other.link))
+        .collect::<Option<_>>()
+        .ok_or("another point")?;
+    let verdict = |impact: &Impact| impact.analysis.as_ref().map(|own| (own.verdict, own.proven));
+    if verdict(&merged) != verdict(&whole) {
+        return Err(format!("{:?} and {:?}", verdict(&merged), verdict(&whole)));
+    }
+    let mass: f64 = robot.mass();
+    for one in outcomes(&merged) {
+        let same = outcomes(&whole).iter().any(|other| {
+            let modes = remain.iter().map(|&at| other.modes[at]);
+            let sum = |list: &[[f64; 2]], k: usize| list.iter().map(|own| own[k]).sum::<f64>();
+            let [own, others] = [one, other].map(|own| own.velocity().collect::<Vec<_>>());
+            let sums = [one, other].map(|own| [0, 1].map(|k| sum(&own.impulse, k)));
+            let size = rate.max(largest(&own));
+            modes.eq(one.modes.iter().copied())
+                && near(&own, &others, 1e-12 * size)
+                && near(&sums[0], &sums[1], 1e-12 * mass * size)
+        });
+        if !same {
+            return Err(format!("{one:?}\nis none of {:?}", outcomes(&whole)));
+        }
+    }
+    let counts = [&merged, &whole].map(|impact| outcomes(impact).len());
+    if counts[0] == counts[1] { Ok(inner) } else { Err(format!("{counts:?} outcomes")) }
+}
+
+/// `HEELSTRIKE_STATES=20000 cargo test --release --test library -- --nocapture outer_points` for more.
+#[test]
+fn outer_points_act_for_all() {
+    let states = std::env::var("HEELSTRIKE_STATES").ok().and_then(|states| states.parse().ok());
+    let [merged, wrong] = total(states.unwrap_or(60), |seed| {
+        let case = case(seed);
+        let state = case.state.to_string();
+        match compare(case) {
+            Ok(inner) => [inner as u64, 0],
+            Err(what) => {
+                println!("seed {seed}: {what}\n{state}");
+                [0, 1]
+            }
+        }
+    });
+    println!("{merged} points were merged");
+    assert!(merged > 0);
+    assert_eq!(wrong, 0);
+}

@@ -1,0 +1,209 @@
+//! Touchdowns of simulations, whose heights are true: motions whose moment of contact is known in closed form.
+
+use super::{samples, touchdowns};
+use crate::support::command::{file, heelstrike, heelstrike_reads};
+use crate::support::impact::{impact, robot};
+use crate::support::urdf::{self, HINGE, POINT, collision, joint, link};
+use heelstrike::Robot;
+use heelstrike::gait::{At, Difference, Heights, Sample, Sampled, Touching, rates};
+use heelstrike::read::table::Rates;
+use serde_json::Value;
+use std::fmt::Write;
+
+/// Gravity \[m/s^2\].
+const G: f64 = 9.81;
+
+/// A motion with one touchdown.
+struct Motion {
+    robot: Robot,
+    /// Columns of q after the time, and of v.
+    columns: [&'static str; 2],
+    strikes: f64,
+    /// q and v before the touchdown.
+    before: fn(f64) -> [Vec<f64>; 2],
+    /// After it, so much later than the touchdown.
+    after: fn(f64) -> [Vec<f64>; 2],
+}
+
+fn point_at(x: f64, z: f64) -> String {
+    collision([x, z], POINT)
+}
+
+/// Let go 1 m above the ground; it bounces to half its speed.
+fn ball() -> Motion {
+    let rebound = |time: f64| {
+        let speed = 0.5 * (2.0 * G).sqrt();
+        [vec![0.1 + (speed - 0.5 * G * time) * time], vec![speed - G * time]]
+    };
+    Motion {
+        robot: robot(&urdf::body(1.0, &collision([0.0; 2], "sphere radius=\"0.1\""))),
+        columns: ["q_base_z", "v_base_z"],
+        strikes: (2.0 / G).sqrt(),
+        before: |time| [vec![1.1 - 0.5 * G * time * time], vec![-G * time]],
+        after: rebound,
+    }
+}
+
+/// A rod of 1 m that spins at 3 rad/s while it falls; it is where its front end strikes after 0.4 s, and stays.
+fn rod() -> Motion {
+    let fall = |time: f64| {
+        let height = 0.5 * G * 0.16 + 0.5 * 1.4_f64.sin() - 0.5 * G * time * time;
+        [vec![height, 0.2 + 3.0 * time], vec![-G * time, 3.0]]
+    };
+    Motion {
+        robot: robot(&urdf::body(1.0, &(point_at(0.5, 0.0) + &point_at(-0.5, 0.0)))),
+        columns: ["q_base_z,q_base_pitch", "v_base_z,v_base_pitch"],
+        strikes: 0.4,
+        before: fall,
+        after: |_| [vec![0.5 * 1.4_f64.sin(), 1.4], vec![0.0; 2]],
+    }
+}
+
+/// A compass walker with legs of 1 m at the absolute angles a = 0.1 + 0.8 t and -(0.5 - 0.4 t - 0.3 t^2), the hip at (sin
+/// a, cos a): both feet are on the ground when the angles are opposite. It stays there.
+fn walker() -> Motion {
+    let swing = |time: f64| {
+        let (a, rate) = (0.1 + 0.8 * time, 0.8);
+        let (swing, swings) = (-(0.5 - 0.4 * time - 0.3 * time * time), 0.4 + 0.6 * time);
+        [vec![a.sin(), a.cos(), a, swing], vec![rate * a.cos(), -rate * a.sin(), rate, swings]]
+    };
+    let stays = |_| {
+        let a = 0.1 + 0.8 * ((1.92_f64.sqrt() - 1.2) / 0.6);
+        [vec![a.sin(), a.cos(), a, -a], vec![0.0; 4]]
+    };
+    Motion {
+        robot: robot(&walker_urdf()),
+        columns: ["q_base_x,q_base_z,q_jstance,q_jswing", "v_base_x,v_base_z,v_jstance,v_jswing"],
+        strikes: (1.92_f64.sqrt() - 1.2) / 0.6,
+        before: swing,
+        after: stays,
+    }
+}
+
+fn walker_urdf() -> String {
+    let leg = |name: &str| {
+        let hinge = joint(format!("j{name}"), HINGE, ["hip", name], [0.0; 2], "");
+        link(name, 1.0, [0.0, -0.5], 0.1, &point_at(0.0, -1.0)) + &hinge
+    };
+    urdf::robot(&[link("hip", 5.0, [0.0; 2], 1.0, ""), leg("stance"), leg("swing")])
+}
+
+impl Motion {
+    /// The table with a row every `step` \[s\], the first a `phase` of it late.
+    fn table(&self, step: f64, phase: f64, with_rates: bool, until: f64) -> String {
+        let [positions, velocities] = self.columns;
+        let mut table =
+            format!("time,{positions}{}\n", if with_rates { format!(",{velocities}") } else { String::new() });
+        let rows = (0..).map(|row| (f64::from(row) + phase) * step).take_while(|time| *time < until);
+        for time in rows {
+            let [q, v] = if time < self.strikes { (self.before)(time) } else { (self.after)(time - self.strikes) };
+            write!(table, "{time:?}").expect("a string takes all");
+            let numbers = q.iter().chain(v.iter().filter(|_| with_rates));
+            numbers.for_each(|number| write!(table, ",{number:?}").expect("a string takes all"));
+            table.push('\n');
+        }
+        table
+    }
+
+    fn samples(&self, table: &str, with_rates: bool) -> Vec<Sampled<usize>> {
+        match with_rates {
+            true => samples(table, &self.robot, Rates::Columns),
+            false => rates(samples(table, &self.robot, Rates::Time).into_iter(), Difference::Central).collect(),
+        }
+    }
+
+    fn found(&self, table: &str, with_rates: bool, at: At) -> Vec<Sample<usize>> {
+        let samples = self.samples(table, with_rates);
+        touchdowns(Heights::True, &self.robot, &[], samples, at, Touching::default())
+    }
+
+    /// The entries of q or v that have columns.
+    fn entries(&self, part: usize, all: &[f64]) -> Vec<f64> {
+        let prefix = ["q_", "v_"][part];
+        let name = |column: &str| column.trim_start_matches(prefix).trim_start_matches("base_").to_owned();
+        let place =
+            |column: &str| self.robot.coordinates().position(|known| known == name(column)).expect("a coordinate");
+        self.columns[part].split(',').map(|column| all[place(column)]).collect()
+    }
+}
+
+#[test]
+fn the_moment_is_that_of_the_motion() {
+    for (name, motion) in [("ball", ball()), ("rod", rod()), ("walker", walker())] {
+        let [q, v] = (motion.before)(motion.strikes);
+        for (step, with_rates) in [1e-3, 2e-3, 5e-3, 1e-2].into_iter().flat_map(|step| [(step, true), (step, false)]) {
+            for phase in [0.0, 0.123, 0.456, 0.789] {
+                let table = motion.table(step, phase, with_rates, motion.strikes + 20.0 * step);
+                let found = motion.found(&table, with_rates, At::Crossing);
+                let case = format!("{name}, {step} s, phase {phase}, rates {with_rates}");
+                let [touchdown] = &found[..] else { panic!("{case}: {} touchdowns", found.len()) };
+                let late = touchdown.time - motion.strikes;
+                assert!(late.abs() < 1e-6 * step, "{case}: {late:e} s");
+                let near = |part: usize, found: &[f64], expected: &[f64], within: f64| {
+                    for (found, expected) in motion.entries(part, found).iter().zip(expected) {
+                        assert!((found - expected).abs() < within, "{case}: {found} {expected}");
+                    }
+                };
+                near(0, &touchdown.state.position, &q, 1e-6 * step * 10.0);
+                // The rate of a polynomial of fifth degree, one step beyond its points.
+                near(1, &touchdown.state.velocity, &v, 1e-6);
+                let state = touchdown.state.to_json(&motion.robot);
+                for contact in impact(&motion.robot, state).contacts {
+                    assert!(contact.gap.abs() < 1e-9 * step, "{case}: {:e} m", contact.gap);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_simulation_that_ends_aloft_has_no_touchdown() {
+    let motion = ball();
+    // The last row is 1 mm above the ground.
+    let end = motion.strikes - 1e-3 / (2.0 * G).sqrt();
+    let step = end / 100.0;
+    let table = motion.table(step, 0.0, true, end + 0.5 * step);
+    assert!(motion.found(&table, true, At::Crossing).is_empty());
+    // One row more, and it has.
+    assert_eq!(motion.found(&motion.table(step, 0.0, true, end + 1.5 * step), true, At::Crossing).len(), 1);
+}
+
+#[test]
+fn rates_at_the_last_row_use_none_beyond_the_impact() {
+    let motion = ball();
+    for phase in [0.0, 0.3, 0.6, 0.9] {
+        let table = motion.table(0.02, phase, false, 0.6);
+        let [Sample { time, state, .. }] = &motion.found(&table, false, At::Row)[..] else { panic!("one touchdown") };
+        assert!((state.velocity[1] + G * time).abs() < 1e-9, "{} at {time}", state.velocity[1]);
+    }
+}
+
+#[test]
+fn a_touchdown_can_be_asked_again() {
+    let motion = walker();
+    let robot = file("compass.urdf", walker_urdf());
+    let table = file("compass.csv", motion.table(5e-3, 0.3, true, 0.5));
+    let ask = ["batch", &robot, &table, "--friction", "0.7", "--touchdowns", "--simulated", "--touching", "strike"];
+    let result = heelstrike(&ask).well().line();
+    let again = heelstrike_on(&["impact", &robot, "-", "--format", "json"], &result["touchdown"]["state"]);
+    assert_eq!(again["outcomes"], result["outcomes"]);
+    assert_eq!(again["contacts"], result["contacts"]);
+
+    let csv = heelstrike(&[&ask[..], &["--output-format", "csv"]].concat()).well().stdout;
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let (names, cells) = (lines.next().expect("a header"), lines.next().expect("a row"));
+    let before = |name: &&str| name.starts_with("q_") || name.starts_with("v_") && !name.starts_with("v_after_");
+    let kept = |cells: &[&str]| -> String {
+        let kept = names.iter().zip(cells).filter(|(name, _)| before(name)).map(|(_, cell)| *cell);
+        kept.collect::<Vec<_>>().join(",") + "\n"
+    };
+    let again = ["batch", &robot, "-", "--input-format", "csv", "--friction", "0.7", "--contact-tolerance", "1e-9"];
+    let again = heelstrike_reads(&again, kept(&names) + &kept(&cells)).well().line();
+    // The foot that stood is detected, too, and lifts off without an impulse.
+    let after = |result: &Value| result["outcomes"][0]["joint_velocity_after"].clone();
+    assert_eq!(after(&again), after(&result));
+}
+
+fn heelstrike_on(arguments: &[&str], state: &Value) -> Value {
+    heelstrike_reads(arguments, state.to_string()).well().line()
+}

@@ -1,0 +1,82 @@
+//! Every printed number of a proven outcome against balls of 832 bits, relative to its scale. `HEELSTRIKE_DIGITS`
+//! sets the number of states.
+
+use super::environment;
+use super::oracle;
+use super::states::{Model, chain, models};
+use crate::support::digits::Truth;
+use crate::support::parallel::total;
+use crate::support::random::Random;
+use heelstrike::impact::Friction;
+use heelstrike::pipeline::{Impact, Options, Pipeline};
+use heelstrike::state::State;
+
+/// Compares the outcomes of a random state: how many were compared, and how many are not proven.
+fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
+    let mut state = model.random(random);
+    state.scene.impulses.clear();
+    let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
+    let Ok(analysis) = impact.and_then(Impact::into_analysis) else { return [0; 2] };
+    let mut counts = [0; 2];
+    for outcome in analysis.outcomes.iter().filter(|outcome| outcome.impulse_unique) {
+        let Some(truth) = oracle::truth(&model.robot, &state, &outcome.modes) else { continue };
+        if outcome.proven {
+            counts[0] += 1;
+            let fail = |difference: String| panic!("{}: {difference}\n{}", model.name, state.to_json(&model.robot));
+            truth.check(outcome, &frictions(&state)).unwrap_or_else(fail);
+        } else {
+            counts[1] += 1;
+        }
+    }
+    counts
+}
+
+fn frictions(state: &State) -> Vec<Friction> {
+    let contacts = state.scene.contacts.as_deref().unwrap_or_default();
+    contacts.iter().map(|contact| state.scene.friction.of(contact.link).expect("a friction")).collect()
+}
+
+#[test]
+fn digits_of_states_are_right() {
+    let models = models();
+    let [compared, marked] = total(environment("HEELSTRIKE_DIGITS", 400), |seed| {
+        compare(&models[seed as usize % models.len()], &mut Random::new(seed))
+    });
+    println!("{compared} outcomes of robots, {marked} marked");
+    assert!(compared > 300 && marked * 100 < compared, "{compared} compared, {marked} marked");
+}
+
+#[test]
+fn digits_of_chains_of_unequal_links_are_right() {
+    let [compared, marked] = total(environment("HEELSTRIKE_DIGITS", 200), |seed| {
+        let mut random = Random::new(seed);
+        compare(&chain(&mut random), &mut random)
+    });
+    println!("{compared} outcomes of chains, {marked} marked");
+    assert!(compared > 150 && marked * 100 < compared, "{compared} compared, {marked} marked");
+}
+
+/// A check that never fails checks nothing.
+#[test]
+fn a_digit_that_is_off_is_found() {
+    let models = models();
+    let mut found = 0;
+    for seed in 0..40 {
+        let model = &models[seed as usize % models.len()];
+        let mut state = model.random(&mut Random::new(seed));
+        state.scene.impulses.clear();
+        let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
+        let Ok(analysis) = impact.and_then(Impact::into_analysis) else { continue };
+        for outcome in analysis.outcomes.iter().filter(|outcome| outcome.impulse_unique && outcome.energy_loss != 0.0) {
+            let Some(truth) = oracle::truth(&model.robot, &state, &outcome.modes) else { continue };
+            let mut off = truth.impulse.clone();
+            off.iter_mut().flatten().for_each(|entry| *entry *= 1.0 + 3e-10);
+            let impulses = Truth { impulse: off, ..truth };
+            assert!(impulses.check(outcome, &frictions(&state)).is_err());
+            let energy = Truth { impulse: Vec::new(), energy_loss: impulses.energy_loss * (1.0 + 3e-10), ..impulses };
+            assert!(energy.check(outcome, &[]).is_err());
+            found += 1;
+        }
+    }
+    assert!(found > 20, "{found}");
+}

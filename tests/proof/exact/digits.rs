@@ -1,0 +1,236 @@
+//! Every printed number of a proven outcome against the exact one, relative to its own scale.
+//!
+//! 200,000 problems:
+//!
+//! ```text
+//!     HEELSTRIKE_PROBLEMS=200000 cargo test --release --test proof -- --nocapture digits
+//! ```
+
+use super::enumeration::{Combination, Problem, enumerate};
+use super::{analyze_problem, case::rounded, delassus, numbers, solve_json};
+use crate::balls::environment;
+use crate::support::digits::{Truth, check, needed};
+use crate::support::parallel::total;
+use crate::support::random::Random;
+use crate::support::rational::{dot, ratio, to_f64};
+use dashu_ratio::RBig;
+use heelstrike::impact::{self, ContactProblem, Friction, Mode, Outcome};
+
+fn exact(value: f64) -> RBig {
+    RBig::try_from(value).expect("a finite number")
+}
+
+/// 2 to a power.
+fn power(exponent: i64) -> RBig {
+    exact((exponent as f64).exp2())
+}
+
+fn coefficient(random: &mut Random) -> f64 {
+    10_f64.powf(random.between(-12.0, 12.0))
+}
+
+/// Up to four contacts, with mass ratios up to 1e12, speeds of many sizes, and no, any or infinite friction.
+fn problem(random: &mut Random) -> Option<Problem> {
+    let contacts = random.whole(1, 4) as usize;
+    let mut delassus = delassus(random, contacts, 5)?;
+    let spread = random.pick(&[0, 4, 10]);
+    let units: Vec<RBig> = (0..contacts).map(|_| power(random.whole(-spread, spread))).collect();
+    for (i, row) in delassus.iter_mut().enumerate() {
+        for (j, entry) in row.iter_mut().enumerate() {
+            *entry = &*entry * &units[i / 2] * &units[j / 2];
+        }
+    }
+    let velocity_before = (0..2 * contacts).map(|i| {
+        let speed = ratio(random.whole(-9, 9) - (i as i64 % 2) * 4, 4);
+        speed * &units[i / 2] * power(random.pick(&[0, 0, 0, -20, -45]))
+    });
+    Some(Problem {
+        delassus,
+        velocity_before: velocity_before.collect(),
+        friction: (0..contacts)
+            .map(|_| match random.whole(0, 5) {
+                0 => Some(RBig::ZERO),
+                1 => None,
+                2 => Some(ratio(1, 2)),
+                _ => Some(exact(coefficient(random))),
+            })
+            .collect(),
+        restitution: (0..contacts).map(|_| ratio(random.pick(&[0, 0, 0, 1, 4]), 4)).collect(),
+    })
+}
+
+fn pairs(rows: &[RBig]) -> Vec<[f64; 2]> {
+    rows.chunks_exact(2).map(|pair| [to_f64(&pair[0]), to_f64(&pair[1])]).collect()
+}
+
+/// sqrt(G_ii) of each row.
+fn roots(delassus: &[Vec<RBig>]) -> Vec<[f64; 2]> {
+    let diagonal: Vec<RBig> = delassus.iter().enumerate().map(|(i, row)| row[i].clone()).collect();
+    pairs(&diagonal).into_iter().map(|pair| pair.map(f64::sqrt)).collect()
+}
+
+fn truth(problem: &Problem, combination: &Combination) -> Truth {
+    let (impulse, after) = (combination.impulse.exact(), combination.velocity_after.exact());
+    let work = dot(&impulse, &problem.velocity_before) + dot(&impulse, &after);
+    Truth {
+        of_robot: false,
+        mobility: roots(&problem.delassus),
+        before: pairs(&problem.velocity_before),
+        after: pairs(&after),
+        energy_loss: to_f64(&(work / ratio(-2, 1))),
+        friction_needed: needed(&combination.modes, &pairs(&impulse)),
+        impulse: pairs(&impulse),
+    }
+}
+
+#[test]
+fn digits_of_regular_problems_are_right() {
+    let [compared, sliding, marked] = total(environment("HEELSTRIKE_PROBLEMS", 3_000), |seed| {
+        let Some(problem) = problem(&mut Random::new(seed)) else { return [0; 3] };
+        let all = enumerate(&problem);
+        let analysis = analyze_problem(&problem, seed);
+        let frictions: Vec<Friction> = problem.friction.iter().map(rounded).collect();
+        let mut counts = [0; 3];
+        for combination in all.outcomes() {
+            let found = analysis.outcomes.iter().find(|found| found.modes == combination.modes);
+            let Some(found) = found else {
+                panic!("seed {seed}: {:?} is missing\n{}", combination.modes, solve_json(&problem))
+            };
+            if !found.proven {
+                counts[2] += 1;
+                continue;
+            }
+            truth(&problem, combination).check(found, &frictions).unwrap_or_else(|difference| {
+                panic!("seed {seed}, {:?}: {difference}\n{}", combination.modes, solve_json(&problem))
+            });
+            counts[0] += 1;
+            counts[1] += u64::from(found.modes.iter().any(|mode| mode.slides()));
+        }
+        counts
+    });
+    println!("{compared} outcomes, {sliding} of them with sliding, {marked} marked");
+    assert!(compared > 2_000 && sliding > 500 && marked * 1000 < compared, "{compared} {sliding} {marked}");
+}
+
+/// A flat foot of one body that two contacts stop. Its normal impulses are unique, its tangential ones have a sum.
+struct FlatFoot {
+    mass: RBig,
+    moment: RBig,
+    /// Height of the centre of mass.
+    height: RBig,
+    places: [RBig; 2],
+    /// x, z, pitch.
+    velocity: [RBig; 3],
+    friction: [f64; 2],
+}
+
+impl FlatFoot {
+    fn random(random: &mut Random) -> Self {
+        let eighths = |random: &mut Random, low| ratio(random.whole(low, 16), 8);
+        let equal = random.once_in(2);
+        let first = coefficient(random);
+        let friction = [first, if equal { first } else { coefficient(random) }];
+        let [mass, moment] = [0, 1].map(|_| power(random.whole(-20, 20)));
+        let (height, places) = (eighths(random, 1), [-eighths(random, 1), eighths(random, 1)]);
+        // Impulses that the cones admit, and the velocity that they stop, as f64 holds it.
+        let pressed = [0, 1].map(|_| eighths(random, 1) * power(random.whole(-10, 10)));
+        let most = to_f64(&pressed[0]) * friction[0] + to_f64(&pressed[1]) * friction[1];
+        let along = exact(most * random.between(-1.0, 1.0));
+        let torque = &height * &along + &places[0] * &pressed[0] + &places[1] * &pressed[1];
+        let velocity =
+            [-along / &mass, -(&pressed[0] + &pressed[1]) / &mass, torque / &moment].map(|speed| exact(to_f64(&speed)));
+        Self { mass, moment, height, places, velocity, friction }
+    }
+
+    fn jacobian(&self) -> Vec<Vec<RBig>> {
+        let row =
+            |x: &RBig| [vec![RBig::ONE, RBig::ZERO, -self.height.clone()], vec![RBig::ZERO, RBig::ONE, -x.clone()]];
+        self.places.iter().flat_map(row).collect()
+    }
+
+    fn outcome(&self) -> Option<Outcome> {
+        let diagonal = [&self.mass, &self.mass, &self.moment].map(to_f64);
+        let mass: Vec<Vec<f64>> =
+            (0..3).map(|i| (0..3).map(|j| if i == j { diagonal[i] } else { 0.0 }).collect()).collect();
+        let jacobian: Vec<Vec<f64>> = self.jacobian().iter().map(|row| numbers(row)).collect();
+        let friction = self.friction.map(Friction::Finite).to_vec();
+        let problem = ContactProblem::from_dynamics(&mass, &jacobian, &numbers(&self.velocity), friction, vec![0.0; 2]);
+        let analysis = impact::analyze(&problem.expect("a contact problem"), impact::ListedRejections::Nothing)
+            .expect("two contacts");
+        analysis.outcomes.into_iter().find(|outcome| outcome.modes == [Mode::Stick; 2])
+    }
+}
+
+#[test]
+fn digits_of_a_flat_foot_are_right() {
+    let [compared, clipped] = total(environment("HEELSTRIKE_PROBLEMS", 2_000), |seed| {
+        let foot = FlatFoot::random(&mut Random::new(seed));
+        // M v + J^T L = 0.
+        let along = -&foot.mass * &foot.velocity[0];
+        let down = -&foot.mass * &foot.velocity[1];
+        let torque = &foot.moment * &foot.velocity[2] - &foot.height * &along;
+        let second = (torque - &foot.places[0] * &down) / (&foot.places[1] - &foot.places[0]);
+        let pressed = [&down - &second, second];
+        let mu = foot.friction.map(exact);
+        let cones = [&mu[0] * &pressed[0], &mu[1] * &pressed[1]];
+        // Where rounding has moved it beyond its cones, the foot does not stick.
+        let size = along.clone().max(-along.clone());
+        if pressed.iter().any(|n| *n <= RBig::ZERO) || size > &cones[0] + &cones[1] {
+            return [0; 2];
+        }
+        let range = |own: usize| {
+            let other = &cones[1 - own];
+            [(-&cones[own]).max(&along - other), cones[own].clone().min(&along + other)]
+        };
+        let ranges = [range(0), range(1)];
+        let half = &along / ratio(2, 1);
+        let within = |[low, high]: &[RBig; 2], x: &RBig| x.clone().max(low.clone()).min(high.clone());
+        let tangential = [0, 1].map(|own| within(&ranges[own], &half));
+        let needed = |own: usize| {
+            if foot.friction[0] == foot.friction[1] {
+                return to_f64(&(&size / &down));
+            }
+            let least = within(&ranges[own], &RBig::ZERO);
+            to_f64(&(least.clone().max(-least) / &pressed[own]))
+        };
+        let inertias = [&foot.mass, &foot.mass, &foot.moment];
+        let energy = foot.velocity.iter().zip(inertias).fold(RBig::ZERO, |sum, (v, m)| sum + m * v * v) / ratio(2, 1);
+        let before: Vec<RBig> = foot.jacobian().iter().map(|row| dot(row, &foot.velocity)).collect();
+        let square = |row: &Vec<RBig>| row.iter().zip(inertias).fold(RBig::ZERO, |sum, (j, m)| sum + j * j / m);
+        let squares: Vec<RBig> = foot.jacobian().iter().map(square).collect();
+        let truth = Truth {
+            of_robot: false,
+            mobility: pairs(&squares).into_iter().map(|pair| pair.map(f64::sqrt)).collect(),
+            before: pairs(&before),
+            after: vec![[0.0; 2]; 2],
+            impulse: [0, 1].map(|own| [to_f64(&tangential[own]), to_f64(&pressed[own])]).to_vec(),
+            energy_loss: to_f64(&energy),
+            friction_needed: [0, 1].map(|own| Some(needed(own))).to_vec(),
+        };
+        let found = foot.outcome().unwrap_or_else(|| panic!("seed {seed}: the foot does not stick"));
+        let fail = |difference: String| -> ! { panic!("seed {seed}: {difference}\n{found:?}\n{truth:?}") };
+        if !found.proven {
+            fail("not proven".into());
+        }
+        truth.check(&found, &foot.friction.map(Friction::Finite)).unwrap_or_else(|difference| fail(difference));
+        let printed = found.impulse_range.clone().unwrap_or_default();
+        // On the edge of both cones no impulse is free.
+        for (own, entries) in printed.iter().enumerate() {
+            let [low, high] = ranges[own].each_ref().map(to_f64);
+            let scale = low.abs().max(high.abs());
+            for (is, should) in entries[0].into_iter().zip([low, high]) {
+                check("end", is.unwrap_or(f64::NAN), should, scale).unwrap_or_else(|difference| fail(difference));
+            }
+            for is in entries[1] {
+                let should = truth.impulse[own][1];
+                check("load", is.unwrap_or(f64::NAN), should, 0.0).unwrap_or_else(|difference| fail(difference));
+            }
+        }
+        if printed.is_empty() && ranges[0][0] != ranges[0][1] {
+            fail("no range".into());
+        }
+        [1, u64::from(tangential[0] != half)]
+    });
+    println!("{compared} flat feet, {clipped} of them with a shortest impulse on the edge of a cone");
+    assert!(compared > 1_500 && clipped > 300, "{compared} {clipped}");
+}

@@ -1,0 +1,89 @@
+//! The digits that `docs/guarantees.md` promises of the numbers of a proven outcome.
+
+use heelstrike::impact::{Friction, Mode, Outcome};
+
+/// What is promised of each number, relative to its scale.
+pub const PROMISED: f64 = 1e-10;
+
+/// The true numbers of an outcome, [tangential, normal] per contact.
+#[derive(Debug)]
+pub struct Truth {
+    /// Whether it is that of a robot, whose contacts may hardly feel a blow.
+    pub of_robot: bool,
+    /// sqrt(G_ii) of each row.
+    pub mobility: Vec<[f64; 2]>,
+    pub before: Vec<[f64; 2]>,
+    pub after: Vec<[f64; 2]>,
+    pub impulse: Vec<[f64; 2]>,
+    pub energy_loss: f64,
+    pub friction_needed: Vec<Option<f64>>,
+}
+
+/// Of what a tangential impulse is known, in parts of the normal one.
+fn least(friction: Friction) -> f64 {
+    match friction {
+        Friction::Finite(mu) => mu.min(1.0),
+        Friction::Infinite => 1.0,
+    }
+}
+
+/// |L_t| / L_n of the sticking contacts that are pressed.
+pub fn needed(modes: &[Mode], impulse: &[[f64; 2]]) -> Vec<Option<f64>> {
+    let of = |(&mode, l): (&Mode, &[f64; 2])| (mode == Mode::Stick && l[1] > 0.0).then(|| l[0].abs() / l[1]);
+    modes.iter().zip(impulse).map(of).collect()
+}
+
+/// A number that is off by more than its scale allows.
+pub fn check(what: &str, is: f64, should: f64, scale: f64) -> Result<(), String> {
+    if (is - should).abs() <= PROMISED * scale.max(should.abs()) {
+        return Ok(());
+    }
+    Err(format!(
+        "{what} is {is:e}, not {should:e}: off by {:.1e} of its scale",
+        (is - should).abs() / scale.max(should.abs())
+    ))
+}
+
+impl Truth {
+    /// The first number of an outcome that lacks digits.
+    pub fn check(&self, outcome: &Outcome, frictions: &[Friction]) -> Result<(), String> {
+        let largest = |pairs: &[[f64; 2]]| pairs.concat().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        let fastest = largest(&self.before).max(largest(&self.after));
+        let energy = self
+            .before
+            .concat()
+            .iter()
+            .zip(self.mobility.concat())
+            .fold(0.0, |most: f64, (c, mobility)| most.max(c.abs() / mobility));
+        for (k, &friction) in frictions.iter().enumerate() {
+            let mobility = self.mobility[k];
+            let own = largest(&[self.before[k], self.after[k]]);
+            let [mut speed, mut push] = [own, self.impulse[k][1]];
+            if self.of_robot {
+                speed = speed.max(fastest.min(energy * mobility[0].max(mobility[1])));
+                push = push.max(largest(&self.impulse).min(energy / mobility[1]));
+            }
+            for row in 0..2 {
+                check(&format!("velocity {row} of {k}"), outcome.velocity_after[k][row], self.after[k][row], speed)?;
+            }
+            let [t, n] = self.impulse[k];
+            check(&format!("normal impulse of {k}"), outcome.impulse[k][1], n, push)?;
+            check(&format!("tangential impulse of {k}"), outcome.impulse[k][0], t, least(friction) * push)?;
+            match (outcome.friction_needed[k], self.friction_needed[k]) {
+                (None, None) => {}
+                (Some(is), Some(should)) => {
+                    // As many digits as its quotient has.
+                    let size = should.max(least(friction)) * push / n;
+                    check(&format!("friction of {k}"), is, should, size)?;
+                    if let Friction::Finite(mu) = friction
+                        && is > mu
+                    {
+                        return Err(format!("friction of {k} is {is:e}, beyond {mu:e}"));
+                    }
+                }
+                (is, should) => return Err(format!("friction of {k} is {is:?}, not {should:?}")),
+            }
+        }
+        check("energy", outcome.energy_loss, self.energy_loss, 0.0)
+    }
+}
