@@ -1,6 +1,7 @@
 //! Cuts a stream into chunks of whole records.
 
 use super::run::TaskSource;
+use crate::read::documents::refuse_foreign;
 use crate::read::table::{Quotes, Quoting, swallows_rows};
 use crate::{Error, Reason, Result};
 use memchr::memchr;
@@ -69,11 +70,7 @@ impl<R: Read + Send> Chunks<R> {
 
     /// Refuses an input whose first bytes show that it is compressed, a spreadsheet or the like.
     pub fn check_format(&mut self) -> Result<()> {
-        let beginning = self.fill()?;
-        let Some((_, what, remedy)) = FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic)) else {
-            return Ok(());
-        };
-        Err(Error::new(Reason::Unsupported((*what).into())).hint(*remedy))
+        refuse_foreign(self.fill()?)
     }
 
     /// The first record that is not blank, with the line on which it begins, from 1; `None` if there is none.
@@ -245,20 +242,6 @@ impl Chunk {
         starts.zip(&self.ends).map(|(start, &(line, end))| (line, &self.bytes[start..end]))
     }
 }
-
-const UTF_16: &str = "save it as UTF-8, or turn it by iconv -f UTF-16 -t UTF-8";
-
-/// First bytes of other formats, the reason and the hint.
-const FOREIGN: [(&[u8], &str, &str); 8] = [
-    (b"\xFF\xFE", "the text is UTF-16", UTF_16),
-    (b"\xFE\xFF", "the text is UTF-16", UTF_16),
-    (b"\x1F\x8B", "the input is packed by gzip", "unpack it: gunzip -c FILE | heelstrike batch ROBOT.urdf - ..."),
-    (b"\x28\xB5\x2F\xFD", "the input is packed by zstd", "unpack it: zstdcat FILE | heelstrike batch ROBOT.urdf - ..."),
-    (b"\xFD7zXZ\0", "the input is packed by xz", "unpack it: xzcat FILE | heelstrike batch ROBOT.urdf - ..."),
-    (b"BZh", "the input is packed by bzip2", "unpack it: bzcat FILE | heelstrike batch ROBOT.urdf - ..."),
-    (b"PK\x03\x04", "the input is a zip archive, as spreadsheets are", "unpack it, or save the sheet as CSV"),
-    (b"PAR1", "the input is a Parquet file", "write it as CSV or NDJSON"),
-];
 
 #[cfg(test)]
 mod tests {

@@ -5,8 +5,11 @@ use heelstrike::error::excerpt::Excerpt;
 use heelstrike::read::documents::utf8;
 use heelstrike::{Error, Reason, Result};
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
+
+/// The most files of a folder that are compared with a name that is not there.
+const MOST_NEIGHBORS: usize = 1000;
 
 /// A file or standard input that was read whole.
 pub(super) struct InputFile {
@@ -62,7 +65,25 @@ pub(super) fn stream(path: &Path) -> Result<Box<dyn Read + Send>> {
 }
 
 fn cannot_read(path: &Path, error: &io::Error) -> Error {
-    Error::new(Reason::Io(format!("cannot be read: {error}"))).in_file(name(path))
+    let refused = Error::new(Reason::Io(format!("cannot be read: {error}"))).in_file(name(path));
+    match error.kind() {
+        ErrorKind::NotFound => {
+            let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+            let refused = refused.hint("a name begins in the folder where the command runs");
+            refused.did_you_mean(&wanted, neighbors(path).iter().map(String::as_str))
+        }
+        ErrorKind::IsADirectory => refused.hint("name a file in it"),
+        ErrorKind::PermissionDenied => refused.hint("its permissions do not let you read it"),
+        _ => refused,
+    }
+}
+
+/// The names of the files next to `path`.
+fn neighbors(path: &Path) -> Vec<String> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let listed = std::fs::read_dir(folder);
+    let entries = listed.into_iter().flatten().flatten().take(MOST_NEIGHBORS);
+    entries.map(|entry| entry.file_name().display().to_string()).collect()
 }
 
 /// Whether the file's name says that it holds one JSON object per line.

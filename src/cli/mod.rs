@@ -26,7 +26,9 @@ use anstream::ColorChoice;
 use clap::{Parser, Subcommand};
 use diagnostic::{report, report_with};
 use heelstrike::error::excerpt::Excerpt;
+use heelstrike::error::visible;
 use options::{Choices, choice};
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -125,7 +127,14 @@ pub fn run(cli: Cli) -> ExitCode {
 
 /// Writes clap's message, such as the version or an error about an option, and returns the exit status.
 pub fn usage(message: &clap::Error) -> ExitCode {
-    let written = message.print().and_then(|()| io::stdout().flush());
+    let text = message.render().to_string();
+    let shown: Vec<_> = text.split('\n').map(visible).collect();
+    let written = match shown.iter().any(|line| matches!(line, Cow::Owned(_))) {
+        // What was given holds what a terminal obeys.
+        true => write!(anstream::stderr(), "{}", shown.join("\n")),
+        false => message.print(),
+    };
+    let written = written.and_then(|()| io::stdout().flush());
     match written {
         Err(error) if !message.use_stderr() => ExitCode::from(status(Failure::Output(error))),
         _ => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(2)),

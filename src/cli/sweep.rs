@@ -169,6 +169,11 @@ pub(super) fn run(args: &Args) -> Completion {
     progress.finish_and_clear();
     let refusals: Vec<&Error> = regimes.iter().filter_map(|(_, _, refused)| *refused).collect();
     refusals.iter().for_each(|&error| report(&error.clone().in_file(&input.name)));
+    if refused > 0 && refusals.is_empty() {
+        // Of a line or a point of the parameters, which is no region.
+        let reason = Reason::Inconsistent(format!("{refused} of {} samples are refused", SampleRecord::count(&model)));
+        report(&Error::new(reason).in_file(&input.name).hint("the `error` of each is in the output"));
+    }
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }
 

@@ -61,9 +61,12 @@ impl Footing<'_> {
             Surface::Profile(_) => first_above(gap, self.feet.size()),
         };
         rise.filter(|rise| rise.is_finite()).ok_or_else(|| {
-            let error = Error::new(Reason::Inconsistent("no foot is above the ground".into())).at("place");
-            error
-                .hint("name a contact point by `contacts` in the state or by `feet`, or move the base above the ground")
+            let (reason, remedy) = match self.named().is_none() && self.feet.iter().next().is_none() {
+                true => ("the robot has no feet", ""),
+                false => ("no foot is above the ground", ", or move the base above the ground"),
+            };
+            let hint = format!("name a contact point by `contacts` in the state or by `feet`{remedy}");
+            Error::new(Reason::Inconsistent(reason.into())).at("place").hint(hint)
         })
     }
 }

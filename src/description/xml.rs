@@ -17,6 +17,8 @@ const MOST_NAMESPACES: usize = 1000;
 
 /// The remedy for what is something else altogether.
 const NO_URDF: &str = "give the text of a URDF file, which begins with <robot";
+/// The remedy for files in the wrong order.
+const JSON: &str = "this is JSON, as states are: the robot's URDF file comes first";
 
 /// Why a text has no XML tree; with the prefix that is not declared, if declaring it may help.
 pub(super) struct Unparsed {
@@ -66,6 +68,7 @@ fn refusal(text: &str, error: &roxmltree::Error) -> Error {
             let located = hyphens.into_iter().fold(error, |error, Location { line, column }| error.on(line, column));
             located.hint("remove one of the hyphens, or the comment")
         }
+        _ if text.trim_start().starts_with(['{', '[']) => syntax().hint(JSON),
         _ if !text.trim_start().starts_with('<') => syntax().hint(NO_URDF),
         _ => syntax(),
     }

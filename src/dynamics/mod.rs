@@ -231,7 +231,7 @@ mod tests {
             let massless = massless.index(case.robot.bodies.len());
             let beside = |joint: &&Joint| joint.parent == massless || joint.child == massless;
             let mut beside = case.robot.joints.iter().filter(beside);
-            let revolute = |joint: &Joint| matches!(joint.axis, Axis::Revolute { .. });
+            let revolute = |joint: &Joint| joint.axis.is_revolute();
             if massless > 0 && beside.clone().count() > 1 && beside.all(revolute) {
                 let body = &mut case.robot.bodies[massless];
                 (body.mass, body.moment) = (0.0, 0.0);

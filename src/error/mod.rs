@@ -139,10 +139,13 @@ impl Error {
         self
     }
 
-    /// Hints at the known name nearest to `name`, if one is near.
+    /// Hints at the known name nearest to `name`, or at all of a few, if none is near and there is no hint yet.
     pub fn did_you_mean<'a>(self, name: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
-        match nearest(name, known) {
+        let known: Vec<&str> = known.into_iter().collect();
+        let few = (2..=FEW_NAMES).contains(&known.len()) && known.iter().all(|name| name.len() <= LONGEST_NAME / 10);
+        match nearest(name, known.iter().copied()) {
             Some(found) => self.hint(format!("did you mean {found}?")),
+            None if few && self.0.hint.is_none() => self.hint(format!("known here: {}", known.join(", "))),
             None => self,
         }
     }
@@ -198,6 +201,9 @@ impl From<Reason> for Error {
 
 /// The most characters of a name that is compared with others: the comparison takes the product of their lengths.
 const LONGEST_NAME: usize = 200;
+
+/// So many known names are listed where none is near.
+const FEW_NAMES: usize = 12;
 
 /// The known name most like `name`, if any is like it at all.
 fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

@@ -134,6 +134,7 @@ impl Pipeline<'_> {
 
         let mut notes = Vec::new();
         self.check_limits(state, &mut notes)?;
+        self.note_unused_laws(scene, &mut notes);
         let surface = Surface::new(&scene.ground);
         let (base, mut velocity, foot) = self.stand(state, &surface)?;
         self.close_loops(&scene.loops, &state.position, foot.as_ref(), &mut velocity, &mut notes)?;
@@ -204,7 +205,20 @@ impl Pipeline<'_> {
             }
             notes.push(outside.to_string());
         }
+        let like_degrees = state.like_degrees(self.robot);
+        notes.extend(like_degrees.map(|(name, angle)| format!("{name} = {angle} rad is more than a turn; degrees?")));
         Ok(())
+    }
+
+    /// Notes friction and restitution of links on which nothing can touch.
+    fn note_unused_laws(&self, scene: &Scene, notes: &mut Vec<String>) {
+        let named = |link| scene.contacts.iter().flatten().any(|contact| contact.link == link);
+        let has_foot = |link| self.feet.iter().any(|foot| foot.link == link) || named(link);
+        let given = scene.friction.links.keys().map(|link| ("friction", *link));
+        let given = given.chain(scene.restitution.links.keys().map(|link| ("restitution", *link)));
+        notes.extend(given.filter(|(_, link)| !has_foot(*link)).map(|(what, link)| {
+            format!("{what} is given to {}, which has no foot: it has no effect", self.robot.links[link].name)
+        }));
     }
 
     /// Compiles the plan, unless the last one was for the same braked joints and rotors.

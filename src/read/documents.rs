@@ -35,8 +35,37 @@ pub fn documents(text: &str) -> impl Iterator<Item = Document<'_>> {
     Documents { text, at, within, counted: 0, line: 1, column: 1 }
 }
 
+const UTF_16: &str = "save it as UTF-8, or turn it by iconv -f UTF-16 -t UTF-8";
+
+/// First bytes of other formats, the reason and the hint.
+const FOREIGN: [(&[u8], &str, &str); 8] = [
+    (b"\xFF\xFE", "the text is UTF-16", UTF_16),
+    (b"\xFE\xFF", "the text is UTF-16", UTF_16),
+    (b"\x1F\x8B", "the input is packed by gzip", "unpack it: gunzip -c FILE, and - in its place reads the pipe"),
+    (b"\x28\xB5\x2F\xFD", "the input is packed by zstd", "unpack it: zstdcat FILE, and - in its place reads the pipe"),
+    (b"\xFD7zXZ\0", "the input is packed by xz", "unpack it: xzcat FILE, and - in its place reads the pipe"),
+    (b"BZh", "the input is packed by bzip2", "unpack it: bzcat FILE, and - in its place reads the pipe"),
+    (b"PK\x03\x04", "the input is a zip archive, as spreadsheets are", "unpack it, or save the sheet as CSV"),
+    (b"PAR1", "the input is a Parquet file", "write it as CSV or NDJSON"),
+];
+
+/// Refuses an input whose first bytes show that it is compressed, a spreadsheet or the like.
+pub(crate) fn refuse_foreign(beginning: &[u8]) -> Result<()> {
+    let known =
+        FOREIGN.iter().find(|(magic, ..)| beginning.starts_with(magic)).map(|&(_, what, remedy)| (what, remedy));
+    // Without a byte order mark: one of the first two bytes of ASCII is zero.
+    let utf_16 = || {
+        beginning.get(..2).is_some_and(|two| (two[0] == 0) != (two[1] == 0)).then_some(("the text is UTF-16", UTF_16))
+    };
+    match known.or_else(utf_16) {
+        Some((what, remedy)) => Err(Error::new(Reason::Unsupported(what.into())).hint(remedy)),
+        None => Ok(()),
+    }
+}
+
 /// The bytes as text, without a byte order mark; an error has the place of the first byte that is not UTF-8.
 pub fn utf8(bytes: &[u8]) -> Result<&str> {
+    refuse_foreign(bytes)?;
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
         Err(broken) => {

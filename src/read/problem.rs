@@ -74,7 +74,8 @@ impl Problem {
             }
             (None, None) => {
                 let hint = "give \"delassus\" and \"velocity_before\", or \"mass_matrix\", \"contact_jacobian\" and \"velocity\"";
-                return Err(root.missing("delassus").hint(hint));
+                let state = "this is a state, which `heelstrike impact` and `batch` read";
+                return Err(root.missing("delassus").hint(if field("position").is_some() { state } else { hint }));
             }
         };
         // An error of a matrix has the field's name as its place.
@@ -148,6 +149,9 @@ fn counted<'n>(field: &'n Node<'n>, contacts: usize) -> Result<impl Iterator<Ite
     let entries = field.entries()?;
     match entries.len() {
         found if found == contacts => Ok(entries),
-        found => Err(field.refuse(Reason::Inconsistent(format!("{found} entries for {contacts} contacts")))),
+        found => {
+            let of = if contacts == 1 { "1 contact".to_owned() } else { format!("{contacts} contacts") };
+            Err(field.refuse(Reason::Inconsistent(format!("{found} entries for {of}"))))
+        }
     }
 }

@@ -10,6 +10,8 @@ use crate::description::{Description, Geometry, JointKind, Matrix, Mesh, apply, 
 const NEARLY: f64 = 0.35;
 /// An axis up to this far off is so by the digits of the file \[rad\].
 const SLIGHTLY: f64 = 0.02;
+/// No part of a legged robot is longer than this \[m\].
+const LONGEST: f64 = 10.0;
 /// The most joints that are named.
 const NAMED: usize = 3;
 
@@ -77,6 +79,36 @@ pub(super) fn about_axes(description: &Description) -> Option<String> {
     (!without.is_empty()).then(|| {
         let names = names(without.iter().map(String::as_str));
         format!("without an <axis>, and so about or along x: {names}; name the axis, as in <axis xyz=\"0 1 0\"/>")
+    })
+}
+
+/// The caution about lengths that no legged robot has, as millimeters taken for meters.
+pub(super) fn about_lengths(description: &Description) -> Option<String> {
+    let span = |points: &[[f64; 3]], at: usize| {
+        let along = points.iter().map(|point| point[at]);
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    let extent = |geometry: &Geometry| match geometry {
+        Geometry::Box { size } => size.iter().copied().fold(0.0, f64::max),
+        Geometry::Cylinder { radius, length } | Geometry::Capsule { radius, length } => length.max(2.0 * radius),
+        Geometry::Sphere { radius } => 2.0 * radius,
+        Geometry::Mesh { scale, mesh: Mesh::Vertices(points), .. } => {
+            [0, 1, 2].map(|at| span(points, at) * scale[at].abs()).into_iter().fold(0.0, f64::max)
+        }
+        Geometry::Mesh { .. } | Geometry::Unknown { .. } => 0.0,
+    };
+    let shapes = description.links.iter().flat_map(|link| {
+        let extents = link.collisions.iter().map(|collision| extent(&collision.geometry));
+        extents.map(|extent| (format!("a shape of {}", link.name), extent))
+    });
+    let joints = description.joints.iter().map(|joint| {
+        (format!("the origin of {}", joint.name), joint.origin.xyz.iter().fold(0.0_f64, |most, x| most.max(x.abs())))
+    });
+    let (what, length) = joints.chain(shapes).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (length > LONGEST).then(|| {
+        format!(
+            "{what} spans {length} m: lengths are in meters; scale=\"0.001 0.001 0.001\" is for meshes in millimeters"
+        )
     })
 }
 

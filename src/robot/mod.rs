@@ -143,6 +143,13 @@ pub enum Axis {
     Prismatic { direction: Vector<f64> },
 }
 
+impl Axis {
+    /// Whether the coordinate is an angle.
+    pub fn is_revolute(&self) -> bool {
+        matches!(self, Self::Revolute { .. })
+    }
+}
+
 /// A link of the file and its place in the reduced tree.
 #[derive(Debug, Clone)]
 pub struct Link {

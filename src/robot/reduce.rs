@@ -71,6 +71,7 @@ impl Robot {
         cautions.extend(caution::about_outside(description, &outside));
         cautions.extend(caution::about_meshes(description));
         cautions.extend(caution::about_axes(description));
+        cautions.extend(caution::about_lengths(description));
         let reading = Reading {
             plane,
             plane_because,

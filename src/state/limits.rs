@@ -1,7 +1,7 @@
-//! Joints of a state that are outside the limits of the robot's file.
+//! Joints of a state that are outside the limits of the robot's file, and angles that look like degrees.
 
 use super::State;
-use crate::robot::{Axis, Joint, Robot};
+use crate::robot::{Joint, Robot};
 use std::f64::consts::TAU;
 use std::fmt;
 
@@ -34,12 +34,27 @@ impl State {
             outside.then_some(OutsideLimits { joint, position, limits })
         })
     }
+
+    /// The pitch and the joints without limits that are more than a turn and a whole number, as degrees written by hand
+    /// are: name and angle \[rad\].
+    pub fn like_degrees<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = (&'r str, f64)> {
+        let base = robot.base_dofs();
+        let is_free_angle = move |at: usize| match at.checked_sub(base) {
+            Some(joint) => robot.joints[joint].limits.is_none() && robot.joints[joint].axis.is_revolute(),
+            None => at == 2,
+        };
+        let angles = robot.coordinates().zip(self.position.iter().copied()).enumerate();
+        let like = move |&(at, (_, angle)): &(usize, (&str, f64))| {
+            angle.abs() > TAU && angle.fract() == 0.0 && is_free_angle(at)
+        };
+        angles.filter(like).map(|(_, named)| named)
+    }
 }
 
 impl fmt::Display for OutsideLimits<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { joint: Joint { name, axis, .. }, position, limits: [lower, upper] } = self;
-        let is_angle = matches!(axis, Axis::Revolute { .. });
+        let is_angle = axis.is_revolute();
         let unit = if is_angle { "rad" } else { "m" };
         write!(f, "{name} = {position} {unit} is outside [{lower}, {upper}]")?;
         let as_degrees = position.to_radians();

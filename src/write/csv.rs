@@ -16,18 +16,18 @@ const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
 const TOUCHDOWN: [&str; 6] = ["row", "time", "striking", "shift_z", "at", "touching"];
 
 /// The last columns, behind all that the contract orders and the carried ones.
-const LAST: [&str; 4] = ["border", "family", "families", "error"];
+const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 
 /// The columns of a table of results, fixed before its first row.
 ///
 /// They are `id`, for a batch `line`, `verdict, outcome, margin, proven`, then `mode_<contact>, p_<contact>_t,
 /// p_<contact>_n` for every contact that the robot's feet can make, `v_after_<coordinate>`, the `touchdown_...` columns
-/// and `q_<coordinate>`, `v_<coordinate>` before the impact if touchdowns were requested, the columns copied from the input, and `border`, `family`, `families`, `error`.
-/// Outcomes are counted from 1; a state without outcome has a row with these cells empty. A contact is named after its
-/// link if it is the only one
-/// there, so a link that can touch at several points has columns of its own name and of link/0, link/1, ... A refused
-/// state has a row with the verdict `refused`, its id and copied columns if they can be read, and its line and reason
-/// in `error`. A copied column whose name the output already has gets the prefix `in_`.
+/// and `q_<coordinate>`, `v_<coordinate>` before the impact if touchdowns were requested, the columns copied from the
+/// input, and `border`, `family`, `families`, `error`, `notes`. Outcomes are counted from 1; a state without outcome
+/// has a row with these cells empty. A contact is named after its link if it is the only one there, so a link that can
+/// touch at several points has columns of its own name and of link/0, link/1, ... A refused state has a row with the
+/// verdict `refused`, its id and copied columns if they can be read, and its line and reason in `error`. A copied
+/// column whose name the output already has gets the prefix `in_`.
 #[derive(Debug, Clone)]
 pub struct Columns {
     names: Vec<String>,
@@ -139,6 +139,7 @@ impl Columns {
             coordinates.for_each(|(at, &number)| cells.number(at, number));
         }
         cells.text(self.last() + 3, report.error.as_ref().map_or(String::new(), ToString::to_string));
+        cells.text(self.last() + 4, report.notes.join("; "));
         let places = report.contacts.iter().map(|contact| self.place(&contact.name));
         let places: Vec<usize> = places.collect::<Result<_>>()?;
         let outcomes = report.outcomes.as_deref().unwrap_or_default();

@@ -271,14 +271,14 @@ fn the_header_has_every_contact_that_feet_can_give() {
         header(&[], RowKind::State),
         "id,line,verdict,outcome,margin,proven,mode_body,p_body_t,p_body_n,mode_body/0,p_body/0_t,p_body/0_n,mode_body/1,\
          p_body/1_t,p_body/1_n,mode_shin,p_shin_t,p_shin_n,v_after_base_x,v_after_base_z,v_after_base_pitch,v_after_knee,border,\
-         family,families,error\n"
+         family,families,error,notes\n"
     );
     let foot = NamedContact { link: 1, offset: [0.1, 0.0, -0.5], radius: 0.0 };
     assert_eq!(modes(&header(&[foot], RowKind::State)), ["body", "body/0", "body/1", "shin", "shin/0", "shin/1"]);
     assert_eq!(modes(&header(&[], RowKind::Touchdown)), ["body", "body/0", "body/1", "body/2", "body/3", "shin"]);
     assert!(header(&[], RowKind::Touchdown).contains(
         ",v_after_knee,touchdown_row,touchdown_time,touchdown_striking,touchdown_shift_z,touchdown_at,touchdown_touching,\
-         q_base_x,q_base_z,q_base_pitch,q_knee,v_base_x,v_base_z,v_base_pitch,v_knee,border,family,families,error"
+         q_base_x,q_base_z,q_base_pitch,q_knee,v_base_x,v_base_z,v_base_pitch,v_knee,border,family,families,error,notes"
     ));
 }
 
@@ -297,6 +297,8 @@ fn a_row_has_modes_only_of_what_touches() {
         ["verdict", "mode_shin", "v_after_base_z"].map(|column| row[column].as_str()),
         ["no_contact", "", "-1.0"]
     );
+    let row = only("q_base_z,q_base_pitch,v_base_z\n9,30,-1\n", None);
+    assert!(row["notes"].starts_with("pitch = 30 rad is more than a turn; degrees?; nothing touches"), "{row:?}");
 }
 
 #[test]

@@ -50,6 +50,38 @@ fn rounding_and_missing_limits_are_not_noted() {
 }
 
 #[test]
+fn whole_numbers_beyond_a_turn_look_like_degrees() {
+    let free = limited(HINGE, "");
+    let notes = |robot: &Robot, hip: f64, pitch: f64| {
+        let state = json!({"position": {"base": {"pitch": pitch}, "joints": {"hip": hip}}});
+        let impact = try_impact(robot, Options::default(), state).expect("an answer");
+        impact.notes.into_iter().filter(|note| note.contains("more than a turn")).collect::<Vec<_>>()
+    };
+    let both = ["pitch = -90 rad is more than a turn; degrees?", "hip = 30 rad is more than a turn; degrees?"];
+    assert_eq!(notes(&free, 30.0, -90.0), both);
+    // Wheels turn on and on, and simulators print many digits.
+    assert!(notes(&free, 30.01, 6.0).is_empty());
+    assert!(notes(&limited(Axis::Prismatic([0.0, 1.0]), ""), 30.0, 0.0).is_empty());
+}
+
+#[test]
+fn laws_of_links_without_a_foot_are_noted() {
+    let robot = limited(HINGE, "");
+    let notes = |scene: serde_json::Value| {
+        let impact = try_impact(&robot, Options::default(), scene).expect("an answer");
+        impact.notes.into_iter().filter(|note| note.contains("no effect")).collect::<Vec<_>>()
+    };
+    let given = json!({"friction": {"default": 1, "leg": 0.5}, "restitution": {"tail": 0.5}});
+    let expected = [
+        "friction is given to leg, which has no foot: it has no effect",
+        "restitution is given to tail, which has no foot: it has no effect",
+    ];
+    assert_eq!(notes(given), expected);
+    let named = json!({"friction": {"default": 1, "leg": 0.5}, "contacts": [{"link": "leg"}]});
+    assert!(notes(named).is_empty());
+}
+
+#[test]
 fn strict_limits_refuse_with_place_and_remedy() {
     let robot = limited(HINGE, r#"lower="-2" upper="2.5""#);
     let options = Options { strict_limits: true, ..Options::default() };

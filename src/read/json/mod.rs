@@ -219,7 +219,15 @@ impl<'n> Node<'n> {
 
     /// Refuses a value of the wrong kind.
     pub(crate) fn expected(&self, expected: &'static str) -> Error {
-        self.refuse(Reason::WrongKind { expected, found: self.value.kind() })
+        let error = self.refuse(Reason::WrongKind { expected, found: self.value.kind() });
+        let is_field = !self.key().is_empty();
+        match self.value {
+            Value::Null if is_field => error.hint("leave the field out"),
+            Value::List(_) if is_field && expected == "an object" => {
+                error.hint("name the entries, as in {\"x\": 0.5, \"z\": 1}")
+            }
+            _ => error,
+        }
     }
 
     /// Refuses an object without the field `name`.
@@ -231,7 +239,13 @@ impl<'n> Node<'n> {
     pub(crate) fn unknown_field(&self, object: &str) -> Error {
         let known = fields_of(object);
         let error = self.refuse_name(self.key(), Reason::UnknownField(self.key().to_owned()));
-        let error = error.hint(format!("the fields here are {}", known.join(", ")));
+        let fields = format!("the fields here are {}", known.join(", "));
+        let is_document = DOCUMENTS.iter().any(|(document, _)| *document == object);
+        let whose = |(other, _): &&(&str, &str)| fields_of(other).iter().any(|field| field == self.key());
+        if let Some((_, whose)) = DOCUMENTS.iter().find(whose).filter(|_| is_document) {
+            return error.hint(format!("this is a field of {whose}; {fields}"));
+        }
+        let error = error.hint(if object == "Base" { format!("{fields}; {SPATIAL}") } else { fields });
         error.did_you_mean(self.key(), known.iter().map(String::as_str))
     }
 
@@ -288,6 +302,15 @@ impl<'n> Node<'n> {
         line_and_column(text.as_bytes(), offset.unwrap_or(0))
     }
 }
+
+/// The documents of [`FORMAT`], and what they are.
+const DOCUMENTS: [(&str, &str); 3] = [
+    ("State", "a state, which `heelstrike impact` and `batch` read"),
+    ("Problem", "a contact problem, which `heelstrike solve` reads"),
+    ("Study", "a study, which `heelstrike sweep` reads"),
+];
+
+const SPATIAL: &str = "a table may give a base in three dimensions (q_base_y, q_base_qw and so on)";
 
 /// The names of an object's fields in [`FORMAT`], in the order in which hints list them.
 fn fields_of(object: &str) -> Vec<String> {

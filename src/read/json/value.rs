@@ -160,6 +160,14 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
         refused.hint("JSON has double quotes, as in {\"friction\": 0.8}")
     } else if whole.starts_with("trailing comma") {
         refused.hint("leave out the comma before the closing bracket")
+    } else if whole.starts_with("expected `,`") && begins(&["\"", "{", "["]) {
+        refused.hint("put a comma before it")
+    } else if whole.starts_with("key must be") && rest.first().is_some_and(u8::is_ascii_digit) {
+        refused.hint("numbers have a decimal point, as in 0.8")
+    } else if whole.starts_with("key must be") && rest.first().is_some_and(u8::is_ascii_alphabetic) {
+        refused.hint("names are in double quotes, as in {\"friction\": 0.8}")
+    } else if is_table(text) {
+        refused.hint("is this a table? `heelstrike batch` reads CSV")
     } else if is_yaml(text) {
         refused.hint("is this YAML? JSON has braces and double quotes, as in {\"friction\": 0.8}")
     } else if begins(&["//", "/*", "#"]) {
@@ -177,6 +185,12 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
 fn is_yaml(text: &str) -> bool {
     let word = text.trim_start().split_once(':').map_or("", |(word, _)| word);
     text.starts_with("---") || !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
+/// Whether a text that is no JSON begins as a table does: with names and commas between them.
+fn is_table(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    first.contains(',') && first.chars().all(|c| c.is_alphanumeric() || "_-.,/ ".contains(c))
 }
 
 /// The path as far as its keys were read.

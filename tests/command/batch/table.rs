@@ -39,7 +39,7 @@ fn the_form_follows_the_ending_unless_it_is_given() {
     let written = read(&table);
     let header = written.lines().next().expect("a header");
     assert!(
-        header.starts_with("id,line,verdict,outcome,") && header.ends_with(",note,border,family,families,error"),
+        header.starts_with("id,line,verdict,outcome,") && header.ends_with(",note,border,family,families,error,notes"),
         "{header}"
     );
     let lines = batch(&[&rows, "--friction", "1"], "").lines();

@@ -7,8 +7,10 @@ const INSPECT: &[&str] = &["inspect", "-"];
 
 #[test]
 fn what_cannot_be_read_is_refused() {
-    let missing = "cannot be read: No such file or directory (os error 2)\n";
-    let folder = "cannot be read: Is a directory (os error 21)\n";
+    let absent = "cannot be read: No such file or directory (os error 2)\n";
+    let missing = &*format!("{absent}hint: a name begins in the folder where the command runs\n");
+    let folder = "cannot be read: Is a directory (os error 21)\nhint: name a file in it\n";
+    let near = &*format!("{absent}hint: did you mean ramone.json?\n");
     let no_folder = "cannot be read: Not a directory (os error 20)\n";
     let nothing = "the text holds no XML element\nhint: give the text of a URDF file, which begins with <robot\n";
     let endless = "more than 64 MiB are not accepted here\n";
@@ -20,6 +22,7 @@ fn what_cannot_be_read_is_refused() {
         (&["inspect", "Cargo.toml/a.urdf"], b"", "Cargo.toml/a.urdf", no_folder),
         (&["impact", "urdf/nobody.urdf", "examples/ramone.json"], b"", "urdf/nobody.urdf", missing),
         (&["impact", RAMONE, "examples/nobody.json"], b"", "examples/nobody.json", missing),
+        (&["impact", RAMONE, "examples/ramon.json"], b"", "examples/ramon.json", near),
         (&["impact", RAMONE, "examples"], b"", "examples", folder),
         (&["batch", RAMONE, "examples/nobody.ndjson"], b"", "examples/nobody.ndjson", missing),
         (&["solve", "nowhere/rod.json"], b"", "nowhere/rod.json", missing),
@@ -43,11 +46,19 @@ fn bytes_that_are_no_text_are_refused() {
         (INSPECT, &b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..], "1:1"),
         (INSPECT, b"<robot name=\"\xe9\"/>", "1:14"),
         (IMPACT, b"{\n \"id\": \"\xff\"}", "2:9"),
-        // UTF-16.
-        (INSPECT, b"\xff\xfe<\0r\0o\0b\0o\0t\0/\0>\0", "1:1"),
     ] {
         let stderr = heelstrike_reads(arguments, stdin).refusal(1);
         assert_eq!(stderr, format!("error: <stdin>:{place}: the text is not UTF-8\n{hint}\n"), "{stdin:?}");
+    }
+    for (stdin, words) in [
+        (&b"\xff\xfe<\0r\0o\0b\0o\0t\0/\0>\0"[..], ["the text is UTF-16", "iconv -f UTF-16 -t UTF-8"]),
+        (b"\0{\0\"", ["the text is UTF-16", "iconv -f UTF-16 -t UTF-8"]),
+        (b"\x1f\x8b\x08", ["the input is packed by gzip", "gunzip -c FILE"]),
+    ] {
+        for arguments in [INSPECT, IMPACT, &["solve", "-"], &["batch", RAMONE, "-"]] {
+            let stderr = heelstrike_reads(arguments, stdin).refusal(1);
+            assert!(words.iter().all(|words| stderr.contains(words)), "{arguments:?}: {stderr}");
+        }
     }
 }
 

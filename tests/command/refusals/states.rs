@@ -87,6 +87,15 @@ friction: 1
 {"position": {"joints": {"left_hip": 1, "left_hip": 2}}}
 {"position": {"base": {"pitch": 1e999}}}
 {"position": {"base": {"pitch": NaN}}}
+{"friction": 0.8 "place": "lowest"}
+{"friction": 0,8}
+{friction: 0.8}
+id,q_base_x,v_base_x
+{"position": {"base": {"x": null}}}
+{"position": {"base": [0, 1, 0]}}
+{"position": {"base": {"yaw": 0}}}
+{"delassus": [[1]]}
+{"parameters": {}}
 "#;
 
 #[test]
@@ -142,6 +151,7 @@ const PROBLEMS: &str = r#"
 {"delassus": [[1, 0], [0, 1]], "velocity_before": [[0, -1]], "friction": 1, "restitution": 2}
 {"mass_matrix": [[1]], "contact_jacobian": [[1]], "velocity": [1], "friction": 1}
 {"mass_matrix": [[1]], "delassus": [[1, 0], [0, 1]], "friction": 1}
+{"position": {"base": {"x": 0}}, "friction": 1}
 "#;
 
 #[test]

@@ -89,3 +89,17 @@ fn hyphens_in_a_comment_are_named_with_their_place() {
     assert_eq!(error.to_string(), format!("3:{column}: a comment holds --, which XML does not allow"));
     assert_eq!(error.remedy(), Some("remove one of the hyphens, or the comment"));
 }
+
+#[test]
+fn lengths_that_look_like_millimeters_are_noted() {
+    let box_of = |size: &str| {
+        let shape = urdf::collision([0.0; 2], &format!("box size=\"0.1 0.1 {size}\""));
+        load(&urdf::robot(&[link("a", 1.0, [0.0; 2], 1.0, &shape)]))
+    };
+    let caution = box_of("400");
+    let caution = only_caution(&caution);
+    assert!(caution.starts_with("a shape of a spans 400 m: lengths are in meters"), "{caution}");
+    assert!(box_of("4").reading.cautions.is_empty());
+    let far = load(&massive(&[PITCH]).replace("0 0 -1", "0 0 -350"));
+    assert!(only_caution(&far).starts_with("the origin of j spans 350 m"), "{}", only_caution(&far));
+}

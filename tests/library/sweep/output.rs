@@ -98,6 +98,19 @@ fn refused_samples_stand_in_their_place() {
 }
 
 #[test]
+fn samples_refused_outside_regions_are_counted() {
+    let link = json!({"com": [0, 0, -0.4], "inertia": "j"});
+    let study = json!({
+        "parameters": {"j": {"from": 0, "to": 0.5, "steps": 5}},
+        "state": {"stance": "left_leg", "velocity": {"base": {"pitch": 1e-5}}, "friction": "infinite"},
+        "robot": {"links": {"left_leg": link, "right_leg": link}},
+    });
+    let Run { status, stderr, .. } = run("urdf/pdw.urdf", &study, &["--format", "json", "--quiet"]);
+    assert_eq!(status, 1);
+    assert!(stderr.contains("1 of 5 samples are refused\nhint: the `error` of each"), "{stderr}");
+}
+
+#[test]
 fn a_refused_region_says_why_it_is_refused() {
     // The root has a value above 0.6, and within 1e-7 of 0.3, the middle of what is below.
     let study = json!({
@@ -118,7 +131,7 @@ fn tables_add_parameter_and_region_to_those_of_batch() {
     assert_eq!(status, 0);
     let mut lines = stdout.lines();
     let header = "id,verdict,outcome,margin,proven,mode_left_leg,p_left_leg_t,p_left_leg_n,mode_right_leg,p_right_leg_t,\
-                  p_right_leg_n,v_after_base_x,v_after_base_z,v_after_base_pitch,v_after_hip,alpha,region,border,family,families,error";
+                  p_right_leg_n,v_after_base_x,v_after_base_z,v_after_base_pitch,v_after_hip,alpha,region,border,family,families,error,notes";
     assert_eq!(lines.next(), Some(header));
     // 0.001, 0.524, 1.047 and 1.57; the last one has three outcomes.
     let rows: Vec<&str> = lines.collect();
