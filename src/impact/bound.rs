@@ -74,36 +74,43 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// After the elimination of `unknowns` (1 or 2) impulses: `top` is what is divided by the pivot or determinant.
-    fn eliminated(self, unknowns: usize, pivot: f64, pivot_error: f64, top: [Class; 2]) -> Self {
-        let [coefficient, constant] = top.map(|class| class.over(pivot, pivot_error));
+    /// After the elimination of `unknowns` (1 or 2) impulses: `top` is what is divided by the pivot or determinant. The
+    /// `last` contact leaves no coefficients.
+    fn eliminated(self, unknowns: usize, pivot: f64, pivot_error: f64, top: [Class; 2], last: bool) -> Self {
         let along = |factor: Class, solved: Class, own: Class| {
             let part = factor.product(solved);
             if unknowns == 1 { own.plus(part) } else { own.plus(part).plus(part) }
         };
-        Self {
-            velocity: along(self.velocity, coefficient, self.velocity),
+        let [coefficient, constant] = top;
+        let constant = constant.over(pivot, pivot_error);
+        let mut next = Self {
             velocity_constant: along(self.velocity, constant, self.velocity_constant),
-            impulse: along(self.impulse, coefficient, self.impulse).or(coefficient),
             impulse_constant: along(self.impulse, constant, self.impulse_constant).or(constant),
             given: self.given,
+            ..Self::default()
+        };
+        if !last {
+            let coefficient = coefficient.over(pivot, pivot_error);
+            next.velocity = along(self.velocity, coefficient, self.velocity);
+            next.impulse = along(self.impulse, coefficient, self.impulse).or(coefficient);
         }
+        next
     }
 
     /// After a contact slides: its row along its ray, both scaled to length one, is the pivot.
-    pub fn slide(self, pivot: f64) -> Self {
+    pub fn slide(self, pivot: f64, last: bool) -> Self {
         // Along a ray of two parts whose sizes add up to one: one more rounding for each product, one for the sum.
         let along = |class: Class| Class { error: class.error + 3.0 * UNIT_ROUNDOFF * class.size, ..class };
         let bent = Self { velocity: along(self.velocity), impulse: along(self.impulse), ..self };
-        bent.eliminated(1, pivot, bent.velocity.error, [self.velocity, self.velocity_constant])
+        bent.eliminated(1, pivot, bent.velocity.error, [self.velocity, self.velocity_constant], last)
     }
 
     /// After a contact sticks: the determinant of its block, scaled to a unit diagonal.
-    pub fn stick(self, determinant: f64) -> Self {
+    pub fn stick(self, determinant: f64, last: bool) -> Self {
         let square = self.velocity.product(self.velocity);
         let twice = square.plus(square);
         let right = self.velocity.product(self.velocity_constant);
-        self.eliminated(2, determinant, twice.error, [twice, right.plus(right)])
+        self.eliminated(2, determinant, twice.error, [twice, right.plus(right)], last)
     }
 
     /// With the sizes that the entries have in place of the ones that they may have.
@@ -178,13 +185,13 @@ impl LeafBounds {
     pub fn follow(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
         let (impulse, pivot) = tableau.decided(contact);
         let [t, n] = [self.inverse[2 * contact], self.inverse[2 * contact + 1]];
+        let last = contact + 2 == self.depths.len();
         let next = match impulse {
             Impulse::Zero => self.depths[source],
-            Impulse::Along(ray) => self.depths[source].slide((pivot * n / self.size(contact, ray)).abs()),
-            Impulse::Free => self.depths[source].stick((pivot * (t * n) * (t * n)).abs()),
+            Impulse::Along(ray) => self.depths[source].slide((pivot * n / self.size(contact, ray)).abs(), last),
+            Impulse::Free => self.depths[source].stick((pivot * (t * n) * (t * n)).abs(), last),
         };
-        // The last contact leaves no coefficients, and no later step asks how large its constants are.
-        let last = contact + 2 == self.depths.len();
+        // No later step asks how large the constants of the last are.
         self.depths[contact + 1] = if last { next } else { next.measured(self.sizes(tableau, contact + 1)) };
     }
 
@@ -203,8 +210,8 @@ impl LeafBounds {
                 Some(factor) => (2, factor, self.speed),
                 None => (0, self.inverse[row], self.speed),
             };
-            let entries = tableau.row(depth, row);
-            for (entry, inverse) in entries.iter().zip(&self.inverse).skip(2 * depth) {
+            let (entries, open) = (tableau.row(depth, row), 2 * depth..self.inverse.len());
+            for (entry, inverse) in entries[open.clone()].iter().zip(&self.inverse[open]) {
                 sizes[class] = sizes[class].max((entry * factor * inverse).abs());
             }
             sizes[class + 1] = sizes[class + 1].max((entries[self.inverse.len()] * factor / speed).abs());

@@ -24,6 +24,8 @@ pub struct Tableau<T> {
     laws: Vec<Law>,
     /// Whether every mode is visited by itself, also if others have the same impulses.
     pub separately: bool,
+    /// Whether modes that slide are left out.
+    pub without_slip: bool,
     /// Tableaus by depth, each 2n rows of 2n + 1 entries: the coefficients of all impulses, then the constant. Columns
     /// of decided contacts are stale. Rows of contact i: c_t and xi_n while it is undecided or separates; c_t and
     /// lambda where it slides; L_t and L_n where it sticks.
@@ -73,11 +75,9 @@ impl<T: Real> Tableau<T> {
         self.modes.resize(n, Mode::Separate);
         self.pivots.clear();
         self.pivots.resize(n, T::one());
-        for row in 0..2 * n {
-            for column in 0..2 * n {
-                self.depths[0][row * width + column] = problem.delassus(row, column);
-            }
-            self.depths[0][row * width + 2 * n] = problem.free_row(row);
+        for (row, entries) in self.depths[0].chunks_exact_mut(width).enumerate() {
+            entries[..2 * n].copy_from_slice(problem.delassus_row(row));
+            entries[2 * n] = problem.free_row(row);
         }
     }
 
@@ -119,6 +119,9 @@ impl<T: Real> Tableau<T> {
         }
         for group in self.laws[contact].modes() {
             for &mode in if self.separately { group } else { &group[..1] } {
+                if self.without_slip && mode.slides() {
+                    continue;
+                }
                 self.modes[contact] = mode;
                 let depth = self.decide(contact, mode, source);
                 if depth != source {
@@ -141,39 +144,47 @@ impl<T: Real> Tableau<T> {
             return source;
         }
         let (before, after) = self.depths.split_at_mut(contact + 1);
-        let (old, new) = (&before[source], &mut after[0]);
-        let entry = |row: usize, column: usize| old[row * width + column];
+        let (old, new) = (&before[source][..], &mut after[0][..]);
         let columns = normal + 1..width;
+        // The rows before the contact's own two, and those after them.
+        let (above, rest) = old.split_at(tangential * width);
+        let (own, below) = rest.split_at(2 * width);
+        let (new_above, rest) = new.split_at_mut(tangential * width);
+        let (new_own, new_below) = rest.split_at_mut(2 * width);
+        let (own_t, own_n) = own.split_at(width);
+        let (new_t, new_n) = new_own.split_at_mut(width);
         if let Impulse::Along(ray) = impulse {
             let ray = ray.map(T::from_f64);
-            let along = |row: usize| ray[0] * entry(row, tangential) + ray[1] * entry(row, normal);
-            let pivot = along(normal);
+            let along = |row: &[T]| ray[0] * row[tangential] + ray[1] * row[normal];
+            let pivot = along(own_n);
             self.pivots[contact] = pivot;
             for column in columns.clone() {
-                new[normal * width + column] = -entry(normal, column) / pivot;
+                new_n[column] = -own_n[column] / pivot;
             }
-            for row in (0..2 * n).filter(|&row| row != normal) {
-                let factor = along(row);
-                for column in columns.clone() {
-                    new[row * width + column] = entry(row, column) + factor * new[normal * width + column];
+            for (old, new) in [(above, new_above), (own_t, new_t), (below, new_below)] {
+                for (old, new) in old.chunks_exact(width).zip(new.chunks_exact_mut(width)) {
+                    let factor = along(old);
+                    for column in columns.clone() {
+                        new[column] = old[column] + factor * new_n[column];
+                    }
                 }
             }
         } else {
-            let [g_tt, g_tn] = [entry(tangential, tangential), entry(tangential, normal)];
-            let [g_nt, g_nn] = [entry(normal, tangential), entry(normal, normal)];
+            let [g_tt, g_tn] = [own_t[tangential], own_t[normal]];
+            let [g_nt, g_nn] = [own_n[tangential], own_n[normal]];
             let determinant = g_tt * g_nn - g_tn * g_nt;
             self.pivots[contact] = determinant;
             for column in columns.clone() {
-                let (c_t, c_n) = (entry(tangential, column), entry(normal, column));
-                new[tangential * width + column] = (g_tn * c_n - g_nn * c_t) / determinant;
-                new[normal * width + column] = (g_nt * c_t - g_tt * c_n) / determinant;
+                let (c_t, c_n) = (own_t[column], own_n[column]);
+                new_t[column] = (g_tn * c_n - g_nn * c_t) / determinant;
+                new_n[column] = (g_nt * c_t - g_tt * c_n) / determinant;
             }
-            for row in (0..2 * n).filter(|&row| row / 2 != contact) {
-                let (by_t, by_n) = (entry(row, tangential), entry(row, normal));
-                for column in columns.clone() {
-                    new[row * width + column] = entry(row, column)
-                        + by_t * new[tangential * width + column]
-                        + by_n * new[normal * width + column];
+            for (old, new) in [(above, new_above), (below, new_below)] {
+                for (old, new) in old.chunks_exact(width).zip(new.chunks_exact_mut(width)) {
+                    let (by_t, by_n) = (old[tangential], old[normal]);
+                    for column in columns.clone() {
+                        new[column] = old[column] + by_t * new_t[column] + by_n * new_n[column];
+                    }
                 }
             }
         }

@@ -8,7 +8,7 @@ use super::enumerate::{Labels, Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
 use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
-use super::reading::{motion, read_f64};
+use super::reading::{F64Reader, motion};
 use crate::law::Impulse;
 use crate::scalar::{Ordered, Sign};
 use std::collections::BTreeMap;
@@ -41,9 +41,14 @@ impl Visitor<f64> for F64Pass<'_, '_> {
         // If every impulse is free, the pivots are those of the whole matrix.
         *regular |= bound.impulse_error().is_finite()
             && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
+        let reader = F64Reader::new(problem, scale, bound);
         labels.visit(leaf.modes, problem.laws(), *shares, |modes| {
             let number = collected.total;
-            let reading = read_f64(leaf, modes, problem, scale, bound, options.rejections.contain(modes));
+            collected.total += 1;
+            if reader.rejects(leaf, modes) && !options.rejections.contain(modes) {
+                return;
+            }
+            let reading = reader.read(leaf, modes);
             let motion = || motion(leaf, modes, problem, |number| number);
             let outcome = (reading.sign == Sign::Positive).then(motion);
             let serves = |motion: &Motion| f64_serves(leaf, modes, (problem, scale), bound, (motion, reading.margin));
@@ -57,7 +62,6 @@ impl Visitor<f64> for F64Pass<'_, '_> {
                 }
                 None => undecided.push(Pending { number, modes: modes.to_vec() }),
             }
-            collected.total += 1;
         });
     }
 }

@@ -30,27 +30,61 @@ impl Rejection {
     }
 }
 
-/// Reads a leaf's f64 numbers, known to `bound`; unless `complete`, up to the first violation.
-pub fn read_f64(
-    leaf: &Leaf<'_, f64>,
-    modes: &[Mode],
-    problem: &ContactProblem,
-    scale: &Scale,
-    bound: &Bound,
-    complete: bool,
-) -> CombinationReading {
-    let (velocity, impulse) = (bound.velocity_error(), bound.impulse_error());
-    let speed = |contact: usize, c_t: f64| Sign::within(c_t / scale.speed / scale.mobility[2 * contact], velocity);
-    read(leaf, modes, problem.laws(), complete, speed, |slack| {
-        let scaled = scale.scaled(slack, slack.number);
-        (Sign::within(scaled, if slack.condition.inequality.is_strict() { velocity } else { impulse }), scaled)
-    })
+/// Reads signs from a leaf's f64 numbers, known to a bound.
+pub struct F64Reader<'a> {
+    problem: &'a ContactProblem,
+    scale: &'a Scale,
+    /// What scaled velocities and impulses may be off by.
+    velocity: f64,
+    impulse: f64,
+}
+
+impl<'a> F64Reader<'a> {
+    pub fn new(problem: &'a ContactProblem, scale: &'a Scale, bound: &Bound) -> Self {
+        Self { problem, scale, velocity: bound.velocity_error(), impulse: bound.impulse_error() }
+    }
+
+    /// Whether the first wrong sign is found, with which most combinations are done.
+    pub fn rejects(&self, leaf: &Leaf<'_, f64>, modes: &[Mode]) -> bool {
+        modes.iter().zip(self.problem.laws()).enumerate().any(|(contact, (&mode, law))| {
+            let numbers = leaf.numbers(contact);
+            let mut wrong =
+                law.is_unheld(mode) && matches!(self.speed(contact, numbers[0]), Sign::Positive | Sign::Negative);
+            law.conditions(mode, |condition| {
+                wrong = wrong || {
+                    let number = condition.function.at(|which| numbers[which], std::convert::identity);
+                    self.sign(&Slack { contact, condition, number }).0 == Sign::Negative
+                };
+            });
+            wrong
+        })
+    }
+
+    pub fn read(&self, leaf: &Leaf<'_, f64>, modes: &[Mode]) -> CombinationReading {
+        let speed = |contact: usize, c_t: f64| self.speed(contact, c_t);
+        read(leaf, modes, self.problem.laws(), speed, |slack| self.sign(slack))
+    }
+
+    #[inline]
+    fn speed(&self, contact: usize, c_t: f64) -> Sign {
+        Sign::within(c_t / self.scale.speed / self.scale.mobility[2 * contact], self.velocity)
+    }
+
+    /// The sign and the value of a slack, free of units.
+    #[inline]
+    fn sign(&self, slack: &Slack<f64>) -> (Sign, f64) {
+        let scaled = self.scale.scaled(slack, slack.number);
+        (
+            Sign::within(scaled, if slack.condition.inequality.is_strict() { self.velocity } else { self.impulse }),
+            scaled,
+        )
+    }
 }
 
 /// Reads a leaf whose numbers know their own sign.
 pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], scale: &Scale) -> CombinationReading {
     let scaled = |slack: &Slack<T>| scale.scaled(slack, slack.number.to_f64());
-    read(leaf, modes, laws, true, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
+    read(leaf, modes, laws, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
 }
 
 /// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one.
@@ -58,7 +92,6 @@ fn read<T: Real>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
     laws: &[Law],
-    complete: bool,
     speed: impl Fn(usize, T) -> Sign,
     slack: impl Fn(&Slack<T>) -> (Sign, f64),
 ) -> CombinationReading {
@@ -81,11 +114,7 @@ fn read<T: Real>(
             }
         }
     }
-    let mut done = false;
     slacks(leaf, modes, laws, |entry| {
-        if done {
-            return;
-        }
         let (sign, scaled) = slack(&entry);
         let (contact, inequality) = (entry.contact, entry.condition.inequality);
         let violated = match sign {
@@ -99,7 +128,6 @@ fn read<T: Real>(
                 reading.because = because;
             }
             reading.sign = Sign::Negative;
-            done = !complete;
         } else if sign == Sign::Undecided && reading.sign == Sign::Positive {
             reading.sign = Sign::Undecided;
         }

@@ -98,6 +98,7 @@ pub enum Sign {
 
 impl Sign {
     /// The sign of a number with an absolute error of at most `error`.
+    #[inline]
     pub fn within(number: f64, error: f64) -> Self {
         if number > error {
             Sign::Positive
