@@ -67,7 +67,7 @@ pub struct AnswerSummary {
     /// Sum of indices.
     pub index_sum: Option<i32>,
     /// Rank of G.
-    pub rank: usize,
+    pub rank: Option<usize>,
 }
 
 fn as_text<S: Serializer>(refused: &Option<Error>, serializer: S) -> Result<S::Ok, S::Error> {

@@ -22,12 +22,10 @@ use crate::draw::{Keyframe, ListedKeyframe};
 use crate::error::Location;
 use crate::error::excerpt::Excerpt;
 use crate::gait::{Landing, Sample, Sampled};
-use crate::impact::{Analysis, Outcome, Verdict};
-use crate::law::{Friction, Mode};
 use crate::pipeline::{Options, Pipeline};
 use crate::read::documents::utf8;
 use crate::read::table::{Carried, Header, Rows};
-use crate::state::{ByLink, Defaults, State};
+use crate::state::{Defaults, State};
 use crate::write::{self, CarriedFields, Columns, Detail, Refused, Report, Touchdown, short_id};
 use crate::{Error, Reason, Result, Robot};
 use serde_json::Value;
@@ -84,7 +82,10 @@ impl Around<'_> {
 
 impl<'q> Batch<'q> {
     pub fn new(question: &'q Question<'q>) -> Self {
-        let pipeline = Pipeline::new(question.robot, question.options.clone());
+        // Tables and keyframes show all.
+        let brief = question.detail.brief && question.columns.is_none() && !question.keyframes;
+        let options = Options { brief, friction_needed: true, ..question.options.clone() };
+        let pipeline = Pipeline::new(question.robot, options);
         Self { question, pipeline, rows: question.header.map(Header::rows) }
     }
 
@@ -165,8 +166,8 @@ impl<'q> Batch<'q> {
         block: &mut Block,
     ) {
         match state {
-            Ok(mut state) => {
-                if let Err(error) = self.result(&mut state, around, block) {
+            Ok(state) => {
+                if let Err(error) = self.result(&state, around, block) {
                     self.refuse(error, state.id, around, block);
                 }
             }
@@ -175,7 +176,7 @@ impl<'q> Batch<'q> {
     }
 
     /// Appends the result of a state.
-    fn result(&mut self, state: &mut State, around: Around<'_>, block: &mut Block) -> Result<()> {
+    fn result(&mut self, state: &State, around: Around<'_>, block: &mut Block) -> Result<()> {
         let Question { robot, detail, header, columns, .. } = *self.question;
         let given = self.question.defaults.friction;
         block.summary.own_friction += u64::from(given.is_some() && state.scene.friction.default != given);
@@ -202,9 +203,8 @@ impl<'q> Batch<'q> {
         });
         match impact.analyzed() {
             Ok(analysis) => {
-                let needed = self.friction_needed(state, analysis);
                 let place = || StateRef { id: state.id.clone().map(short_id), line: around.line };
-                block.summary.count(place, &impact, analysis, needed);
+                block.summary.count(place, &impact, analysis);
             }
             // The result contains it next to the matrices.
             Err(error) => block.refuse(error, around),
@@ -230,21 +230,6 @@ impl<'q> Batch<'q> {
             let time = around.time(self.question.header);
             block.keyframes.push(ListedKeyframe { line: around.line, id, time, keyframe: keyframe() });
         }
-    }
-
-    /// The friction with which no contact would have to slide, if one has to; see [`MoreFriction`].
-    fn friction_needed(&mut self, state: &mut State, analysis: &Analysis) -> Option<f64> {
-        if analysis.no_slip_consistent != Some(false)
-            || !matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous)
-        {
-            return None;
-        }
-        let given = std::mem::replace(&mut state.scene.friction, ByLink::everywhere(Friction::Infinite));
-        let rough = self.pipeline.impact(state);
-        state.scene.friction = given;
-        let outcomes = rough.ok()?.analysis?.outcomes;
-        let without_slip = outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
-        without_slip.map(friction_of).min_by(f64::total_cmp)
     }
 }
 
@@ -277,14 +262,4 @@ impl Block {
         let error = if place.is_some() { error } else { error.on(around.line, 1) };
         self.refused.push(RefusedRecord { error, excerpt });
     }
-}
-
-/// The greatest |L_t| / L_n of the sticking contacts.
-fn friction_of(outcome: &Outcome) -> f64 {
-    let sticking = outcome.impulse.iter().zip(&outcome.modes).filter(|(_, mode)| **mode == Mode::Stick);
-    let ratios = sticking.map(|(&[tangential, normal], _)| match tangential.abs() {
-        0.0 => 0.0,
-        tangential => tangential / normal.max(0.0),
-    });
-    ratios.fold(0.0, f64::max)
 }

@@ -118,21 +118,15 @@ pub struct ModeCount {
 }
 
 impl Summary {
-    /// Counts a state that has outcomes; `friction_needed` if it is one of [`MoreFriction`].
-    pub fn count(
-        &mut self,
-        state: impl Fn() -> StateRef,
-        impact: &Impact,
-        analysis: &Analysis,
-        friction_needed: Option<f64>,
-    ) {
+    /// Counts a state that has outcomes.
+    pub fn count(&mut self, state: impl Fn() -> StateRef, impact: &Impact, analysis: &Analysis) {
         self.states += 1;
         for ((verdict, _), count) in VERDICTS.iter().zip(&mut self.verdicts.0) {
             *count += u64::from(*verdict == analysis.verdict);
         }
         self.resting += u64::from(impact.resting.contains(&true));
         self.near(&state, &analysis.outcomes);
-        if let Some(friction) = friction_needed {
+        if let Some(friction) = impact.friction_needed {
             self.more_friction.add(MoreFriction { states: 1, greatest: Some(Needed { state: state(), friction }) });
         }
         for outcome in &analysis.outcomes {

@@ -215,6 +215,7 @@ pub(super) fn pipeline_options(
         matrices: detail.matrices,
         no_proof: detail.no_proof,
         reductions: reductions.reductions(),
+        ..pipeline::Options::default()
     }
 }
 

@@ -47,6 +47,7 @@ pub(super) fn run(args: &Args) -> Completion {
             rejections: (detail.explain || summed_up).into(),
             prove: !args.detail.no_proof,
             reductions: args.reductions.reductions(),
+            ..AnalysisOptions::default()
         };
         let analysis = scratch.analyze(&problem.contact, &problem, asked)?;
         let report = Report::of_problem(&problem, &analysis, detail);

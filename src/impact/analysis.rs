@@ -62,6 +62,52 @@ impl Scratch {
             return Err(too_many_contacts(contacts));
         }
         let options = AnalysisOptions { prove: options.prove && source.is_exact(), ..options };
+        self.tableau.without_slip = false;
+        let (Findings { outcomes, families, rejected, effort }, regular) = self.find(problem, source, options);
+        let ranked = || rank_and_condition(problem, source, &self.scale, regular, options.reductions);
+        let (rank, condition) = (!options.brief).then(ranked).unzip();
+        let is_explained = options.rejections == ListedRejections::Everything && rank == Some(2 * contacts);
+        Ok(Analysis {
+            verdict: verdict(contacts, &outcomes),
+            proven: options.prove && outcomes.iter().all(|outcome| outcome.proven),
+            index_sum: outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum(),
+            rank,
+            condition: condition.flatten(),
+            no_slip_consistent: no_slip_consistent(&outcomes),
+            explanation: if is_explained { explanation(problem, &self.scale) } else { None },
+            outcomes,
+            families,
+            rejected,
+            effort,
+        })
+    }
+
+    /// The friction with which no contact would have to slide; `None` if one slides whatever the friction is.
+    ///
+    /// It is the greatest |L_t| / L_n of the sticking contacts, of the outcome without a sliding contact that needs
+    /// least; `problem` and `source` have infinite friction everywhere. More contacts than [`CONTACT_LIMIT`] have none.
+    pub fn friction_without_slip<S: Source>(
+        &mut self,
+        problem: &ContactProblem,
+        source: &S,
+        options: AnalysisOptions<'_>,
+    ) -> Option<f64> {
+        if problem.contacts() > CONTACT_LIMIT {
+            return None;
+        }
+        self.tableau.without_slip = true;
+        let (Findings { outcomes, .. }, _) = self.find(problem, source, options);
+        outcomes.iter().map(steepest).min_by(f64::total_cmp)
+    }
+
+    /// All outcomes of the modes that are visited, and whether G was shown to be regular.
+    fn find<S: Source>(
+        &mut self,
+        problem: &ContactProblem,
+        source: &S,
+        options: AnalysisOptions<'_>,
+    ) -> (Findings, bool) {
+        let contacts = problem.contacts();
         let errors = source.errors();
         self.scale.measure(problem, errors);
         self.tableau.separately = !options.reductions.frictionless;
@@ -79,7 +125,8 @@ impl Scratch {
         };
         self.tableau.visit(&mut pass);
         let F64Pass { mut regular, undecided, mut collected, .. } = pass;
-        if problem.laws().iter().any(|law| law.impulse(Mode::Stick) != Impulse::Free) {
+        let is_asked = !(options.brief || self.tableau.without_slip);
+        if is_asked && problem.laws().iter().any(|law| law.impulse(Mode::Stick) != Impulse::Free) {
             regular = regular || shows_regular(&mut self.tableau, &mut self.bounds, contacts);
         }
         if !undecided.is_empty() {
@@ -94,23 +141,18 @@ impl Scratch {
             let found = pass.found;
             collected.add_families(found);
         }
-        let Findings { outcomes, families, rejected, effort } = collected.finish();
-        let (rank, condition) = rank_and_condition(problem, source, &self.scale, regular, options.reductions);
-        let is_explained = options.rejections == ListedRejections::Everything && rank == 2 * contacts;
-        Ok(Analysis {
-            verdict: verdict(contacts, &outcomes),
-            proven: options.prove && outcomes.iter().all(|outcome| outcome.proven),
-            index_sum: outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum(),
-            rank,
-            condition,
-            no_slip_consistent: no_slip_consistent(&outcomes),
-            explanation: if is_explained { explanation(problem, &self.scale) } else { None },
-            outcomes,
-            families,
-            rejected,
-            effort,
-        })
+        (collected.finish(), regular)
     }
+}
+
+/// The greatest |L_t| / L_n of the sticking contacts.
+fn steepest(outcome: &Outcome) -> f64 {
+    let sticking = outcome.impulse.iter().zip(&outcome.modes).filter(|(_, mode)| **mode == Mode::Stick);
+    let ratios = sticking.map(|(&[tangential, normal], _)| match tangential.abs() {
+        0.0 => 0.0,
+        tangential => tangential / normal.max(0.0),
+    });
+    ratios.fold(0.0, f64::max)
 }
 
 fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {

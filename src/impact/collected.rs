@@ -45,13 +45,15 @@ pub struct AnalysisOptions<'a> {
     pub rejections: ListedRejections<'a>,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
+    /// Without the rank and the condition of G.
+    pub brief: bool,
     /// What of the enumeration is left out if a problem does not need it.
     pub reductions: Reductions,
 }
 
 impl Default for AnalysisOptions<'_> {
     fn default() -> Self {
-        Self { rejections: ListedRejections::Nothing, prove: true, reductions: Reductions::ALL }
+        Self { rejections: ListedRejections::Nothing, prove: true, brief: false, reductions: Reductions::ALL }
     }
 }
 
@@ -217,20 +219,23 @@ impl<'a> Collected<'a> {
 
     pub fn finish(mut self) -> Findings {
         self.effort.bound = self.total - self.effort.ball - self.effort.double_double - self.effort.precise;
-        let mut outcomes: Vec<(usize, Numbered)> = self.outcomes.into_iter().enumerate().collect();
-        outcomes.sort_by_key(|(_, own)| own.number);
-        let mut places = vec![0; outcomes.len()];
-        for (place, (found, _)) in outcomes.iter().enumerate() {
-            places[*found] = place;
+        if !self.families.is_empty() {
+            let mut order: Vec<usize> = (0..self.outcomes.len()).collect();
+            order.sort_by_key(|&found| self.outcomes[found].number);
+            let mut places = vec![0; order.len()];
+            for (place, found) in order.into_iter().enumerate() {
+                places[found] = place;
+            }
+            for (_, family) in &mut self.families {
+                family.corners.iter_mut().for_each(|corner| *corner = places[*corner]);
+                family.corners.sort_unstable();
+            }
+            self.families.sort_by_key(|(number, _)| *number);
         }
-        for (_, family) in &mut self.families {
-            family.corners.iter_mut().for_each(|corner| *corner = places[*corner]);
-            family.corners.sort_unstable();
-        }
-        self.families.sort_by_key(|(number, _)| *number);
+        self.outcomes.sort_by_key(|own| own.number);
         self.rejected.sort_by_key(|(number, _)| *number);
         Findings {
-            outcomes: outcomes.into_iter().map(|(_, own)| own.outcome).collect(),
+            outcomes: self.outcomes.into_iter().map(|own| own.outcome).collect(),
             families: self.families.into_iter().map(|(_, family)| family).collect(),
             rejected: self.rejected.into_iter().map(|(_, rejection)| rejection).collect(),
             effort: self.effort,

@@ -289,9 +289,9 @@ pub struct Analysis {
     pub rejected: Vec<Rejection>,
     /// Sum of the outcomes' indices; `None` if one of them has none.
     pub index_sum: Option<i32>,
-    /// Rank of the Delassus matrix.
-    pub rank: usize,
-    /// Condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular.
+    /// Rank of the Delassus matrix; `None` if it is not asked for.
+    pub rank: Option<usize>,
+    /// Condition number of the Delassus matrix scaled to a unit diagonal; `None` if it is singular, or not asked for.
     pub condition: Option<f64>,
     /// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination.
     pub no_slip_consistent: Option<bool>,

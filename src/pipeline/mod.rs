@@ -12,6 +12,7 @@ mod prepared;
 pub mod robust;
 
 use self::assembly::{Assembly, Elimination};
+use self::exact::ExactState;
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::{NearestFoot, Unsolved};
 use crate::contact::{Contact, Feet, Merged, Placement};
@@ -19,7 +20,7 @@ use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{ContactPoint, PointImpulse, RoundingBounds, articulated_inertias};
 use crate::error::{Result, finite};
 use crate::impact::{
-    Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, too_many_contacts,
+    Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, Verdict, too_many_contacts,
 };
 use crate::law::{Friction, Law, Mode};
 use crate::planar::{Pair, Rotation};
@@ -47,6 +48,11 @@ pub struct Options {
     pub explain_up_to: usize,
     /// Keep the matrices.
     pub matrices: bool,
+    /// Only what a result in brief shows: without velocities of base and joints, rank and condition of G, the nearest
+    /// foot, notes on it and what is left out.
+    pub brief: bool,
+    /// Compute [`Impact::friction_needed`].
+    pub friction_needed: bool,
     /// Do without bounds of the rounding in M, J and c: faster, and nothing is proven.
     pub no_proof: bool,
     /// Parts of the computation to leave out if a scene does not need them.
@@ -63,7 +69,7 @@ pub struct Impact {
     pub placement: Placement,
     /// The closed contacts, in the order of all lists per contact.
     pub contacts: Vec<Contact>,
-    /// The lowest foot that does not touch; `None` if every foot touches.
+    /// The lowest foot that does not touch; `None` if every foot touches, and in brief.
     pub nearest: Option<NearestFoot>,
     /// Contact velocities before the impact, [tangential, normal] \[m/s\].
     pub velocity_before: Vec<Pair<f64>>,
@@ -77,6 +83,10 @@ pub struct Impact {
     pub stance: Option<usize>,
     /// Every outcome and the verdict; `None` of more contacts than are enumerated (see [`Impact::analyzed`]).
     pub analysis: Option<Analysis>,
+    /// The friction with which no contact would have to slide, if asked for and if in every outcome one does: the greatest
+    /// |L_t| / L_n of the contacts that stick, infinite if one sticks without a normal impulse; of several outcomes
+    /// without a sliding contact that of the one that needs least. `None` if infinite friction gives none.
+    pub friction_needed: Option<f64>,
     /// Whether the outcomes are the same on the box of the state's uncertainty; `None` if it has none.
     pub holds: Option<robust::Robustness>,
     /// The matrices, if asked for.
@@ -231,19 +241,30 @@ impl<'r> Pipeline<'r> {
         let errors = Errors { delassus: *delassus, velocity: Some(of_velocity), likely: *likely };
         let source = prepared.exact(self.robot, state, &self.assembly, errors);
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
-        let Options { no_proof, reductions, .. } = self.options;
+        let Options { no_proof, reductions, brief, .. } = self.options;
         let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
-        let asked = AnalysisOptions { rejections, prove: !no_proof, reductions };
+        let asked = AnalysisOptions { rejections, prove: !no_proof, brief, reductions };
         // More contacts than are enumerated are all that it refuses.
         let mut analysis = self.scratch.analyze(problem, &source, asked).ok();
-        let outcomes = analysis.as_mut().map_or(&mut [][..], |analysis| &mut analysis.outcomes);
+        let slides = |analysis: &Analysis| {
+            let is_decided = matches!(analysis.verdict, Verdict::Unique | Verdict::Ambiguous);
+            is_decided && analysis.no_slip_consistent == Some(false)
+        };
+        let mut friction_needed = None;
+        if self.options.friction_needed && analysis.as_ref().is_some_and(slides) {
+            let rough = problem.under(Law::Unbounded);
+            let source = ExactState { laws: rough.laws(), ..source };
+            let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
+            friction_needed = self.scratch.friction_without_slip(&rough, &source, asked);
+        }
+        let outcomes = analysis.as_mut().filter(|_| !brief).map_or(&mut [][..], |analysis| &mut analysis.outcomes);
         if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
         }
         for outcome in outcomes {
             self.set_velocity(outcome, velocity, applied, &free);
         }
-        let left_out = self.left_out(scene, &prepared);
+        let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
         let mut notes = prepared.notes;
         notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
         let impact = Impact {
@@ -258,6 +279,7 @@ impl<'r> Pipeline<'r> {
             resting: prepared.resting,
             stance: prepared.stance,
             analysis,
+            friction_needed,
             holds: None,
             notes,
         };

@@ -143,8 +143,8 @@ impl Pipeline<'_> {
         let Detected { contacts, merged, out_of_reach } = self
             .contacts(&footing, foot.as_ref(), &mut notes)
             .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity)))?;
-        let nearest = self.open_foot(&footing, &contacts, &velocity);
-        if scene.contacts.is_none() {
+        let nearest = if self.options.brief { None } else { self.open_foot(&footing, &contacts, &velocity) };
+        if scene.contacts.is_none() && !self.options.brief {
             self.note_near_miss(&contacts, nearest, &mut notes);
         }
         check_matrix_size(contacts.len())?;

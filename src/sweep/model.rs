@@ -112,7 +112,9 @@ impl<'a> Solver<'a> {
     /// Properties of a region, found at a point in it.
     pub(super) fn inner(&mut self, point: &[f64]) -> Inner {
         let found = self.explained(point, &[]);
-        let dependent = |(contacts, analysis): &(Vec<String>, Analysis)| analysis.rank < 2 * contacts.len();
+        let dependent = |(contacts, analysis): &(Vec<String>, Analysis)| {
+            analysis.rank.is_some_and(|rank| rank < 2 * contacts.len())
+        };
         Inner {
             dependent: found.as_ref().is_ok_and(dependent),
             verdict: found.as_ref().ok().map(|(_, analysis)| analysis.verdict),

@@ -434,7 +434,7 @@ impl<'a> Report<'a> {
             id: state.id.as_ref().map(Cow::Borrowed),
             nearest,
             kinetic_energy: Some(impact.kinetic_energy),
-            left_out: Some(LeftOutRecord::of_impact(robot, impact)),
+            left_out: (!detail.brief).then(|| LeftOutRecord::of_impact(robot, impact)),
             holds: impact.holds.as_ref().map(HoldsRecord::from),
             counterexample: impact.holds.as_ref().and_then(|holds| CounterexampleRecord::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),
@@ -483,7 +483,7 @@ impl<'a> Report<'a> {
             explain: explained.map(|analysis| analysis.explanation.as_ref().map(Cow::Borrowed)),
             index_sum: known.map(|analysis| analysis.index_sum),
             condition: known.map(|analysis| analysis.condition),
-            rank: known.map(|analysis| analysis.rank),
+            rank: known.and_then(|analysis| analysis.rank),
             contacts,
             ..Self::default()
         }
@@ -530,7 +530,7 @@ const ILL_CONDITIONED: f64 = 1e14;
 fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     let keep = "give mass_matrix, contact_jacobian and velocity to keep what rounding loses";
     let repaired = || {
-        let rank = analysis.rank;
+        let rank = analysis.rank.unwrap_or_default();
         format!(
             "the Delassus matrix is indefinite by its rounding: the nearest semidefinite one, of rank {rank}, was taken; {keep}"
         )
@@ -582,6 +582,22 @@ mod tests {
             assert_eq!(short_id(kept.clone()), kept);
         }
         assert_eq!(short_id("é".repeat(1 << 20).into()), format!("{}... (cut)", "é".repeat(ID_LIMIT)));
+    }
+
+    #[test]
+    fn brief_impact_has_all_of_a_brief_result() {
+        let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).unwrap();
+        let detail = Detail { brief: true, ..Detail::default() };
+        for text in [include_str!("../../examples/ramone.json"), include_str!("../../examples/ramone_measured.json")] {
+            let state = State::from_json(text, &robot, &Defaults::default()).unwrap();
+            let [whole, brief] = [false, true].map(|brief| {
+                let impact = Pipeline::new(&robot, Options { brief, ..Options::default() }).impact(&state).unwrap();
+                let mut line = Vec::new();
+                Report::of_state(&robot, &state, &impact, detail).unwrap().append_json(detail, &mut line);
+                line
+            });
+            assert_eq!(String::from_utf8(whole), String::from_utf8(brief));
+        }
     }
 
     #[test]

@@ -91,7 +91,7 @@ pub fn check_analysis(analysis: &Analysis, contacts: usize, case: &str) {
 /// The index theorem (paper, section 2) for a positive definite Delassus matrix; a border or a family hides indices.
 pub fn keeps_index_theorem(analysis: &Analysis, contacts: usize) -> bool {
     let hides = |outcome: &Outcome| outcome.border.is_some() || outcome.family || !outcome.decided;
-    let applies = analysis.rank == 2 * contacts && !analysis.outcomes.iter().any(hides);
+    let applies = analysis.rank == Some(2 * contacts) && !analysis.outcomes.iter().any(hides);
     !applies || contacts == 0 || analysis.index_sum == Some(1)
 }
 

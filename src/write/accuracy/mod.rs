@@ -152,7 +152,8 @@ mod tests {
 
     fn study(proven: bool, methods: Vec<Method>) -> CaseStudy {
         let verdict = Verdict::Unique;
-        let answer = Some(AnswerSummary { verdict, outcomes: 1, proven, margin: None, index_sum: Some(1), rank: 2 });
+        let answer =
+            Some(AnswerSummary { verdict, outcomes: 1, proven, margin: None, index_sum: Some(1), rank: Some(2) });
         let (name, condition) = (String::new(), ConditionNumbers::default());
         CaseStudy { name, coordinates: None, contacts: 1, answer, refused: None, condition, methods }
     }
