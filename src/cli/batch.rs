@@ -235,7 +235,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let (answered, refused) = continued.as_ref().map_or((0, 0), |begun| (begun.answered, begun.refused));
     let (begun, output) = match continued {
         Some(mut continued) => (continued.is_empty()?, BatchOutput::Continued(continued)),
-        None => (true, BatchOutput::New(Target::open(output, true, standard_output)?)),
+        None => (true, BatchOutput::New(Target::open(output, true)?)),
     };
     let mut sink = OutputSink::new(output, &name, &progress);
     if begun {
@@ -379,16 +379,4 @@ fn note_columns(header: &Header, dropped: &Mutex<Dropped>) {
     if let (true, Ok(dropped)) = (header.is_spatial(), dropped.lock()) {
         note(&format!("the base is projected into its plane along the mean heading of each clip; left out: {dropped}"));
     }
-}
-
-/// Standard output without a buffer; blocks of results are large enough, and std's line buffer would hide how much
-/// reached a full disk.
-fn standard_output() -> io::Result<Box<dyn Write>> {
-    #[cfg(unix)]
-    {
-        let standard_output = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
-        Ok(Box::new(std::fs::File::from(standard_output)))
-    }
-    #[cfg(not(unix))]
-    Ok(Box::new(io::stdout()))
 }

@@ -7,7 +7,7 @@ use heelstrike::write::{self, Palette};
 use heelstrike::{Error, Reason};
 use serde::Serialize;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// The place and form of results.
@@ -258,19 +258,15 @@ pub(super) enum Target {
 }
 
 impl Target {
-    /// The file at `path`, or `standard` output; with `keep`, a file that is not finished stays.
-    pub fn open(
-        path: Option<&Path>,
-        keep: bool,
-        standard: impl FnOnce() -> io::Result<Box<dyn Write>>,
-    ) -> io::Result<Self> {
+    /// The file at `path`, or standard output; with `keep`, a file that is not finished stays.
+    pub fn open(path: Option<&Path>, keep: bool) -> io::Result<Self> {
         match path.filter(|path| *path != Path::new("-")) {
             Some(path) => {
                 let mut file = NewFile::create(path)?;
                 file.keep = keep;
                 Ok(Self::File(file))
             }
-            None => standard().map(Self::Standard),
+            None => standard_output().map(Self::Standard),
         }
     }
 
@@ -304,6 +300,18 @@ impl Write for Target {
     }
 }
 
+/// Standard output without a buffer: results come in large blocks, std's line buffer would hide how much reached a full
+/// disk, and std takes writing to a descriptor that is not open for writing as done.
+fn standard_output() -> io::Result<Box<dyn Write>> {
+    #[cfg(unix)]
+    {
+        let standard_output = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned()?;
+        Ok(Box::new(File::from(standard_output)))
+    }
+    #[cfg(not(unix))]
+    Ok(Box::new(io::stdout()))
+}
+
 /// A buffered output; standard output is colored if it is a terminal that wants colors.
 pub(super) struct Output {
     pub writer: BufWriter<Target>,
@@ -314,7 +322,7 @@ pub(super) struct Output {
 impl Output {
     /// Opens `path`, or standard output.
     pub fn open(path: Option<&Path>) -> io::Result<Self> {
-        let target = Target::open(path, false, || Ok(Box::new(io::stdout().lock())))?;
+        let target = Target::open(path, false)?;
         let palette = match (&target, AutoStream::choice(&io::stdout())) {
             (Target::File(_), _) | (_, ColorChoice::Never) => Palette::default(),
             (Target::Standard(_), _) => COLORS,
@@ -340,7 +348,12 @@ const COLORS: Palette = Palette { strong: "\x1b[1m", faint: "\x1b[2m", plain: "\
 
 /// The error, with the file's name.
 pub(super) fn named(path: &Path, error: io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+    let path = path.display();
+    let reason = match error.kind() {
+        ErrorKind::NotFound => format!("{path}: its folder is not there"),
+        _ => format!("{path}: {error}"),
+    };
+    io::Error::new(error.kind(), reason)
 }
 
 #[cfg(test)]

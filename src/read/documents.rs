@@ -41,10 +41,10 @@ const UTF_16: &str = "save it as UTF-8, or turn it by iconv -f UTF-16 -t UTF-8";
 const FOREIGN: [(&[u8], &str, &str); 8] = [
     (b"\xFF\xFE", "the text is UTF-16", UTF_16),
     (b"\xFE\xFF", "the text is UTF-16", UTF_16),
-    (b"\x1F\x8B", "the input is packed by gzip", "unpack it: gunzip -c FILE, and - in its place reads the pipe"),
-    (b"\x28\xB5\x2F\xFD", "the input is packed by zstd", "unpack it: zstdcat FILE, and - in its place reads the pipe"),
-    (b"\xFD7zXZ\0", "the input is packed by xz", "unpack it: xzcat FILE, and - in its place reads the pipe"),
-    (b"BZh", "the input is packed by bzip2", "unpack it: bzcat FILE, and - in its place reads the pipe"),
+    (b"\x1F\x8B", "the input is packed by gzip", "unpack it: gunzip -c FILE | heelstrike ... with - for FILE"),
+    (b"\x28\xB5\x2F\xFD", "the input is packed by zstd", "unpack it: zstdcat FILE | heelstrike ... with - for FILE"),
+    (b"\xFD7zXZ\0", "the input is packed by xz", "unpack it: xzcat FILE | heelstrike ... with - for FILE"),
+    (b"BZh", "the input is packed by bzip2", "unpack it: bzcat FILE | heelstrike ... with - for FILE"),
     (b"PK\x03\x04", "the input is a zip archive, as spreadsheets are", "unpack it, or save the sheet as CSV"),
     (b"PAR1", "the input is a Parquet file", "write it as CSV or NDJSON"),
 ];

@@ -135,6 +135,33 @@ fn colors_come_only_where_they_are_wanted() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn an_output_that_is_not_open_for_writing_is_reported() {
+    for arguments in [
+        &["impact", RAMONE, "examples/ramone.json"][..],
+        &["batch", WALKER, "examples/keyframes.ndjson", "--friction", "1"],
+        &["inspect", RAMONE],
+        &["schema", "state"],
+        &["man"],
+    ] {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_heelstrike"));
+        let unwritable = fs::File::open("Cargo.toml").expect("a file");
+        let run = command.args(arguments).stdout(unwritable).output().expect("it runs");
+        let stderr = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(stderr.contains("the output cannot be written: Bad file descriptor"), "{arguments:?}: {stderr}");
+    }
+}
+
+#[test]
+fn what_a_terminal_obeys_is_escaped_in_arguments() {
+    for arguments in [&["impact", "--\u{202e}\u{1b}[2J"][..], &["inspect", RAMONE, "--base", "\u{9b}31m"]] {
+        let stderr = heelstrike(arguments).refusal(2);
+        assert!(stderr.contains("\\u{") && !stderr.contains(['\u{1b}', '\u{202e}', '\u{9b}']), "{stderr:?}");
+    }
+}
+
 // Options of the scene.
 
 #[test]

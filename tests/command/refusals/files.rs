@@ -66,7 +66,7 @@ fn bytes_that_are_no_text_are_refused() {
 #[test]
 fn an_output_that_cannot_be_written_is_reported() {
     for (output, reason) in [
-        ("nowhere/at/all.json", "nowhere/at/all.json: No such file or directory (os error 2)"),
+        ("nowhere/at/all.json", "nowhere/at/all.json: its folder is not there"),
         ("examples", "examples: Is a directory (os error 21)"),
         ("/dev/full", "No space left on device (os error 28)"),
     ] {
