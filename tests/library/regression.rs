@@ -184,6 +184,14 @@ fn a_speed_that_is_all_rounding_is_taken_as_rest() {
     let analysis = found.analysis.expect("one contact");
     assert_eq!((analysis.verdict, analysis.proven), (Verdict::NoImpact, true));
     assert_eq!(analysis.outcomes[0].modes, [Stick]);
+
+    // With eight decimals it rests to some 1e-8 m/s; 4e-7 m/s are no rounding of these.
+    let printed = |number: f64| (number * 1e8).round() / 1e8;
+    let rests = |state: &str| impact(&ramone(), state).resting[0];
+    assert!(rests(&state(printed(-x), printed(-z))));
+    assert!(!rests(&state(printed(-x + 4e-7), printed(-z))));
+    // What is measured is not at rest, but somewhere in its box.
+    assert!(!rests(&nulled.replacen('{', r#"{"uncertainty": {"velocity": 1e-3}, "#, 1)));
 }
 
 // Extremes.

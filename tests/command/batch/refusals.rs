@@ -151,7 +151,7 @@ fn quotes_around_several_rows_cost_only_their_own() {
         150 => "150,0.5,-1,\"note\n".to_owned(),
         180 => "180,0.5,-1,note\"\n".to_owned(),
         // Text of two lines is no row.
-        _ if id % 50 == 7 => format!("{id},0.5,-1,\"a note,\nof two lines\"\n"),
+        _ if id % 50 == 40 => format!("{id},0.5,-1,\"a note,\nof two lines\"\n"),
         _ => format!("{id},0.5,-1,note\n"),
     };
     let table = "id,q_base_z,v_base_z,note\n".to_owned() + &(0..200).map(row).collect::<String>();

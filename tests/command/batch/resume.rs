@@ -33,7 +33,7 @@ fn a_cut_output_is_continued_to_the_same_bytes() {
         let expected = fs::read(&whole).expect("an output");
         assert!(expected.len() > 1000, "{name}: {}", expected.len());
         for round in 0..8 {
-            let end = random.whole(0, expected.len() as i64) as usize;
+            let end = if round < 2 { 0 } else { random.whole(0, expected.len() as i64) as usize };
             // What was written before the end is in a part, unless the input ended early.
             let there = if round % 2 == 0 { format!("{cut}.part") } else { cut.clone() };
             fs::write(&there, &expected[..end]).expect("a file");
@@ -44,6 +44,57 @@ fn a_cut_output_is_continued_to_the_same_bytes() {
             fs::remove_file(&cut).expect("it is there");
         }
     }
+}
+
+#[test]
+fn rows_of_one_state_are_continued_together() {
+    // Three outcomes each.
+    let state: serde_json::Value = serde_json::from_str(&read("examples/minimalistic.json")).expect("JSON");
+    let (states, output) = (file("three.ndjson", format!("{state}\n").repeat(5)), place("three.csv"));
+    let run = |more: &[&str]| heelstrike(&[&["batch", WALKER, &states, "-o", &output], more].concat()).well();
+    run(&[]);
+    let expected = read(&output);
+    assert_eq!(expected.lines().count(), 1 + 5 * 3);
+    let ends = expected.match_indices('\n').map(|(end, _)| end + 1);
+    for end in ends.skip(1).flat_map(|end| [end, end - 40]) {
+        fs::write(&output, &expected[..end]).expect("a file");
+        run(&["--resume"]);
+        assert!(read(&output) == expected, "{end} bytes");
+    }
+}
+
+#[test]
+fn a_refusal_of_a_cut_line_leaves_no_rest() {
+    let (output, states) = (place("rest.ndjson"), (0..3).map(|id| strike(id, 0.0)).collect::<String>());
+    let options = &["--brief", "--resume"];
+    into(&output, &states, options);
+    let expected = read(&output);
+    // The refusal is longer than the answer.
+    let cut = format!("{}{}", strike(0, 0.0).repeat(2), r#"{"id": 2, "position": {"joints": {"#);
+    let _ = fs::remove_file(&output);
+    into(&output, &cut.replace("\"id\":0", "\"id\":1").replacen("\"id\":1", "\"id\":0", 1), options);
+    assert!(read(&output).len() > expected.len(), "{}", read(&output));
+    into(&output, &states, options);
+    assert_eq!(read(&output), expected);
+}
+
+#[test]
+fn two_runs_do_not_write_one_file() {
+    let output = place("locked.ndjson");
+    let mut first = batching(&["-", "--friction", "0.5", "-o", &output]);
+    let mut first = first.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().expect("it runs");
+    let mut stdin = first.stdin.take().expect("a pipe");
+    stdin.write_all(strike(1, 0.0).as_bytes()).expect("it reads");
+    while fs::metadata(format!("{output}.part")).map_or(0, |part| part.len()) == 0 {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    for more in [&[][..], &["--resume"]] {
+        let stderr = into(&output, &strike(2, 0.0), more).refusal(1);
+        assert!(stderr.contains("another run is writing it"), "{stderr}");
+    }
+    drop(stdin);
+    assert!(first.wait().expect("it ends").success());
+    assert!(read(&output).starts_with("{\"id\":1,"), "{}", read(&output));
 }
 
 #[test]
@@ -89,7 +140,12 @@ fn answers_of_another_run_are_not_continued() {
     let output = place("other.ndjson");
     into(&output, input, &[]);
     let before = read(&output);
-    for (input, options) in [(input.as_str(), &["--brief", "--resume"][..]), (&strike(1, 0.0), &["--resume"])] {
+    // Shorter answers, longer ones, and those to another state.
+    for (input, options) in [
+        (input.as_str(), &["--brief", "--resume"][..]),
+        (input.as_str(), &["--explain", "--resume"]),
+        (&strike(1, 0.0), &["--resume"]),
+    ] {
         let stderr = into(&output, input, options).refusal(1);
         assert!(stderr.contains("it does not hold these answers"), "{stderr}");
         assert_eq!(read(&output), before);

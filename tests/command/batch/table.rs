@@ -25,6 +25,10 @@ fn rows_are_answered_in_order_for_any_threads() {
     let text = expected.stdout;
     let ids: Vec<usize> = text.lines().filter_map(|line| line.split(',').next()?.parse().ok()).collect();
     assert_eq!(ids, (0..500).collect::<Vec<_>>());
+    let rows = csv::Reader::from_reader(text.as_bytes()).into_records().map(|row| row.expect("a row"));
+    let lines: Vec<usize> = rows.map(|row| row[1].parse().expect("a line")).collect();
+    let breaks = |id: usize| (0..id).filter(|id| id % 7 == 3 && id % 10 != 9).count();
+    assert_eq!(lines, (0..500).map(|id| 2 + id + breaks(id)).collect::<Vec<_>>());
     // The header and a row of two lines come before it.
     assert!(expected.stderr.contains(&format!("--> {table}:12:3\n")), "{}", expected.stderr);
     assert!(text.contains("line 12: q_base_x: "), "{text}");
@@ -110,6 +114,11 @@ fn formulas_are_text_in_safe_tables() {
         assert_eq!(differ.count(), [1, 2, 0, 2][row], "{safe:?}");
     }
     assert!(plain[1].iter().any(|cell| cell.starts_with("-0.")), "{plain:?}");
+    for (id, cell) in [("\\t=1", "'\t=1,"), ("\\r=1", "\"'\r=1\",")] {
+        let state = strike(1, 0.5).replace("\"id\":1", &format!("\"id\":\"{id}\""));
+        let table = batch(&["-", "--friction", "1", "--output-format", "csv", "--csv-safe"], state).well().stdout;
+        assert!(table.lines().nth(1).is_some_and(|row| row.starts_with(cell)), "{table:?}");
+    }
     let refusal = batch(&["-", "--csv-safe"], strike(1, 0.5)).refusal(2);
     assert!(refusal.contains("--csv-safe: it is for CSV"), "{refusal}");
 }
