@@ -24,6 +24,7 @@ use crate::error::excerpt::Excerpt;
 use crate::gait::{Landing, Sample, Sampled};
 use crate::pipeline::{Options, Pipeline};
 use crate::read::documents::utf8;
+use crate::read::lines::StateLines;
 use crate::read::table::{Carried, Header, Rows};
 use crate::state::{Defaults, State};
 use crate::write::{self, CarriedFields, Columns, Detail, Refused, Report, Touchdown, short_id};
@@ -51,9 +52,20 @@ pub struct Question<'r> {
 
 /// Answers records, with memory that it reuses.
 pub struct Batch<'q> {
+    reader: Reader<'q>,
+    answerer: Answerer<'q>,
+}
+
+/// Answers states.
+struct Answerer<'q> {
     question: &'q Question<'q>,
     pipeline: Pipeline<'q>,
-    rows: Option<Rows<'q>>,
+}
+
+/// Reads the states of records.
+enum Reader<'q> {
+    Lines(StateLines<'q>),
+    Rows(Rows<'q>),
 }
 
 /// The context of a state in its input.
@@ -86,23 +98,24 @@ impl<'q> Batch<'q> {
         let brief = question.detail.brief && question.columns.is_none() && !question.keyframes;
         let options = Options { brief, friction_needed: true, ..question.options.clone() };
         let pipeline = Pipeline::new(question.robot, options);
-        Self { question, pipeline, rows: question.header.map(Header::rows) }
+        let lines = || Reader::Lines(StateLines::new(question.robot, &question.defaults));
+        let reader = question.header.map_or_else(lines, |header| Reader::Rows(header.rows()));
+        Self { reader, answerer: Answerer { question, pipeline } }
     }
 
     /// Answers records that do not depend on each other.
     pub fn records(&mut self, chunk: &Chunk) -> Block {
         let mut block = Block::default();
-        let mut rows = self.rows.take();
+        let Self { reader, answerer } = self;
         for (line, record) in chunk.records() {
             let around = Around { line, record, ..Around::default() };
-            match &mut rows {
-                Some(rows) => self.row(rows, around, &mut block),
-                None => self.line(around, &mut block),
+            match reader {
+                Reader::Lines(lines) => answerer.line(lines, around, &mut block),
+                Reader::Rows(rows) => answerer.row(rows, around, &mut block),
             }
         }
-        self.rows = rows;
         if let Some(line) = chunk.too_long {
-            self.refuse(too_long(), None, Around { line, ..Around::default() }, &mut block);
+            answerer.refuse(too_long(), None, Around { line, ..Around::default() }, &mut block);
         }
         block
     }
@@ -118,20 +131,21 @@ impl<'q> Batch<'q> {
             let RowOrigin { line, id, carried, excerpt } = origin;
             let (carried, excerpt, landing) = (Some(&carried), excerpt.as_ref(), landing.as_ref());
             let around = Around { line, record: b"", excerpt, carried, time, landing };
-            self.answer(state, || id, around, &mut block);
+            self.answerer.answer(state.as_ref().map_err(Error::clone), || id, around, &mut block);
         }
         block
     }
+}
 
+impl Answerer<'_> {
     /// Answers a line of JSON; a blank one has no answer.
-    fn line(&mut self, around: Around<'_>, block: &mut Block) {
+    fn line(&mut self, lines: &mut StateLines, around: Around<'_>, block: &mut Block) {
         // Without its line break: an error at the end of a truncated line would be on the next line.
         let record = around.record.trim_ascii_end();
         if record.is_empty() {
             return;
         }
-        let Question { robot, defaults, .. } = self.question;
-        let state = utf8(record).and_then(|text| State::from_json(text, robot, defaults));
+        let state = utf8(record).and_then(|text| lines.read(text));
         let state = state.map_err(|error| {
             let error = with_remedy(error, record);
             // Its place is that in the line alone.
@@ -151,7 +165,8 @@ impl<'q> Batch<'q> {
             Ok(Some(row)) => {
                 let carried = row.carried();
                 let around = Around { carried: Some(&carried), ..around };
-                self.answer(row.state(robot, defaults), || row.id(), around, block);
+                let state = row.state(robot, defaults);
+                self.answer(state.as_ref().map_err(Error::clone), || row.id(), around, block);
             }
             Err(error) => self.refuse(error, None, around, block),
         }
@@ -160,15 +175,15 @@ impl<'q> Batch<'q> {
     /// Answers a state, or refuses it under the id that `unread` finds.
     fn answer(
         &mut self,
-        state: Result<State>,
+        state: Result<&State>,
         unread: impl FnOnce() -> Option<Value>,
         around: Around<'_>,
         block: &mut Block,
     ) {
         match state {
             Ok(state) => {
-                if let Err(error) = self.result(&state, around, block) {
-                    self.refuse(error, state.id, around, block);
+                if let Err(error) = self.result(state, around, block) {
+                    self.refuse(error, state.id.clone(), around, block);
                 }
             }
             Err(error) => self.refuse(error, unread(), around, block),

@@ -4,6 +4,7 @@ pub mod expression;
 pub(crate) mod json;
 pub mod documents;
 pub(crate) mod state;
+pub mod lines;
 mod problem;
 mod variation;
 mod study;

@@ -11,7 +11,7 @@ use crate::{Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
 
 /// The entries of a floating base in the order of q.
-const BASE: [&str; 3] = ["x", "z", "pitch"];
+pub(super) const BASE: [&str; 3] = ["x", "z", "pitch"];
 
 /// The most loops of a state: each costs as much as a contact, and no robot has a tenth of these.
 const LOOP_LIMIT: usize = 256;

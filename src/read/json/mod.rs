@@ -122,8 +122,10 @@ impl<'n> Node<'n> {
 
     /// The number, or the value of an expression where they are allowed; it is finite, because JSON has no others.
     pub(crate) fn number(&self) -> Result<f64> {
+        if let Value::Number(number) = self.value {
+            return number.as_f64().ok_or_else(|| self.expected("a number"));
+        }
         match (self.value, self.names()) {
-            (Value::Number(number), _) => number.as_f64().ok_or_else(|| self.expected("a number")),
             (Value::Text(text), Some(names)) => {
                 names.evaluate(text).map_err(|fault| self.refuse_expression(names, fault))
             }
@@ -322,7 +324,7 @@ fn fields_of(object: &str) -> Vec<String> {
 }
 
 /// Where `part` begins in `text`, if it is a piece of it and not a copy; the quotation mark before it belongs to it.
-fn offset_in(text: &str, part: &str) -> Option<usize> {
+pub(super) fn offset_in(text: &str, part: &str) -> Option<usize> {
     let offset = (part.as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
     // An empty piece has an address of no meaning.
     (!part.is_empty() && offset + part.len() <= text.len()).then(|| offset.saturating_sub(1))

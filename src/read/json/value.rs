@@ -39,10 +39,17 @@ impl<'t> Value<'t> {
         }
     }
 
+    /// Keys and values of an object; of another value none.
+    pub(crate) fn fields(&self) -> &[(Cow<'t, str>, Self)] {
+        match self {
+            Value::Object(fields) => fields,
+            _ => &[],
+        }
+    }
+
     /// The field of that name, if it is an object that has one.
     pub(crate) fn get(&self, name: &str) -> Option<&Self> {
-        let Value::Object(fields) = self else { return None };
-        fields.iter().find(|(key, _)| key == name).map(|(_, value)| value)
+        self.fields().iter().find(|(key, _)| key == name).map(|(_, value)| value)
     }
 }
 
@@ -87,11 +94,18 @@ impl<'de> Visitor<'de> for AnyValue {
         Ok(Value::Text(Cow::Owned(text.to_owned())))
     }
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
-        std::iter::from_fn(|| list.next_element().transpose()).collect::<Result<_, _>>().map(Value::List)
+        let mut entries = Vec::new();
+        while let Some(entry) = list.next_element()? {
+            entries.push(entry);
+        }
+        Ok(Value::List(entries))
     }
     fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Self::Value, A::Error> {
-        let entries = std::iter::from_fn(|| object.next_entry().transpose());
-        entries.map(|entry| entry.map(|(Key(key), value)| (key, value))).collect::<Result<_, _>>().map(Value::Object)
+        let mut fields = Vec::new();
+        while let Some((Key(key), value)) = object.next_entry()? {
+            fields.push((key, value));
+        }
+        Ok(Value::Object(fields))
     }
 }
 
