@@ -189,6 +189,8 @@ fn a_column_that_resembles_a_missing_one_is_refused() {
     ] {
         batch(&[&arguments, more].concat(), table(&format!("{given},{columns}"))).text();
     }
+    // An acceleration and a force are not the velocity that the table lacks.
+    batch(&arguments, table(&format!("{given},a_base_z,tau_base_z"))).well();
     let absent = batch(&[&arguments[..], &["--foreign", "nobody"]].concat(), table(given)).refusal(1);
     assert!(absent.contains("column \"nobody\", given as foreign, is missing"), "{absent}");
 }
