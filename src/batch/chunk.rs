@@ -208,7 +208,11 @@ impl<R: Read + Send> Chunks<R> {
                 }
                 Ok(_) => break,
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(Reason::Io(format!("cannot be read: {error}")).into()),
+                Err(error) => {
+                    let refused = Error::new(Reason::Io(format!("cannot be read: {error}")));
+                    let is_folder = error.kind() == ErrorKind::IsADirectory;
+                    return Err(if is_folder { refused.hint("name a file in it") } else { refused });
+                }
             }
         }
         Ok(self.input.buffer())

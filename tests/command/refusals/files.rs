@@ -24,6 +24,7 @@ fn what_cannot_be_read_is_refused() {
         (&["impact", RAMONE, "examples/nobody.json"], b"", "examples/nobody.json", missing),
         (&["impact", RAMONE, "examples/ramon.json"], b"", "examples/ramon.json", near),
         (&["impact", RAMONE, "examples"], b"", "examples", folder),
+        (&["batch", RAMONE, "examples"], b"", "examples", folder),
         (&["batch", RAMONE, "examples/nobody.ndjson"], b"", "examples/nobody.ndjson", missing),
         (&["solve", "nowhere/rod.json"], b"", "nowhere/rod.json", missing),
         (INSPECT, b"", "<stdin>", nothing),
