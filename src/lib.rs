@@ -84,6 +84,8 @@ pub mod left_out {}
 #[doc(hidden)]
 pub mod error;
 #[doc(hidden)]
+pub mod budget;
+#[doc(hidden)]
 pub mod scalar;
 #[doc(hidden)]
 pub mod planar;
@@ -120,6 +122,7 @@ pub mod draw;
 #[doc(hidden)]
 pub mod batch;
 
+pub use budget::Budget;
 pub use contact::Contact;
 pub use description::Description;
 pub use error::{Error, Reason, Result};

@@ -24,6 +24,9 @@ pub struct Summary {
     pub refused: u64,
     /// How many of the others have which verdict.
     pub verdicts: Verdicts,
+    /// States that are undecided because the budget of work ended.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub beyond_budget: u64,
     /// The states nearest to another answer, the nearest first; outcomes without impulse are skipped.
     pub smallest_margins: Vec<Nearest>,
     /// States in which feet slide because friction is too small.
@@ -124,12 +127,13 @@ impl Summary {
         for ((verdict, _), count) in VERDICTS.iter().zip(&mut self.verdicts.0) {
             *count += u64::from(*verdict == analysis.verdict);
         }
+        self.beyond_budget += u64::from(analysis.open.is_some_and(|open| open.beyond_budget));
         self.resting += u64::from(impact.resting.contains(&true));
         self.near(&state, &analysis.outcomes);
         if let Some(friction) = impact.friction_needed {
             self.more_friction.add(MoreFriction { states: 1, greatest: Some(Needed { state: state(), friction }) });
         }
-        for outcome in &analysis.outcomes {
+        for outcome in analysis.outcomes.iter().filter(|outcome| outcome.decided) {
             let names = impact.contacts.iter().map(|contact| contact.name.as_str());
             let known = |list: &&mut ModeCount| {
                 list.modes == outcome.modes && names.clone().eq(list.contacts.iter().map(String::as_str))
@@ -149,6 +153,7 @@ impl Summary {
     pub fn merge(&mut self, following: Self) {
         self.states += following.states;
         self.refused += following.refused;
+        self.beyond_budget += following.beyond_budget;
         self.verdicts.0.iter_mut().zip(following.verdicts.0).for_each(|(count, more)| *count += more);
         for near in following.smallest_margins {
             self.insert(near);
@@ -237,6 +242,9 @@ impl fmt::Display for Summary {
         let counts = counts.map(|(count, what)| format!("{count} {what}"));
         let plural = if self.states == 1 { "" } else { "s" };
         writeln!(f, "{} state{plural}: {}", self.states, counts.collect::<Vec<_>>().join(", "))?;
+        if self.beyond_budget > 0 {
+            writeln!(f, "undecided because the budget of work ended (`budget`): {}", self.beyond_budget)?;
+        }
         if !self.smallest_margins.is_empty() {
             let near = self.smallest_margins.iter().take(SHOWN);
             let near = near.map(|Nearest { state, margin }| format!("{} {state}", two_digits(*margin)));

@@ -1,9 +1,10 @@
 //! `heelstrike accuracy`: error against run time, and the stiff and extreme cases.
 
 use super::input::InputFile;
-use super::options::{ContactOptions, SceneOptions};
+use super::options::{BudgetOptions, ContactOptions, SceneOptions};
 use super::output::OutputOptions;
 use super::picture::PlotOptions;
+use super::progress::Stopwatch;
 use super::robot::RobotOptions;
 use super::stream::only_document;
 use super::{Completion, Failure, input};
@@ -47,6 +48,8 @@ pub struct Args {
     #[command(flatten)]
     contacts: ContactOptions,
     #[command(flatten)]
+    budget: BudgetOptions<false>,
+    #[command(flatten)]
     plot: PlotOptions<false>,
     #[command(flatten)]
     output: OutputOptions,
@@ -60,10 +63,12 @@ pub(super) fn run(args: &Args) -> Completion {
     }
     let budget = Budget { time: Duration::from_millis(args.time), ..Budget::default() };
     args.plot.claim(&[args.robot.as_ref(), args.state.as_ref()], args.output.path())?;
+    let clock = Stopwatch::start();
     let accuracy = match (&args.robot, &args.state) {
         (Some(robot), Some(state)) => own(args, robot, state, budget)?,
         _ => suite(args.case.as_deref().unwrap_or_default(), args.no_proof, budget)?,
     };
+    drop(clock);
     args.plot.draw(&accuracy.picture(), "no method has both a time and an error here")?;
     let written = args.output.write(&accuracy, |palette| accuracy.text(palette))?;
     // The suite contains refused cases on purpose; a user's own state does not.
@@ -88,6 +93,7 @@ fn own(args: &Args, robot: &Path, state: &Path, budget: Budget) -> Result<Accura
         resting_speed: args.contacts.resting_speed,
         strict_limits: args.contacts.strict_limits,
         no_proof: args.no_proof,
+        budget: args.budget.budget(),
         ..Options::default()
     };
     let called = titled(&robot.name, &state.id);

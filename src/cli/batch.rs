@@ -2,8 +2,8 @@
 
 use super::diagnostic::{is_quiet, note, note_own_friction, with_flags};
 use super::options::{
-    Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, choice, from_zero,
-    pipeline_options,
+    BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
+    choice, from_zero, pipeline_options,
 };
 use super::output::{NewFile, Target, apart, check_ending, spare, writable};
 use super::picture::PlotOptions;
@@ -78,6 +78,8 @@ pub struct Args {
     /// Whether refused states make the exit status 1
     #[arg(long, value_name = "HOW", value_parser = choice(ON_REFUSED), default_value = "fail", help_heading = "Output")]
     refused: Answered,
+    #[command(flatten)]
+    budget: BudgetOptions<false>,
     #[command(flatten)]
     threads: ThreadOptions,
 }
@@ -212,7 +214,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let columns = (output_format == RecordFormat::Csv).then(columns);
     let question = Question {
         robot: &robot,
-        options: pipeline_options(&args.contacts, feet, args.detail, &args.robot.reductions),
+        options: pipeline_options(&args.contacts, feet, args.detail, &args.robot.reductions, args.budget.budget()),
         defaults: Defaults {
             loops: args.loops.load(&robot)?,
             place_lowest: args.contacts.place_lowest(&robot)?,
@@ -313,7 +315,7 @@ pub(super) fn run(args: &Args) -> Completion {
         NewFile::write(path, &line)?;
     }
     if args.plot.path().is_some() {
-        let page = |rendered| gait.page(&robot.name, rendered);
+        let page = |rendered| Ok(gait.page(&robot.name, rendered));
         args.plot.draw_or_page(&gait.picture(&robot.name), "the input holds no states", page)?;
     }
     Ok(if counts.refused + refused == 0 { Answered::All } else { args.refused })

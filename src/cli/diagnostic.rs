@@ -25,6 +25,7 @@ const FLAGS: &[(&str, &str)] = &[
     ("foreign", "--foreign"),
     ("input_format", "--input-format"),
     ("format", "--format"),
+    ("budget", "--budget"),
 ];
 
 /// The text with settings such as `base: floating` in backticks written as options: --base floating.

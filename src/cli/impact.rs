@@ -1,7 +1,7 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
 use super::diagnostic::{note, note_own_friction};
-use super::options::{ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
+use super::options::{BudgetOptions, ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
 use super::output::{Format, OutputOptions};
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
@@ -37,6 +37,8 @@ pub struct Args {
     #[command(flatten)]
     detail: DetailOptions,
     #[command(flatten)]
+    budget: BudgetOptions<false>,
+    #[command(flatten)]
     plot: PlotOptions<false>,
     #[command(flatten)]
     output: OutputOptions,
@@ -51,7 +53,8 @@ pub(super) fn run(args: &Args) -> Completion {
     let by_input = if input::is_ndjson(&args.state) { Format::Json } else { Format::Text };
     let format = args.output.chosen().unwrap_or(by_input);
     let detail = args.detail.detail();
-    let mut options = pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions);
+    let mut options =
+        pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions, args.budget.budget());
     if format == Format::Text && !detail.brief {
         // The text sums up why the other combinations fail even if it does not list them.
         options.explain_up_to = options.explain_up_to.max(SUMMED_UP);

@@ -4,6 +4,7 @@
 //! inputs were answered, 1 some input was refused, 2 wrong usage.
 
 mod diagnostic;
+mod clock;
 mod progress;
 mod input;
 mod output;

@@ -1,8 +1,10 @@
 //! Options of the analysis.
 
 use super::Failure;
+use super::clock::work_time;
 use super::input::InputFile;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use heelstrike::budget::SharedBudget;
 use heelstrike::law::Friction;
 use heelstrike::pipeline;
 use heelstrike::read::loops_from_json;
@@ -10,9 +12,10 @@ use heelstrike::reductions::Reductions;
 use heelstrike::robot::Base;
 use heelstrike::state::{Defaults, NamedContact, NamedLoop};
 use heelstrike::write::Columns;
-use heelstrike::{Detail, Error, Reason, Robot};
+use heelstrike::{Budget, Detail, Error, Reason, Robot};
 use std::path::PathBuf;
 use std::thread::available_parallelism;
+use std::time::Duration;
 
 /// Values for what a state may omit.
 #[derive(Debug, clap::Args)]
@@ -199,12 +202,52 @@ impl ThreadOptions {
     }
 }
 
+/// How much time the work may take: per state or problem, or a whole `STUDY`.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub(super) struct BudgetOptions<const STUDY: bool> {
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    #[arg(default_value = if STUDY { "60" } else { "10" })]
+    #[arg(help = if STUDY {
+        "How many seconds of processor time the study may take, or \"infinite\"; beyond it, it is refused"
+    } else {
+        "How many seconds of processor time each answer may take, or \"infinite\"; what is open then is undecided"
+    })]
+    budget: Seconds,
+}
+
+/// A duration; `None` without an end.
+type Seconds = Option<Duration>;
+
+fn seconds(text: &str) -> Result<Seconds, String> {
+    if text == "infinite" {
+        return Ok(None);
+    }
+    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    seconds.map(Some).ok_or_else(|| "expected a number of seconds from 0 on, or \"infinite\"".to_owned())
+}
+
+impl<const STUDY: bool> BudgetOptions<STUDY> {
+    /// The budget, by processor time.
+    pub fn budget(self) -> Option<Budget> {
+        self.budget.map(|time| Budget { time, clock: work_time })
+    }
+}
+
+impl BudgetOptions<true> {
+    /// The budget that all threads of a study spend together.
+    pub fn shared(self) -> SharedBudget {
+        let endless = Budget { time: Duration::MAX, clock: work_time };
+        SharedBudget::new(self.budget().unwrap_or(endless))
+    }
+}
+
 /// The pipeline's options.
 pub(super) fn pipeline_options(
     contacts: &ContactOptions,
     feet: Vec<NamedContact>,
     detail: DetailOptions,
     reductions: &ReductionOptions,
+    budget: Option<Budget>,
 ) -> pipeline::Options {
     pipeline::Options {
         feet,
@@ -215,6 +258,7 @@ pub(super) fn pipeline_options(
         matrices: detail.matrices,
         no_proof: detail.no_proof,
         reductions: reductions.reductions(),
+        budget,
         ..pipeline::Options::default()
     }
 }

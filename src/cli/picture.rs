@@ -79,10 +79,13 @@ impl<const PAGES: bool> PlotOptions<PAGES> {
         &self,
         picture: &Picture,
         why_empty: &'static str,
-        page: impl FnOnce(Rendered) -> Page,
+        page: impl FnOnce(Rendered) -> Result<Page, Failure>,
     ) -> Result<(), Failure> {
         match self.is_page() {
-            true => self.write(picture.render().map(|rendered| page(rendered).html().into_bytes()), why_empty),
+            true => {
+                let page = picture.render().map(page).transpose()?;
+                self.write(page.map(|page| page.html().into_bytes()), why_empty)
+            }
             false => self.draw(picture, why_empty),
         }
     }

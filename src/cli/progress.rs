@@ -1,9 +1,12 @@
-//! A progress bar for long inputs and sweeps, shown on a terminal.
+//! Progress of what takes long, shown on a terminal: bars for long inputs and sweeps, else how long it already takes.
 
 use super::diagnostic::is_quiet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::{Builder, JoinHandle};
+use std::time::Duration;
 
 /// A bar for the bytes of `input`, if it is a file, standard error is a terminal, and the results go elsewhere: to
 /// standard output unless `to_a_file`; else one that is hidden.
@@ -18,6 +21,44 @@ pub(super) fn of(pieces: usize) -> ProgressBar {
     bar(Some(pieces as u64), "{wide_bar} {percent}%, {eta} left")
 }
 
+/// How long work may take before a terminal shows that it goes on.
+const QUIET_WORK: Duration = Duration::from_secs(2);
+
+/// Shows the time that work takes, from two seconds on, until it is dropped.
+#[must_use]
+pub(super) struct Stopwatch(Option<(Sender<()>, JoinHandle<()>)>);
+
+impl Stopwatch {
+    pub fn start() -> Self {
+        if !io::stderr().is_terminal() || is_quiet() {
+            return Self(None);
+        }
+        let (end, ended) = channel();
+        let show = move || {
+            if ended.recv_timeout(QUIET_WORK) == Err(RecvTimeoutError::Timeout) {
+                let clock = ProgressBar::new_spinner().with_finish(ProgressFinish::AndClear).with_elapsed(QUIET_WORK);
+                clock.set_style(style("{spinner} at work for {elapsed}"));
+                clock.enable_steady_tick(Duration::from_millis(200));
+                let _ = ended.recv();
+            }
+        };
+        Self(Builder::new().spawn(show).ok().map(|thread| (end, thread)))
+    }
+}
+
+impl Drop for Stopwatch {
+    fn drop(&mut self) {
+        if let Some((end, thread)) = self.0.take() {
+            drop(end);
+            let _ = thread.join();
+        }
+    }
+}
+
+fn style(parts: &str) -> ProgressStyle {
+    ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
 /// It is removed when the last handle to it is dropped.
 fn bar(length: Option<u64>, parts: &str) -> ProgressBar {
     let Some(length) = length.filter(|_| io::stderr().is_terminal() && !is_quiet()) else {
@@ -25,5 +66,5 @@ fn bar(length: Option<u64>, parts: &str) -> ProgressBar {
     };
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
     let bar = bar.with_finish(ProgressFinish::AndClear);
-    bar.with_style(ProgressStyle::with_template(parts).unwrap_or_else(|_| ProgressStyle::default_bar()))
+    bar.with_style(style(parts))
 }

@@ -1,10 +1,11 @@
 //! `heelstrike solve`: every outcome of a contact problem that is given as matrices.
 
 use super::diagnostic::note_own_friction;
-use super::options::{DetailOptions, ReductionOptions, SceneOptions};
+use super::options::{BudgetOptions, DetailOptions, ReductionOptions, SceneOptions};
 use super::output::{Format, OutputOptions, spare};
 use super::stream::{SUMMED_UP, answer_all, append};
 use super::{Completion, input};
+use heelstrike::budget::within;
 use heelstrike::impact::{AnalysisOptions, Scratch};
 use heelstrike::read::Problem;
 use heelstrike::write::{Report, Subject};
@@ -26,6 +27,8 @@ pub struct Args {
     reductions: ReductionOptions,
     #[command(flatten)]
     detail: DetailOptions,
+    #[command(flatten)]
+    budget: BudgetOptions<false>,
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -49,7 +52,7 @@ pub(super) fn run(args: &Args) -> Completion {
             reductions: args.reductions.reductions(),
             ..AnalysisOptions::default()
         };
-        let analysis = scratch.analyze(&problem.contact, &problem, asked)?;
+        let analysis = within(args.budget.budget(), || scratch.analyze(&problem.contact, &problem, asked))?;
         let report = Report::of_problem(&problem, &analysis, detail);
         append(&report, &Subject::of_problem(&problem, &analysis), detail, palette, out);
         Ok(None)

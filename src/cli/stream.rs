@@ -3,6 +3,7 @@
 use super::diagnostic::{note, report, report_with, with_flags};
 use super::input::InputFile;
 use super::output::{Format, Output, OutputOptions};
+use super::progress::Stopwatch;
 use super::{Answered, Completion, Failure};
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::read::documents::{Document, documents};
@@ -69,7 +70,9 @@ pub(super) fn answer_all(
     for (at, document) in documents(whole).enumerate() {
         count += 1;
         let mut out = Vec::new();
+        let clock = Stopwatch::start();
         let answer = answer(document.text, (format == Format::Text).then_some(&output.palette), &mut out);
+        drop(clock);
         match (&answer, format) {
             (Ok(_), Format::Text) if at > 0 => out.insert(0, b'\n'),
             (Err(error), Format::Json) => {

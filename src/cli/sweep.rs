@@ -3,7 +3,8 @@
 use super::diagnostic::{note, report};
 use super::input::InputFile;
 use super::options::{
-    ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions, pipeline_options,
+    BudgetOptions, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
+    pipeline_options,
 };
 use super::output::{Output, writable};
 use super::picture::PlotOptions;
@@ -11,6 +12,7 @@ use super::progress;
 use super::robot::{RobotOptions, caution};
 use super::{Answered, Completion, Failure};
 use clap::ValueEnum;
+use heelstrike::budget::SharedBudget;
 use heelstrike::draw::page::{Page, Stops};
 use heelstrike::draw::sweep as picture;
 use heelstrike::state::Defaults;
@@ -55,6 +57,8 @@ pub struct Args {
     format: Option<SweepFormat>,
     #[command(flatten)]
     csv: CsvOptions,
+    #[command(flatten)]
+    budget: BudgetOptions<true>,
     #[command(flatten)]
     threads: ThreadOptions,
 }
@@ -104,12 +108,13 @@ pub(super) fn run(args: &Args) -> Completion {
     let input = InputFile::read(&args.study, InputFile::LARGE)?;
     let refuse = |error: Error| input.refuse(error);
     let study = input.text().and_then(Study::from_json).map_err(refuse)?;
+    Findings::check_memory(&study).map_err(refuse)?;
     let model = RobotStudy {
         study: &study,
         description: &description,
         reduction: &reduction,
         robot: &robot,
-        options: pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions),
+        options: pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions, None),
         defaults: Defaults {
             loops: args.loops.load(&robot)?,
             place_lowest: args.contacts.place_lowest(&robot)?,
@@ -124,15 +129,16 @@ pub(super) fn run(args: &Args) -> Completion {
     let progress = progress::of(pieces);
     let done = || progress.inc(1);
     let workers = Workers { threads: args.threads.count(), done: &done };
-    let findings = Findings::of(&model, workers);
+    let budget = StudyBudget { shared: args.budget.shared(), study: &study, input: &input };
+    let findings = budget.within(|| Findings::of(&model, workers))?;
     let regions = Regions::new(study.parameters(), &findings);
     let regimes = findings.regimes();
     if args.plot.path().is_some() {
         progress.inc_length(picture::work(&model, &findings) as u64);
-        let picture = picture::of(&model, &findings, workers);
+        let picture = budget.within(|| picture::of(&model, &findings, workers))?;
         let stops = Stops::new(&model, &findings);
         progress.inc_length(if args.plot.is_page() { stops.count() as u64 } else { 0 });
-        let page = |rendered| Page::of_study(&model, &findings, &stops, rendered, workers);
+        let page = |rendered| budget.within(|| Page::of_study(&model, &findings, &stops, rendered, workers));
         args.plot.draw_or_page(&picture, "no region was found", page)?;
     }
     let mut output = Output::open(args.output.as_deref())?;
@@ -148,7 +154,7 @@ pub(super) fn run(args: &Args) -> Completion {
             // The samples are the last field of the object.
             writer.write_all(head.strip_suffix(b"}\n").unwrap_or(&head))?;
             writer.write_all(b",\"samples\":[")?;
-            let refused = samples(writer, &model, workers, |solver, sample, out| {
+            let refused = samples(writer, &model, (workers, &budget), |solver, sample, out| {
                 out.extend(if sample.index == 0 { "" } else { "," }.bytes());
                 sample.append_json(solver, args.detail.detail(), out)
             })?;
@@ -162,7 +168,9 @@ pub(super) fn run(args: &Args) -> Completion {
             writer.write_all(&head)?;
             let kind = |regime: &Regime| regimes.iter().find(|(known, ..)| ***known == *regime);
             let letter = |regime: &Regime| kind(regime).map_or_else(String::new, |(_, kind, _)| letter(*kind));
-            samples(writer, &model, workers, |solver, sample, out| sample.append_rows(solver, &columns, letter, out))?
+            samples(writer, &model, (workers, &budget), |solver, sample, out| {
+                sample.append_rows(solver, &columns, letter, out)
+            })?
         }
     };
     output.close(true)?;
@@ -177,11 +185,25 @@ pub(super) fn run(args: &Args) -> Completion {
     Ok(if refused == 0 && refusals.is_empty() { Answered::All } else { Answered::NotAll })
 }
 
+/// What all work on a study may take.
+struct StudyBudget<'a> {
+    shared: SharedBudget,
+    study: &'a Study<'a>,
+    input: &'a InputFile,
+}
+
+impl StudyBudget<'_> {
+    /// What the work makes; the study is refused if the budget ends before.
+    fn within<R>(&self, work: impl FnOnce() -> R) -> Result<R, Failure> {
+        self.shared.within(work).map_err(|spent| self.input.refuse(self.study.beyond(spent)))
+    }
+}
+
 /// Writes all samples in order; returns how many were refused.
 fn samples(
     writer: &mut impl Write,
     model: &RobotStudy,
-    workers: Workers,
+    (workers, budget): (Workers, &StudyBudget),
     append: impl Fn(&mut Solver, &SampleRecord, &mut Vec<u8>) -> bool + Sync,
 ) -> Result<usize, Failure> {
     let (count, mut refused) = (SampleRecord::count(model), 0);
@@ -191,7 +213,8 @@ fn samples(
             let answered = append(solver, &SampleRecord::new(model, start + index), &mut out);
             (out, answered)
         };
-        for (out, answered) in workers.map(TOGETHER.min(count - start), || Solver::new(model), answer) {
+        let answers = || workers.map(TOGETHER.min(count - start), || Solver::new(model), answer);
+        for (out, answered) in budget.within(answers)? {
             writer.write_all(&out)?;
             refused += usize::from(!answered);
         }

@@ -14,6 +14,7 @@ pub mod page;
 pub use plot::Picture;
 pub use robot::Drawing;
 
+use crate::impact::OpenCombinations;
 use crate::state::{NamedContact, State};
 use crate::{Error, Impact, Outcome, Robot, Verdict};
 use serde_json::Value;
@@ -34,6 +35,8 @@ pub struct KeyframeAnswer {
     /// Whether the list of outcomes is proven to be complete and right.
     pub proven: bool,
     pub outcomes: Vec<Outcome>,
+    /// How much is open, if the verdict is undecided.
+    pub open: Option<OpenCombinations>,
 }
 
 #[derive(Debug, Clone)]
@@ -53,6 +56,7 @@ impl Keyframe {
             verdict: analysis.verdict,
             proven: analysis.proven,
             outcomes: analysis.outcomes.clone(),
+            open: analysis.open,
         });
         let drawing = Some(Drawing::of_impact(robot, feet, state, impact));
         Self { drawing, answer, notes: impact.notes.clone() }

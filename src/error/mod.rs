@@ -71,6 +71,12 @@ pub enum Reason {
     /// More of a thing, such as `links`, than is accepted.
     #[error("more than {limit} {what} are not accepted")]
     TooMany { what: &'static str, limit: usize },
+    /// Work that needs more memory than it may take \[MB\].
+    #[error("this needs {needed} MB of memory, and {limit} MB are the most")]
+    TooLarge { needed: usize, limit: usize },
+    /// Work that takes more time than its budget has.
+    #[error("the budget of work ended before the answer was known")]
+    BeyondBudget,
     /// A file that could not be read or written.
     #[error("{}", visible(.0))]
     Io(String),

@@ -13,13 +13,14 @@ use super::collected::{AnalysisOptions, Collected, Findings, FoundFamilies, List
 use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
 use super::families::FamiliesPass;
-use super::outcome::{Analysis, Outcome, Verdict};
+use super::outcome::{Analysis, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
 use super::problem::{ContactProblem, Precision, Source, escalate};
 use super::rank::{rank_and_condition, shows_regular};
 use super::slack::Scale;
+use crate::budget::is_spent;
 use crate::error::{Error, Reason, Result};
-use crate::law::{Impulse, Mode};
+use crate::law::{Impulse, Law, Mode};
 use std::collections::BTreeMap;
 
 /// All combinations are tried up to this many contacts (4^10 is a million).
@@ -63,19 +64,26 @@ impl Scratch {
         }
         let options = AnalysisOptions { prove: options.prove && source.is_exact(), ..options };
         self.tableau.without_slip = false;
-        let (Findings { outcomes, families, rejected, effort }, regular) = self.find(problem, source, options);
+        let (findings, regular) = self.find(problem, source, options);
+        let Findings { outcomes, families, rejected, effort, visited, undecided } = findings;
+        let modes = |law: &Law| law.modes().iter().map(|group| group.len() as u64).sum::<u64>();
+        let combinations = problem.laws().iter().map(modes).product::<u64>();
+        let undecided = undecided + (combinations - visited);
+        let open = (undecided > 0).then(|| OpenCombinations { combinations, undecided, beyond_budget: is_spent() });
+        let indices = || outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum();
         let ranked = || rank_and_condition(problem, source, &self.scale, regular, options.reductions);
         let (rank, condition) = (!options.brief).then(ranked).unzip();
         let is_explained = options.rejections == ListedRejections::Everything && rank == Some(2 * contacts);
         Ok(Analysis {
-            verdict: verdict(contacts, &outcomes),
-            proven: options.prove && outcomes.iter().all(|outcome| outcome.proven),
-            index_sum: outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum(),
+            verdict: verdict(contacts, &outcomes, open.is_some()),
+            proven: options.prove && open.is_none() && outcomes.iter().all(|outcome| outcome.proven),
+            index_sum: if open.is_none() { indices() } else { None },
             rank,
             condition: condition.flatten(),
-            no_slip_consistent: no_slip_consistent(&outcomes),
+            no_slip_consistent: no_slip_consistent(&outcomes, open.as_ref()),
             explanation: if is_explained { explanation(problem, &self.scale) } else { None },
             outcomes,
+            open,
             families,
             rejected,
             effort,
@@ -85,7 +93,8 @@ impl Scratch {
     /// The friction with which no contact would have to slide; `None` if one slides whatever the friction is.
     ///
     /// It is the greatest |L_t| / L_n of the sticking contacts, of the outcome without a sliding contact that needs
-    /// least; `problem` and `source` have infinite friction everywhere. More contacts than [`CONTACT_LIMIT`] have none.
+    /// least; `problem` and `source` have infinite friction everywhere. More contacts than [`CONTACT_LIMIT`] have none,
+    /// and so have those that a budget leaves open.
     pub fn friction_without_slip<S: Source>(
         &mut self,
         problem: &ContactProblem,
@@ -97,6 +106,9 @@ impl Scratch {
         }
         self.tableau.without_slip = true;
         let (Findings { outcomes, .. }, _) = self.find(problem, source, options);
+        if is_spent() {
+            return None;
+        }
         outcomes.iter().map(steepest).min_by(f64::total_cmp)
     }
 
@@ -155,11 +167,11 @@ fn steepest(outcome: &Outcome) -> f64 {
     ratios.fold(0.0, f64::max)
 }
 
-fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
+fn verdict(contacts: usize, outcomes: &[Outcome], is_open: bool) -> Verdict {
     if contacts == 0 {
         return Verdict::NoContact;
     }
-    if outcomes.iter().any(|outcome| !outcome.decided) {
+    if is_open {
         return Verdict::Undecided;
     }
     match outcomes {
@@ -170,11 +182,13 @@ fn verdict(contacts: usize, outcomes: &[Outcome]) -> Verdict {
     }
 }
 
-/// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination.
-fn no_slip_consistent(outcomes: &[Outcome]) -> Option<bool> {
+/// Whether some outcome has no sliding contact; `None` if that depends on an undecided combination, listed or not.
+fn no_slip_consistent(outcomes: &[Outcome], open: Option<&OpenCombinations>) -> Option<bool> {
     let without_slip = || outcomes.iter().filter(|outcome| !outcome.modes.iter().any(|mode| mode.slides()));
+    let listed = outcomes.iter().filter(|outcome| !outcome.decided).count();
+    let all_listed = open.is_none_or(|open| open.undecided == listed as u64);
     match without_slip().any(|outcome| outcome.decided) {
-        false if without_slip().next().is_some() => None,
+        false if without_slip().next().is_some() || !all_listed => None,
         found => Some(found),
     }
 }

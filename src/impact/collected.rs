@@ -57,6 +57,9 @@ impl Default for AnalysisOptions<'_> {
     }
 }
 
+/// So many undecided combinations are listed; there may be 4^n.
+const LISTED: u64 = 100;
+
 /// A combination that needs more digits, with its number among all, from 0.
 #[derive(Debug, Clone)]
 pub struct Pending {
@@ -94,6 +97,9 @@ pub struct Findings {
     /// As far as they are to be listed.
     pub rejected: Vec<Rejection>,
     pub effort: Effort,
+    /// How many combinations were visited, and how many of them no precision decided.
+    pub visited: u64,
+    pub undecided: u64,
 }
 
 /// Outcomes and rejected combinations of a problem.
@@ -104,6 +110,8 @@ pub struct Collected<'a> {
     name: &'a dyn Fn(usize) -> String,
     pub total: usize,
     pub effort: Effort,
+    /// Combinations that no precision decided.
+    pub undecided: u64,
     outcomes: Vec<Numbered>,
     /// Combinations whose velocities form a set.
     pub pending_families: Vec<Pending>,
@@ -126,6 +134,7 @@ impl<'a> Collected<'a> {
             name,
             total: 0,
             effort: Effort::default(),
+            undecided: 0,
             outcomes: Vec::new(),
             pending_families: Vec::new(),
             families: Vec::new(),
@@ -168,8 +177,13 @@ impl<'a> Collected<'a> {
         self.outcomes.push(Numbered { number, outcome });
     }
 
-    /// Adds a combination that no precision decided, with zeros for the impulses that are not known.
+    /// Counts a combination that no precision decided, and lists one of the first with zeros for the impulses that are
+    /// not known.
     pub fn add_undecided(&mut self, Pending { number, modes }: Pending) {
+        self.undecided += 1;
+        if self.undecided > LISTED {
+            return;
+        }
         let velocity_after = self.problem.velocity_free().to_vec();
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
         let numbers = Numbers::of_motion(motion, &modes, self.problem);
@@ -239,6 +253,8 @@ impl<'a> Collected<'a> {
             families: self.families.into_iter().map(|(_, family)| family).collect(),
             rejected: self.rejected.into_iter().map(|(_, rejection)| rejection).collect(),
             effort: self.effort,
+            visited: self.total as u64,
+            undecided: self.undecided,
         }
     }
 

@@ -34,6 +34,9 @@ pub struct Tableau<T> {
     pivots: Vec<T>,
 }
 
+/// The last contacts whose combinations are visited in any case.
+const AT_ONCE: usize = 6;
+
 /// One combination of modes and the numbers that it leads to.
 #[derive(Debug)]
 pub struct Leaf<'a, T> {
@@ -53,6 +56,11 @@ pub trait Visitor<T> {
 
     /// The impulses of `contact` were eliminated from the tableau of depth `source` to that of depth `contact` + 1.
     fn eliminated(&mut self, _tableau: &Tableau<T>, _contact: usize, _source: usize) {}
+
+    /// Whether the combinations that are left are not visited; asked before each few thousand.
+    fn ends(&mut self) -> bool {
+        false
+    }
 }
 
 impl<T, F: FnMut(&Leaf<'_, T>)> Visitor<T> for F {
@@ -115,6 +123,9 @@ impl<T: Real> Tableau<T> {
     fn descend(&mut self, contact: usize, source: usize, visitor: &mut impl Visitor<T>) {
         if contact == self.contacts {
             visitor.leaf(&self.at(source));
+            return;
+        }
+        if self.contacts - contact == AT_ONCE && visitor.ends() {
             return;
         }
         for group in self.laws[contact].modes() {

@@ -2,17 +2,22 @@
 //!
 //! Sizes are those of a few contacts, so plain dense elimination and the simplex method with Bland's rule serve
 //! (Chvatal, *Linear Programming*, 1983, chapters 2, 3 and 8). No tolerance decides anything: a number that may be
-//! zero in its precision ends the work as [`Unsettled`], and the caller starts again with more digits.
+//! zero in its precision ends the work as [`Unsettled`], and the caller starts again with more digits. So does a budget
+//! that is spent: every loop here and in the rooms above asks for a sign in each round.
 
+use crate::budget::is_spent;
 use crate::scalar::{Ordered, Real, Sign, dot};
 use std::cmp::Ordering;
 
-/// A sign that needs more digits than the numbers have.
+/// A sign that needs more digits than the numbers have, or more time than there is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unsettled;
 
 /// How a number compares with zero.
 pub fn settled<T: Ordered>(number: T) -> Result<Ordering, Unsettled> {
+    if is_spent() {
+        return Err(Unsettled);
+    }
     match number.sign() {
         Sign::Negative => Ok(Ordering::Less),
         Sign::Zero => Ok(Ordering::Equal),

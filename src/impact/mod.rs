@@ -31,7 +31,7 @@ pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
 pub use collected::{AnalysisOptions, ListedRejections};
 pub use inequalities::Inequalities;
 pub use outcome::{
-    Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Outcome, Rejection, RejectionReason,
-    Verdict,
+    Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, OpenCombinations, Outcome, Rejection,
+    RejectionReason, Verdict,
 };
 pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

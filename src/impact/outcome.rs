@@ -17,7 +17,7 @@ pub enum Verdict {
     Ambiguous,
     /// No outcome is consistent; impossible for a regular Delassus matrix (paper, the index theorem).
     None,
-    /// Some combination's signs may be zero in every precision.
+    /// Some combination's signs may be zero in every precision, or the budget of work was spent before they were known.
     Undecided,
     /// The only outcome has zero impulse.
     NoImpact,
@@ -74,7 +74,8 @@ pub struct Outcome {
     pub family: bool,
     /// Every sign is shown by an error bound, and every number of this list is right to 1e-10 of its scale.
     pub proven: bool,
-    /// False, and only then present, if no precision settled a sign: the combination is neither shown nor excluded.
+    /// False, and only then present, if no precision settled a sign, or the budget of work was spent before: the
+    /// combination is neither shown nor excluded.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub decided: bool,
 }
@@ -188,6 +189,19 @@ impl Rejection {
     }
 }
 
+/// How much of an undecided problem is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "Open")]
+pub struct OpenCombinations {
+    /// How many combinations of modes there are: 4^n for n contacts.
+    pub combinations: u64,
+    /// How many of these are neither shown nor excluded. Up to 100 of them are listed, with `decided` false.
+    pub undecided: u64,
+    /// Whether the budget of work ended: a greater one may decide more.
+    pub beyond_budget: bool,
+}
+
 /// Why a combination is no outcome; `contact` counts from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RejectionReason {
@@ -281,8 +295,10 @@ pub struct Analysis {
     pub verdict: Verdict,
     /// True if every combination's signs are shown by an error bound, and every outcome's digits.
     pub proven: bool,
-    /// Every outcome; with [`Verdict::Undecided`] also the combinations that are not excluded.
+    /// Every outcome; with [`Verdict::Undecided`] also up to 100 of the combinations that are not excluded.
     pub outcomes: Vec<Outcome>,
+    /// How much is open, with [`Verdict::Undecided`].
+    pub open: Option<OpenCombinations>,
     /// Lists of modes with more than one velocity; all of them are outcomes, of which `outcomes` has the corners.
     pub families: Vec<Family>,
     /// Every other combination, if asked for.

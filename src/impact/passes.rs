@@ -9,6 +9,7 @@ use super::kernel::Kernel;
 use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{F64Reader, motion};
+use crate::budget::{ROUNDS, is_spent_after};
 use crate::law::Impulse;
 use crate::scalar::{Ordered, Sign};
 use std::collections::BTreeMap;
@@ -32,6 +33,10 @@ pub struct F64Pass<'a, 'm> {
 impl Visitor<f64> for F64Pass<'_, '_> {
     fn eliminated(&mut self, tableau: &Tableau<f64>, contact: usize, source: usize) {
         self.bounds.follow(tableau, contact, source);
+    }
+
+    fn ends(&mut self) -> bool {
+        is_spent_after(ROUNDS)
     }
 
     fn leaf(&mut self, leaf: &Leaf<'_, f64>) {
@@ -99,7 +104,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
                 collected.reject(pending.number, &pending.modes, || Rejection::of(&pending.modes, because));
                 return false;
             }
-            if left == 0 {
+            if left == 0 || is_spent_after(if precision == Precision::Interval { ROUNDS } else { 1 }) {
                 return true;
             }
             left -= 1;

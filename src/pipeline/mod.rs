@@ -15,6 +15,7 @@ use self::assembly::{Assembly, Elimination};
 use self::exact::ExactState;
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::{NearestFoot, Unsolved};
+use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{ContactPoint, PointImpulse, RoundingBounds, articulated_inertias};
@@ -57,10 +58,17 @@ pub struct Options {
     pub no_proof: bool,
     /// Parts of the computation to leave out if a scene does not need them.
     pub reductions: Reductions,
+    /// How much time a state may take; what it leaves open is undecided. Without one a state takes what it takes, which
+    /// may be hours for ten contacts that are nearly dependent.
+    pub budget: Option<Budget>,
 }
 
 /// The default contact tolerance, as part of the robot's size (see [`Feet::size`]).
 pub const CONTACT_TOLERANCE: f64 = 1e-6;
+
+/// The note of a box that takes more time than there is.
+const UNKNOWN_IN_TIME: &str =
+    "whether the verdict holds on the box of the uncertainty is not known within the budget of work (`budget`)";
 
 /// The answer for one state; [`Pipeline`] has an example.
 #[derive(Debug, Clone)]
@@ -212,11 +220,16 @@ impl<'r> Pipeline<'r> {
     /// open, `Missing` for a contact without friction or a stance without a foot, `MatricesTooLarge` for hundreds of
     /// contacts, and `NotFinite` for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
-        let mut answer = self.answer(state, None)?;
-        if let Some(uncertainty) = &state.uncertainty {
-            answer.impact.holds = Some(self.robustness(state, uncertainty, &answer));
-        }
-        Ok(answer.impact)
+        within(self.options.budget, || {
+            let mut answer = self.answer(state, None)?;
+            if let Some(uncertainty) = &state.uncertainty {
+                answer.impact.holds = Some(self.robustness(state, uncertainty, &answer));
+                if is_spent() && answer.impact.analysis.as_ref().is_some_and(|analysis| analysis.open.is_none()) {
+                    answer.impact.notes.push(UNKNOWN_IN_TIME.to_owned());
+                }
+            }
+            Ok(answer.impact)
+        })
     }
 
     /// As [`Pipeline::impact`], whatever the state's uncertainty is; of all rejected combinations those with `chosen`
@@ -225,7 +238,7 @@ impl<'r> Pipeline<'r> {
     /// # Errors
     /// As [`Pipeline::impact`].
     pub fn impact_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Impact> {
-        self.answer(state, Some(chosen)).map(|answer| answer.impact)
+        within(self.options.budget, || self.answer(state, Some(chosen)).map(|answer| answer.impact))
     }
 
     /// As [`Pipeline::impact_explaining`], if any modes are `chosen`.

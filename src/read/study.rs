@@ -2,6 +2,7 @@
 
 use super::state as read;
 use super::variation;
+use crate::budget::BudgetSpent;
 use crate::description::Description;
 use crate::read::expression::{Names, is_name, names_in};
 use crate::read::json::{Node, Value};
@@ -10,7 +11,7 @@ use crate::{Error, Reason, Result, Robot};
 use std::borrow::Cow;
 
 /// The most samples of all parameters together.
-const SAMPLE_LIMIT: usize = 10_000_000;
+const SAMPLE_LIMIT: usize = 1_000_000;
 
 /// The most constants; a study has some ten.
 const CONSTANT_LIMIT: usize = 256;
@@ -68,7 +69,7 @@ impl<'t> Study<'t> {
     ///
     /// # Errors
     /// Broken JSON, unknown or duplicate fields, no parameter or more than two, a range that is empty, fewer than two
-    /// samples or more than ten million, names that expressions cannot use. The error gives place, line and column in
+    /// samples or more than a million, names that expressions cannot use. The error gives place, line and column in
     /// `text`.
     pub fn from_json(text: &'t str) -> Result<Self> {
         let tree = Value::parse(text)?;
@@ -99,6 +100,31 @@ impl<'t> Study<'t> {
     /// One or two parameters.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
+    }
+
+    /// The refusal of a study for which a budget of work was not enough, at the number of samples of the parameter with
+    /// the most.
+    pub fn beyond(&self, BudgetSpent(time): BudgetSpent) -> Error {
+        let most = (0..self.parameters.len()).rev().max_by_key(|&at| self.parameters[at].steps).unwrap_or_default();
+        let Parameter { name, from, to, steps } = &self.parameters[most];
+        let seconds = time.as_secs_f64();
+        self.refuse_steps(most, Reason::BeyondBudget).hint(format!(
+            "{seconds} s of processor time were not enough: take fewer than {steps} samples of {name}, a narrower range \
+             than {from:?} to {to:?}, or `budget: {:?}`",
+            10.0 * seconds.max(1.0)
+        ))
+    }
+
+    /// Refuses the number of samples of a parameter.
+    pub(crate) fn refuse_steps(&self, parameter: usize, reason: Reason) -> Error {
+        let root = Node::root(&self.tree, self.text, None);
+        let refused = || {
+            let field = root.field("parameters").ok()??;
+            let entry = field.fields("parameter").ok()?.nth(parameter)?;
+            let steps = entry.field("steps").ok()??;
+            Some(steps.refuse(reason.clone()))
+        };
+        refused().unwrap_or_else(|| reason.clone().into())
     }
 
     /// Parameters that no expression of the state or the robot uses.
@@ -211,7 +237,7 @@ fn samples(part: Node) -> Result<usize> {
         return Ok(value as usize);
     }
     let what = "the number of samples".into();
-    Err(part.refuse(Reason::OutOfRange { what, allowed: "a whole number from 2 to 10000000", value }))
+    Err(part.refuse(Reason::OutOfRange { what, allowed: "a whole number from 2 to 1000000", value }))
 }
 
 fn name(entry: Node) -> Result<String> {

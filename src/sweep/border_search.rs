@@ -10,6 +10,7 @@
 //! does between the five points beyond its fourth differences is not seen; that is the part that is not guaranteed.
 
 use super::model::Watched;
+use crate::budget::is_spent;
 
 /// Points at which quantities are computed in an interval: its ends and three between them.
 const NODES: usize = 5;
@@ -122,6 +123,9 @@ struct Zeros {
 
 impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
     fn interval(&mut self, a: f64, b: f64, halvings: usize) {
+        if is_spent() {
+            return;
+        }
         let place = |k: f64| a + (b - a) * (k / (NODES - 1) as f64);
         let nodes: Option<Vec<Watched>> = (0..NODES).map(|k| (self.watch)(place(k as f64))).collect();
         let alike = |one: &Watched, other: &Watched| {
@@ -147,7 +151,7 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
         let mut zeros = Zeros::default();
         for (quantity, values) in &followed {
             self.zeros(*quantity, values, &nodes, place, &mut zeros);
-            if zeros.crossed.len() + zeros.touched.len() > MOST {
+            if zeros.crossed.len() + zeros.touched.len() > MOST || is_spent() {
                 break;
             }
         }

@@ -7,6 +7,7 @@
 use super::border_search::suspects;
 use super::model::{Solver, Watched};
 use super::regime::Regime;
+use crate::budget::is_spent;
 use std::sync::Arc;
 
 /// Borders are bisected to this part of the parameter's range.
@@ -72,7 +73,8 @@ pub struct Stretch {
 ///
 /// If the regimes of two places differ, the border between them is bisected, and so is that of every other regime on
 /// the way. If they are the same, the stretch between them is searched for hidden ones (see `border_search`). So in the
-/// end every neighboring pair of places that were asked agrees, or brackets a border.
+/// end every neighboring pair of places that were asked agrees, or brackets a border. Nothing is found once a budget is
+/// spent.
 pub fn brackets(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
     bisect(line, a, b, resolution, &mut found);
@@ -92,7 +94,7 @@ fn search_between(
     let (mut all, mut from) = (Vec::new(), a.clone());
     for border in found.into_iter().map(Some).chain([None]) {
         let to = border.as_ref().map_or(b, |border| &border.below);
-        let inner = if searches == 0 { Vec::new() } else { hidden(line, &from, to, resolution) };
+        let inner = if searches == 0 || is_spent() { Vec::new() } else { hidden(line, &from, to, resolution) };
         if !inner.is_empty() {
             all.extend(search_between(line, &from, to, inner, resolution, searches - 1));
         }
@@ -105,7 +107,7 @@ fn search_between(
 /// Bisects where the regimes of two places differ.
 fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64, found: &mut Vec<Bracket>) {
     let (mut below, mut above) = (a.clone(), b.clone());
-    if below.regime == above.regime {
+    if below.regime == above.regime || is_spent() {
         return;
     }
     while above.at - below.at > resolution {
@@ -130,7 +132,7 @@ fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64, foun
 /// Borders between two places of the same regime.
 fn hidden(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64) -> Vec<Bracket> {
     let mut found = Vec::new();
-    if b.at - a.at <= resolution {
+    if b.at - a.at <= resolution || is_spent() {
         return found;
     }
     let mut before = a.clone();

@@ -19,14 +19,17 @@ use super::parallel::Workers;
 use super::polyline::{loops, polylines};
 use super::regime::Regime;
 use super::transition::Transition;
-use crate::Error;
 use crate::impact::Verdict;
-use crate::read::Parameter;
+use crate::read::{Parameter, Study};
+use crate::{Error, Reason};
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
 /// Curves are traced through at least so many cells along each parameter.
 pub const CELLS: usize = 64;
+
+/// The most memory that a map takes for its grid \[MB\].
+const MEMORY: usize = 400;
 
 /// How far the outermost lines of the grid lie inside the ranges, as part of them: on their ends many studies are
 /// degenerate.
@@ -81,10 +84,15 @@ fn as_letters<S: Serializer>(sides: &[usize; 2], serializer: S) -> Result<S::Ok,
     sides.map(letter).serialize(serializer)
 }
 
-/// The lines of the grid along a parameter.
-fn lines(parameter: &Parameter) -> Vec<f64> {
+/// How many lines the grid has along a parameter.
+fn lines(parameter: &Parameter) -> usize {
     let steps = parameter.steps - 1;
-    let cells = steps * CELLS.div_ceil(steps);
+    steps * CELLS.div_ceil(steps) + 1
+}
+
+/// The lines of the grid along a parameter.
+fn places(parameter: &Parameter) -> Vec<f64> {
+    let cells = lines(parameter) - 1;
     let part = |k: usize| match k {
         0 => INSIDE,
         k if k == cells => 1.0 - INSIDE,
@@ -107,7 +115,7 @@ struct Grid<'p> {
 
 impl<'p> Grid<'p> {
     fn new(model: &RobotStudy, parameters: [&'p Parameter; 2], workers: Workers) -> Self {
-        let [xs, ys] = parameters.map(lines);
+        let [xs, ys] = parameters.map(places);
         let (nx, ny) = (xs.len(), ys.len());
         let resolution = parameters.map(|parameter| RESOLUTION * parameter.range());
         let begin = || Solver::new(model);
@@ -238,10 +246,28 @@ impl Map {
         Self { curves, areas, dependent }
     }
 
+    /// Refuses a study whose grid does not fit into the memory that a map may take.
+    pub(super) fn check_memory(study: &Study) -> crate::Result<()> {
+        let [first, second] = study.parameters() else { return Ok(()) };
+        let nodes = lines(first) * lines(second);
+        // Each list exists twice while the threads' parts are joined.
+        let bytes = 2 * (size_of::<(usize, Arc<Regime>)>() + 2 * size_of::<(usize, Edge)>());
+        let needed = nodes.saturating_mul(bytes) >> 20;
+        if needed <= MEMORY {
+            return Ok(());
+        }
+        let most = usize::from(second.steps > first.steps);
+        let hint = format!(
+            "take fewer samples: a map of {nodes} points is traced here, of at most {}",
+            (MEMORY << 20) / bytes
+        );
+        Err(study.refuse_steps(most, Reason::TooLarge { needed, limit: MEMORY }).hint(hint))
+    }
+
     /// How many pieces of work a map of `model` has.
     pub fn work(model: &RobotStudy) -> usize {
         let [first, second] = model.study.parameters() else { return 0 };
-        let (nx, ny) = (lines(first).len(), lines(second).len());
+        let [nx, ny] = [first, second].map(lines);
         nx * ny + (nx - 1) * ny + nx * (ny - 1) + (nx - 1) * (ny - 1)
     }
 }

@@ -53,6 +53,14 @@ impl Findings {
         }
     }
 
+    /// Refuses a study whose findings take too much memory.
+    ///
+    /// # Errors
+    /// [`Reason::TooLarge`](crate::Reason::TooLarge), at the number of samples.
+    pub fn check_memory(study: &Study) -> crate::Result<()> {
+        Map::check_memory(study)
+    }
+
     /// How many pieces of work the findings of `model` take.
     pub fn work(model: &RobotStudy) -> usize {
         match model.study.parameters().len() {

@@ -2,13 +2,14 @@
 
 use super::Study;
 use super::regime::Regime;
+use crate::budget::is_spent;
 use crate::description::Description;
 use crate::impact::{Analysis, Inequalities, Verdict};
 use crate::law::Mode;
 use crate::pipeline::{Impact, Options, Pipeline, Unsolved};
 use crate::robot::Reduction;
 use crate::state::{Defaults, State};
-use crate::{Error, Result, Robot};
+use crate::{Error, Reason, Result, Robot};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -80,13 +81,16 @@ impl<'a> Solver<'a> {
         Self { model, pipeline, known: Vec::new() }
     }
 
-    /// Asks about the state at a point; robot or state may be refused there.
+    /// Asks about the state at a point; robot or state may be refused there, and every state is once a budget is spent.
     pub fn at<T>(
         &mut self,
         point: &[f64],
         ask: impl for<'p> FnOnce(&'p Robot, State, &mut Pipeline<'p>) -> Result<T>,
     ) -> Result<T> {
         let RobotStudy { study, description, reduction, robot, options, defaults } = self.model;
+        if is_spent() {
+            return Err(Reason::BeyondBudget.into());
+        }
         let names = study.names(point);
         if let Some(pipeline) = &mut self.pipeline {
             return ask(robot, study.state(&names, robot, defaults)?, pipeline);

@@ -1,5 +1,6 @@
 //! The same work for many indices, on several threads, in order.
 
+use crate::budget::SharedBudget;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{self, Builder};
@@ -15,7 +16,7 @@ pub struct Workers<'w> {
 
 impl Workers<'_> {
     /// The results of `work` for each index below `count`, in order. Each thread has a state of its own, made by
-    /// `begin`. If fewer threads can be started, these do the work.
+    /// `begin`, and all spend the budget of this one. If fewer threads can be started, these do the work.
     pub fn map<S, T: Send>(
         &self,
         count: usize,
@@ -36,8 +37,12 @@ impl Workers<'_> {
             }
         };
         let all = Mutex::new(Vec::with_capacity(count));
+        let shared = SharedBudget::current();
         let collect = || {
-            let made = run();
+            let made = match &shared {
+                Some(shared) => shared.share(run),
+                None => run(),
+            };
             all.lock().unwrap_or_else(std::sync::PoisonError::into_inner).extend(made);
         };
         thread::scope(|scope| {

@@ -9,7 +9,7 @@ use super::state::any_object;
 use super::state::{CounterexampleRecord, HoldsRecord, raw_state};
 use crate::contact::Merged;
 use crate::gait::Landing;
-use crate::impact::{Analysis, Explanation, Family, Outcome, Rejection, Verdict};
+use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Rejection, Verdict};
 use crate::pipeline::{Impact, LeftOut, NearestFoot};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
@@ -72,6 +72,9 @@ pub struct Report<'a> {
     /// Every outcome; absent next to an `error`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Cow<'a, [Outcome]>>,
+    /// How much is open, of an undecided state or problem.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<OpenCombinations>,
     /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
     #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
     pub families: Cow<'a, [Family]>,
@@ -340,6 +343,9 @@ pub struct Brief<'a> {
     /// Every outcome.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
+    /// How much is open, of an undecided state or problem.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<OpenCombinations>,
     /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
     #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
     pub families: Cow<'a, [Family]>,
@@ -477,6 +483,7 @@ impl<'a> Report<'a> {
             verdict: known.map(|analysis| analysis.verdict),
             proven: known.map(|analysis| analysis.proven),
             outcomes: known.map(|analysis| Cow::Borrowed(&*analysis.outcomes)),
+            open: known.and_then(|analysis| analysis.open),
             families: known.map(|analysis| Cow::Borrowed(&*analysis.families)).unwrap_or_default(),
             rejected,
             no_slip_consistent: known.map(|analysis| analysis.no_slip_consistent),
@@ -506,6 +513,7 @@ impl<'a> Report<'a> {
             holds: self.holds,
             contacts: contacts.collect(),
             outcomes: self.outcomes.is_some().then(|| in_brief.collect()),
+            open: self.open,
             families: self.families.clone(),
             error: self.error.clone(),
         }

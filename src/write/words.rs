@@ -2,6 +2,7 @@
 
 use super::table::number;
 use crate::error::visible;
+use crate::impact::OpenCombinations;
 use crate::{Mode, Outcome, Verdict};
 use serde_json::Value;
 use std::collections::HashMap;
@@ -34,8 +35,24 @@ pub(crate) fn modes(names: impl IntoIterator<Item: AsRef<str>>, modes: &[Mode]) 
 
 const NUMBERS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
 
-/// The verdict as a sentence.
-pub(crate) fn verdict(verdict: Verdict, outcomes: &[Outcome]) -> String {
+/// The verdict as a sentence; `open` is how much is, if anything.
+pub(crate) fn verdict(verdict: Verdict, outcomes: &[Outcome], open: Option<&OpenCombinations>) -> String {
+    if let Some(&OpenCombinations { combinations, undecided, beyond_budget }) = open {
+        let listed = outcomes.iter().filter(|outcome| !outcome.decided).count();
+        let listed = if listed as u64 == undecided { String::new() } else { format!(", of which {listed} are listed") };
+        if beyond_budget {
+            return format!(
+                "Undecided: the budget of work ended (`budget`), and {undecided} of {combinations} combinations of modes \
+                 are open{listed}."
+            );
+        }
+        if !listed.is_empty() {
+            return format!(
+                "Undecided: some sign was settled by no precision, and {undecided} of {combinations} combinations of \
+                 modes are open{listed}."
+            );
+        }
+    }
     let sentence = match verdict {
         Verdict::Unique => "Exactly one outcome.",
         Verdict::Ambiguous => {

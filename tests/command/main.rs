@@ -9,6 +9,7 @@ use support::command::{Run, command, file, finished, heelstrike, heelstrike_read
 
 mod accuracy;
 mod batch;
+mod budget;
 mod inspect;
 mod manners;
 mod meshes;

@@ -3,6 +3,7 @@
 #[cfg(feature = "accuracy")]
 mod accuracy;
 mod architecture;
+mod budget;
 #[cfg(feature = "accuracy")]
 mod compliant;
 mod constraints;

@@ -7,6 +7,7 @@ pub mod command;
 pub mod digits;
 pub mod impact;
 pub mod mechanism;
+pub mod nearly;
 pub mod paper;
 pub mod parallel;
 pub mod random;

@@ -144,7 +144,7 @@ impl PageFrame {
             verdict: answer.ok().map(|answer| answer.verdict),
             proven: answer.ok().map(|answer| answer.proven),
             sentence: texts.number(match answer {
-                Ok(answer) => words::verdict(answer.verdict, &answer.outcomes),
+                Ok(answer) => words::verdict(answer.verdict, &answer.outcomes, answer.open.as_ref()),
                 Err(error) => refusal(error),
             }),
             notes: keyframe.notes.iter().map(|note| texts.number(note)).collect(),

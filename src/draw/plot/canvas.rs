@@ -86,10 +86,10 @@ pub(super) enum Anchor {
 pub(super) const RIM: f64 = 1.5;
 
 impl TextLine {
-    /// A black text without a rim; without what XML cannot hold.
+    /// A black text without a rim; without what XML cannot hold, and without its middle if it is very long.
     pub fn new(at: Pixel, content: &str, size: u32, anchor: Anchor) -> Self {
         let printable = |letter: &char| !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}');
-        let content = content.chars().filter(printable).collect();
+        let content = font::drawn(content).chars().filter(printable).collect();
         Self { at, content, size, anchor, color: Color::Black, rim: false, upward: false }
     }
 

@@ -11,6 +11,7 @@
 //! ```
 
 use super::Pixel;
+use std::borrow::Cow;
 use ttf_parser::{Face, GlyphId};
 
 const BYTES: &[u8] = include_bytes!("DejaVuSans.ttf");
@@ -34,10 +35,31 @@ pub(super) fn glyphs(face: &Face, line: &str) -> impl Iterator<Item = (GlyphId, 
     })
 }
 
+/// A line of text is drawn with at most so many characters, and a text of several lines with at most so many.
+const LINE: usize = 400;
+const TEXT: usize = 4000;
+/// How many of them a longer one keeps at its end.
+const TAIL: usize = 40;
+
+/// The text without its middle if it is longer than it is drawn.
+pub(super) fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+    if text.chars().nth(most).is_none() {
+        return text.into();
+    }
+    let head: String = text.chars().take(most - TAIL - 1).collect();
+    let tail = text.char_indices().nth_back(TAIL - 1).map_or("", |(start, _)| &text[start..]);
+    format!("{head}…{tail}").into()
+}
+
+/// A line as it is drawn.
+pub(super) fn drawn(text: &str) -> Cow<'_, str> {
+    shortened(text, LINE)
+}
+
 /// The width of a line of text \[px\].
-pub(super) fn width(line: &str, size: u32) -> f64 {
+pub(super) fn width(text: &str, size: u32) -> f64 {
     let width = |face: Face| {
-        let units: f64 = glyphs(&face, line).map(|(_, advance)| advance).sum();
+        let units: f64 = glyphs(&face, &drawn(text)).map(|(_, advance)| advance).sum();
         units * f64::from(size) / f64::from(face.units_per_em())
     };
     face().map_or(0.0, width)
@@ -46,14 +68,14 @@ pub(super) fn width(line: &str, size: u32) -> f64 {
 /// The text in lines of at most `room` \[px\], broken at spaces; a longer word keeps its own line.
 pub(super) fn lines(text: &str, size: u32, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for paragraph in text.lines() {
+    for paragraph in shortened(text, TEXT).lines() {
         let mut line = String::new();
-        for word in paragraph.split(' ') {
-            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+        for word in paragraph.split(' ').map(drawn) {
+            let longer = if line.is_empty() { word.clone().into_owned() } else { format!("{line} {word}") };
             if line.is_empty() || width(&longer, size) <= room {
                 line = longer;
             } else {
-                lines.push(std::mem::replace(&mut line, word.to_owned()));
+                lines.push(std::mem::replace(&mut line, word.into_owned()));
             }
         }
         lines.push(line);
@@ -115,5 +137,16 @@ mod tests {
     fn lines_are_broken_where_they_are_too_long() {
         assert_eq!(lines("one two three\nfour", 10, width("one two", 10)), ["one two", "three", "four"]);
         assert_eq!(lines("unbreakable", 10, 1.0), ["unbreakable"]);
+    }
+
+    #[test]
+    fn a_text_of_any_length_is_drawn_in_bounded_time() {
+        let long = "é".repeat(100_000);
+        let cut = drawn(&long);
+        assert!(cut.chars().count() == LINE && cut.contains("é…é"), "{cut}");
+        let [the, name, touches] = &lines(&format!("the {long} touches"), 10, 1e3)[..] else { panic!("three lines") };
+        assert_eq!((&**the, name.chars().count(), &**touches), ("the", LINE, "touches"));
+        assert_eq!(lines(&"a b ".repeat(100_000), 10, 1e9).concat().chars().count(), TEXT);
+        assert_eq!(drawn(&long[..2 * LINE]), long[..2 * LINE]);
     }
 }

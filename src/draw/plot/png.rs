@@ -10,10 +10,15 @@ use ttf_parser::OutlineBuilder;
 /// How much larger it is than the SVG says.
 const SCALE: f32 = 2.0;
 
+/// The most pixels, of four bytes each.
+const MOST: u64 = 1 << 26;
+
 pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>> {
     let refused = |what: &str| Error::new(Reason::Unsupported(format!("a picture {what}"))).hint("take an SVG");
     let [width, height] = [canvas.size.0, canvas.size.1].map(|side| (side * f64::from(SCALE)).ceil() as u32);
-    let mut pixels = Pixmap::new(width, height).ok_or_else(|| refused("of this size"))?;
+    let is_small = u64::from(width) * u64::from(height) <= MOST;
+    let pixels = Some(()).filter(|()| is_small).and_then(|()| Pixmap::new(width, height));
+    let mut pixels = pixels.ok_or_else(|| refused(&format!("of {width} x {height} pixels")))?;
     pixels.fill(tiny_skia::Color::WHITE);
     Brush { pixels: &mut pixels, place: Transform::from_scale(SCALE, SCALE), clip: None }.layer(&canvas.layer);
     pixels.encode_png().map_err(|error| refused(&error.to_string()))

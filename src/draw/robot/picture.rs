@@ -55,7 +55,7 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     if panels.is_empty() {
         panels.push(panel(String::new(), None));
     }
-    let sentence = words::verdict(analysis.verdict, &analysis.outcomes);
+    let sentence = words::verdict(analysis.verdict, &analysis.outcomes, analysis.open.as_ref());
     Some(Picture {
         title: format!("{}: {sentence}", words::titled(&robot.name, &state.id)),
         rows: panels.chunks(COLUMNS).map(<[Panel]>::to_vec).collect(),

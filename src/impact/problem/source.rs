@@ -9,6 +9,7 @@
 //! zero shows its sign once it has enough digits.
 
 use super::{ContactProblem, Origin};
+use crate::budget::{ROUNDS, is_spent, is_spent_after};
 use crate::planar::Pair;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Trigonometry};
 
@@ -87,15 +88,19 @@ pub enum Precision {
     Interval,
 }
 
-/// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open.
+/// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open or the
+/// budget is spent.
 pub fn escalate<S: Source>(source: &S, first: Precision, task: &mut impl PrecisionTask) {
     if first <= Precision::Ball && task.attempt(&source.problem::<Certified<Ball>>(), Precision::Ball) {
         return;
     }
-    if task.attempt(&source.problem::<Certified<Ball<DoubleDouble>>>(), Precision::DoubleDouble) {
+    if is_spent() || task.attempt(&source.problem::<Certified<Ball<DoubleDouble>>>(), Precision::DoubleDouble) {
         return;
     }
     for bits in BITS {
+        if is_spent_after(ROUNDS) {
+            return;
+        }
         let problem = || source.problem::<Certified<Interval>>();
         if Interval::scope(bits, || task.attempt(&problem(), Precision::Interval)) {
             return;

@@ -5,6 +5,7 @@ use super::combination::BoxCombination;
 use super::kept::{KeptContacts, proven_modes, with_named_contacts};
 use super::state_box::StateBox;
 use super::{CONTACT_LIMIT, Counterexample, Robustness};
+use crate::budget::is_spent_after;
 use crate::law::Mode;
 use crate::scalar::{Affine, Ordered, Sign};
 use crate::state::{State, Uncertainty};
@@ -66,6 +67,9 @@ fn search<const N: usize>(kept: &mut KeptContacts<'_, '_>, whole: StateBox, expe
     let mut effort = EFFORT * USUAL / N.max(USUAL);
     let mut first = true;
     while let Some((own, open)) = boxes.pop() {
+        if is_spent_after(open.len() as u32) {
+            return Robustness::Unknown;
+        }
         if !first {
             // The whole box is examined in any case.
             let Some(rest) = effort.checked_sub(open.len()) else { return Robustness::Unknown };
@@ -109,6 +113,10 @@ impl<const N: usize> BoxSearch<'_, '_, '_, N> {
         let mut influence = vec![0.0; own.ends.len()];
         self.ways.clear();
         open.retain(|modes| {
+            // What the time does not suffice for stays open.
+            if is_spent_after(9_u32.pow(modes.len() as u32)) {
+                return true;
+            }
             problem.combine(modes, &mut self.combination);
             let valid = self.expected.binary_search(modes).is_ok();
             let is_open = self.combination.is_valid() != Some(valid);

@@ -141,7 +141,7 @@ impl<'w> Writer<'w> {
     fn verdict(&mut self) -> std::fmt::Result {
         let Palette { strong, plain, .. } = *self.palette;
         let sentence = match (self.report.verdict, &self.report.outcomes) {
-            (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes),
+            (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes, self.report.open.as_ref()),
             _ => "No outcomes are known.".to_owned(),
         };
         writeln!(self.out, "{strong}{sentence}{plain}")?;

@@ -1,0 +1,242 @@
+//! A budget of work: how much time an answer may take.
+//!
+//! ```text
+//!     Budget::within --work--> loops without a bound of their own ask is_spent --yes--> what is open stays undecided
+//! ```
+//!
+//! This crate reads no clock: who sets a budget gives one. A budget holds for all that its thread does within it, so
+//! that a linear program in the middle of a proof ends as soon as one at its edge: every sign that is asked for then is
+//! unknown, which is always a right answer.
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// How much time work may take, and by which clock.
+///
+/// ```
+/// use heelstrike::{Budget, ContactProblem, Friction, analyze, impact::ListedRejections};
+/// use std::sync::LazyLock;
+/// use std::time::{Duration, Instant};
+///
+/// static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+/// let budget = Budget { time: Duration::from_secs(1), clock: || START.elapsed() };
+/// let problem = ContactProblem::new(vec![2.0, 1.0, 1.0, 2.0], vec![[0.5, -1.0]], vec![Friction::from(0.8)], vec![0.0])?;
+/// let analysis = budget.within(|| analyze(&problem, ListedRejections::Nothing))?;
+/// assert!(analysis.open.is_none());
+/// # Ok::<(), heelstrike::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Budget {
+    /// How much.
+    pub time: Duration,
+    /// Time that the calling thread has worked, since any moment: best its processor time. It is not called by work
+    /// that takes less than some ten microseconds.
+    pub clock: fn() -> Duration,
+}
+
+/// A budget that several threads spend together.
+#[derive(Debug, Clone)]
+pub struct SharedBudget {
+    budget: Budget,
+    /// In nanoseconds.
+    spent: Arc<AtomicU64>,
+}
+
+/// All of a shared budget was spent; how much that was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BudgetSpent(pub Duration);
+
+thread_local! {
+    static WORK: Work = const { Work { running: Cell::new(None), rounds: Cell::new(ROUNDS), spent: Cell::new(false) } };
+}
+
+/// What the thread is at work on.
+struct Work {
+    running: Cell<Option<Running>>,
+    /// How many rounds until the clock is read.
+    rounds: Cell<u32>,
+    spent: Cell<bool>,
+}
+
+struct Running {
+    budget: Budget,
+    /// When the clock was last read.
+    last: Option<Duration>,
+    /// Of this work alone \[ns\].
+    own: u64,
+    /// Of all that share the budget \[ns\].
+    shared: Option<Arc<AtomicU64>>,
+}
+
+impl Running {
+    /// Reads the clock; whether everything is spent.
+    fn read(&mut self) -> bool {
+        let now = (self.budget.clock)();
+        let used = nanoseconds(now.saturating_sub(self.last.replace(now).unwrap_or(now)));
+        self.own = self.own.saturating_add(used);
+        let shared = self.shared.as_ref().map(|all| all.fetch_add(used, Ordering::Relaxed).saturating_add(used));
+        shared.unwrap_or(self.own) >= nanoseconds(self.budget.time)
+    }
+}
+
+fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// Ends the work of a thread, however it ends.
+struct Ending;
+
+impl Drop for Ending {
+    fn drop(&mut self) {
+        WORK.with(|work| {
+            if let Some(mut running) = work.running.take().filter(|running| running.shared.is_some()) {
+                running.read();
+            }
+            work.spent.set(false);
+        });
+    }
+}
+
+impl Budget {
+    /// Does the work; what of it cannot be done within the budget is left open by [`Pipeline`](crate::Pipeline) and
+    /// [`analyze`](crate::analyze). Within the work of another budget, that one goes on.
+    pub fn within<R>(self, work: impl FnOnce() -> R) -> R {
+        Running { budget: self, last: None, own: 0, shared: None }.during(work)
+    }
+}
+
+impl SharedBudget {
+    /// A budget of which nothing is spent yet.
+    pub fn new(budget: Budget) -> Self {
+        Self { budget, spent: Arc::default() }
+    }
+
+    /// What the work makes, on any number of [`Workers`](crate::sweep::Workers).
+    ///
+    /// # Errors
+    /// The budget was spent before: what was made then means nothing.
+    pub fn within<R>(&self, work: impl FnOnce() -> R) -> Result<R, BudgetSpent> {
+        let made = self.share(work);
+        let is_spent = self.spent.load(Ordering::Relaxed) >= nanoseconds(self.budget.time);
+        if is_spent { Err(BudgetSpent(self.budget.time)) } else { Ok(made) }
+    }
+
+    /// As [`SharedBudget::within`], by a thread whose work is part of another one's.
+    pub(crate) fn share<R>(&self, work: impl FnOnce() -> R) -> R {
+        let (budget, last) = (self.budget, Some((self.budget.clock)()));
+        Running { budget, last, own: 0, shared: Some(Arc::clone(&self.spent)) }.during(work)
+    }
+
+    /// That within which this thread is at work.
+    pub(crate) fn current() -> Option<Self> {
+        WORK.with(|work| {
+            let running = work.running.take();
+            let shared = running
+                .as_ref()
+                .and_then(|running| Some(Self { budget: running.budget, spent: Arc::clone(running.shared.as_ref()?) }));
+            work.running.set(running);
+            shared
+        })
+    }
+}
+
+impl Running {
+    fn during<R>(self, work: impl FnOnce() -> R) -> R {
+        let _ending = WORK.with(|own| {
+            let outer = own.running.take();
+            let begins = outer.is_none();
+            own.running.set(Some(outer.unwrap_or(self)));
+            if begins {
+                own.rounds.set(ROUNDS);
+            }
+            begins.then(|| Ending)
+        });
+        work()
+    }
+}
+
+/// As [`Budget::within`], if there is one.
+pub fn within<R>(budget: Option<Budget>, work: impl FnOnce() -> R) -> R {
+    match budget {
+        Some(budget) => budget.within(work),
+        None => work(),
+    }
+}
+
+/// Whether the budget of this thread's work is spent, asked at least once in each round of a loop without a bound.
+pub(crate) fn is_spent() -> bool {
+    is_spent_after(1)
+}
+
+/// As [`is_spent`], after work that takes about as long as so many rounds of a linear program.
+pub(crate) fn is_spent_after(rounds: u32) -> bool {
+    WORK.with(|work| {
+        let left = work.rounds.get().saturating_sub(rounds);
+        work.rounds.set(if left > 0 { left } else { ROUNDS });
+        if left > 0 {
+            return work.spent.get();
+        }
+        if !work.spent.get()
+            && let Some(mut running) = work.running.take()
+        {
+            work.spent.set(running.read());
+            work.running.set(Some(running));
+        }
+        work.spent.get()
+    })
+}
+
+/// Work that takes so many rounds and more is followed by a look at the clock, which takes microseconds.
+pub(crate) const ROUNDS: u32 = 1024;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_spent_now() -> bool {
+        is_spent_after(u32::MAX)
+    }
+
+    /// A clock that goes on by a second whenever it is read.
+    fn ticking() -> Duration {
+        thread_local!(static TICKS: Cell<u64> = const { Cell::new(0) });
+        Duration::from_secs(TICKS.replace(TICKS.get() + 1))
+    }
+
+    fn seconds(time: u64) -> Budget {
+        Budget { time: Duration::from_secs(time), clock: ticking }
+    }
+
+    #[test]
+    fn a_budget_is_spent_by_the_clock() {
+        assert!(!is_spent_now(), "without a budget nothing is ever spent");
+        let looks = seconds(3).within(|| (1..10).find(|_| is_spent_now()));
+        assert_eq!(looks, Some(4), "the first look is the beginning");
+        let asks = seconds(1).within(|| (1..10_000).find(|_| is_spent()));
+        assert_eq!(asks, Some(2 * ROUNDS));
+        assert!(!is_spent_now(), "the budget ends with its work");
+        let inner = seconds(2).within(|| (seconds(0).within(is_spent_now), (1..10).find(|_| is_spent_now())));
+        assert_eq!(inner, (false, Some(2)), "the outer budget goes on within the inner one and behind it");
+    }
+
+    #[test]
+    fn threads_spend_a_shared_budget_together() {
+        let shared = SharedBudget::new(seconds(6));
+        let looks = |count: u32| {
+            let own = SharedBudget::current().expect("the budget of this thread");
+            let work = || {
+                own.share(|| {
+                    (0..count).for_each(|_| {
+                        is_spent_now();
+                    })
+                })
+            };
+            std::thread::scope(|scope| scope.spawn(work).join()).expect("no panic");
+        };
+        // A look at the beginning, at the end, and these.
+        assert_eq!(shared.within(|| looks(1)), Ok(()));
+        assert_eq!(shared.within(|| looks(1)), Err(BudgetSpent(Duration::from_secs(6))));
+    }
+}

@@ -1,0 +1,97 @@
+//! `--budget`, and what is refused before any work because of its size.
+
+use super::*;
+use support::nearly::nearly_dependent;
+
+/// A run ends soon if it says so itself.
+fn ends(arguments: &[&str], stdin: &str) -> Run {
+    finished(command().args(arguments).write_stdin(stdin).timeout(std::time::Duration::from_secs(240)))
+}
+
+#[test]
+fn ten_nearly_singular_contacts_end_with_little_text() {
+    let problem = nearly_dependent(10).to_string();
+    let run = ends(&["solve", "-", "--brief", "--budget", "0.2"], &problem).well();
+    assert!(run.stdout.len() < 40_000, "{} bytes", run.stdout.len());
+    let sentence = "Undecided: the budget of work ended (--budget), and ";
+    assert!(run.stdout.contains(sentence) && run.stdout.contains(" of 1048576 combinations of modes are open"));
+    let brief = ends(&["solve", "-", "--brief", "--format", "json", "--budget", "0.2"], &problem).well().line();
+    assert_eq!((&brief["verdict"], &brief["proven"]), (&json!("undecided"), &json!(false)));
+    assert_eq!((&brief["open"]["combinations"], &brief["open"]["beyond_budget"]), (&json!(1_048_576), &json!(true)));
+    assert!(list(&brief["outcomes"]).len() <= 200);
+}
+
+#[test]
+fn feet_in_the_ground_end_within_the_budget() {
+    // Within 2 cm, most links of the quadruped touch the ground at once.
+    let rows: Vec<String> = read("tests/data/gaits/a1_walk.csv").lines().take(3).map(str::to_owned).collect();
+    let arguments = ["batch", "tests/data/robots/a1/a1.urdf", "-", "--input-format", "csv", "--friction", "0.7"];
+    for tolerance in ["0.02", "0.05"] {
+        let options = ["--contact-tolerance", tolerance, "--budget", "0.05", "--brief"];
+        let run = ends(&[&arguments[..], &options].concat(), &(rows.join("\n") + "\n"));
+        assert_eq!(run.lines().len(), rows.len() - 1, "{}", run.stderr);
+    }
+}
+
+#[test]
+fn a_batch_counts_what_its_budget_leaves_open() {
+    // A plank on many points at once, all of them given: merging would leave two.
+    let points: Vec<Value> =
+        (0..8).map(|at| json!({"link": "block", "offset": [0.01 * f64::from(at), 0, -0.1]})).collect();
+    let state = json!({"velocity": {"base": {"z": -1, "pitch": 1e-9}}, "friction": 0.5, "contacts": points});
+    let summary = place("summary.json");
+    let arguments = ["batch", BLOCK, "-", "--no-reduction=merge", "--budget", "0", "--summary", &summary];
+    let run = ends(&arguments, &format!("{state}\n{state}\n")).well();
+    assert!(run.stderr.contains("undecided because the budget of work ended (--budget): 2"), "{}", run.stderr);
+    let counts = parsed(&fs::read_to_string(&summary).expect("a summary"));
+    assert_eq!((&counts["beyond_budget"], &counts["verdicts"]["undecided"]), (&json!(2), &json!(2)));
+}
+
+#[test]
+fn an_endless_range_is_refused_and_replaces_nothing() {
+    let old = file("old.json", "old");
+    let study = walker(json!({"alpha": {"from": 0, "to": 1e17, "steps": 50}})).to_string();
+    let run = ends(&["sweep", WALKER, "-", "--budget", "0.3", "-o", &old], &study);
+    let refusal = run.refusal(1);
+    assert!(refusal.contains("the budget of work ended") && refusal.contains("parameters.alpha.steps"), "{refusal}");
+    assert!(refusal.contains("a narrower range than 0.0 to 1e17, or --budget 10.0"), "{refusal}");
+    assert_eq!(fs::read_to_string(&old).expect("a file"), "old");
+}
+
+#[test]
+fn a_study_with_too_many_samples_is_refused_at_once() {
+    let parameter = |steps: u32| json!({"from": 0.1, "to": 1, "steps": steps});
+    for (parameters, place, reason) in [
+        (json!({"alpha": parameter(1_000_001)}), "parameters.alpha.steps", "from 2 to 1000000, not 1000001"),
+        (json!({"alpha": parameter(400_000), "b": parameter(2)}), "parameters.alpha.steps", "MB of memory"),
+    ] {
+        let refusal = ends(&["sweep", WALKER, "-"], &walker(parameters).to_string()).refusal(1);
+        assert!(refusal.contains(place) && refusal.contains(reason), "{refusal}");
+    }
+    // As many as are accepted, and more than there is time for.
+    let study = walker(json!({"alpha": parameter(1_000_000)})).to_string();
+    let refusal = ends(&["sweep", WALKER, "-", "--budget", "0.1"], &study).refusal(1);
+    assert!(refusal.contains("take fewer than 1000000 samples of alpha"), "{refusal}");
+}
+
+#[test]
+fn a_picture_with_endless_names_is_drawn_soon() {
+    let name = format!("\"{}\"", "n".repeat(100_000));
+    let urdf = file("long.urdf", read(BLOCK).replace("\"block\"", &name));
+    for ending in ["png", "svg"] {
+        let picture = place(&format!("picture.{ending}"));
+        let state = r#"{"velocity": {"base": {"z": -1}}, "friction": 0.5, "place": "lowest"}"#;
+        ends(&["impact", &urdf, "-", "--brief", "--plot", &picture], state).well();
+        assert!(fs::metadata(&picture).expect("a picture").len() < 200_000);
+    }
+}
+
+#[test]
+fn a_budget_is_seconds_or_infinite() {
+    let solve = |budget: &str| heelstrike(&["solve", "examples/problems/rod.json", "--budget", budget]);
+    for budget in ["-1", "nan", "1e400", "soon", ""] {
+        let refusal = solve(budget).refusal(2);
+        assert!(refusal.contains("a number of seconds from 0 on, or \"infinite\""), "{refusal}");
+    }
+    assert_eq!(solve("infinite").text(), solve("0.5").text());
+}

@@ -1,0 +1,136 @@
+//! Budgets of work: what is open when one ends, and that it costs nothing where it is not needed.
+
+use crate::support::impact::{robot, try_impact};
+use crate::support::nearly::nearly_dependent;
+use heelstrike::budget::{BudgetSpent, SharedBudget};
+use heelstrike::description::Description;
+use heelstrike::impact::{Analysis, AnalysisOptions, OpenCombinations, Scratch};
+use heelstrike::pipeline::Options;
+use heelstrike::read::{Problem, Study};
+use heelstrike::robot::Reduction;
+use heelstrike::sweep::{Findings, RobotStudy, Workers};
+use heelstrike::{Budget, Defaults, Reason, Robot, Verdict};
+use serde_json::json;
+use std::cell::Cell;
+use std::time::Duration;
+
+thread_local!(static LOOKS: Cell<u32> = const { Cell::new(0) });
+
+/// Goes on by a second at each look.
+fn ticking() -> Duration {
+    Duration::from_secs(LOOKS.replace(LOOKS.get() + 1).into())
+}
+
+/// A budget for so many looks at the clock, the first of which begins it.
+fn looks(count: u64) -> Budget {
+    LOOKS.set(0);
+    Budget { time: Duration::from_secs(count), clock: ticking }
+}
+
+fn analyzed(contacts: usize, budget: Option<Budget>) -> Analysis {
+    let problem = Problem::from_json(&nearly_dependent(contacts).to_string(), &Defaults::default()).expect("a problem");
+    let analyze = || Scratch::default().analyze(&problem.contact, &problem, AnalysisOptions::default());
+    budget.map_or_else(analyze, |budget| budget.within(analyze)).expect("an analysis")
+}
+
+#[test]
+fn what_a_budget_leaves_open_is_undecided() {
+    for (contacts, count) in [(6, 2), (7, 0), (7, 2)] {
+        let Analysis { verdict, proven, outcomes, open, index_sum, no_slip_consistent, .. } =
+            analyzed(contacts, Some(looks(count)));
+        let OpenCombinations { combinations, undecided, beyond_budget } = open.expect("something is open");
+        assert_eq!((verdict, proven, index_sum), (Verdict::Undecided, false, None));
+        assert_eq!((combinations, beyond_budget), (4_u64.pow(contacts as u32), true));
+        let listed = outcomes.iter().filter(|outcome| !outcome.decided).count() as u64;
+        assert!(listed <= undecided.min(100) && undecided <= combinations, "{listed} of {undecided}");
+        // It may be among those that are not listed.
+        assert!(no_slip_consistent != Some(false) || listed == undecided);
+    }
+    let Analysis { open: none, outcomes, .. } = analyzed(7, Some(looks(0)));
+    assert_eq!((none.map(|open| open.undecided), outcomes.len()), (Some(4_u64.pow(7)), 0), "nothing was looked at");
+}
+
+#[test]
+fn a_budget_that_suffices_changes_nothing() {
+    let [without, with] = [None, Some(looks(1_000_000))].map(|budget| analyzed(3, budget));
+    assert_eq!(without, with);
+    assert!(without.open.is_none() && without.verdict != Verdict::Undecided);
+}
+
+const STRIKE: &str = include_str!("../../examples/ramone.json");
+
+fn ramone() -> Robot {
+    robot(include_str!("../../urdf/ramone.urdf"))
+}
+
+#[test]
+fn a_usual_state_never_reads_the_clock() {
+    let options = Options { budget: Some(looks(0)), ..Options::default() };
+    let impact = try_impact(&ramone(), options, STRIKE).expect("an answer");
+    assert_eq!((impact.analysis.expect("outcomes").proven, LOOKS.get()), (true, 0));
+}
+
+#[test]
+fn a_box_beyond_the_budget_is_unknown() {
+    let wide = include_str!("../../examples/ramone_measured.json");
+    let [free, bound] = [None, Some(looks(0))].map(|budget| {
+        let impact = try_impact(&ramone(), Options { budget, ..Options::default() }, wide).expect("an answer");
+        (format!("{:?}", impact.holds), impact.notes.iter().any(|note| note.contains("`budget`")))
+    });
+    assert!(free.0 != "Some(Unknown)" && !free.1, "{free:?}");
+    assert_eq!(bound, ("Some(Unknown)".to_owned(), true));
+}
+
+#[test]
+fn a_study_beyond_the_budget_is_refused() {
+    let description = Description::from_urdf(include_str!("../../urdf/minimalistic.urdf")).expect("a description");
+    let robot = Robot::reduce(&description, &Reduction::default()).expect("a robot");
+    let study = |parameters: serde_json::Value| {
+        let position = json!({"base": {"pitch": "-alpha"}, "joints": {"hip": "-2*alpha"}});
+        let velocity = json!({"base": {"pitch": -1.0}});
+        let state = json!({"position": position, "velocity": velocity, "stance": "left_leg", "friction": "mu"});
+        json!({"parameters": parameters, "constants": {"one": 1}, "state": state}).to_string()
+    };
+    for (parameters, place) in [
+        (json!({"alpha": {"from": 0, "to": 1e17, "steps": 300}, "mu": {"from": 0, "to": 1, "steps": 2}}), "alpha"),
+        (json!({"alpha": {"from": 0.1, "to": 1, "steps": 5}, "mu": {"from": 0, "to": 1, "steps": 90}}), "mu"),
+    ] {
+        let text = study(parameters);
+        let study = Study::from_json(&text).expect("a study");
+        let (reduction, options, defaults) = (Reduction::default(), Options::default(), Defaults::default());
+        let model = RobotStudy {
+            study: &study,
+            description: &description,
+            reduction: &reduction,
+            robot: &robot,
+            options,
+            defaults,
+        };
+        let shared = SharedBudget::new(looks(4));
+        let spent = shared.within(|| Findings::of(&model, Workers { threads: 2, done: &|| () })).expect_err("too long");
+        assert_eq!(spent, BudgetSpent(Duration::from_secs(4)));
+        let refused = study.beyond(spent);
+        assert_eq!(
+            (refused.reason(), refused.place()),
+            (&Reason::BeyondBudget, Some(&*format!("parameters.{place}.steps")))
+        );
+        assert!(
+            refused.location().is_some() && refused.remedy().is_some_and(|remedy| remedy.contains("`budget: 40.0`"))
+        );
+    }
+}
+
+#[test]
+fn a_map_beyond_its_memory_is_refused_at_once() {
+    let study = |steps: [usize; 2]| {
+        let parameter = |steps| json!({"from": 0, "to": 1, "steps": steps});
+        json!({"parameters": {"a": parameter(steps[0]), "b": parameter(steps[1])}, "state": {}}).to_string()
+    };
+    for (steps, place) in [([400_000, 2], "parameters.a.steps"), ([2, 400_000], "parameters.b.steps")] {
+        let text = study(steps);
+        let refused = Findings::check_memory(&Study::from_json(&text).expect("a study")).expect_err("too large");
+        assert!(matches!(refused.reason(), Reason::TooLarge { needed: 5_000.., .. }), "{refused}");
+        assert_eq!(refused.place(), Some(place));
+    }
+    Findings::check_memory(&Study::from_json(&study([700, 700])).expect("a study")).expect("not too large");
+}
