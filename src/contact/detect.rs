@@ -8,6 +8,7 @@ use super::point::{Point, Touch};
 use super::profile::Closeness;
 use super::surface::{Surface, Touching};
 use crate::error::{Error, Reason, Result};
+use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::{NamedContact, Scene};
@@ -116,7 +117,8 @@ impl Footing<'_> {
         if merges && self.named().is_none() {
             let stays = |contact: &Contact| standing.is_some_and(|foot| foot.has_circle_of(contact));
             let rounding = self.surface.rounding(self.placement, self.feet.size());
-            merged = merge(&mut contacts, |a, b| self.acts_as(a, b, rounding), stays, rounding);
+            let together = |a: &Contact, b: &Contact| self.acts_as(a, b, rounding);
+            merged = merge(&mut contacts, together, stays, |contact| self.lean(contact), rounding);
         }
         let mut counts = vec![(0, 0); self.robot.links.len()];
         contacts.iter().for_each(|contact: &Contact| counts[contact.link].0 += 1);
@@ -138,6 +140,17 @@ impl Footing<'_> {
             && (a.normal().dot(a.point - b.point) - (a.gap - b.gap)).abs() <= 4.0 * rounding
             && friction.of(a.link) == friction.of(b.link)
             && bounce(a) == bounce(b)
+    }
+
+    /// How far the edges of a contact's friction cone are inclined; `None` if it also depends on where it is in height:
+    /// with infinite friction, and where it bounces against friction.
+    fn lean(&self, contact: &Contact) -> Option<f64> {
+        let Scene { friction, restitution, .. } = self.scene;
+        let bounces = restitution.of(contact.link).is_some_and(|bounce| bounce > 0.0);
+        match friction.of(contact.link)? {
+            Friction::Finite(mu) if mu == 0.0 || !bounces => Some(mu),
+            Friction::Finite(_) | Friction::Infinite => None,
+        }
     }
 
     fn detected(&self, tolerance: f64) -> Result<Vec<Contact>> {

@@ -6,8 +6,8 @@
 //!
 //! With the same friction the parts at a and b stay in their cones. c_t is the same all along the line, and Newton's
 //! bounce e min(c_n, 0) is concave, so that p is closed only where a and b are. Points that the contact tolerance lets
-//! be off the line change nothing either, as long as e = 0 and both edges of p's friction cone meet the line between a
-//! and b.
+//! be off the line act through a and b all the same if both edges of p's friction cone meet the line between them, and
+//! if e = 0 or there is no friction: then the body does not turn where p pushes, or c_t says nothing. Others stay.
 
 use super::Contact;
 use crate::planar::Vector;
@@ -24,11 +24,13 @@ pub struct Merged {
 }
 
 /// Leaves out of all contacts that are `together` those between the outer two, but none that `stays`; places are the
-/// same up to `rounding` \[m\].
+/// same up to `rounding` \[m\]. Points off the line between the outer two act through these only with a `lean`, how far
+/// the edges of their friction cones are inclined.
 pub(super) fn merge(
     contacts: &mut Vec<Contact>,
     together: impl Fn(&Contact, &Contact) -> bool,
     stays: impl Fn(&Contact) -> bool,
+    lean: impl Fn(&Contact) -> Option<f64>,
     rounding: f64,
 ) -> Vec<Merged> {
     let mut merged = Vec::new();
@@ -52,15 +54,25 @@ pub(super) fn merge(
         let coincide = to - from <= rounding;
         let outer = if coincide { vec![rear] } else { vec![rear, front] };
         let slope = if coincide { 0.0 } else { (high - low) / (to - from) };
-        let inner: Vec<usize> = members().filter(|at| !outer.contains(at) && !stays(&contacts[*at])).collect();
+        let off = |at: usize| {
+            let [along, height] = place(at);
+            height - low - slope * (along - from)
+        };
+        let acts_through_outer = |at: usize| {
+            // Where an edge of its friction cone meets the line.
+            let meets = |lean: f64| {
+                let steeper = 1.0 - slope * lean;
+                let along = place(at)[0] - off(at) * lean / steeper;
+                steeper > 0.0 && (from - rounding..=to + rounding).contains(&along)
+            };
+            off(at).abs() <= rounding || lean(&contacts[at]).is_some_and(|lean| meets(lean) && meets(-lean))
+        };
+        let is_inner = |&at: &usize| !outer.contains(&at) && !stays(&contacts[at]) && acts_through_outer(at);
+        let inner: Vec<usize> = members().filter(is_inner).collect();
         if inner.is_empty() {
             continue;
         }
-        let off = |&at: &usize| {
-            let [along, height] = place(at);
-            (height - low - slope * (along - from)).abs()
-        };
-        let off = inner.iter().map(off).filter(|&off| off > rounding).fold(0.0, f64::max);
+        let off = inner.iter().map(|&at| off(at).abs()).filter(|&off| off > rounding).fold(0.0, f64::max);
         merged.push(Merged { inner: inner.len(), outer, off });
         inner.into_iter().for_each(|at| remains[at] = false);
     }

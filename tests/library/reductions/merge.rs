@@ -26,7 +26,7 @@ struct Case {
 const TOLERANCE: f64 = 0.05;
 
 /// Three links, the root of which stands with three to five points, at times another with one. They are on level ground
-/// exactly; without bounce and with finite friction inner ones may be off it as far as their cones let them.
+/// exactly, or inner ones are off it: as far as their cones let them act through the outer two, or farther.
 fn case(seed: u64) -> Case {
     let mut random = Random::new(seed);
     let mut point = |size: f64| -> Point { [random.between(-size, size), random.between(-size, size)] };
@@ -47,10 +47,11 @@ fn case(seed: u64) -> Case {
     let mut places: Vec<f64> = (0..random.whole(3, 5)).map(|_| random.between(-0.3, 0.3)).collect();
     places.sort_by(f64::total_cmp);
     let [rear, front] = [places[0], places[places.len() - 1]];
+    let (is_flat, reach) = (random.once_in(2), if random.once_in(2) { 1.0 } else { 4.0 });
     let mut feet: Vec<NamedContact> = (places.iter())
         .map(|&x| {
-            let room = (x - rear).min(front - x) / friction.unwrap_or(f64::INFINITY).max(1e-3);
-            let off = if bounce == 0.0 { room.min(TOLERANCE) * random.between(-1.0, 1.0) } else { 0.0 };
+            let room = (x - rear).min(front - x) / friction.unwrap_or(1.0).max(1e-3);
+            let off = if is_flat { 0.0 } else { (reach * room).min(TOLERANCE) * random.between(-1.0, 1.0) };
             NamedContact { link: 0, offset: [x, 0.0, off - height], radius: 0.0 }
         })
         .collect();
