@@ -161,6 +161,11 @@ impl<T: Real> Rotation<T> {
         Vector { x: self.cos * x + self.sin * z, z: self.cos * z - self.sin * x }
     }
 
+    /// The rotation by the opposite angle.
+    pub fn back(self) -> Self {
+        Self { cos: self.cos, sin: -self.sin }
+    }
+
     /// The rotation by the sum of both angles.
     #[inline]
     pub fn then(self, other: Self) -> Self {

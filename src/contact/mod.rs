@@ -15,11 +15,13 @@ mod terrain;
 mod profile;
 mod surface;
 mod merge;
+mod level;
 mod detect;
 mod nearest;
 
 pub(crate) use detect::Footing;
 pub use feet::{Feet, Foot};
+pub(crate) use level::{Level, level};
 pub use merge::Merged;
 pub use placement::Placement;
 pub(crate) use plane::HalfPlane;

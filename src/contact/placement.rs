@@ -60,8 +60,7 @@ impl Placement {
 
     /// A vector of the world in a body's axes.
     pub(super) fn turned_back(&self, body: usize, vector: Vector<f64>) -> Vector<f64> {
-        let Rotation { cos, sin } = self.turns[body];
-        Rotation { cos, sin: -sin }.apply(vector)
+        self.turns[body].back().apply(vector)
     }
 
     /// The circle that touches ground with this normal where `point` does: of an ellipse, with radius 0, the material

@@ -57,6 +57,11 @@ impl Contact {
         self.ground.apply(Vector::new(0.0, 1.0))
     }
 
+    /// Unit tangent of the ground in the world: the normal turned clockwise.
+    pub fn tangent(&self) -> Vector<f64> {
+        self.ground.apply(Vector::new(1.0, 0.0))
+    }
+
     /// The material point in touch, as the dynamics take it.
     pub fn point_of(&self) -> ContactPoint {
         ContactPoint { body: self.body, center: self.center, radius: self.radius, ground: self.ground }

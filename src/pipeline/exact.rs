@@ -1,7 +1,7 @@
 //! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
 
 use super::assembly::{Assembly, Elimination};
-use crate::contact::Contact;
+use crate::contact::{Contact, Level};
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{Constraints, ContactPoint};
 use crate::impact::{ContactProblem, Errors, Source};
@@ -24,6 +24,8 @@ pub struct ExactState<'a> {
     /// Its place among the contacts.
     pub stance: Option<usize>,
     pub contacts: &'a [Contact],
+    /// Those that are exactly level with others.
+    pub levels: &'a [Option<Level>],
     /// Contacts that are taken as exactly at rest.
     pub resting: &'a [bool],
     /// The joints that keep their rates although they have columns, and the rows of the loops that count.
@@ -75,6 +77,13 @@ impl ExactState<'_> {
         assembly.place();
         assembly.points.clear();
         assembly.points.extend(self.contacts.iter().map(|contact| self.point(contact)));
+        for (index, level) in self.levels.iter().enumerate() {
+            let &Some(Level { with, along }) = level else { continue };
+            let (other, own) = (assembly.points[with], &mut assembly.points[index]);
+            let [tangent, normal] = own.axes();
+            let arm = tangent * T::from_f64(along) + normal * (own.radius - other.radius);
+            own.center = other.center + assembly.workspace.rotation[own.body].back().apply(arm);
+        }
     }
 
     /// J and c, with a `velocity` that keeps the stance and the loops, once M^-1 is prepared.

@@ -10,9 +10,9 @@ use super::assembly::Assembly;
 use super::exact::ExactState;
 use super::resting::Standing;
 use super::{CONTACT_TOLERANCE, Pipeline};
-use crate::contact::{Contact, Footing, Merged, Placement, Surface};
+use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::Plan;
-use crate::dynamics::{Constraints, Workspace, kinetic_energy};
+use crate::dynamics::{Arm, Constraints, Workspace, kinetic_energy};
 use crate::error::{Error, Reason, Result, along_normal, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
@@ -55,6 +55,8 @@ pub struct Prepared {
     pub out_of_reach: usize,
     /// The place of the stance's foot among the contacts.
     pub stance: Option<usize>,
+    /// Contacts that are taken as exactly level with others.
+    pub levels: Vec<Option<Level>>,
     /// Contacts that were taken as exactly at rest.
     pub resting: Vec<bool>,
     pub kinetic_energy: f64,
@@ -89,6 +91,7 @@ impl Prepared {
             foot: self.foot.as_ref(),
             stance: self.stance,
             contacts: &self.contacts,
+            levels: &self.levels,
             resting: &self.resting,
             constraints: Constraints { kept: &assembly.kept, rows: &assembly.rows },
             is_rank_certain: assembly.is_rank_certain,
@@ -153,7 +156,9 @@ impl Pipeline<'_> {
         self.assembly.points.extend(contacts.iter().map(Contact::point_of));
         self.assembly.contact_jacobian(&velocity, stance);
         let standing = Standing { foot: foot.as_ref(), place: stance };
-        self.bound_velocities(&contacts, &velocity, standing);
+        // Who names a point means it where it is.
+        let levels = if scene.contacts.is_none() { level(&contacts, &placement, stance) } else { Vec::new() };
+        self.bound_velocities(&contacts, &levels, &velocity, standing);
         let resting = self.take_as_resting(state, &velocity, &contacts, standing, &mut notes);
         self.assembly.delassus();
         let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
@@ -177,6 +182,7 @@ impl Pipeline<'_> {
             merged,
             out_of_reach,
             stance,
+            levels,
             resting,
             kinetic_energy,
             applied,
@@ -406,9 +412,21 @@ impl Pipeline<'_> {
     }
 
     /// Bounds the rounding of c; the foot of the stance rests.
-    fn bound_velocities(&mut self, contacts: &[Contact], velocity: &[f64], standing: Standing) {
+    fn bound_velocities(
+        &mut self,
+        contacts: &[Contact],
+        levels: &[Option<Level>],
+        velocity: &[f64],
+        standing: Standing,
+    ) {
         let Self { robot, assembly: Assembly { plan, configuration, .. }, bounds, .. } = self;
-        bounds.stretch(plan, configuration, contacts.iter().map(|contact| contact.arm(robot)));
+        let arms = contacts.iter().enumerate().map(|(index, contact)| {
+            // The place of a level contact is added up from that of the other.
+            let other = levels.get(index).copied().flatten().map(|level| contacts[level.with].arm(robot).length);
+            let own = contact.arm(robot);
+            Arm { length: own.length + other.unwrap_or(0.0), ..own }
+        });
+        bounds.stretch(plan, configuration, arms);
         let foot = standing.foot.map(|foot| foot.arm(robot));
         bounds.velocities(plan, velocity, foot, |contact| standing.place == Some(contact));
     }

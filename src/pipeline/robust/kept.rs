@@ -103,6 +103,8 @@ impl KeptContacts<'_, '_> {
             foot: foot.as_ref(),
             stance: impact.stance,
             contacts: &impact.contacts,
+            // Where angles vary a sole is not level.
+            levels: &[],
             resting: &impact.resting,
             constraints: Constraints { kept: &[], rows },
             is_rank_certain: true,

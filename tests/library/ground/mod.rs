@@ -13,7 +13,7 @@ mod nearest;
 mod scenes;
 mod soles;
 
-use crate::support::impact::{impact, outcomes, robot, try_impact, velocities_after};
+use crate::support::impact::{impact, modes, outcomes, robot, try_impact, velocities_after};
 use crate::support::scaled::near;
 use crate::support::urdf;
 use heelstrike::impact::Verdict;

@@ -1,6 +1,8 @@
 //! Soles of meshes, whose facets are a micrometer apart: which corners stand.
 
 use super::*;
+use crate::support::random::Random;
+use crate::support::scaled::largest;
 use heelstrike::description::Description;
 use heelstrike::robot::Reduction;
 
@@ -106,5 +108,55 @@ fn a_foot_that_just_misses_is_noted() {
         assert_eq!(found.contacts.len(), 2);
         let note = found.notes.iter().find(|note| note.starts_with("left_foot nearly touches, "));
         assert_eq!(note.is_some(), noted, "{by}: {:?}", found.notes);
+    }
+}
+
+/// A torso, a leg and a foot with a flat sole; torso and leg are pitched by these angles \[rad\] at q = 0.
+fn one_legged([torso, leg]: [f64; 2]) -> Robot {
+    let turned = |[x, z]: [f64; 2], pitch: f64| {
+        let (sin, cos) = pitch.sin_cos();
+        [cos * x + sin * z, cos * z - sin * x]
+    };
+    let sole = urdf::collision([0.03, -0.04], "box size=\"0.21 0.1 0.03\"");
+    robot(&urdf::robot(&[
+        urdf::link("torso", 5.0, turned([0.02, 0.1], torso), 0.07, ""),
+        urdf::link("leg", 1.3, turned([0.01, -0.2], leg), 0.02, ""),
+        urdf::link("foot", 0.4, [0.03, -0.02], 0.001, &sole),
+        urdf::joint("hip", urdf::HINGE, ["torso", "leg"], turned([0.0, -0.1], torso), ""),
+        urdf::joint("ankle", urdf::HINGE, ["leg", "foot"], turned([0.05, -0.7], leg), ""),
+    ]))
+}
+
+/// A sole that the angles' rounding tilts by 1e-16 rad has no impulses of 1e16 N s: the answer is that of a sole that
+/// no rounding tilts.
+#[test]
+fn a_flat_sole_is_level_in_every_pose() {
+    for seed in 0..40 {
+        let mut random = Random::new(seed);
+        let mut numbers = |size: f64| -> [f64; 5] { std::array::from_fn(|_| random.between(-size, size)) };
+        let ([torso, leg, ..], [x, pitch, hip, ankle, bounce]) = (numbers(0.6), numbers(1.0));
+        let state = |pose: [f64; 3], stands: bool| {
+            let mut state = json!({
+                "position": {"base": {"pitch": pose[0]}, "joints": {"hip": pose[1], "ankle": pose[2]}},
+                "velocity": {"base": {"x": x, "z": -1.0, "pitch": pitch}, "joints": {"hip": hip, "ankle": ankle}},
+                "friction": if seed % 3 == 0 { json!(0.7) } else { json!("infinite") },
+                "restitution": bounce.abs(), "place": "lowest",
+            });
+            if stands {
+                state["stance"] = json!("foot");
+                state["velocity"]["base"] = json!({"pitch": pitch});
+                state.as_object_mut().expect("an object").remove("place");
+            }
+            state
+        };
+        let stands = seed % 4 == 0;
+        let posed = impact(&one_legged([0.0; 2]), state([torso, leg - torso, -leg], stands));
+        let drawn = impact(&one_legged([torso, leg]), state([0.0; 3], stands));
+        let proven = |impact: &Impact| impact.analysis.as_ref().is_some_and(|analysis| analysis.proven);
+        assert!(proven(&posed) && proven(&drawn), "seed {seed}");
+        assert_eq!((modes(&posed), posed.contacts.len()), (modes(&drawn), 2), "seed {seed}");
+        for (one, other) in velocities_after(&posed).iter().zip(velocities_after(&drawn)) {
+            assert!(near(one, &other, 1e-12 * largest(one)), "seed {seed}: {one:?} is not {other:?}");
+        }
     }
 }
