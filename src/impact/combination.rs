@@ -69,16 +69,17 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
     pub fn solve(&mut self, modes: &[Mode]) -> Result<Solved, Unsettled> {
         let Self { exact, scale, tableau } = self;
         T::freeing(|| {
-            let leaf = tableau.leaf(modes);
             let mut index = 1;
-            for &pivot in leaf.pivots {
-                match pivot.sign() {
-                    Sign::Undecided => return Err(Unsettled),
-                    Sign::Zero => return Equations::of(exact, scale, modes).solve().map(Solved::Singular),
-                    Sign::Negative => index = -index,
-                    Sign::Positive => {}
-                }
-            }
+            let ends = |pivot: T| {
+                let sign = pivot.sign();
+                index *= if sign == Sign::Negative { -1 } else { 1 };
+                matches!(sign, Sign::Undecided | Sign::Zero).then_some(sign)
+            };
+            let leaf = match tableau.leaf_unless(modes, ends) {
+                Ok(leaf) => leaf,
+                Err(Sign::Zero) => return Equations::of(exact, scale, modes).solve().map(Solved::Singular),
+                Err(_) => return Err(Unsettled),
+            };
             let reading = read_signed(&leaf, modes, exact.laws(), scale);
             if reading.sign == Sign::Undecided {
                 return Err(Unsettled);

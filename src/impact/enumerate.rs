@@ -16,6 +16,7 @@ use super::problem::ContactProblem;
 use crate::law::{Friction, Impulse, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::Real;
+use std::convert::Infallible;
 
 /// Scratch of the enumeration; it is reused from problem to problem and then allocates nothing.
 #[derive(Debug, Clone, Default)]
@@ -106,13 +107,22 @@ impl<T: Real> Tableau<T> {
     }
 
     pub fn leaf(&mut self, modes: &[Mode]) -> Leaf<'_, T> {
+        let Ok(leaf) = self.leaf_unless(modes, |_| None::<Infallible>);
+        leaf
+    }
+
+    /// The combination with these modes, unless a pivot on the way `ends` it.
+    pub fn leaf_unless<E>(&mut self, modes: &[Mode], mut ends: impl FnMut(T) -> Option<E>) -> Result<Leaf<'_, T>, E> {
         let mut source = 0;
         for (contact, &mode) in modes.iter().enumerate() {
             let mode = self.laws[contact].representative(mode);
             self.modes[contact] = mode;
             source = self.decide(contact, mode, source);
+            if let Some(end) = ends(self.pivots[contact]) {
+                return Err(end);
+            }
         }
-        self.at(source)
+        Ok(self.at(source))
     }
 
     fn at(&self, depth: usize) -> Leaf<'_, T> {

@@ -52,6 +52,11 @@ impl<T: Real> LinearFunction<T> {
         Self { constant: self.at(y), coefficients: self.coefficients.clone() }
     }
 
+    pub fn opposite(self) -> Self {
+        let coefficients = self.coefficients.into_iter().map(|coefficient| -coefficient).collect();
+        Self { constant: -self.constant, coefficients }
+    }
+
     /// A function of one more entry of y, with this `coefficient`.
     pub fn extended(&self, constant: T, coefficient: T) -> Self {
         Self { constant, coefficients: extended(&self.coefficients, coefficient) }
@@ -288,10 +293,7 @@ pub fn vanishing<T: Ordered>(functions: &[LinearFunction<T>]) -> Result<(Vec<usi
             continue;
         }
         // One is enough of a function that grows without bound.
-        let top = LinearFunction {
-            constant: T::one(),
-            coefficients: function.coefficients.iter().map(|&entry| -entry).collect(),
-        };
+        let top = LinearFunction { constant: -T::one(), ..function.clone() }.opposite();
         let rows: Vec<LinearFunction<T>> = functions.iter().map(|each| each.seen_from(&y)).chain([top]).collect();
         let best = maximize(&rows, &function.coefficients)?.ok_or(Unsettled)?;
         if settled(function.change(&best))?.is_eq() {

@@ -22,6 +22,7 @@ mod combination;
 mod explanation;
 mod rank;
 mod collected;
+mod choice;
 mod passes;
 mod families;
 pub mod analysis;

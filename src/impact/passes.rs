@@ -1,21 +1,28 @@
 //! The passes over all combinations: first in f64, then with more digits those that need them.
 
 use super::bound::LeafBounds;
+use super::choice::{Choice, is_possible};
 use super::collected::{Collected, Pending};
 use super::combination::{CombinationSolver, Solved};
 use super::digits::{Numbers, f64_serves};
 use super::enumerate::{Labels, Leaf, Tableau, Visitor};
 use super::kernel::Kernel;
+use super::linear::Unsettled;
 use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{F64Reader, motion};
 use crate::budget::{ROUNDS, is_spent_after};
-use crate::law::Impulse;
+use crate::law::{Impulse, Mode};
 use crate::scalar::{Ordered, Sign};
 use std::collections::BTreeMap;
 
 /// Combinations that are tried with many digits: more of many contacts take too long, and what is left is undecided.
 const PRECISE_COMBINATIONS: usize = 2_000;
+
+/// Fewer combinations than those of four contacts are solved one by one.
+const MANY: usize = 65;
+/// From so many combinations on it is first asked whether impulses lead to any of them.
+const WORTHWHILE: usize = 4;
 
 /// All combinations in f64.
 pub struct F64Pass<'a, 'm> {
@@ -93,33 +100,25 @@ impl UndecidedPass<'_, '_> {
 
 impl PrecisionTask for UndecidedPass<'_, '_> {
     fn attempt<T: Ordered>(&mut self, exact: &ContactProblem<T>, precision: Precision) -> bool {
-        let mut solver = CombinationSolver::new(exact);
-        let before = self.undecided.len();
-        let Self { undecided, blunt, collected } = self;
+        let mut open = std::mem::take(&mut self.undecided);
+        let before = open.len();
         // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
         let kernel = T::freeing(|| Kernel::of(exact)).unwrap_or_default();
-        let mut left = if precision == Precision::Interval { PRECISE_COMBINATIONS } else { usize::MAX };
-        undecided.retain(|pending| {
-            if let Some(because) = kernel.excludes(&pending.modes) {
-                collected.reject(pending.number, &pending.modes, || Rejection::of(&pending.modes, because));
-                return false;
+        open.retain(|pending| match kernel.excludes(&pending.modes) {
+            Some(because) => {
+                let rejection = || Rejection::of(&pending.modes, because);
+                self.collected.reject(pending.number, &pending.modes, rejection);
+                false
             }
-            if left == 0 || is_spent_after(if precision == Precision::Interval { ROUNDS } else { 1 }) {
-                return true;
-            }
-            left -= 1;
-            let Ok(solved) = solver.solve(&pending.modes) else { return true };
-            let listed = collected.options.rejections.contain(&pending.modes);
-            if listed && precision != Precision::Interval && solved.is_vague() {
-                return true;
-            }
-            if solved.is_sharp() {
-                collected.add(pending, solved);
-                return false;
-            }
-            blunt.insert(pending.number, solved);
-            true
+            None => true,
         });
+        let left = if precision == Precision::Interval { PRECISE_COMBINATIONS } else { usize::MAX };
+        let choices = vec![Choice::Any; exact.contacts()];
+        Attempt { pass: self, exact, solver: CombinationSolver::new(exact), precision, left, choices }.divide(open, 0);
+        let Self { undecided, collected, .. } = self;
+        for divided in [&mut *undecided, &mut collected.pending_families] {
+            divided.sort_unstable_by_key(|pending| pending.number);
+        }
         let effort = match precision {
             Precision::Ball => &mut collected.effort.ball,
             Precision::DoubleDouble => &mut collected.effort.double_double,
@@ -127,5 +126,77 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         };
         *effort += before - undecided.len();
         undecided.is_empty()
+    }
+}
+
+/// One kind of numbers that decides what it can, and leaves the rest to the pass.
+struct Attempt<'p, 'a, 'c, 'e, T> {
+    pass: &'p mut UndecidedPass<'a, 'c>,
+    exact: &'e ContactProblem<T>,
+    solver: CombinationSolver<'e, T>,
+    precision: Precision,
+    /// How many combinations may still be solved.
+    left: usize,
+    /// What is known of the modes of those at hand.
+    choices: Vec<Choice>,
+}
+
+impl<T: Ordered> Attempt<'_, '_, '_, '_, T> {
+    /// Decides combinations, all at once if no impulses lead to any of them: first it divides them by which contacts are
+    /// closed, then by how these move. Steps count the divisions, one of each kind per contact.
+    fn divide(&mut self, mut open: Vec<Pending>, step: usize) {
+        if step == 0 && open.len() < MANY {
+            return open.into_iter().for_each(|pending| self.solve(pending));
+        }
+        let contact = step % self.choices.len();
+        let before = self.choices[contact];
+        let parts = match before {
+            Choice::Any => vec![Choice::One(Mode::Separate), Choice::Closed],
+            Choice::Closed => [Mode::Stick, Mode::SlidePlus, Mode::SlideMinus].map(Choice::One).to_vec(),
+            Choice::One(_) => return self.divide(open, step + 1),
+        };
+        for part in parts {
+            let is_part = |pending: &Pending| part == Choice::Closed || part == Choice::One(pending.modes[contact]);
+            let (own, others) = open.into_iter().partition(is_part);
+            open = others;
+            self.choices[contact] = part;
+            self.decide(own, step + 1);
+        }
+        self.choices[contact] = before;
+    }
+
+    fn decide(&mut self, open: Vec<Pending>, step: usize) {
+        if open.len() < WORTHWHILE {
+            open.into_iter().for_each(|pending| self.solve(pending));
+        } else if !self.is_impossible(&open) {
+            self.divide(open, step);
+        }
+    }
+
+    /// Whether no impulses lead to any of these combinations; not asked if one of them is listed with its own numbers.
+    fn is_impossible(&self, open: &[Pending]) -> bool {
+        let rejections = self.pass.collected.options.rejections;
+        !open.iter().any(|pending| rejections.contain(&pending.modes))
+            && T::freeing(|| is_possible(self.exact, &self.choices)) == Ok(false)
+    }
+
+    fn solve(&mut self, pending: Pending) {
+        let UndecidedPass { undecided, blunt, collected } = &mut *self.pass;
+        let rounds = if self.precision == Precision::Interval { ROUNDS } else { 1 };
+        let stops = self.left == 0 || is_spent_after(rounds);
+        let solved = if stops { Err(Unsettled) } else { self.solver.solve(&pending.modes) };
+        self.left = self.left.saturating_sub(1);
+        let listed = collected.options.rejections.contain(&pending.modes);
+        match solved {
+            Ok(solved) if listed && self.precision != Precision::Interval && solved.is_vague() => {
+                undecided.push(pending)
+            }
+            Ok(solved) if solved.is_sharp() => collected.add(&pending, solved),
+            Ok(solved) => {
+                blunt.insert(pending.number, solved);
+                undecided.push(pending);
+            }
+            Err(Unsettled) => undecided.push(pending),
+        }
     }
 }

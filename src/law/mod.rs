@@ -82,6 +82,16 @@ impl<T: Real> Law<T> {
         }
     }
 
+    /// The rays of the convex cone that holds the impulses of all modes, and of each whether its opposite does so, too.
+    pub fn rays(&self) -> Vec<([T; 2], bool)> {
+        let (zero, one) = (T::zero(), T::one());
+        match *self {
+            Self::Frictionless => vec![([zero, one], false)],
+            Self::Coulomb(mu) => vec![([-mu, one], false), ([mu, one], false)],
+            Self::Unbounded => vec![([one, zero], true), ([zero, one], false)],
+        }
+    }
+
     /// Calls `visit` with every inequality of a mode, that of its velocity last.
     #[inline]
     pub fn conditions(&self, mode: Mode, mut visit: impl FnMut(Condition<T>)) {

@@ -33,6 +33,10 @@ fn exact(value: f64) -> RBig {
 impl Mechanism {
     fn random(random: &mut Random) -> Self {
         let contacts = random.pick(&[1, 2, 2, 2, 2, 3, 3, 4]);
+        Self::on(contacts, random)
+    }
+
+    fn on(contacts: i64, random: &mut Random) -> Self {
         let ratio_of_masses = random.pick(&[1.0, 4.0, 1e4, 1e8, 1e12]);
         let mass = |random: &mut Random| exact(random.pick(&[1.0, 1.0, 2.0, ratio_of_masses]));
         let (masses, jacobian): (Vec<RBig>, Vec<Vec<i64>>) = match random.whole(0, 3) {
@@ -91,7 +95,7 @@ impl Mechanism {
         }
     }
 
-    fn analysis(&self) -> Analysis {
+    fn analysis(&self, rejections: ListedRejections) -> Analysis {
         let rows = |matrix: &Matrix| matrix.iter().map(|row| numbers(row)).collect::<Vec<_>>();
         let friction = self.friction.iter().map(rounded).collect();
         let (masses, jacobian) = (rows(&self.mass_matrix()), rows(&self.jacobian));
@@ -102,7 +106,7 @@ impl Mechanism {
             friction,
             numbers(&self.restitution),
         );
-        impact::analyze(&problem.expect("a contact problem"), ListedRejections::Everything).expect("few contacts")
+        impact::analyze(&problem.expect("a contact problem"), rejections).expect("few contacts")
     }
 }
 
@@ -260,7 +264,7 @@ fn redundant_contacts_have_every_cell() {
     let [compared, undecided, wrong, isolated, families, areas, corners] = total(count, |seed| {
         let mechanism = Mechanism::random(&mut Random::new(seed));
         let problem = mechanism.problem();
-        let analysis = mechanism.analysis();
+        let analysis = mechanism.analysis(ListedRejections::Everything);
         if analysis.verdict == Verdict::Undecided {
             return [1, 1, 0, 0, 0, 0, 0];
         }
@@ -280,4 +284,19 @@ fn redundant_contacts_have_every_cell() {
     );
     println!("{counts}");
     assert!(wrong == 0 && undecided == 0 && families > count / 20 && areas > count / 1_000, "{counts}");
+}
+
+/// Where no rejection is listed, many combinations are rejected at once; the answer is the same as one by one.
+#[test]
+fn combinations_rejected_at_once_leave_the_rest() {
+    let count = 40;
+    let [rejected, families] = total(count, |seed| {
+        let mechanism = Mechanism::on(if seed % 4 == 0 { 5 } else { 4 }, &mut Random::new(1_000_000 + seed));
+        let analysis = |rejections| mechanism.analysis(rejections);
+        let [whole, divided] = [analysis(ListedRejections::Everything), analysis(ListedRejections::Nothing)];
+        assert_eq!((&divided.outcomes, &divided.families), (&whole.outcomes, &whole.families), "seed {seed}");
+        assert_eq!((divided.verdict, divided.proven), (whole.verdict, whole.proven), "seed {seed}");
+        [whole.rejected.len() as u64, whole.families.len() as u64]
+    });
+    assert!(rejected > 200 * count && families > 0, "{rejected} rejected, {families} families");
 }
