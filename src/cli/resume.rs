@@ -1,12 +1,13 @@
 //! The output of a batch, which may continue what an interrupted run has written.
 //!
 //! ```text
-//!     answers to states   1 ... n-2 | n-1      | n, whole or cut off
-//!                         kept      | compared | written again
+//!     answers to states   1 ... n-101 | n-100 ... n-1 | n, whole or cut off
+//!                         kept        | compared      | written again
 //! ```
 //!
-//! The last state is answered again, because its rows or its input may have been cut off. The one before it is answered
-//! again and compared, byte by byte: with another input or other options it would differ.
+//! The last state is answered again, because its rows or its input may have been cut off. Those before it are answered
+//! again and compared, byte by byte: with another input or other options some would differ, if not each (a foot at rest
+//! needs no friction).
 
 use super::output::{NewFile, Target, named};
 use serde::Deserialize;
@@ -15,6 +16,9 @@ use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+
+/// How many answers are compared.
+const COMPARED: usize = 100;
 
 /// Where the answers of a batch go.
 pub(super) enum BatchOutput {
@@ -129,10 +133,10 @@ fn unlike() -> io::Error {
 /// The places of answers in a file.
 #[derive(Default)]
 struct Answers {
-    /// How many states are answered before the last two, and how many of them are refused.
+    /// How many states are answered before the last ones, and how many of them are refused.
     before: usize,
     refused: u64,
-    /// Where the answers to the last two begin, and whether they are refusals.
+    /// Where the answers to the last ones begin, those to be compared and one more, and whether they are refusals.
     last: VecDeque<(u64, bool)>,
 }
 
@@ -140,7 +144,7 @@ impl Answers {
     /// Adds the answer to the next state.
     fn push(&mut self, start: u64, refused: bool) {
         self.last.push_back((start, refused));
-        if self.last.len() > 2
+        if self.last.len() > COMPARED + 1
             && let Some((_, refused)) = self.last.pop_front()
         {
             self.before += 1;

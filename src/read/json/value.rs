@@ -180,6 +180,8 @@ fn refusal(text: &str, error: &serde_json::Error) -> Error {
         refused.hint("numbers have a decimal point, as in 0.8")
     } else if whole.starts_with("key must be") && rest.first().is_some_and(u8::is_ascii_alphabetic) {
         refused.hint("names are in double quotes, as in {\"friction\": 0.8}")
+    } else if begins(&[","]) {
+        refused.hint("leave out this comma")
     } else if is_table(text) {
         refused.hint("is this a table? `heelstrike batch` reads CSV")
     } else if is_yaml(text) {
@@ -204,7 +206,9 @@ fn is_yaml(text: &str) -> bool {
 /// Whether a text that is no JSON begins as a table does: with names and commas between them.
 fn is_table(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default();
-    first.contains(',') && first.chars().all(|c| c.is_alphanumeric() || "_-.,/ ".contains(c))
+    first.starts_with(char::is_alphabetic)
+        && first.contains(',')
+        && first.chars().all(|c| c.is_alphanumeric() || "_-.,/ ".contains(c))
 }
 
 /// The path as far as its keys were read.

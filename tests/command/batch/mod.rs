@@ -1,7 +1,7 @@
 //! `heelstrike batch` as a stream: order, line numbers, threads, pipes, ends; and its summary.
 
 use super::support::urdf;
-use super::{Run, WALKER, file, heelstrike, heelstrike_reads, parsed, place, read};
+use super::{RAMONE, Run, WALKER, file, heelstrike, heelstrike_reads, parsed, place, read};
 use serde_json::json;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};

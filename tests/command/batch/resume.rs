@@ -154,6 +154,21 @@ fn answers_of_another_run_are_not_continued() {
 }
 
 #[test]
+fn options_that_few_answers_show_are_compared() {
+    let output = place("walk.ndjson");
+    let run = |friction, more: &[&str]| {
+        let walk = [RAMONE, "examples/gait/ramone_walk.csv", "--friction", friction, "-o", &output];
+        heelstrike(&[&["batch"], &walk[..], more].concat())
+    };
+    run("0.6", &[]);
+    let begun = read(&output).split_inclusive('\n').take(70).collect::<String>();
+    fs::write(&output, &begun).expect("a file");
+    let stderr = run("0.1", &["--resume"]).refusal(1);
+    assert!(stderr.contains("it does not hold these answers"), "{stderr}");
+    assert_eq!(read(&output), begun);
+}
+
+#[test]
 fn a_refused_input_replaces_no_old_result() {
     let kept = file("kept.ndjson", "an old result");
     for arguments in [
