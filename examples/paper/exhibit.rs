@@ -85,7 +85,7 @@ impl Exhibit {
             options: self.options(),
             defaults: Defaults::default(),
         };
-        model.readable()?;
+        model.has_own_friction()?;
         let threads = available_parallelism().map_or(1, usize::from);
         Ok(ask(&model, Workers { threads, done: &|| () }))
     }

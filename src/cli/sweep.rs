@@ -1,6 +1,6 @@
 //! `heelstrike sweep`: outcomes against one or two parameters.
 
-use super::diagnostic::{note, report};
+use super::diagnostic::{note, note_own_friction, report};
 use super::input::InputFile;
 use super::options::{
     BudgetOptions, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
@@ -121,7 +121,7 @@ pub(super) fn run(args: &Args) -> Completion {
             ..args.scene.defaults()
         },
     };
-    model.readable().map_err(refuse)?;
+    note_own_friction(model.has_own_friction().map_err(refuse)?.into(), "study");
     for name in study.unused() {
         note(&format!("nothing in the state or the robot depends on {name}"));
     }

@@ -137,6 +137,7 @@ impl Pipeline<'_> {
 
         let mut notes = Vec::new();
         self.check_limits(state, &mut notes)?;
+        let doubt = notes.first().cloned();
         self.note_unused_laws(scene, &mut notes);
         let surface = Surface::new(&scene.ground);
         let (base, mut velocity, foot) = self.stand(state, &surface)?;
@@ -145,7 +146,7 @@ impl Pipeline<'_> {
         let footing = self.footing(scene, &placement, &surface);
         let Detected { contacts, merged, out_of_reach } = self
             .contacts(&footing, foot.as_ref(), &mut notes)
-            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity)))?;
+            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity), doubt))?;
         let nearest = if self.options.brief { None } else { self.open_foot(&footing, &contacts, &velocity) };
         if scene.contacts.is_none() && !self.options.brief {
             self.note_near_miss(&contacts, nearest, &mut notes);
@@ -363,8 +364,8 @@ impl Pipeline<'_> {
     }
 
     /// The refusal of a foot that is too deep, completed by how the `lowest` foot moves, and for a stance with a remedy
-    /// that leaves the base to it.
-    fn sunk(&self, error: Error, scene: &Scene, lowest: Option<NearestFoot>) -> Error {
+    /// that leaves the base to it; `doubt` is what is odd about the pose.
+    fn sunk(&self, error: Error, scene: &Scene, lowest: Option<NearestFoot>, doubt: Option<String>) -> Error {
         let Reason::Penetration { link, depth, tolerance, .. } = error.reason() else { return error };
         let velocity = lowest.filter(|foot| self.robot.links[foot.link].name == *link).map(|foot| foot.velocity);
         let hint = match (scene.stance, error.remedy()) {
@@ -374,6 +375,7 @@ impl Pipeline<'_> {
             ),
             (None, Some(remedy)) => format!("{remedy}; `place: lowest` puts the lowest foot on the ground"),
         };
+        let hint = doubt.into_iter().fold(hint, |hint, doubt| format!("{hint}; {doubt}"));
         Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
             .hint(hint)
     }

@@ -63,13 +63,16 @@ pub(super) struct Inner {
 pub const WATCHED_CONTACTS: usize = 4;
 
 impl RobotStudy<'_> {
-    /// The first sample's refusal, if robot or state cannot be read there, nor in the middle, nor at the last one.
-    pub fn readable(&self) -> Result<()> {
+    /// The first sample's refusal, if robot or state cannot be read there, nor in the middle, nor at the last one; else
+    /// whether the state has friction of its own, so that the one of `defaults` is not its.
+    pub fn has_own_friction(&self) -> Result<bool> {
         let parameters = self.study.parameters();
         let mut solver = Solver::new(self);
         let mut read = |part: f64| {
             let point = parameters.iter().map(|parameter| parameter.from + part * parameter.range());
-            solver.at(&point.collect::<Vec<_>>(), |_, _, _| Ok(()))
+            let given = self.defaults.friction;
+            let is_other = |state: State| given.is_some() && state.scene.friction.default != given;
+            solver.at(&point.collect::<Vec<_>>(), |_, state, _| Ok(is_other(state)))
         };
         read(0.0).or_else(|first| read(0.5).or_else(|_| read(1.0)).map_err(|_| first))
     }

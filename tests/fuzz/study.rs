@@ -85,7 +85,7 @@ fn survey(study: &Study, case: &str) -> bool {
     let (options, defaults) = (Options::default(), Defaults::default());
     let model = RobotStudy { study, description, reduction: &Reduction::default(), robot, options, defaults };
     let [parameter] = study.parameters() else { return false };
-    if accepted(model.readable(), case).is_none() || parameter.steps > MOST_SAMPLES {
+    if accepted(model.has_own_friction(), case).is_none() || parameter.steps > MOST_SAMPLES {
         return false;
     }
     let Survey { regions, borders, .. } = Survey::of(&model, Workers { threads: 1, done: &|| () });

@@ -65,6 +65,14 @@ fn whole_numbers_beyond_a_turn_look_like_degrees() {
 }
 
 #[test]
+fn a_deep_foot_of_a_pose_in_degrees_is_no_riddle() {
+    let state = json!({"position": {"base": {"z": -1, "pitch": 90}}});
+    let ramone = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot");
+    let error = try_impact(&ramone, Options::default(), state).expect_err("in the ground");
+    assert!(error.remedy().is_some_and(|remedy| remedy.ends_with("pitch = 90 rad is more than a turn; degrees?")));
+}
+
+#[test]
 fn laws_of_links_without_a_foot_are_noted() {
     let robot = limited(HINGE, "");
     let notes = |scene: serde_json::Value| {

@@ -75,11 +75,11 @@ fn advice(studies: &[CaseStudy]) -> Option<String> {
     let keeps = |way: Way| format!("{least}{:.1} digits", way.digits);
     let [(exact, much), (quick, few)] = [most_exact, quickest].map(|way| (in_words(way.factorization), keeps(way)));
     let mut parts = vec![if most_exact.digits - quickest.digits < SAME_DIGITS {
-        let also = if ways.len() > 1 { ", the quickest way, and none keeps more" } else { "" };
+        let also = if ways.len() > 1 { ", the quickest way in f64, and none there keeps more" } else { "" };
         format!("For G take f64 by {quick} ({few}){also}")
     } else {
         let slower = times(most_exact.time / quickest.time);
-        let than = format!("at {slower} times the time of {quick}, the quickest way, which keeps {few}");
+        let than = format!("at {slower} times the time of {quick}, the quickest way in f64, which keeps {few}");
         format!("For G take f64 by {exact}, which keeps {much} {than}")
     }];
     for (number, than) in [("f32", "the time of the quickest"), ("double-double", "that")] {
@@ -175,7 +175,7 @@ mod tests {
         };
         assert_eq!(
             advice(&[study(true, methods(13)), study(false, methods(9))]).unwrap(),
-            "For G take f64 by articulated bodies (at least 14.0 digits), the quickest way, and none keeps more; f32 takes \
+            "For G take f64 by articulated bodies (at least 14.0 digits), the quickest way in f64, and none there keeps more; f32 takes \
              1.0 times the time of the quickest and keeps at least 5.0 digits; double-double takes 20 times that and keeps \
              at least 29.0 digits; the proof takes 1.5 times the time of the answer without it, and proves 1 of 2 answers."
         );

@@ -14,7 +14,9 @@ pub fn read(text: &str) -> Result<(), Error> {
     let (description, robot) = &*ROBOT;
     let study = Study::from_json(text)?;
     let (options, defaults) = (Options::default(), Defaults::default());
-    RobotStudy { study: &study, description, reduction: &Reduction::default(), robot, options, defaults }.readable()
+    RobotStudy { study: &study, description, reduction: &Reduction::default(), robot, options, defaults }
+        .has_own_friction()
+        .map(drop)
 }
 
 fn sample() -> Value {
