@@ -64,7 +64,7 @@ struct Answerer<'q> {
 
 /// Reads the states of records.
 enum Reader<'q> {
-    Lines(StateLines<'q>),
+    Lines(Box<StateLines<'q>>),
     Rows(Rows<'q>),
 }
 
@@ -98,7 +98,7 @@ impl<'q> Batch<'q> {
         let brief = question.detail.brief && question.columns.is_none() && !question.keyframes;
         let options = Options { brief, friction_needed: true, ..question.options.clone() };
         let pipeline = Pipeline::new(question.robot, options);
-        let lines = || Reader::Lines(StateLines::new(question.robot, &question.defaults));
+        let lines = || Reader::Lines(Box::new(StateLines::new(question.robot, &question.defaults)));
         let reader = question.header.map_or_else(lines, |header| Reader::Rows(header.rows()));
         Self { reader, answerer: Answerer { question, pipeline } }
     }

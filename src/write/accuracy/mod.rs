@@ -187,7 +187,7 @@ mod tests {
         assert_eq!(
             advice(&[study(true, methods)]).unwrap(),
             "For G take f64 by articulated bodies, which keeps 14.0 digits at 3.0 times the time of sparse LTL, the quickest \
-             way, which keeps 9.0 digits."
+             way in f64, which keeps 9.0 digits."
         );
         let failing = Method { error: None, ..method("f64", LTL, 1e-9, 0.0) };
         let found = advice(&[study(true, vec![failing, method("f64", BODIES, 1e-6, 1e-14)])]).unwrap();
