@@ -6,7 +6,7 @@
 //!     one mode    as it says, with >= in place of >
 //! ```
 //!
-//! A linear program tells whether impulses exist for such choices; if not, none of the lists of modes among them is an
+//! A linear program shows whether impulses exist for such choices; if not, none of the lists of modes among them is an
 //! outcome.
 
 use super::linear::{LinearFunction, Unsettled, extended, settled, solve, widest};
