@@ -5,9 +5,10 @@ use super::options::{
     BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
     choice, from_zero, pipeline_options,
 };
-use super::output::{NewFile, Target, apart, check_ending, spare, writable};
+use super::origin::{Asked, Origin};
+use super::output::{NewFile, apart, check_ending, spare, writable};
 use super::picture::PlotOptions;
-use super::resume::{BatchOutput, Continued};
+use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
@@ -16,6 +17,7 @@ use heelstrike::batch::{self, Batch, Chunks, Question, Recording};
 use heelstrike::error::Location;
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::gait::{self, At, Difference, Dropped, Heights, Thresholds, Touching};
+use heelstrike::pipeline::Options;
 use heelstrike::read::table::{Header, Rates};
 use heelstrike::state::Defaults;
 use heelstrike::write::{self, Columns, RowKind};
@@ -61,8 +63,9 @@ pub struct Args {
     output: Option<PathBuf>,
     /// Continue what an interrupted run has written to the output, which has the ending .part until it is whole
     ///
-    /// Input and options must be those of that run. Without one, this is an ordinary run. With --summary or --plot all
-    /// states are answered again, and what is there is only compared.
+    /// Robot, input and options must be those of that run, as it left them in a file that ends in .run. Without one, or
+    /// with --summary or --plot, all states are answered again, and what is there is only compared. If nothing is there,
+    /// this is an ordinary run.
     #[arg(long, requires = "output", help_heading = "Output")]
     resume: bool,
     /// The format of the results [default: csv if the output's name ends in .csv, else ndjson]
@@ -177,7 +180,8 @@ pub(super) fn run(args: &Args) -> Completion {
     let name = input::name(&args.states);
     let in_input = |error: Error| error.in_file(&name);
     let progress = progress::over(&args.states, args.output.is_some());
-    let states: Box<dyn Read + Send> = Box::new(progress.wrap_read(input::stream(&args.states)?));
+    let origin = Origin::of(output, args.resume);
+    let states: Box<dyn Read + Send> = Box::new(origin.watch(progress.wrap_read(input::stream(&args.states)?)));
     let mut chunks = match args.input_format.unwrap_or_else(|| RecordFormat::of(&args.states)) {
         RecordFormat::Ndjson => Chunks::of_lines(states),
         RecordFormat::Csv => Chunks::of_table(states),
@@ -231,14 +235,13 @@ pub(super) fn run(args: &Args) -> Completion {
     if let Some(columns) = &columns {
         columns.append_header(&mut head);
     }
-    // Summaries and pictures are of all states.
-    let all = summary.is_some() || args.plot.path().is_some();
-    let continued = output.filter(|_| args.resume).map(|path| Continued::open(path, &head, all)).transpose()?.flatten();
-    let (answered, refused) = continued.as_ref().map_or((0, 0), |begun| (begun.answered, begun.refused));
-    let (begun, output) = match continued {
-        Some(mut continued) => (continued.is_empty()?, BatchOutput::Continued(continued)),
-        None => (true, BatchOutput::New(Target::open(output, true)?)),
+    let asked = args.asked(&question, output_format);
+    let mut output = match output.filter(|_| args.resume) {
+        // Summaries and pictures are of all states.
+        Some(path) => BatchOutput::resume(path, &head, summary.is_some() || args.plot.path().is_some(), origin, asked)?,
+        None => BatchOutput::create(output, origin, asked)?,
     };
+    let ((answered, refused), begun) = (output.kept(), output.is_empty()?);
     let mut sink = OutputSink::new(output, &name, &progress);
     if begun {
         sink.write(&head)?;
@@ -329,6 +332,14 @@ impl RecordingOptions {
 }
 
 impl Args {
+    /// What the answers depend on, apart from the input.
+    fn asked(&self, question: &Question<'_>, format: RecordFormat) -> Asked {
+        // The address of a budget's clock differs in each run.
+        let options = Options { budget: None, ..question.options.clone() };
+        let Question { robot, defaults, detail, header, .. } = question;
+        Asked::new(robot, &(options, self.budget, defaults, detail, header, &self.recording, self.csv, format))
+    }
+
     /// The columns of a table; `None` for lines of JSON and for an empty table.
     fn header(&self, robot: &Robot, chunks: &mut Chunks<impl Read + Send>) -> Result<Option<Header>, Failure> {
         let in_order = self.recording.is_in_order();

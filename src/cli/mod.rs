@@ -13,6 +13,7 @@ mod options;
 mod meshes;
 mod robot;
 mod stream;
+mod origin;
 mod resume;
 mod sink;
 mod inspect;

@@ -151,7 +151,7 @@ fn file_of<S>(path: &Path, _standard: S) -> Option<PathBuf> {
 pub(super) struct NewFile {
     pub file: File,
     /// The name that was given.
-    path: PathBuf,
+    pub path: PathBuf,
     /// The names while it is written and at last; `None` if they are one, or it has taken its name.
     places: Option<[PathBuf; 2]>,
     /// Whether it stays if it is not finished.
@@ -203,11 +203,7 @@ impl NewFile {
 
     /// The names while the file is written and at last.
     fn places(path: &Path) -> [PathBuf; 2] {
-        // The file that a link names is replaced, not the link.
-        let last = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let mut part = last.clone().into_os_string();
-        part.push(".part");
-        [part.into(), last]
+        [beside(path, ".part"), beside(path, "")]
     }
 
     /// The name of what is written so far, if the file has not taken its own yet.
@@ -241,6 +237,14 @@ impl Drop for NewFile {
             let _ = std::fs::remove_file(part);
         }
     }
+}
+
+/// The file at `path`, with this added to its name.
+pub(super) fn beside(path: &Path, ending: &str) -> PathBuf {
+    // The file that a link names is replaced, not the link.
+    let mut name = path.canonicalize().unwrap_or_else(|_| path.to_owned()).into_os_string();
+    name.push(ending);
+    name.into()
 }
 
 /// Refuses a file that another run is writing; not all file systems know.

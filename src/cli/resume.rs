@@ -5,10 +5,11 @@
 //!                         kept        | compared      | written again
 //! ```
 //!
-//! The last state is answered again, because its rows or its input may have been cut off. Those before it are answered
-//! again and compared, byte by byte: with another input or other options some would differ, if not each (a foot at rest
-//! needs no friction).
+//! Robot, options and input are those of the interrupted run, as its record says ([`Origin`]); without one, all that is
+//! there is compared. The last state is answered again, because its rows or its input may have been cut off. Those
+//! before it are answered again and compared, byte by byte: answers beyond their budget differ each time.
 
+use super::origin::{Again, Asked, Origin};
 use super::output::{NewFile, Target, named};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -21,113 +22,166 @@ use std::path::Path;
 const COMPARED: usize = 100;
 
 /// Where the answers of a batch go.
-pub(super) enum BatchOutput {
+pub(super) struct BatchOutput {
+    written: Written,
+    origin: Origin,
+}
+
+enum Written {
     New(Target),
     Continued(Continued),
 }
 
 impl BatchOutput {
+    /// A new output at `path`, or on standard output, for answers to what is `asked`.
+    pub fn create(path: Option<&Path>, mut origin: Origin, asked: Asked) -> io::Result<Self> {
+        let target = Target::open(path, true)?;
+        if matches!(&target, Target::File(file) if file.part().is_some()) {
+            origin.begin(asked, true)?;
+        }
+        Ok(Self { written: Written::New(target), origin })
+    }
+
+    /// Continues what there is of the output at `path`, or begins it. A table begins with `header`. With `all`, every
+    /// state is answered again and compared.
+    pub fn resume(path: &Path, header: &[u8], all: bool, origin: Origin, asked: Asked) -> io::Result<Self> {
+        let Some(file) = NewFile::reopen(path)? else { return Self::create(Some(path), origin, asked) };
+        let known = origin.answers(&asked, file.part().is_some()).map_err(|what| unlike(&file, what))?;
+        let continued = Continued::open(file, header, all || !known, asked).map_err(|error| named(path, error))?;
+        Ok(Self { written: Written::Continued(continued), origin })
+    }
+
+    /// How many states are not answered again, and how many of them were refused.
+    pub fn kept(&self) -> (usize, u64) {
+        match &self.written {
+            Written::New(_) => (0, 0),
+            Written::Continued(continued) => (continued.answered, continued.refused),
+        }
+    }
+
+    /// Whether nothing is there, so that a header is missing, too.
+    pub fn is_empty(&mut self) -> io::Result<bool> {
+        match &mut self.written {
+            Written::New(_) => Ok(true),
+            Written::Continued(continued) => Ok(continued.file.file.stream_position()? == 0),
+        }
+    }
+
     /// What holds the answers so far, if another run can continue it.
     pub fn part(&self) -> Option<&Path> {
-        match self {
-            Self::New(Target::File(file)) | Self::Continued(Continued { file, .. }) => file.part(),
-            Self::New(Target::Standard(_)) => None,
+        match &self.written {
+            Written::New(Target::File(file)) | Written::Continued(Continued { file, .. }) => file.part(),
+            Written::New(Target::Standard(_)) => None,
         }
     }
 
     /// Ends the output; a file that is there already is replaced only if something was `answered`.
-    pub fn finish(self, answered: bool) -> io::Result<()> {
-        match self {
-            Self::New(target) => target.finish(answered),
-            Self::Continued(Continued { known: 1.., .. }) => Err(unlike()),
-            Self::Continued(Continued { file, .. }) => file.finish(),
+    pub fn finish(mut self, answered: bool) -> io::Result<()> {
+        match self.written {
+            Written::New(target) => target.finish(answered)?,
+            Written::Continued(mut continued) => {
+                if self.origin.again() != Again::Same {
+                    return Err(unlike(&continued.file, OTHER_INPUT));
+                }
+                if continued.known > 0 {
+                    return Err(unlike(&continued.file, OTHER_ANSWERS));
+                }
+                continued.write(&[], &mut self.origin)?;
+                continued.file.finish()?;
+            }
         }
+        self.origin.end();
+        Ok(())
     }
 }
 
 impl Write for BatchOutput {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::New(target) => target.write(bytes),
-            Self::Continued(continued) if continued.known > 0 => continued.compare(bytes),
-            Self::Continued(continued) => continued.file.file.write(bytes),
+        match &mut self.written {
+            Written::New(target) => target.write(bytes),
+            Written::Continued(continued) if continued.known > 0 => continued.compare(bytes),
+            Written::Continued(continued) => continued.write(bytes, &mut self.origin),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::New(target) => target.flush(),
-            Self::Continued(continued) => continued.file.file.flush(),
+        match &mut self.written {
+            Written::New(target) => target.flush(),
+            Written::Continued(continued) => continued.file.file.flush(),
         }
     }
 }
 
 /// An output that an earlier run began.
-pub(super) struct Continued {
+struct Continued {
     file: NewFile,
     /// How many bytes are still to be compared.
     known: u64,
     /// How many states are not answered again, and how many of them were refused.
-    pub answered: usize,
-    pub refused: u64,
+    answered: usize,
+    refused: u64,
+    /// What is asked, until the first answer is written.
+    asked: Option<Asked>,
+    /// Answers that wait until the input is known to be the same.
+    waiting: Vec<u8>,
 }
 
+const OTHER_INPUT: &str = "over another input";
+const OTHER_ANSWERS: &str = "with other answers";
+
 impl Continued {
-    /// Opens what there is of the output at `path`; `None` if there is nothing. A table begins with `header`. With
-    /// `all`, every state is answered again and compared.
-    pub fn open(path: &Path, header: &[u8], all: bool) -> io::Result<Option<Self>> {
-        let Some(file) = NewFile::reopen(path)? else { return Ok(None) };
-        let answers = if header.is_empty() { lines(&file.file) } else { rows(&file.file) };
-        let Answers { before, refused, last } = answers.map_err(|error| named(path, error))?;
+    /// Of a table that begins with `header`. With `all`, every state is answered again and compared.
+    fn open(file: NewFile, header: &[u8], all: bool, asked: Asked) -> io::Result<Self> {
+        let Answers { before, refused, last } = if header.is_empty() { lines(&file.file) } else { rows(&file.file) }?;
         let end = last.back().map_or(0, |&(start, _)| start);
-        let mut continued = Self { file, known: end, answered: 0, refused: 0 };
-        continued.begin(header).map_err(|error| named(path, error))?;
+        let mut continued = Self { file, known: end, answered: 0, refused: 0, asked: Some(asked), waiting: Vec::new() };
+        continued.file.file.rewind()?;
+        if end > 0 {
+            continued.compare(header)?;
+        }
         if let (Some(&(start, _)), false) = (last.front(), all) {
             (continued.answered, continued.refused, continued.known) = (before, refused, end - start);
             continued.file.file.seek(SeekFrom::Start(start))?;
         }
-        continued.truncate()?;
-        Ok(Some(continued))
+        Ok(continued)
     }
 
-    /// Compares the header, if there is one.
-    fn begin(&mut self, header: &[u8]) -> io::Result<()> {
-        self.file.file.seek(SeekFrom::Start(0))?;
-        if self.known > 0 { self.compare(header).map(drop) } else { Ok(()) }
-    }
-
-    /// Whether nothing is there, so that a header is missing, too.
-    pub fn is_empty(&mut self) -> io::Result<bool> {
-        Ok(self.file.file.stream_position()? == 0)
-    }
-
-    /// Compares the beginning of `bytes` with what is there, and drops the rest of the file behind the last comparison;
-    /// returns how many bytes were compared.
+    /// Compares the beginning of `bytes` with what is there; returns how many bytes were compared.
     fn compare(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = usize::try_from(self.known).unwrap_or(usize::MAX).min(bytes.len());
         let mut there = vec![0; count];
         self.file.file.read_exact(&mut there)?;
         if there != bytes[..count] {
-            return Err(unlike());
+            return Err(unlike(&self.file, OTHER_ANSWERS));
         }
         self.known -= count as u64;
-        self.truncate()?;
         Ok(count)
     }
 
-    /// Ends the file here if nothing is left to compare.
-    fn truncate(&mut self) -> io::Result<()> {
-        if self.known > 0 {
-            return Ok(());
+    /// Writes behind what was compared, once the input is known to be the same.
+    fn write(&mut self, bytes: &[u8], origin: &mut Origin) -> io::Result<usize> {
+        match origin.again() {
+            Again::Other => return Err(unlike(&self.file, OTHER_INPUT)),
+            Again::Unknown => {
+                self.waiting.extend_from_slice(bytes);
+                return Ok(bytes.len());
+            }
+            Again::Same => {}
         }
-        let end = self.file.file.stream_position()?;
-        self.file.file.set_len(end)
+        if let Some(asked) = self.asked.take() {
+            let end = self.file.file.stream_position()?;
+            self.file.file.set_len(end)?;
+            origin.begin(asked, self.file.part().is_some())?;
+            self.file.file.write_all(&std::mem::take(&mut self.waiting))?;
+        }
+        self.file.file.write(bytes)
     }
 }
 
-fn unlike() -> io::Error {
-    let reason = "it does not hold these answers: give the input and the options with which it was begun, or remove it";
-    io::Error::new(ErrorKind::InvalidData, reason)
+/// The refusal of an output that was begun otherwise.
+fn unlike(file: &NewFile, what: &str) -> io::Error {
+    let reason = format!("it was begun {what}: give what it was begun with, or remove it");
+    named(file.part().unwrap_or(&file.path), io::Error::new(ErrorKind::InvalidData, reason))
 }
 
 /// The places of answers in a file.

@@ -147,10 +147,86 @@ fn answers_of_another_run_are_not_continued() {
         (&strike(1, 0.0), &["--resume"]),
     ] {
         let stderr = into(&output, input, options).refusal(1);
-        assert!(stderr.contains("it does not hold these answers"), "{stderr}");
+        assert!(stderr.contains("it was begun with other answers"), "{stderr}");
         assert_eq!(read(&output), before);
     }
     assert_eq!(batch(&["-", "--resume"], "").status, 2, "an output is needed");
+}
+
+/// A strike, and more states at rest than are answered again.
+fn strike_and_rest(speed: f64) -> String {
+    strike(0, speed) + &(1..150).map(|id| strike(id, 0.0).replace("-1", "0")).collect::<String>()
+}
+
+/// Kills a run once it has answered all of `input`.
+fn killed(output: &str, input: &str, options: &[&str]) {
+    let _ = fs::remove_file(output);
+    let mut command = batching(&[&["-", "--friction", "0.5", "-o", output], options].concat());
+    let mut child = command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().expect("it runs");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    stdin.write_all(input.as_bytes()).expect("it reads");
+    let answered = || fs::read(format!("{output}.part")).is_ok_and(|part| lines(&part) >= lines(input.as_bytes()));
+    while !answered() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().expect("it runs");
+    child.wait().expect("it ends");
+}
+
+fn lines(text: &[u8]) -> usize {
+    text.iter().filter(|&&byte| byte == b'\n').count()
+}
+
+#[test]
+fn a_killed_run_is_continued_by_the_same_alone() {
+    let (output, input) = (place("same.ndjson"), strike_and_rest(1.0));
+    let (part, record) = (format!("{output}.part"), format!("{output}.run"));
+    killed(&output, &input, &[]);
+    let begun = read(&part);
+    let refused = |run: Run, what: &str| {
+        let stderr = run.refusal(1);
+        assert!(stderr.contains(&format!("{part}: it was begun {what}: give what it was begun with")), "{stderr}");
+        assert!(read(&part) == begun && !fs::exists(&output).expect("known"), "{what}");
+    };
+    // Each differs in the first answer, or in none, and the last hundred are those of states at rest.
+    let over = |input: &str, options: &[&str]| into(&output, input, &[&["--resume"], options].concat());
+    refused(over(&strike_and_rest(2.0), &[]), "over another input");
+    refused(over(&input.replacen("0.5", "0.50", 1), &[]), "over another input");
+    refused(over(&input[..input.len() - 2], &[]), "over another input");
+    let option = |option: [&str; 2]| {
+        let friction = if option[0] == "--friction" { &[][..] } else { &["--friction", "0.5"] };
+        batch(&[&["-", "-o", &output, "--resume"], friction, &option].concat(), input.as_str())
+    };
+    for other in [["--friction", "0.4"], ["--budget", "5"], ["--contact-tolerance", "1e-5"], ["--place", "lowest"]] {
+        refused(option(other), "with other options");
+    }
+    let heavier = file("heavier.urdf", read(&disc()).replacen("2", "2.5", 1));
+    let arguments = ["batch", &heavier, "-", "--friction", "0.5", "-o", &output, "--resume"];
+    refused(heelstrike_reads(&arguments, input.as_str()), "with another robot");
+
+    let run = option(["--threads", "1"]).well();
+    assert!(run.stderr.contains("49 states were answered by an earlier run"), "{}", run.stderr);
+    assert_eq!(read(&output), batch(&["-", "--friction", "0.5"], input).stdout);
+    assert!(!fs::exists(&part).expect("known") && !fs::exists(&record).expect("known"));
+}
+
+#[test]
+fn answers_without_a_record_are_all_compared() {
+    let (output, input) = (place("whole.ndjson"), strike_and_rest(1.0));
+    into(&output, &input, &[]).well();
+    let whole = read(&output);
+    let stderr = into(&output, &strike_and_rest(2.0), &["--resume"]).refusal(1);
+    assert!(stderr.contains(&format!("{output}: it was begun with other answers")), "{stderr}");
+    assert_eq!(read(&output), whole);
+    // The record of a part does not stand for a whole file next to it.
+    killed(&output, &strike_and_rest(2.0), &[]);
+    fs::remove_file(format!("{output}.part")).expect("a part");
+    fs::write(&output, &whole).expect("a file");
+    into(&output, &strike_and_rest(2.0), &["--resume"]).refusal(1);
+    assert_eq!(read(&output), whole);
+    into(&output, &(input + &strike(150, 0.0)), &["--resume"]).well();
+    assert_eq!(lines(read(&output).as_bytes()), 151);
+    assert!(!fs::exists(format!("{output}.run")).expect("known"));
 }
 
 #[test]
@@ -164,7 +240,7 @@ fn options_that_few_answers_show_are_compared() {
     let begun = read(&output).split_inclusive('\n').take(70).collect::<String>();
     fs::write(&output, &begun).expect("a file");
     let stderr = run("0.1", &["--resume"]).refusal(1);
-    assert!(stderr.contains("it does not hold these answers"), "{stderr}");
+    assert!(stderr.contains("it was begun with other answers"), "{stderr}");
     assert_eq!(read(&output), begun);
 }
 

@@ -1,0 +1,220 @@
+//! What the answers in an unfinished output depend on, kept next to it as `FILE.run` until it is whole.
+//!
+//! ```text
+//!     version, robot, options     compared before a run is continued
+//!     input: bytes, digest        compared once as much of the input is read again
+//! ```
+//!
+//! The record of the input is renewed whenever more of it was read, before anything of that is answered.
+
+use super::VERSION;
+use super::output::{beside, named};
+use serde::{Deserialize, Serialize};
+use std::fmt::{self, Debug, Write as _};
+use std::fs::File;
+use std::io::{self, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The FNV-1a hash of 64 bits: the same however the bytes arrive, on every machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Digest(u64);
+
+impl Digest {
+    const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
+
+    /// Of all that a value holds; numbers enter with every digit.
+    pub fn of(value: &impl Debug) -> Self {
+        let mut digest = Self::EMPTY;
+        // Nothing fails here.
+        let _ = write!(digest, "{value:?}");
+        digest
+    }
+
+    fn add(&mut self, bytes: &[u8]) {
+        self.0 = bytes.iter().fold(self.0, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    }
+}
+
+impl fmt::Write for Digest {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.add(text.as_bytes());
+        Ok(())
+    }
+}
+
+/// The robot and the options of a run, as far as answers depend on them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Asked {
+    version: String,
+    robot: Digest,
+    options: Digest,
+}
+
+impl Asked {
+    pub fn new(robot: &impl Debug, options: &impl Debug) -> Self {
+        Self { version: VERSION.to_owned(), robot: Digest::of(robot), options: Digest::of(options) }
+    }
+
+    /// What an earlier run had otherwise.
+    fn unlike(&self, earlier: &Self) -> Option<&'static str> {
+        let differences = [
+            (self.version == earlier.version, "by another version of this tool"),
+            (self.robot == earlier.robot, "with another robot"),
+            (self.options == earlier.options, "with other options"),
+        ];
+        differences.into_iter().find(|(same, _)| !same).map(|(_, what)| what)
+    }
+}
+
+/// The beginning of an input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+struct Beginning {
+    bytes: u64,
+    digest: Digest,
+}
+
+impl Beginning {
+    fn add(&mut self, bytes: &[u8]) {
+        self.bytes += bytes.len() as u64;
+        self.digest.add(bytes);
+    }
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Record {
+    #[serde(flatten)]
+    asked: Asked,
+    /// Whether the answers are in `FILE.part`, and not in the file itself.
+    part: bool,
+    input: Beginning,
+}
+
+/// Whether the input is that of the run that is continued.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Again {
+    Same,
+    Other,
+    /// Not as much was read yet.
+    Unknown,
+}
+
+struct Reading {
+    read: Beginning,
+    /// What an earlier run had read, until as much is read again.
+    earlier: Option<Beginning>,
+    again: Again,
+    kept: Option<(File, Record)>,
+}
+
+impl Reading {
+    fn add(&mut self, mut bytes: &[u8]) {
+        if let Some(earlier) = self.earlier
+            && let Ok(left) = usize::try_from(earlier.bytes - self.read.bytes)
+            && left <= bytes.len()
+        {
+            self.read.add(&bytes[..left]);
+            bytes = &bytes[left..];
+            self.earlier = None;
+            self.again = if self.read == earlier { Again::Same } else { Again::Other };
+        }
+        self.read.add(bytes);
+        if let Some((_, record)) = &mut self.kept {
+            record.input = self.read;
+        }
+    }
+
+    /// Writes the record; a file that it does not fit into is left as one without a record.
+    fn keep(&mut self) {
+        let Some((file, record)) = &mut self.kept else { return };
+        let bytes = serde_json::to_vec(record).unwrap_or_default();
+        // In one piece, over what was there: a shorter one ends before the rest of that.
+        let written = file.rewind().and_then(|()| file.write_all(&bytes));
+        if written.is_err() {
+            let _ = file.set_len(0);
+        }
+    }
+}
+
+/// The record of one output.
+pub(super) struct Origin {
+    path: Option<PathBuf>,
+    earlier: Option<Record>,
+    reading: Arc<Mutex<Reading>>,
+}
+
+impl Origin {
+    /// For the output at `path`; with `resume`, what an earlier run left.
+    pub fn of(path: Option<&Path>, resume: bool) -> Self {
+        let path = path.filter(|path| *path != Path::new("-")).map(|path| beside(path, ".run"));
+        let bytes = path.as_ref().filter(|_| resume).and_then(|path| std::fs::read(path).ok()).unwrap_or_default();
+        let earlier = serde_json::Deserializer::from_slice(&bytes).into_iter::<Record>().next().and_then(Result::ok);
+        let read = Beginning { bytes: 0, digest: Digest::EMPTY };
+        let known = earlier.as_ref().map(|record| record.input);
+        let again = if known.is_some() { Again::Unknown } else { Again::Same };
+        Self { path, earlier, reading: Arc::new(Mutex::new(Reading { read, earlier: known, again, kept: None })) }
+    }
+
+    fn reading(&self) -> MutexGuard<'_, Reading> {
+        self.reading.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The input, whose bytes are recorded as they are read.
+    pub fn watch<R: Read>(&self, input: R) -> Watched<R> {
+        Watched { input, reading: Arc::clone(&self.reading) }
+    }
+
+    /// Whether the answers, which are in a `part` or not, are known to be to what is `asked` now; without a record that
+    /// is not known.
+    ///
+    /// # Errors
+    /// They are not: what an earlier run had otherwise.
+    pub fn answers(&self, asked: &Asked, part: bool) -> Result<bool, &'static str> {
+        let Some(earlier) = self.earlier.as_ref().filter(|record| record.part == part) else {
+            let mut reading = self.reading();
+            (reading.earlier, reading.again) = (None, Again::Same);
+            return Ok(false);
+        };
+        asked.unlike(&earlier.asked).map_or(Ok(true), Err)
+    }
+
+    /// Whether the input is the one that an earlier run read.
+    pub fn again(&self) -> Again {
+        self.reading().again
+    }
+
+    /// Keeps the record from here on, for answers in a `part` or not.
+    pub fn begin(&mut self, asked: Asked, part: bool) -> io::Result<()> {
+        let Some(path) = &self.path else { return Ok(()) };
+        let file = File::create(path).map_err(|error| named(path, error))?;
+        let mut reading = self.reading();
+        let input = reading.read;
+        reading.kept = Some((file, Record { asked, part, input }));
+        reading.keep();
+        Ok(())
+    }
+
+    /// Removes the record of an output that is whole.
+    pub fn end(self) {
+        if let (Some(path), true) = (&self.path, self.reading().kept.take().is_some() || self.earlier.is_some()) {
+            // There is no one to tell that a useless file stays.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+/// An input whose bytes are recorded.
+pub(super) struct Watched<R> {
+    input: R,
+    reading: Arc<Mutex<Reading>>,
+}
+
+impl<R: Read> Read for Watched<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(into)?;
+        let mut reading = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
+        reading.add(&into[..count]);
+        reading.keep();
+        Ok(count)
+    }
+}
