@@ -44,6 +44,20 @@ pub struct SharedBudget {
     spent: Arc<AtomicU64>,
 }
 
+/// A budget for each of many pieces of work, and one for all that end beyond theirs, of which each may take a sixth of
+/// what is left: the first ones take what they would alone, and later ones ever less.
+#[derive(Debug, Clone)]
+pub struct TotalBudget {
+    each: Budget,
+    /// In nanoseconds.
+    left: Arc<AtomicU64>,
+    /// The least that one had and spent.
+    least: Arc<AtomicU64>,
+}
+
+/// The part of what is left that one piece of work may take.
+const PARTS: u64 = 6;
+
 /// All of a shared budget was spent; how much that was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BudgetSpent(pub Duration);
@@ -104,6 +118,33 @@ impl Budget {
     /// [`analyze`](crate::analyze). Within the work of another budget, that one goes on.
     pub fn within<R>(self, work: impl FnOnce() -> R) -> R {
         Running { budget: self, last: None, own: 0, shared: None }.during(work)
+    }
+}
+
+impl TotalBudget {
+    /// A budget of which nothing is spent yet; by default the `total` is six times that of each.
+    pub fn new(each: Budget, total: Option<Duration>) -> Self {
+        let total = total.map_or(nanoseconds(each.time).saturating_mul(PARTS), nanoseconds);
+        Self { each, left: Arc::new(total.into()), least: Arc::new(u64::MAX.into()) }
+    }
+
+    /// Does the work, as [`Budget::within`].
+    pub fn within<R>(&self, work: impl FnOnce() -> R) -> R {
+        let time = nanoseconds(self.each.time).min(self.left.load(Ordering::Relaxed) / PARTS);
+        let budget = Budget { time: Duration::from_nanos(time), ..self.each };
+        let (made, is_spent) = budget.within(|| (work(), WORK.with(|work| work.spent.get())));
+        if is_spent {
+            self.least.fetch_min(time, Ordering::Relaxed);
+            let less = |left: u64| Some(left.saturating_sub(time));
+            let _ = self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less);
+        }
+        made
+    }
+
+    /// What a piece of work spent that had less than each may take, the least of all; `None` if there is none.
+    pub fn least(&self) -> Option<Duration> {
+        let least = Duration::from_nanos(self.least.load(Ordering::Relaxed));
+        (least < self.each.time && least != Duration::from_nanos(u64::MAX)).then_some(least)
     }
 }
 
@@ -219,6 +260,23 @@ mod tests {
         assert!(!is_spent_now(), "the budget ends with its work");
         let inner = seconds(2).within(|| (seconds(0).within(is_spent_now), (1..10).find(|_| is_spent_now())));
         assert_eq!(inner, (false, Some(2)), "the outer budget goes on within the inner one and behind it");
+    }
+
+    #[test]
+    fn work_beyond_its_budget_takes_ever_less() {
+        // A nanosecond a look, and one for the beginning.
+        thread_local!(static TICKS: Cell<u64> = const { Cell::new(0) });
+        let clock = || Duration::from_nanos(TICKS.replace(TICKS.get() + 1));
+        let each = Budget { time: Duration::from_nanos(60), clock };
+        let looks = |total: &TotalBudget| total.within(|| (1..1000).find(|_| is_spent_now())).map(|looks| looks - 1);
+        let total = TotalBudget::new(each, None);
+        assert_eq!(total.within(|| (1..50).find(|_| is_spent_now())), None, "what ends in time takes nothing of it");
+        assert_eq!((looks(&total), total.least()), (Some(60), None));
+        assert_eq!([(); 3].map(|()| looks(&total).unwrap()), [50, 41, 34]);
+        assert_eq!(total.least(), Some(Duration::from_nanos(34)));
+        let rest = (0..1000).map(|_| looks(&total).unwrap()).sum::<u64>();
+        assert!(rest < 360 - 60 - 50 - 41 - 34, "{rest}");
+        assert_eq!(looks(&TotalBudget::new(each, Some(Duration::from_nanos(6)))), Some(1));
     }
 
     #[test]

@@ -18,6 +18,7 @@ pub use recording::{Recording, RowOrigin, samples};
 pub use run::{Block, RefusedRecord, Sink, TaskSource, run};
 pub use summary::{ModeCount, MoreFriction, Nearest, Needed, StateRef, Summary, Verdicts};
 
+use crate::budget::TotalBudget;
 use crate::draw::{Keyframe, ListedKeyframe};
 use crate::error::Location;
 use crate::error::excerpt::Excerpt;
@@ -42,6 +43,8 @@ pub struct Question<'r> {
     pub defaults: Defaults,
     /// What records contain.
     pub detail: Detail,
+    /// How much time the states that end beyond their budget may take; `None` for no limit.
+    pub total: Option<TotalBudget>,
     /// The columns of the input table; `None` for lines of JSON.
     pub header: Option<&'r Header>,
     /// The columns of the output table; `None` for lines of JSON.
@@ -195,7 +198,11 @@ impl Answerer<'_> {
         let Question { robot, detail, header, columns, .. } = *self.question;
         let given = self.question.defaults.friction;
         block.summary.own_friction += u64::from(given.is_some() && state.scene.friction.default != given);
-        let impact = self.pipeline.impact(state).map_err(|error| match error.reason() {
+        let impact = match &self.question.total {
+            Some(total) => total.within(|| self.pipeline.impact(state)),
+            None => self.pipeline.impact(state),
+        };
+        let impact = impact.map_err(|error| match error.reason() {
             Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {
                 error.hint("add a column friction, or give `friction: 0.8` (or infinite)")
             }

@@ -2,8 +2,8 @@
 
 use super::diagnostic::{is_quiet, note, note_own_friction, with_flags};
 use super::options::{
-    BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, ThreadOptions,
-    choice, from_zero, pipeline_options,
+    BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, Seconds,
+    ThreadOptions, choice, from_zero, pipeline_options, seconds,
 };
 use super::origin::{Asked, Origin};
 use super::output::{NewFile, apart, check_ending, spare, writable};
@@ -14,6 +14,7 @@ use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
 use clap::ValueEnum;
 use heelstrike::batch::{self, Batch, Chunks, Question, Recording};
+use heelstrike::budget::TotalBudget;
 use heelstrike::error::Location;
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::gait::{self, At, Difference, Dropped, Heights, Thresholds, Touching};
@@ -83,6 +84,10 @@ pub struct Args {
     refused: Answered,
     #[command(flatten)]
     budget: BudgetOptions<false>,
+    /// How many seconds of processor time all answers beyond their budget may take together, or "infinite"; each may
+    /// take a sixth of what is left [default: six times --budget]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    budget_total: Option<Seconds>,
     #[command(flatten)]
     threads: ThreadOptions,
 }
@@ -225,6 +230,7 @@ pub(super) fn run(args: &Args) -> Completion {
             ..args.scene.defaults()
         },
         detail,
+        total: args.budget.of_many(args.budget_total),
         header: header.as_ref(),
         columns: columns.as_ref(),
         keyframes: args.plot.path().is_some(),
@@ -293,6 +299,10 @@ pub(super) fn run(args: &Args) -> Completion {
         note_columns(header, &dropped);
     }
     note_own_friction(counts.own_friction, "state");
+    if let Some(least) = question.total.as_ref().and_then(TotalBudget::least) {
+        let least = least.as_secs_f64();
+        note(&format!("answers beyond `budget` took so long together that one had {least:.2e} s: see `budget_total`"));
+    }
     if answered > 0 {
         note(&format!("{answered} states were answered by an earlier run, and the summary is of the others"));
     }
@@ -337,7 +347,10 @@ impl Args {
         // The address of a budget's clock differs in each run.
         let options = Options { budget: None, ..question.options.clone() };
         let Question { robot, defaults, detail, header, .. } = question;
-        Asked::new(robot, &(options, self.budget, defaults, detail, header, &self.recording, self.csv, format))
+        Asked::new(
+            robot,
+            &(options, self.budget, self.budget_total, defaults, detail, header, &self.recording, self.csv, format),
+        )
     }
 
     /// The columns of a table; `None` for lines of JSON and for an empty table.

@@ -26,6 +26,7 @@ const FLAGS: &[(&str, &str)] = &[
     ("input_format", "--input-format"),
     ("format", "--format"),
     ("budget", "--budget"),
+    ("budget_total", "--budget-total"),
 ];
 
 /// The text with settings such as `base: floating` in backticks written as options: --base floating.

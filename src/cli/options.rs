@@ -4,7 +4,7 @@ use super::Failure;
 use super::clock::work_time;
 use super::input::InputFile;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use heelstrike::budget::SharedBudget;
+use heelstrike::budget::{SharedBudget, TotalBudget};
 use heelstrike::law::Friction;
 use heelstrike::pipeline;
 use heelstrike::read::loops_from_json;
@@ -216,9 +216,9 @@ pub(super) struct BudgetOptions<const STUDY: bool> {
 }
 
 /// A duration; `None` without an end.
-type Seconds = Option<Duration>;
+pub(super) type Seconds = Option<Duration>;
 
-fn seconds(text: &str) -> Result<Seconds, String> {
+pub(super) fn seconds(text: &str) -> Result<Seconds, String> {
     if text == "infinite" {
         return Ok(None);
     }
@@ -230,6 +230,17 @@ impl<const STUDY: bool> BudgetOptions<STUDY> {
     /// The budget, by processor time.
     pub fn budget(self) -> Option<Budget> {
         self.budget.map(|time| Budget { time, clock: work_time })
+    }
+}
+
+impl BudgetOptions<false> {
+    /// The budget of many states, which may take the `total` together beyond their own; `None` without an end.
+    pub fn of_many(self, total: Option<Seconds>) -> Option<TotalBudget> {
+        let budget = self.budget().or_else(|| total.flatten().map(|time| Budget { time, clock: work_time }))?;
+        match total {
+            Some(None) => None,
+            total => Some(TotalBudget::new(budget, total.flatten())),
+        }
     }
 }
 

@@ -65,7 +65,7 @@ impl Scratch {
         let options = AnalysisOptions { prove: options.prove && source.is_exact(), ..options };
         self.tableau.without_slip = false;
         let (findings, regular) = self.find(problem, source, options);
-        let Findings { outcomes, families, rejected, effort, visited, undecided } = findings;
+        let Findings { outcomes, families, rejected, unlisted, effort, visited, undecided } = findings;
         let modes = |law: &Law| law.modes().iter().map(|group| group.len() as u64).sum::<u64>();
         let combinations = problem.laws().iter().map(modes).product::<u64>();
         let undecided = undecided + (combinations - visited);
@@ -86,6 +86,7 @@ impl Scratch {
             open,
             families,
             rejected,
+            unlisted,
             effort,
         })
     }

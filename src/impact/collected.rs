@@ -16,7 +16,8 @@ use std::cmp::Ordering;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListedRejections<'a> {
     Nothing,
-    /// All, and the paper's section 4 for each contact.
+    /// All, or of more than [`MOST_REJECTIONS`] those nearest to being outcomes; and the paper's section 4 for each
+    /// contact.
     Everything,
     Only(&'a [Vec<Mode>]),
 }
@@ -57,6 +58,9 @@ impl Default for AnalysisOptions<'_> {
     }
 }
 
+/// So many rejected combinations are listed, all of six contacts.
+pub const MOST_REJECTIONS: usize = 4096;
+
 /// So many undecided combinations are listed; there may be 4^n.
 const LISTED: u64 = 100;
 
@@ -94,8 +98,9 @@ pub enum Corner {
 pub struct Findings {
     pub outcomes: Vec<Outcome>,
     pub families: Vec<Family>,
-    /// As far as they are to be listed.
+    /// As far as they are to be listed, and how many more would be.
     pub rejected: Vec<Rejection>,
+    pub unlisted: u64,
     pub effort: Effort,
     /// How many combinations were visited, and how many of them no precision decided.
     pub visited: u64,
@@ -118,6 +123,7 @@ pub struct Collected<'a> {
     /// Corners are still in the order in which they were found.
     families: Vec<(usize, Family)>,
     rejected: Vec<(usize, Rejection)>,
+    unlisted: u64,
 }
 
 impl<'a> Collected<'a> {
@@ -139,6 +145,7 @@ impl<'a> Collected<'a> {
             pending_families: Vec::new(),
             families: Vec::new(),
             rejected: Vec::new(),
+            unlisted: 0,
         }
     }
 
@@ -198,7 +205,22 @@ impl<'a> Collected<'a> {
             rejection.margin = rejection.margin.filter(|margin| margin.is_finite());
             rejection.motion = rejection.motion.filter(Motion::is_finite);
             self.rejected.push((number, rejection));
+            if self.rejected.len() == 2 * MOST_REJECTIONS {
+                self.drop_far();
+            }
         }
+    }
+
+    /// Drops the rejected combinations that are farthest from being outcomes, beyond so many as are listed.
+    fn drop_far(&mut self) {
+        let Some(far @ 1..) = self.rejected.len().checked_sub(MOST_REJECTIONS) else { return };
+        let key = |(number, own): &(usize, Rejection)| (own.margin.map_or(f64::INFINITY, f64::abs), *number);
+        self.rejected.select_nth_unstable_by(MOST_REJECTIONS, |a, b| {
+            let (a, b) = (key(a), key(b));
+            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+        });
+        self.rejected.truncate(MOST_REJECTIONS);
+        self.unlisted += far as u64;
     }
 
     /// The place of the decided outcome with these modes.
@@ -247,11 +269,13 @@ impl<'a> Collected<'a> {
             self.families.sort_by_key(|(number, _)| *number);
         }
         self.outcomes.sort_by_key(|own| own.number);
+        self.drop_far();
         self.rejected.sort_by_key(|(number, _)| *number);
         Findings {
             outcomes: self.outcomes.into_iter().map(|own| own.outcome).collect(),
             families: self.families.into_iter().map(|(_, family)| family).collect(),
             rejected: self.rejected.into_iter().map(|(_, rejection)| rejection).collect(),
+            unlisted: self.unlisted,
             effort: self.effort,
             visited: self.total as u64,
             undecided: self.undecided,

@@ -301,8 +301,10 @@ pub struct Analysis {
     pub open: Option<OpenCombinations>,
     /// Lists of modes with more than one velocity; all of them are outcomes, of which `outcomes` has the corners.
     pub families: Vec<Family>,
-    /// Every other combination, if asked for.
+    /// Every other combination, if asked for; of thousands those nearest to being outcomes.
     pub rejected: Vec<Rejection>,
+    /// How many more were asked for.
+    pub unlisted: u64,
     /// Sum of the outcomes' indices; `None` if one of them has none.
     pub index_sum: Option<i32>,
     /// Rank of the Delassus matrix; `None` if it is not asked for.
@@ -325,6 +327,13 @@ impl Analysis {
         modes.sort();
         modes.dedup();
         modes
+    }
+
+    /// A note if not all rejected combinations are listed that were asked for.
+    pub fn unlisted_note(&self) -> Option<String> {
+        let (listed, all) = (self.rejected.len(), self.rejected.len() as u64 + self.unlisted);
+        (self.unlisted > 0)
+            .then(|| format!("of {all} rejected combinations the {listed} nearest to being outcomes are listed"))
     }
 
     /// A note if an outcome gains energy: Newton's restitution with Coulomb friction can.

@@ -280,6 +280,7 @@ impl<'r> Pipeline<'r> {
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
         let mut notes = prepared.notes;
         notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
+        notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
         let impact = Impact {
             velocity_before: prepared.problem.velocity_before().to_vec(),
             left_out,

@@ -78,7 +78,7 @@ pub struct Report<'a> {
     /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
     #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
     pub families: Cow<'a, [Family]>,
-    /// Every other combination, if asked for.
+    /// Every other combination, if asked for; of thousands those nearest to being outcomes, as a note says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejected: Option<Vec<Rejected<'a>>>,
     /// Kinetic energy before the impact \[J\]; of a robot.
@@ -548,7 +548,7 @@ fn notes(problem: &Problem, analysis: &Analysis) -> Cow<'static, [String]> {
     };
     let condition = analysis.condition.filter(|&condition| condition > ILL_CONDITIONED && problem.contact.is_given());
     let notes = problem.contact.is_repaired().then(repaired).into_iter();
-    notes.chain(condition.map(ill)).chain(analysis.energy_note()).collect()
+    notes.chain(condition.map(ill)).chain(analysis.energy_note()).chain(analysis.unlisted_note()).collect()
 }
 
 /// G, two rows and columns per contact.

@@ -48,6 +48,60 @@ fn a_batch_counts_what_its_budget_leaves_open() {
 }
 
 #[test]
+fn a_batch_of_hard_states_ends_as_a_whole() {
+    let points: Vec<Value> =
+        (0..9).map(|at| json!({"link": "block", "offset": [0.01 * f64::from(at), 0, -0.1]})).collect();
+    let hard = json!({"velocity": {"base": {"z": -1, "pitch": 1e-9}}, "friction": 0.5, "contacts": points});
+    let easy = json!({"velocity": {"base": {"z": -1}}, "friction": 0.5, "place": "lowest"});
+    let states = format!("{hard}\n").repeat(12) + &easy.to_string();
+    let run = |more: &[&str]| {
+        let arguments = ["batch", BLOCK, "-", "--no-reduction=merge", "--brief", "--budget", "0.01", "--threads", "1"];
+        let run = ends(&[&arguments[..], more].concat(), &states).well();
+        assert_eq!(each(&json!(run.lines()), "verdict")[12], "unique");
+        assert!(run.stderr.contains("the budget of work ended (--budget): 12"), "{}", run.stderr);
+        run.stderr
+    };
+    let less = "answers beyond --budget took so long together that one had";
+    // Eleven sixths less than the first.
+    assert!(run(&[]).contains(&format!("{less} 1.35e-3 s: see --budget-total")), "{}", run(&[]));
+    assert!(run(&["--budget-total", "0.03"]).contains(less));
+    for enough in ["1", "infinite"] {
+        assert!(!run(&["--budget-total", enough]).contains(less), "{enough}");
+    }
+}
+
+#[test]
+fn thousands_of_rejections_are_cut_with_a_word() {
+    let contacts = 7;
+    let row = |row| (0..2 * contacts).map(|column| if row == column { 2.0 } else { 0.1 }).collect::<Vec<_>>();
+    let problem = json!({
+        "delassus": (0..2 * contacts).map(row).collect::<Vec<_>>(),
+        "velocity_before": vec![[0.3, -1.0]; contacts],
+        "friction": 0.5,
+    });
+    let problem = problem.to_string();
+    let result = ends(&["solve", "-", "--format", "json", "--explain"], &problem).well().line();
+    let margins = each(&result["rejected"], "margin");
+    assert_eq!(margins.len(), 4096);
+    let note = "of 16383 rejected combinations the 4096 nearest to being outcomes are listed";
+    assert_eq!(result["notes"], json!([note]));
+    let farthest = margins.iter().map(|margin| margin.as_f64().expect("a number").abs()).fold(0.0, f64::max);
+    assert!(farthest < 0.9, "of all it is 1, and of these {farthest}");
+    let text = ends(&["solve", "-", "--explain", "--format", "text"], &problem).text();
+    assert!(text.contains("the other 16383 combinations of modes fail.\n") && text.contains(note));
+}
+
+#[test]
+fn compliant_contact_ends_with_its_budget() {
+    let arguments = ["accuracy", RAMONE, "examples/ramone.json", "--time", "1", "--format", "json", "--budget"];
+    let run = |budget: &str| ends(&[&arguments[..], &[budget]].concat(), "").well();
+    let without = run("0");
+    assert!(without.stderr.contains("compliant contact is left out: the budget of work ended"), "{}", without.stderr);
+    assert_eq!((&without.line()["compliant"], without.line()["studies"].is_array()), (&Value::Null, true));
+    assert!(run("infinite").line()["compliant"].is_object());
+}
+
+#[test]
 fn an_endless_range_is_refused_and_replaces_nothing() {
     let old = file("old.json", "old");
     let study = walker(json!({"alpha": {"from": 0, "to": 1e17, "steps": 50}})).to_string();

@@ -3,9 +3,9 @@
 use super::frozen::{CompliantRun, TOLERANCE, run};
 use super::ground::SoftGround;
 use super::moving::Moving;
-use crate::Result;
 use crate::accuracy::computation::Computation;
 use crate::accuracy::quantile;
+use crate::budget::{is_spent, within};
 use crate::dynamics::{PointImpulse, add_impulse, kinetic_energy};
 use crate::impact::{ContactProblem, Outcome};
 use crate::law::Mode;
@@ -15,6 +15,7 @@ use crate::pipeline::{Options, Pipeline};
 use crate::planar::Pair;
 use crate::robot::Robot;
 use crate::state::State;
+use crate::{Reason, Result};
 use serde::Serialize;
 
 /// A run that ends within this distance of an outcome is near it, in parts of the speed before.
@@ -136,8 +137,16 @@ pub fn landing(
 /// Runs a robot's state through every combination of the parameters; `None` if it has no outcome to be compared with.
 ///
 /// # Errors
-/// As [`Pipeline::impact`], more contacts than a run takes, and refusals of the runs of the finest tolerance.
+/// As [`Pipeline::impact`], more contacts than a run takes, refusals of the runs of the finest tolerance, and
+/// [`BeyondBudget`](crate::Reason::BeyondBudget).
 pub fn compare(robot: &Robot, state: &State, options: &Options) -> Result<Option<Comparison>> {
+    within(options.budget, || {
+        let comparison = comparison(robot, state, options);
+        if is_spent() { Err(Reason::BeyondBudget.into()) } else { comparison }
+    })
+}
+
+fn comparison(robot: &Robot, state: &State, options: &Options) -> Result<Option<Comparison>> {
     let mut pipeline = Pipeline::new(robot, options.clone());
     let impact = pipeline.impact(state)?;
     let (problem, energy) = (&impact.problem, impact.kinetic_energy);

@@ -6,6 +6,7 @@
 //!
 //! Source: Hairer and Wanner, *Solving ODEs II* (1996), section IV.8 (Radau IIA of order 5).
 
+use crate::budget::{ROUNDS, is_spent_after};
 use crate::{Error, Reason, Result};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
@@ -141,6 +142,7 @@ impl<M: StiffEquations, const N: usize> Solout<f64, [f64; N]> for Run<'_, M> {
     ) -> ControlFlag<f64, [f64; N]> {
         let steps = self.end.steps + 1;
         self.end = RunEnd { state: state.to_vec(), steps, ended: self.model.has_ended(state) };
-        if self.end.ended && steps > FEWEST_STEPS { ControlFlag::Terminate } else { ControlFlag::Continue }
+        let ends = self.end.ended && steps > FEWEST_STEPS || is_spent_after(ROUNDS);
+        if ends { ControlFlag::Terminate } else { ControlFlag::Continue }
     }
 }

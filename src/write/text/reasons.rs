@@ -24,7 +24,8 @@ impl Writer<'_> {
             (_, 0) => write!(self.out, "\nAll {others} combinations of modes fail")?,
             _ => write!(self.out, "\nNothing else: the other {others} combinations of modes fail")?,
         }
-        let rejected = analysis.rejected.iter();
+        // The reasons of a part say nothing of all.
+        let rejected = analysis.rejected.iter().filter(|_| analysis.unlisted == 0);
         let mut reasons = words::grouped(rejected.map(|rejection| (in_general(rejection.because), ())));
         // The most frequent first.
         reasons.sort_by_key(|(_, all)| std::cmp::Reverse(all.len()));
