@@ -66,6 +66,22 @@ impl Interpolation {
         Self { weights: weights.collect() }
     }
 
+    /// At `time`, from values at at least two different `times`: the line of least squares.
+    pub fn along(time: f64, times: &[f64]) -> Self {
+        // The number of rows of a window.
+        #[allow(clippy::cast_precision_loss)]
+        let share = 1.0 / times.len() as f64;
+        let middle = share * times.iter().sum::<f64>();
+        let spread: f64 = times.iter().map(|own| (own - middle) * (own - middle)).sum();
+        let rate = |own: &f64| (own - middle) / spread;
+        Self { weights: times.iter().map(|own| (share + (time - middle) * rate(own), rate(own))).collect() }
+    }
+
+    /// How much the value differs from that recorded if all have a noise of one.
+    pub fn noise(&self) -> f64 {
+        self.weights.iter().fold(1.0, |sum, (weight, _)| sum + weight * weight).sqrt()
+    }
+
     pub fn value(&self, value: impl Fn(usize) -> f64) -> f64 {
         self.weights.iter().enumerate().map(|(at, (weight, _))| weight * value(at)).sum()
     }
@@ -92,6 +108,20 @@ mod tests {
         assert_eq!(onward.value(|row| fall(times[row]), 0.125), fall(0.5));
         assert_eq!(onward.down_to(0.0, |row| fall(times[row])), Some(0.125));
         assert_eq!(onward.down_to(2.0, |row| fall(times[row])), None);
+    }
+
+    #[test]
+    fn least_squares_leave_the_middle_of_both_sides() {
+        let times = [0.0, 1.0, 2.0, 3.0];
+        let values = [1.0, 3.0, 5.0, 7.0];
+        let exact = Interpolation::along(4.0, &times);
+        assert_eq!((exact.value(|at| values[at]), exact.rate(|at| values[at])), (9.0, 2.0));
+        let both = Interpolation::along(1.5, &times);
+        assert_eq!(
+            (both.value(|at| [1.0, -1.0, -1.0, 1.0][at]), both.rate(|at| [1.0, -1.0, -1.0, 1.0][at])),
+            (0.0, 0.0)
+        );
+        assert_eq!(both.noise(), 1.25_f64.sqrt());
     }
 
     #[test]

@@ -17,12 +17,29 @@
 //! ```
 //!
 //! So the toe of a flat foot comes down though the heel is recorded a little lower, and the upper side of a sole or
-//! what is inside a round foot does not. The moment of contact is the one at which the point is [`Thresholds::above`]
-//! over the level on which its descent ends; before it the foot still has the velocity with which it strikes. The
-//! thresholds are lengths, because how far feet float is a matter of recording and not of the robot; they can be set
-//! ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its feet less, and has them in proportion.
+//! what is inside a round foot does not. The thresholds are lengths, because how far feet float is a matter of
+//! recording and not of the robot; they can be set ([`Touchdowns::with`]). A robot smaller than [`SMALL`] lifts its
+//! feet less, and has them in proportion.
 //!
-//! With [`At::Row`] the state is the last row before that moment. With [`At::Crossing`] it is the state at the moment:
+//! The *noise* of a point's height is measured on the last rows of the clip: the median distance of a row from the
+//! polynomial through the six before it, over 0.67 and over what that polynomial makes of a noise of one. If from row
+//! to row it is faster than [`Thresholds::slow`], the rate of a row is that of the line of least squares through the
+//! last n rows, whose noise is two thirds of that, and the level on which a descent ends is the mean height of the
+//! later half of them.
+//!
+//! The moment of contact is
+//!
+//! * with noise the one at which the line of least squares through the last n falling rows is down at that level;
+//! * of a foot that is stopped at once (that is carried on to the level, at more than twice [`Thresholds::slow`],
+//!   before the next row) the one at which the polynomial through the rows before reaches the level: six rows if their
+//!   noise is no more than a ten-thousandth of the fall from row to row, else three;
+//! * else the one at which the point is [`Thresholds::above`] over that level; before it the foot still has the
+//!   velocity with which it strikes.
+//!
+//! With [`At::Row`] the state is the last row before that moment; without noise before the last one of these moments.
+//! With [`At::Crossing`] it is the state at the moment. In the first two cases positions are those of line and
+//! polynomial, and velocities their rates if they are differences; recorded velocities are on a line through the same
+//! rows with noise, else through the last two. In the last case:
 //!
 //! * If the next row is before the impact too (the point goes on falling after it), positions lie on the line between
 //!   the two rows.
@@ -30,10 +47,11 @@
 //!   two), until the point is where it touches. If it does not get there before the next row, or the next row is far,
 //!   they lie on the line between the two rows after all.
 //! * Velocities are on the line through those of the two rows around the moment if both are before the impact, else of
-//!   the last two, carried on. A velocity from differences belongs to the middle of its rows, and does not count if
-//!   one of them is after the impact.
-//! * Neither goes back over two rows of one time: between them another foot may have struck.
+//!   the last two, carried on. A velocity from differences belongs to the middle of its rows, and does not count if one
+//!   of them is after the impact.
 //! * If the descent ends above that height, the row at which it ends is taken as it is.
+//!
+//! None goes back over two rows of one time: between them another foot may have struck.
 //!
 //! A row within that distance that is followed by one of the same time is the state just before the impact, and is
 //! taken as it is, either way. So is the last row of a clip whose descent ends with the clip, if the point is within
@@ -82,7 +100,7 @@ pub struct Thresholds {
     pub slow: f64,
     /// The highest level on which a descent may end: 20 mm \[m\].
     pub ground: f64,
-    /// How far above the level on which its descent ends a point touches the ground: 2 mm \[m\].
+    /// How far above the level on which its descent ends a point touches the ground if it slows down: 2 mm \[m\].
     pub above: f64,
     /// Points that strike at the same row and are no more apart in height strike together: 1 um \[m\].
     pub together: f64,

@@ -1,8 +1,9 @@
 //! Touchdowns in recorded gaits: those of the rabbit, with states to the last digit and as the command prints them
 //! (here; all gaits through the binary are in `tests/gaits.rs`); what decides what is a touchdown, on a foot that moves
-//! up and down (`motion`); and how motions in three dimensions are projected (`sagittal`).
+//! up and down (`motion`); of recordings with noise (`noise`) and without (`simulated`); and how motions in three dimensions are projected (`sagittal`).
 
 mod motion;
+mod noise;
 mod sagittal;
 mod simulated;
 
