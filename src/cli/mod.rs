@@ -16,6 +16,7 @@ mod stream;
 mod origin;
 mod resume;
 mod sink;
+mod recording;
 mod inspect;
 mod impact;
 mod batch;

@@ -135,9 +135,8 @@ impl Pipeline<'_> {
         self.assembly.factorize();
         self.check_inertia(&scene.loops)?;
 
-        let mut notes = Vec::new();
-        self.check_limits(state, &mut notes)?;
-        let doubt = notes.first().cloned();
+        let odd = self.odd_angles(state)?;
+        let mut notes = odd.clone();
         self.note_unused_laws(scene, &mut notes);
         let surface = Surface::new(&scene.ground);
         let (base, mut velocity, foot) = self.stand(state, &surface)?;
@@ -146,7 +145,7 @@ impl Pipeline<'_> {
         let footing = self.footing(scene, &placement, &surface);
         let Detected { contacts, merged, out_of_reach } = self
             .contacts(&footing, foot.as_ref(), &mut notes)
-            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity), doubt))?;
+            .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity), odd.first()))?;
         let nearest = if self.options.brief { None } else { self.open_foot(&footing, &contacts, &velocity) };
         if scene.contacts.is_none() && !self.options.brief {
             self.note_near_miss(&contacts, nearest, &mut notes);
@@ -202,19 +201,21 @@ impl Pipeline<'_> {
         check_length("rotor_inertia", joints.max(state.scene.rotor_inertia.len()), joints)
     }
 
-    /// Notes joints outside their limits, or refuses the first of them.
-    fn check_limits(&self, state: &State, notes: &mut Vec<String>) -> Result<()> {
+    /// What is odd about the joints: those outside their limits, or the refusal of the first of them, and angles that
+    /// look like degrees.
+    fn odd_angles(&self, state: &State) -> Result<Vec<String>> {
+        let mut odd = Vec::new();
         for outside in state.outside_limits(self.robot) {
             if self.options.strict_limits {
                 let error = Error::new(Reason::Inconsistent(outside.to_string()));
                 let hint = "correct the state or the limits of the robot's file, or do without `strict_limits`";
                 return Err(error.at(format!("position.joints.{}", outside.joint.name)).hint(hint));
             }
-            notes.push(outside.to_string());
+            odd.push(outside.to_string());
         }
         let like_degrees = state.like_degrees(self.robot);
-        notes.extend(like_degrees.map(|(name, angle)| format!("{name} = {angle} rad is more than a turn; degrees?")));
-        Ok(())
+        odd.extend(like_degrees.map(|(name, angle)| format!("{name} = {angle} rad is more than a turn; degrees?")));
+        Ok(odd)
     }
 
     /// Notes friction and restitution of links on which nothing can touch.
@@ -364,8 +365,8 @@ impl Pipeline<'_> {
     }
 
     /// The refusal of a foot that is too deep, completed by how the `lowest` foot moves, and for a stance with a remedy
-    /// that leaves the base to it; `doubt` is what is odd about the pose.
-    fn sunk(&self, error: Error, scene: &Scene, lowest: Option<NearestFoot>, doubt: Option<String>) -> Error {
+    /// that leaves the base to it; `odd` is the first thing that is odd about the pose.
+    fn sunk(&self, error: Error, scene: &Scene, lowest: Option<NearestFoot>, odd: Option<&String>) -> Error {
         let Reason::Penetration { link, depth, tolerance, .. } = error.reason() else { return error };
         let velocity = lowest.filter(|foot| self.robot.links[foot.link].name == *link).map(|foot| foot.velocity);
         let hint = match (scene.stance, error.remedy()) {
@@ -375,7 +376,7 @@ impl Pipeline<'_> {
             ),
             (None, Some(remedy)) => format!("{remedy}; `place: lowest` puts the lowest foot on the ground"),
         };
-        let hint = doubt.into_iter().fold(hint, |hint, doubt| format!("{hint}; {doubt}"));
+        let hint = odd.into_iter().fold(hint, |hint, odd| format!("{hint}; {odd}"));
         Error::new(Reason::Penetration { link: link.clone(), depth: *depth, tolerance: *tolerance, velocity })
             .hint(hint)
     }

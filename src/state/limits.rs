@@ -35,17 +35,22 @@ impl State {
         })
     }
 
-    /// The pitch and the joints without limits that are more than a turn and a whole number, as degrees written by hand
-    /// are: name and angle \[rad\].
+    /// The pitch and the joints without limits that are more than a turn, as degrees are: name and angle \[rad\]. Wheels,
+    /// which carry no other joint, do turn so far: of these the whole numbers, as degrees written by hand are.
     pub fn like_degrees<'r>(&self, robot: &'r Robot) -> impl Iterator<Item = (&'r str, f64)> {
         let base = robot.base_dofs();
         let is_free_angle = move |at: usize| match at.checked_sub(base) {
             Some(joint) => robot.joints[joint].limits.is_none() && robot.joints[joint].axis.is_revolute(),
             None => at == 2,
         };
+        let joints = || robot.joints.iter().chain(robot.mimic_joints.iter().map(|mimic| &mimic.joint));
+        let is_wheel = move |at: usize| match at.checked_sub(base) {
+            Some(joint) => joints().all(|other| other.parent != robot.joints[joint].child),
+            None => robot.joints.is_empty(),
+        };
         let angles = robot.coordinates().zip(self.position.iter().copied()).enumerate();
         let like = move |&(at, (_, angle)): &(usize, (&str, f64))| {
-            angle.abs() > TAU && angle.fract() == 0.0 && is_free_angle(at)
+            angle.abs() > TAU && is_free_angle(at) && (angle.fract() == 0.0 || !is_wheel(at))
         };
         angles.filter(like).map(|(_, named)| named)
     }

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!     Impact (a robot's state)  ──┐
-//!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result.rs
-//!                                         └────> text for people        text.rs
+//!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result
+//!                                         └────> text for people        text
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Survey, Map ──> Regions, samples ──> JSON, CSV, text              sweep
 //!     CaseStudy, Comparison ──> Accuracy ──> JSON, text                 accuracy

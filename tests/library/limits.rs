@@ -62,6 +62,14 @@ fn whole_numbers_beyond_a_turn_look_like_degrees() {
     // Wheels turn on and on, and simulators print many digits.
     assert!(notes(&free, 30.01, 6.0).is_empty());
     assert!(notes(&limited(Axis::Prismatic([0.0, 1.0]), ""), 30.0, 0.0).is_empty());
+    // A base with legs does not, nor does a hip that carries a knee.
+    assert_eq!(notes(&free, 6.0, -12.34), ["pitch = -12.34 rad is more than a turn; degrees?"]);
+    let ramone = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).expect("a good robot");
+    let joints = json!({"left_hip": -28.65, "left_knee": 57.3});
+    let state = json!({"position": {"base": {"z": 2}, "joints": joints}, "friction": 1});
+    let notes = try_impact(&ramone, Options::default(), state).expect("an answer").notes;
+    let odd: Vec<_> = notes.iter().filter(|note| note.contains("more than a turn")).collect();
+    assert_eq!(odd, ["left_hip = -28.65 rad is more than a turn; degrees?"]);
 }
 
 #[test]

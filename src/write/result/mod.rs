@@ -3,23 +3,33 @@
 //! Fields that do not apply are absent; fields that apply but have no value (the index on a border, the condition of a
 //! singular matrix) are null. Numbers are written with every digit.
 
-use super::Detail;
+mod id;
+mod contact;
+mod left_out;
+mod recorded;
+mod refused;
+mod brief;
+
+pub use brief::{Brief, ContactInBrief, OutcomeInBrief};
+pub use contact::{ContactRecord, NearestRecord};
 #[cfg(feature = "schema")]
-use super::state::any_object;
-use super::state::{CounterexampleRecord, HoldsRecord, raw_state};
-use crate::contact::Merged;
-use crate::gait::Landing;
+use id::Id;
+pub(crate) use id::short_id;
+pub use left_out::LeftOutRecord;
+pub use recorded::{CarriedFields, Touchdown};
+pub use refused::{ErrorObject, Refused};
+
+use super::Detail;
+use super::state::{CounterexampleRecord, HoldsRecord};
 use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Rejection, Verdict};
-use crate::pipeline::{Impact, LeftOut, NearestFoot};
-use crate::planar::{Pair, Vector};
+use crate::pipeline::{Impact, NearestFoot};
+use crate::planar::Pair;
 use crate::read::Problem;
-use crate::state::{Named, State};
-use crate::{Error, Mode, Reason, Robot, description};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use crate::state::State;
+use crate::{Mode, Robot};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
-use serde_json::value::RawValue;
 use std::borrow::Cow;
-use std::fmt::{self, Display};
 
 /// The result of a state or of a contact problem.
 ///
@@ -130,152 +140,6 @@ pub struct Report<'a> {
     pub error: Option<ErrorObject>,
 }
 
-/// A closed contact.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename = "Contact")]
-pub struct ContactRecord<'a> {
-    /// The URDF link that carries the shape; of a robot.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub link: Option<Cow<'a, str>>,
-    /// Its name, which is its link's, or link/0, link/1 ... if a link has several.
-    pub name: Cow<'a, str>,
-    /// The contact point in the world \[m\]; of a robot.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub point: Option<Vector<f64>>,
-    /// Unit normal of the ground, toward the robot; of a robot.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub normal: Option<Vector<f64>>,
-    /// Height above the ground along the normal \[m\]; of a robot.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub gap: Option<f64>,
-    /// Its velocity before the impact, [tangential, normal] \[m/s\].
-    pub velocity_before: Pair<f64>,
-}
-
-/// A foot that does not touch, or that is too deep in the ground.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename = "NearestFoot")]
-pub struct NearestRecord<'a> {
-    /// The URDF link that carries it.
-    pub name: Cow<'a, str>,
-    /// Height of its lowest point above the ground along the normal \[m\], negative below it.
-    pub height: f64,
-    /// How that point moves before the impact, [tangential, normal] \[m/s\].
-    pub velocity: Pair<f64>,
-}
-
-/// Something of the robot's file or of the scene that does not enter the analysis.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename = "LeftOut")]
-pub struct LeftOutRecord<'a> {
-    /// What, as in `joint "left_ankle"`.
-    pub what: Cow<'a, str>,
-    /// Why, as in `fixed: welded into left_shank`.
-    pub why: Cow<'a, str>,
-}
-
-impl<'a> LeftOutRecord<'a> {
-    /// All that was left out of `robot`, and of every robot.
-    pub fn all(robot: &'a Robot) -> Vec<Self> {
-        let what = Cow::Borrowed("gravity, Coriolis forces, joint limits");
-        let never = Self { what, why: Cow::Borrowed("do not enter an impact") };
-        let of_robot =
-            robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: Cow::Borrowed(&left.why) });
-        of_robot.chain([never]).collect()
-    }
-
-    /// All that was left out of this impact, and then of its `robot`.
-    pub fn of_impact(robot: &'a Robot, impact: &Impact) -> Vec<Self> {
-        let contacts = |of: &[usize]| of.iter().map(|&at| &*impact.contacts[at].name).collect::<Vec<_>>().join(", ");
-        let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };
-        let of_scene = impact.left_out.iter().map(|left| {
-            let (what, why) = match left {
-                LeftOut::Column(joint) => (
-                    description::joint_place(&robot.joints[*joint].name),
-                    "braked: it keeps its rate and has no column".into(),
-                ),
-                LeftOut::OutOfReach(count) => {
-                    (format!("{} out of reach", shapes(*count)), "too high to reach the ground".into())
-                }
-                LeftOut::NotAsked(count) => {
-                    (format!("{} of the file", shapes(*count)), "contacts are named by hand".into())
-                }
-                LeftOut::Merged(Merged { inner, outer, off }) => {
-                    let points =
-                        if *inner == 1 { "1 contact point".to_owned() } else { format!("{inner} contact points") };
-                    let off = if *off > 0.0 { format!(", at most {off:.1e} m off their line") } else { String::new() };
-                    let why = format!("the outer points of the same body on straight ground act for them{off}");
-                    (format!("{points} next to {}", contacts(outer)), why.into())
-                }
-                LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0".into()),
-                LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction".into()),
-            };
-            Self { what: Cow::Owned(what), why }
-        });
-        of_scene.chain(Self::all(robot)).collect()
-    }
-}
-
-/// Where in a recording a foot reached the ground, and how the state was taken.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Touchdown<'a> {
-    /// The line of the state's row in the table, or of the last row before it, from 1.
-    pub row: usize,
-    /// The time of the state \[s\].
-    pub time: f64,
-    /// The contact that reached the ground; of several at once the first.
-    pub striking: Cow<'a, str>,
-    /// What was added to the base's z so that this contact is at height 0 \[m\].
-    pub shift_z: f64,
-    /// `crossing` if the state lies between two rows, `row` if it is one.
-    pub at: Cow<'a, str>,
-    /// Which other feet take part: `strike`, `slow:SPEED,HEIGHT` or `near:HEIGHT`.
-    pub touching: String,
-    /// The state before the impact, to be fed back.
-    #[cfg_attr(feature = "schema", schemars(schema_with = "any_object"))]
-    pub state: Box<RawValue>,
-    /// Its q and v, for tables.
-    #[serde(skip)]
-    pub coordinates: Vec<f64>,
-}
-
-impl<'a> Touchdown<'a> {
-    /// The touchdown of a `state` that was found behind a `row` of a recording at `time` \[s\].
-    pub fn of(robot: &Robot, state: &State, landing: &'a Landing, row: usize, time: f64) -> Option<Self> {
-        Some(Self {
-            row,
-            time,
-            striking: (&landing.striking).into(),
-            shift_z: landing.shift_z,
-            at: landing.at.name().into(),
-            touching: landing.touching.to_string(),
-            state: raw_state(robot, state)?,
-            coordinates: [&state.position[..], &state.velocity].concat(),
-        })
-    }
-}
-
-/// Fields of a table that are carried through, written as an object.
-#[derive(Debug, Clone)]
-pub struct CarriedFields<'a>(pub Vec<(Cow<'a, str>, Cow<'a, str>)>);
-
-impl Serialize for CarriedFields<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, text)| (name, text)))
-    }
-}
-
-impl<'de> Deserialize<'de> for CarriedFields<'_> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let fields = Named::<String>::deserialize(deserializer)?;
-        Ok(Self(fields.iter().map(|(name, text)| (name.to_owned().into(), text.clone().into())).collect()))
-    }
-}
-
 /// A combination of modes that is not an outcome.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -290,128 +154,6 @@ pub struct Rejected<'a> {
     pub impulse: Option<Cow<'a, [Pair<f64>]>>,
     /// The contact velocities that it would have led to \[m/s\].
     pub velocity_after: Option<Cow<'a, [Pair<f64>]>>,
-}
-
-/// An outcome in brief.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OutcomeInBrief<'a> {
-    /// One mode per contact.
-    pub modes: Cow<'a, [Mode]>,
-    /// Sign of det A.
-    pub index: Option<i8>,
-    /// The smallest slack of the outcome's inequalities, free of units.
-    pub margin: Option<f64>,
-    /// False, and only then present, if the combination is neither shown nor excluded.
-    #[serde(default = "yes", skip_serializing_if = "bool::clone")]
-    pub decided: bool,
-}
-
-/// A closed contact in brief.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ContactInBrief<'a> {
-    /// Its name.
-    pub name: Cow<'a, str>,
-}
-
-/// The result in brief.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Brief<'a> {
-    /// What the user calls it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
-    pub id: Option<Cow<'a, Value>>,
-    /// The line on which the input begins, from 1; in a batch.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub line: Option<usize>,
-    /// Where the state was found.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub touchdown: Option<Touchdown<'a>>,
-    /// The answer in one word.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub verdict: Option<Verdict>,
-    /// Every combination is decided by an error bound.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub proven: Option<bool>,
-    /// Whether every state of the box has the same outcomes; of an uncertain state.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub holds: Option<HoldsRecord>,
-    /// The closed contacts, in the order of the modes.
-    pub contacts: Vec<ContactInBrief<'a>>,
-    /// Every outcome.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
-    /// How much is open, of an undecided state or problem.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub open: Option<OpenCombinations>,
-    /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
-    #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
-    pub families: Cow<'a, [Family]>,
-    /// Why there are no outcomes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<ErrorObject>,
-}
-
-/// What stands in place of the result of a refused input.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Refused {
-    /// What the user calls it, if that can be read; of a long one the beginning and `... (cut)`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
-    pub id: Option<Value>,
-    /// The line on which the input begins, from 1.
-    pub line: usize,
-    /// Why it was refused.
-    pub error: ErrorObject,
-}
-
-/// A refusal; it names no file, so that a file, a pipe and standard input give the same bytes.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ErrorObject {
-    /// Why.
-    pub message: String,
-    /// Where inside the input, as in `position.joints.left_hip`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub place: Option<String>,
-    /// What to do.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub hint: Option<String>,
-    /// The foot that is too deep in the ground.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub nearest: Option<NearestRecord<'static>>,
-}
-
-impl Refused {
-    /// The refusal of the input that begins on `line`.
-    pub fn new(id: Option<Value>, line: usize, error: &Error) -> Self {
-        Self { id: id.map(short_id), line, error: ErrorObject::new(error) }
-    }
-}
-
-impl ErrorObject {
-    /// The error without its file, line and column.
-    pub fn new(error: &Error) -> Self {
-        let [place, hint] = [error.place(), error.remedy()].map(|text| text.map(str::to_owned));
-        let nearest = match error.reason() {
-            Reason::Penetration { link, depth, velocity: Some(velocity), .. } => {
-                Some(NearestRecord { name: link.clone().into(), height: -depth, velocity: *velocity })
-            }
-            _ => None,
-        };
-        Self { message: error.reason().to_string(), place, hint, nearest }
-    }
-}
-
-/// In one line.
-impl Display for ErrorObject {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let place = self.place.as_ref().map_or(String::new(), |place| format!("{place}: "));
-        write!(out, "{place}{}{}", self.message, self.hint.as_ref().map_or(String::new(), |hint| format!("; {hint}")))
-    }
 }
 
 impl<'a> Report<'a> {
@@ -496,38 +238,9 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// The same in brief.
-    pub fn brief(&self) -> Brief<'_> {
-        let outcomes = self.outcomes.as_deref().unwrap_or_default().iter();
-        let in_brief = outcomes.map(|&Outcome { ref modes, index, margin, decided, .. }| {
-            let modes = Cow::Borrowed(&**modes);
-            OutcomeInBrief { modes, index, margin, decided }
-        });
-        let contacts = self.contacts.iter().map(|contact| ContactInBrief { name: Cow::Borrowed(&*contact.name) });
-        Brief {
-            id: self.id.clone(),
-            line: self.line,
-            touchdown: self.touchdown.clone(),
-            verdict: self.verdict,
-            proven: self.proven,
-            holds: self.holds,
-            contacts: contacts.collect(),
-            outcomes: self.outcomes.is_some().then(|| in_brief.collect()),
-            open: self.open,
-            families: self.families.clone(),
-            error: self.error.clone(),
-        }
-    }
-
     /// Appends the result as one line of JSON, whole or in brief.
     pub fn append_json(&self, detail: Detail, out: &mut Vec<u8>) {
         if detail.brief { super::append_line(out, &self.brief()) } else { super::append_line(out, self) }
-    }
-}
-
-impl<'a> ContactRecord<'a> {
-    fn of_problem(name: &'a str, velocity_before: Pair<f64>) -> Self {
-        Self { name: Cow::Borrowed(name), velocity_before, ..Self::default() }
     }
 }
 
@@ -557,25 +270,9 @@ fn delassus(problem: &Problem) -> Vec<Vec<f64>> {
     rows.clone().map(|row| rows.clone().map(|column| problem.contact.delassus(row, column)).collect()).collect()
 }
 
-/// The most characters of an id that are repeated.
-const ID_LIMIT: usize = 200;
-
-/// An id as it is repeated where it only has to be recognized; of a long text the beginning and `... (cut)`.
-pub(crate) fn short_id(id: Value) -> Value {
-    let end = id.as_str().and_then(|text| text.char_indices().nth(ID_LIMIT));
-    match (&id, end) {
-        (Value::String(text), Some((end, _))) => format!("{}... (cut)", &text[..end]).into(),
-        _ => id,
-    }
-}
-
 /// Reads a field that may be null although it may also be absent.
 fn present<'de, D: Deserializer<'de>, T: Deserialize<'de>>(field: D) -> Result<Option<T>, D::Error> {
     T::deserialize(field).map(Some)
-}
-
-fn yes() -> bool {
-    true
 }
 
 #[cfg(test)]
@@ -585,18 +282,12 @@ mod tests {
     use crate::state::Defaults;
 
     #[test]
-    fn a_long_id_is_cut_and_a_short_one_is_not() {
-        for kept in [Value::from(17), "k17".into(), "é".repeat(ID_LIMIT).into()] {
-            assert_eq!(short_id(kept.clone()), kept);
-        }
-        assert_eq!(short_id("é".repeat(1 << 20).into()), format!("{}... (cut)", "é".repeat(ID_LIMIT)));
-    }
-
-    #[test]
     fn brief_impact_has_all_of_a_brief_result() {
-        let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).unwrap();
+        let robot = Robot::from_urdf(include_str!("../../../urdf/ramone.urdf")).unwrap();
         let detail = Detail { brief: true, ..Detail::default() };
-        for text in [include_str!("../../examples/ramone.json"), include_str!("../../examples/ramone_measured.json")] {
+        for text in
+            [include_str!("../../../examples/ramone.json"), include_str!("../../../examples/ramone_measured.json")]
+        {
             let state = State::from_json(text, &robot, &Defaults::default()).unwrap();
             let [whole, brief] = [false, true].map(|brief| {
                 let impact = Pipeline::new(&robot, Options { brief, ..Options::default() }).impact(&state).unwrap();
@@ -610,11 +301,11 @@ mod tests {
 
     #[test]
     fn a_written_result_reads_back_as_the_same() {
-        let robot = Robot::from_urdf(include_str!("../../urdf/ramone.urdf")).unwrap();
+        let robot = Robot::from_urdf(include_str!("../../../urdf/ramone.urdf")).unwrap();
         let options = Options { explain_up_to: 9, matrices: true, ..Options::default() };
         let detail = Detail { explain: true, matrices: true, ..Detail::default() };
-        let wide = include_str!("../../examples/ramone_measured.json").replace("1e-3", "1e-2");
-        for text in [include_str!("../../examples/ramone.json"), &wide] {
+        let wide = include_str!("../../../examples/ramone_measured.json").replace("1e-3", "1e-2");
+        for text in [include_str!("../../../examples/ramone.json"), &wide] {
             let state = State::from_json(text, &robot, &Defaults::default()).unwrap();
             let impact = Pipeline::new(&robot, options.clone()).impact(&state).unwrap();
             let mut lines = [Vec::new(), Vec::new()];
@@ -625,17 +316,4 @@ mod tests {
             assert_eq!(read.outcomes.as_deref(), Some(&*impact.analysis.unwrap().outcomes));
         }
     }
-}
-
-/// What the user calls a state or a problem.
-#[cfg(feature = "schema")]
-#[derive(schemars::JsonSchema)]
-#[serde(untagged)]
-#[schemars(inline)]
-#[expect(dead_code, reason = "the schema is all that is wanted of it")]
-enum Id {
-    /// A name.
-    Text(String),
-    /// A number.
-    Number(f64),
 }

@@ -1,0 +1,130 @@
+//! Options for rows that follow each other in time.
+
+use super::options::{Choices, choice, from_zero};
+use heelstrike::batch::RowOrigin;
+use heelstrike::gait::{self, At, Difference, Dropped, Heights, Sampled, Thresholds, Touching};
+use heelstrike::read::table::{Header, Rates};
+use heelstrike::state::NamedContact;
+use heelstrike::write::RowKind;
+use heelstrike::{Result, Robot};
+use std::sync::Mutex;
+
+/// Options for rows that follow each other in time.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Recordings")]
+pub(super) struct RecordingOptions {
+    /// Answer only touchdowns: the moments at which a foot reaches the ground from above
+    ///
+    /// A foot touches down if it descends far enough (--drop), faster than 0.05 m/s, and stops low enough
+    /// (--ground-height). The moment of contact is when its motion before reaches the level at which it stops, or, if it
+    /// slows down, when it is 2 mm above that level. Noise is measured, and lines are laid through it. For robots smaller
+    /// than 0.25 m these thresholds shrink in proportion; the size is the greatest distance from the root's origin to a
+    /// foot or center of gravity with all joints at zero. The base is then shifted so that the foot is at z = 0.
+    #[arg(long, conflicts_with = "place")]
+    pub touchdowns: bool,
+    /// Take the heights of a simulation at their word: the ground is z = 0, and a foot touches down when it crosses that
+    ///
+    /// The moment is where its height is zero as the up to six rows before it go on. For recordings without noise.
+    #[arg(long, requires = "touchdowns", conflicts_with = "ground_height")]
+    simulated: bool,
+    /// Which state of a touchdown is analyzed
+    #[arg(long, value_parser = choice(ROWS), default_value = "crossing", requires = "touchdowns")]
+    at: At,
+    /// Which other feet touch the ground at a touchdown: strike (none), slow:SPEED,HEIGHT or near:HEIGHT
+    ///
+    /// With slow, the lowest point of every other body, if it is slower than SPEED (m/s) and its height differs from
+    /// the striking point's by at most HEIGHT (m): standing feet. With near, every point at such a height, at any
+    /// speed.
+    #[arg(long, value_name = "WHICH", default_value_t, requires = "touchdowns")]
+    touching: Touching,
+    /// How far a foot must have descended, in meters [default: 0.012, less for robots below 0.25 m]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    drop: Option<f64>,
+    /// How far above z = 0 a foot may stop, in meters [default: 0.02, less for robots below 0.25 m]
+    #[arg(long, value_name = "HEIGHT", value_parser = from_zero, requires = "touchdowns")]
+    ground_height: Option<f64>,
+    /// Compute velocities from the positions and the column "time"
+    #[arg(long, value_parser = choice(DIFFERENCES), value_name = "HOW")]
+    velocity: Option<Difference>,
+}
+
+const ROWS: Choices<At> = &[
+    ("crossing", "The state at the moment of contact, extrapolated from the rows before the impact", At::Crossing),
+    ("row", "The last row before that moment, shifted in z", At::Row),
+];
+
+const DIFFERENCES: Choices<Difference> = &[
+    ("central", "From the rows before and after", Difference::Central),
+    ("backward", "From the row before", Difference::Backward),
+];
+
+/// The samples of a recording, in order.
+pub(super) type Samples<'a> = Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send + 'a>;
+
+impl RecordingOptions {
+    /// Whether rows depend on each other.
+    pub fn is_in_order(&self) -> bool {
+        self.touchdowns || self.velocity.is_some()
+    }
+
+    /// What a row of results is about.
+    pub fn kind(&self) -> RowKind {
+        if self.touchdowns { RowKind::Touchdown } else { RowKind::State }
+    }
+
+    /// Where velocities come from.
+    pub fn rates(&self) -> Rates {
+        if self.velocity.is_some() { Rates::Time } else { Rates::Columns }
+    }
+
+    /// When a foot touches down.
+    ///
+    /// # Errors
+    /// Touchdowns of a robot that has no feet to look for.
+    pub fn thresholds(&self, robot: &Robot, feet: &[NamedContact]) -> Result<Thresholds> {
+        if self.touchdowns {
+            gait::find(std::iter::empty::<Sampled<()>>(), robot, feet, self.at, self.touching)?;
+        }
+        let usual = Thresholds::of(robot, feet);
+        let (drop, ground) = (self.drop.unwrap_or(usual.drop), self.ground_height.unwrap_or(usual.ground));
+        Ok(Thresholds { drop, ground, ..usual })
+    }
+
+    /// The samples to be answered; what a projection of the base leaves out is added to `dropped`.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn chosen<'a>(
+        &self,
+        mut samples: Samples<'a>,
+        header: &Header,
+        (robot, feet): (&'a Robot, &[NamedContact]),
+        thresholds: Thresholds,
+        dropped: &'a Mutex<Dropped>,
+    ) -> Result<Samples<'a>> {
+        if header.is_spatial() {
+            samples = Box::new(gait::sagittal(samples, dropped));
+        }
+        if let Some(difference) = self.velocity {
+            samples = Box::new(gait::rates(samples, difference));
+        }
+        if self.touchdowns {
+            let heights = if self.simulated { Heights::True } else { Heights::Recorded };
+            let found = gait::find(samples, robot, feet, self.at, self.touching)?;
+            samples = Box::new(found.with(thresholds).meaning(heights));
+        }
+        Ok(samples)
+    }
+
+    /// What to say if there are no touchdowns.
+    pub fn nothing_found(&self, Thresholds { drop, ground, slow, .. }: Thresholds) -> String {
+        let descended = format!("no touchdown found: a foot must descend {drop:.4} m or more");
+        match self.simulated {
+            true => format!("{descended} and cross z = 0 (see --drop)"),
+            false => format!(
+                "{descended}, faster than {slow:.4} m/s, to at most {ground:.4} m above the ground (see --drop, \
+                 --ground-height)"
+            ),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Results in brief.
+
+use super::Report;
+#[cfg(feature = "schema")]
+use super::id::Id;
+use super::recorded::Touchdown;
+use super::refused::ErrorObject;
+use crate::Mode;
+use crate::impact::{Family, OpenCombinations, Outcome, Verdict};
+use crate::write::state::HoldsRecord;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::borrow::Cow;
+
+/// An outcome in brief.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct OutcomeInBrief<'a> {
+    /// One mode per contact.
+    pub modes: Cow<'a, [Mode]>,
+    /// Sign of det A.
+    pub index: Option<i8>,
+    /// The smallest slack of the outcome's inequalities, free of units.
+    pub margin: Option<f64>,
+    /// False, and only then present, if the combination is neither shown nor excluded.
+    #[serde(default = "yes", skip_serializing_if = "bool::clone")]
+    pub decided: bool,
+}
+
+/// A closed contact in brief.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ContactInBrief<'a> {
+    /// Its name.
+    pub name: Cow<'a, str>,
+}
+
+/// The result in brief.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Brief<'a> {
+    /// What the user calls it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Id>"))]
+    pub id: Option<Cow<'a, Value>>,
+    /// The line on which the input begins, from 1; in a batch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<usize>,
+    /// Where the state was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub touchdown: Option<Touchdown<'a>>,
+    /// The answer in one word.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
+    /// Every combination is decided by an error bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proven: Option<bool>,
+    /// Whether every state of the box has the same outcomes; of an uncertain state.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds: Option<HoldsRecord>,
+    /// The closed contacts, in the order of the modes.
+    pub contacts: Vec<ContactInBrief<'a>>,
+    /// Every outcome.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outcomes: Option<Vec<OutcomeInBrief<'a>>>,
+    /// How much is open, of an undecided state or problem.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<OpenCombinations>,
+    /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
+    #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
+    pub families: Cow<'a, [Family]>,
+    /// Why there are no outcomes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorObject>,
+}
+
+impl Report<'_> {
+    /// The same in brief.
+    pub fn brief(&self) -> Brief<'_> {
+        let outcomes = self.outcomes.as_deref().unwrap_or_default().iter();
+        let in_brief = outcomes.map(|&Outcome { ref modes, index, margin, decided, .. }| {
+            let modes = Cow::Borrowed(&**modes);
+            OutcomeInBrief { modes, index, margin, decided }
+        });
+        let contacts = self.contacts.iter().map(|contact| ContactInBrief { name: Cow::Borrowed(&*contact.name) });
+        Brief {
+            id: self.id.clone(),
+            line: self.line,
+            touchdown: self.touchdown.clone(),
+            verdict: self.verdict,
+            proven: self.proven,
+            holds: self.holds,
+            contacts: contacts.collect(),
+            outcomes: self.outcomes.is_some().then(|| in_brief.collect()),
+            open: self.open,
+            families: self.families.clone(),
+            error: self.error.clone(),
+        }
+    }
+}
+
+fn yes() -> bool {
+    true
+}

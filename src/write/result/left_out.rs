@@ -1,0 +1,60 @@
+//! What does not enter the analysis, in words.
+
+use crate::contact::Merged;
+use crate::pipeline::{Impact, LeftOut};
+use crate::{Robot, description};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// Something of the robot's file or of the scene that does not enter the analysis.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "LeftOut")]
+pub struct LeftOutRecord<'a> {
+    /// What, as in `joint "left_ankle"`.
+    pub what: Cow<'a, str>,
+    /// Why, as in `fixed: welded into left_shank`.
+    pub why: Cow<'a, str>,
+}
+
+impl<'a> LeftOutRecord<'a> {
+    /// All that was left out of `robot`, and of every robot.
+    pub fn all(robot: &'a Robot) -> Vec<Self> {
+        let what = Cow::Borrowed("gravity, Coriolis forces, joint limits");
+        let never = Self { what, why: Cow::Borrowed("do not enter an impact") };
+        let of_robot =
+            robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: Cow::Borrowed(&left.why) });
+        of_robot.chain([never]).collect()
+    }
+
+    /// All that was left out of this impact, and then of its `robot`.
+    pub fn of_impact(robot: &'a Robot, impact: &Impact) -> Vec<Self> {
+        let contacts = |of: &[usize]| of.iter().map(|&at| &*impact.contacts[at].name).collect::<Vec<_>>().join(", ");
+        let shapes = |count: usize| if count == 1 { "1 shape".to_owned() } else { format!("{count} shapes") };
+        let of_scene = impact.left_out.iter().map(|left| {
+            let (what, why) = match left {
+                LeftOut::Column(joint) => (
+                    description::joint_place(&robot.joints[*joint].name),
+                    "braked: it keeps its rate and has no column".into(),
+                ),
+                LeftOut::OutOfReach(count) => {
+                    (format!("{} out of reach", shapes(*count)), "too high to reach the ground".into())
+                }
+                LeftOut::NotAsked(count) => {
+                    (format!("{} of the file", shapes(*count)), "contacts are named by hand".into())
+                }
+                LeftOut::Merged(Merged { inner, outer, off }) => {
+                    let points =
+                        if *inner == 1 { "1 contact point".to_owned() } else { format!("{inner} contact points") };
+                    let off = if *off > 0.0 { format!(", at most {off:.1e} m off their line") } else { String::new() };
+                    let why = format!("the outer points of the same body on straight ground act for them{off}");
+                    (format!("{points} next to {}", contacts(outer)), why.into())
+                }
+                LeftOut::Tangential(of) => (format!("tangential impulse of {}", contacts(of)), "friction 0".into()),
+                LeftOut::Cone(of) => (format!("friction cone of {}", contacts(of)), "infinite friction".into()),
+            };
+            Self { what: Cow::Owned(what), why }
+        });
+        of_scene.chain(Self::all(robot)).collect()
+    }
+}
