@@ -248,7 +248,7 @@ impl fmt::Display for Summary {
         if !self.smallest_margins.is_empty() {
             let near = self.smallest_margins.iter().take(SHOWN);
             let near = near.map(|Nearest { state, margin }| format!("{} {state}", two_digits(*margin)));
-            writeln!(f, "smallest margins: {}", near.collect::<Vec<_>>().join(", "))?;
+            writeln!(f, "smallest margins with an impulse: {}", near.collect::<Vec<_>>().join(", "))?;
         }
         if let Some(Needed { state, friction }) = &self.more_friction.greatest {
             let states = self.more_friction.states;

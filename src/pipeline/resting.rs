@@ -72,10 +72,7 @@ impl Pipeline<'_> {
                 self.assembly.workspace.contact_velocity[index] = [0.0; 2];
                 self.bounds.velocity[index] = [0.0; 2];
                 if slow > 0.0 || self.options.resting_speed.is_none() {
-                    notes.push(format!(
-                        "{name} moves at {slow:.1e} m/s and is taken as exactly at rest ({because}); the velocities of \
-                         base and joints are not changed for it"
-                    ));
+                    notes.push(format!("{name} moves at {slow:.1e} m/s and is taken as exactly at rest ({because})"));
                 }
             } else if bound > 0.0 && slow <= bound {
                 notes.push(format!(

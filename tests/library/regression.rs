@@ -194,6 +194,21 @@ fn a_speed_that_is_all_rounding_is_taken_as_rest() {
     assert!(!rests(&nulled.replacen('{', r#"{"uncertainty": {"velocity": 1e-3}, "#, 1)));
 }
 
+#[test]
+fn digits_explain_only_what_nearly_cancels() {
+    // 1 m below the base, x and pitch rate cancel but for `slip`, and the terms add up to 2 m/s and more. The pitch is
+    // known to half a decimal place of x: 0.05 rad, with which the foot may move at 0.05 m/s.
+    let rests = |slip: f64| {
+        let state = format!(
+            r#"{{"position": {{"base": {{"x": 12345.6, "z": 1, "pitch": 0}}}}, "friction": 0.5,
+            "velocity": {{"base": {{"x": {}, "pitch": 1}}}}, "contacts": [{{"link": "body", "offset": [0, 0, -1]}}]}}"#,
+            1.0 + slip
+        );
+        impact(&flat_box(), state.as_str()).resting[0]
+    };
+    assert_eq!([1e-5, 1e-4, 4e-4, 1e-3, 1e-2].map(rests), [true, true, false, false, false]);
+}
+
 // Extremes.
 
 #[test]

@@ -62,7 +62,7 @@ impl Gait {
         let axes = Panel::new(PlotAxis::new(label), PlotAxis::new("margin"));
         let looks = LOOKS.iter().filter(|look| runs.iter().any(|run| run.look().answer == look.answer));
         Picture {
-            title: format!("{robot}: margins of all outcomes"),
+            title: format!("{robot}: margins of all outcomes; marks are single states"),
             rows: vec![vec![Panel { size: (640.0, 260.0), bands: bands(&runs), shapes, ..axes }]],
             legend: looks.map(|look| LegendEntry::new(look.words, LegendKey::Fill(look.fill))).collect(),
         }

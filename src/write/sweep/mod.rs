@@ -197,7 +197,7 @@ fn not_guaranteed(contacts: usize, dependent: bool) -> Vec<String> {
     if contacts == 0 {
         return Vec::new();
     }
-    let exact = "borders are exact, but that no region is missing is not guaranteed";
+    let exact = "borders are right to 1e-12 of the range, but that no region is missing is not guaranteed";
     if contacts > WATCHED_CONTACTS {
         return vec![format!(
             "{exact}: with more than {WATCHED_CONTACTS} contacts, regions that lie between two samples of the same outcomes are \

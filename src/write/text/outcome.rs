@@ -33,7 +33,9 @@ impl Writer<'_> {
         self.loops(outcome);
         self.energy(outcome)?;
         if !outcome.impulse_unique {
-            self.out.push_str("  other impulses give the same velocities; these are the least\n");
+            let own = outcome.friction_needed.iter().flatten().count() > 1;
+            let own = if own { "; each friction needed is the least of that contact alone" } else { "" };
+            writeln!(self.out, "  other impulses give the same velocities; these are the least{own}")?;
         }
         if outcome.family {
             self.out.push_str("  a corner of a family\n");

@@ -46,7 +46,7 @@ fn the_summary_counts_and_names() {
     assert_eq!(summary, expected);
     let for_people = "\
 6 states: 3 unique, 1 without impact, 1 without contact, 1 refused
-smallest margins: 0.31 1 (line 1), 0.41 3 (line 3), 0.50 2 (line 2)
+smallest margins with an impulse: 0.31 1 (line 1), 0.41 3 (line 3), 0.50 2 (line 2)
 all outcomes slide because friction is too small: 2; most is needed by 3 (line 3): 2.000
        2 x disc stick
        1 x disc slide+
@@ -78,7 +78,7 @@ fn the_example_s_walk_has_its_two_touchdowns() {
     let summary = heelstrike_reads(&[&WALK[..], &["examples/gait/ramone_walk.csv", "--brief"]].concat(), "").stderr;
     let expected = "\
 102 states: 2 unique, 100 without impact
-smallest margins: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)
+smallest margins with an impulse: 0.52 gait/050 (line 52), 0.52 gait/101 (line 103)
 slow contacts are taken as exactly at rest: 102; --resting-speed 0 takes none so
 ";
     assert!(summary.starts_with(expected), "{summary}");
