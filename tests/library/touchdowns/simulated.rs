@@ -157,6 +157,22 @@ fn the_moment_is_that_of_the_motion() {
 }
 
 #[test]
+fn slow_rows_are_kept_as_long_as_fast_ones() {
+    // Down along a polynomial of the fifth degree, which six rows determine.
+    fn height(left: f64) -> [Vec<f64>; 2] {
+        [vec![0.1 + 0.1 * left + 0.02 * left.powi(5)], vec![-0.1 - 0.1 * left.powi(4)]]
+    }
+    let motion =
+        Motion { strikes: 3.05, before: |time| height(3.05 - time), after: |_| [vec![0.1], vec![0.0]], ..ball() };
+    for step in [0.01, 0.1, 0.2, 0.4] {
+        let found = motion.found(&motion.table(step, 0.3, true, 3.05 + 5.0 * step), true, At::Crossing);
+        let [Sample { time, state, .. }] = &found[..] else { panic!("{step} s: {} touchdowns", found.len()) };
+        assert!((time - motion.strikes).abs() < 1e-9, "{step} s: {time}");
+        assert!((state.velocity[1] + 0.1).abs() < 1e-9, "{step} s: {}", state.velocity[1]);
+    }
+}
+
+#[test]
 fn a_simulation_that_ends_aloft_has_no_touchdown() {
     let motion = ball();
     // The last row is 0.4 mm above the ground, where a recorded foot of this size would have touched.
