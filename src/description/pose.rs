@@ -1,5 +1,7 @@
 //! Poses in three dimensions, as URDF writes them.
 
+use std::f64::consts::FRAC_PI_2;
+
 /// A 3 x 3 matrix, row by row.
 pub type Matrix = [[f64; 3]; 3];
 
@@ -15,16 +17,43 @@ pub struct Pose {
 impl Pose {
     /// The matrix that takes vectors of this frame into the outer frame's axes: Rz(yaw) Ry(pitch) Rx(roll).
     ///
-    /// Angles of zero give exact ones and zeros, and the digits are the same on every platform.
+    /// Angles of zero and quarter turns give exact ones and zeros, and the digits are the same on every platform.
     pub fn rotation(&self) -> Matrix {
-        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.map(libm::sincos);
-        [
+        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.map(|angle| quarter_turn(angle).unwrap_or(libm::sincos(angle)));
+        let rotation = [
             [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
             [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            // 0 - sp and not -sp, which would be a negative zero.
-            [0.0 - sp, cp * sr, cp * cr],
-        ]
+            [-sp, cp * sr, cp * cr],
+        ];
+        // Makes negative zeros positive.
+        rotation.map(|row| row.map(|entry| entry + 0.0))
     }
+}
+
+/// A quarter turn may be off by so many units in the last place: files are often written from computed angles.
+const ULPS: f64 = 4.0;
+/// So many digits and more of a quarter turn are one.
+const DIGITS: usize = 12;
+
+/// Sine and cosine of one to four quarter turns; `None` for another angle \[rad\]. One is within four units in the last
+/// place of a multiple of pi/2, or is one rounded to 12 digits and more; 1.5708 is none.
+fn quarter_turn(angle: f64) -> Option<(f64, f64)> {
+    let quarters = libm::round(angle / FRAC_PI_2);
+    let exact = quarters * FRAC_PI_2;
+    let rounded = || {
+        let written = format!("{angle:e}");
+        let digits = written.bytes().take_while(|&byte| byte != b'e').filter(u8::is_ascii_digit).count();
+        digits >= DIGITS && written == format!("{exact:.*e}", digits - 1)
+    };
+    let is_near = |exact: f64| (angle - exact).abs() <= ULPS * f64::EPSILON * libm::scalbn(1.0, libm::ilogb(exact));
+    match quarters {
+        1.0 | -3.0 => Some((1.0, 0.0)),
+        2.0 | -2.0 => Some((0.0, -1.0)),
+        3.0 | -1.0 => Some((-1.0, 0.0)),
+        4.0 | -4.0 => Some((0.0, 1.0)),
+        _ => None,
+    }
+    .filter(|_| is_near(exact) || rounded())
 }
 
 /// `matrix` times `vector`; the identity keeps every digit.
@@ -65,7 +94,6 @@ pub fn turn(axis: [f64; 3], angle: f64) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::FRAC_PI_2;
 
     const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
@@ -87,6 +115,33 @@ mod tests {
         assert_eq!(apply(&turn, vector).map(f64::to_bits), vector.map(f64::to_bits));
         let other = rotation([0.3, -1.0, 2.0]);
         assert_eq!([product(&turn, &other), product(&other, &turn)], [other; 2]);
+    }
+
+    #[test]
+    fn quarter_turns_are_exact_as_they_are_written() {
+        let quarters = [
+            ("1.5707963267948966", [1.0, 0.0]),
+            ("-1.57079632679", [-1.0, 0.0]),
+            ("1.5707963267949", [1.0, 0.0]),
+            ("1.5707963267948972", [1.0, 0.0]),
+            ("1.570796326794896", [1.0, 0.0]),
+            ("-3.141592653589793", [0.0, -1.0]),
+            ("3.14159265359", [0.0, -1.0]),
+            ("3.1415926535897913", [0.0, -1.0]),
+            ("4.71238898038469", [-1.0, 0.0]),
+            ("-4.71238898038469", [1.0, 0.0]),
+            ("6.283185307179586", [0.0, 1.0]),
+        ];
+        for (angle, [sin, cos]) in quarters {
+            let about_x = [[1.0, 0.0, 0.0], [0.0, cos, 0.0 - sin], [0.0, sin, cos]];
+            let bits = |matrix: Matrix| matrix.map(|row| row.map(f64::to_bits));
+            assert_eq!(bits(rotation([angle.parse().unwrap(), 0.0, 0.0])), bits(about_x), "{angle}");
+        }
+        for angle in ["1.5708", "1.570796", "1.570796327", "1.57079632678", "1.5707963267948986", "3.14159", "1e-16"] {
+            let angle: f64 = angle.parse().unwrap();
+            let (sin, cos) = libm::sincos(angle);
+            assert_eq!(rotation([angle, 0.0, 0.0])[2], [0.0, sin, cos], "{angle}");
+        }
     }
 
     #[test]

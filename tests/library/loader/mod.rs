@@ -233,6 +233,22 @@ fn wheels_are_discs_and_unread_meshes_left_out() {
     assert!(solo.left_out.contains(&left_out("12 <limit> in <joint>", "joint limits do not enter an impact")));
 }
 
+#[test]
+fn quarter_turns_leave_a_symmetric_robot_symmetric() {
+    // Its fixed joints turn by 1.5707963267948966, of which the cosine is 6e-17.
+    let upkie = load(include_str!("../../data/robots/upkie/upkie.urdf"));
+    let bits = |point: Vector| point.components().map(f64::to_bits);
+    for (left, right) in [(1, 4), (2, 5), (3, 6)] {
+        let [left, right] = [left, right].map(|body: usize| &upkie.bodies[body]);
+        let joints = [left, right].map(|body| body.joint);
+        let [Some(ParentJoint::Joint(a)), Some(ParentJoint::Joint(b))] = joints else { panic!("{joints:?}") };
+        assert_eq!(bits(upkie.joints[a].origin), bits(upkie.joints[b].origin), "{}", right.name);
+        assert_eq!(upkie.joints[a].origin.x, 0.0, "{}", left.name);
+        assert_eq!(bits(left.com), bits(right.com), "{}", right.name);
+        assert_eq!([left.mass, left.moment], [right.mass, right.moment], "{}", right.name);
+    }
+}
+
 // Joints.
 
 #[test]
