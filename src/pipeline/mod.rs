@@ -15,6 +15,7 @@ use self::assembly::{Assembly, Elimination};
 use self::exact::ExactState;
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::{NearestFoot, Unsolved};
+pub(crate) use self::resting::AT_REST;
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::{Configuration, Plan};

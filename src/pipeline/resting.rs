@@ -23,6 +23,9 @@ const CANCELED: f64 = 1e-4;
 /// Numbers with so many significant digits were rounded to them; with fewer they are meant, with more they are f64.
 const ROUNDED: RangeInclusive<usize> = 6..=15;
 
+/// What the note on a resting contact says behind its name, before the speeds.
+pub(crate) const AT_REST: &str = " is taken as exactly at rest";
+
 /// The stance of a state.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Standing<'a> {
@@ -72,7 +75,7 @@ impl Pipeline<'_> {
                 self.assembly.workspace.contact_velocity[index] = [0.0; 2];
                 self.bounds.velocity[index] = [0.0; 2];
                 if slow > 0.0 || self.options.resting_speed.is_none() {
-                    notes.push(format!("{name} moves at {slow:.1e} m/s and is taken as exactly at rest ({because})"));
+                    notes.push(format!("{name}{AT_REST} although it moves at {slow:.1e} m/s ({because})"));
                 }
             } else if bound > 0.0 && slow <= bound {
                 notes.push(format!(

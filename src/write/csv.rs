@@ -2,6 +2,7 @@
 
 use crate::contact::Feet;
 use crate::impact::Family;
+use crate::pipeline::AT_REST;
 use crate::read::table::{Carried, Header, prefixed};
 use crate::state::NamedContact;
 use crate::write::{Refused, Report, words};
@@ -139,7 +140,7 @@ impl Columns {
             coordinates.for_each(|(at, &number)| cells.number(at, number));
         }
         cells.text(self.last() + 3, report.error.as_ref().map_or(String::new(), ToString::to_string));
-        cells.text(self.last() + 4, report.notes.join("; "));
+        cells.text(self.last() + 4, report.notes.iter().map(|note| short(note)).collect::<Vec<_>>().join("; "));
         let places = report.contacts.iter().map(|contact| self.place(&contact.name));
         let places: Vec<usize> = places.collect::<Result<_>>()?;
         let outcomes = report.outcomes.as_deref().unwrap_or_default();
@@ -261,4 +262,9 @@ fn contacts(robot: &Robot, feet: &[NamedContact], kind: RowKind) -> Vec<String> 
 fn is_formula(text: &[u8]) -> bool {
     let is_number = || std::str::from_utf8(text).is_ok_and(|text| text.parse::<f64>().is_ok());
     matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r')) && !is_number()
+}
+
+/// A note without the speeds of a resting contact: in a walk every row has such a contact.
+fn short(note: &str) -> &str {
+    note.find(AT_REST).map_or(note, |end| &note[..end + AT_REST.len()])
 }

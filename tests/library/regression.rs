@@ -177,7 +177,8 @@ fn a_speed_that_is_all_rounding_is_taken_as_rest() {
     let found = impact(&ramone(), &nulled);
     assert_eq!((&found.velocity_before[..], &found.resting[..]), (&[[0.0; 2]][..], &[true][..]));
     assert!(
-        found.notes[0].contains("and is taken as exactly at rest (its velocity is rounded by up to"),
+        found.notes[0].contains(" is taken as exactly at rest although it moves at ")
+            && found.notes[0].contains("(its velocity is rounded by up to"),
         "{:?}",
         found.notes
     );

@@ -69,6 +69,22 @@ fn options_that_need_a_table_are_refused_without_one() {
 }
 
 #[test]
+fn feet_at_rest_take_little_room_in_tables() {
+    let walk = |format: &str| {
+        heelstrike(&["batch", RAMONE, "examples/gait/ramone_walk.csv", "--friction", "0.6", "--output-format", format])
+            .well()
+            .stdout
+    };
+    let table = walk("csv");
+    let cells: Vec<&str> = table.lines().skip(1).filter_map(|row| row.rsplit(',').next()).collect();
+    assert_eq!(cells.len(), 102);
+    for note in cells {
+        assert!(note.contains("_foot is taken as exactly at rest") && !note.contains("m/s"), "{note}");
+    }
+    assert!(walk("ndjson").lines().all(|line| line.contains("at rest although it moves at ")));
+}
+
+#[test]
 fn velocities_are_the_same_for_any_threads() {
     let rows: String = (0..200).map(|row| format!("{},{}\n", row as f64 * 0.01, 0.7 - row as f64 * 1e-3)).collect();
     let table = file("velocity.csv", format!("time,q_base_z\n{rows}"));
