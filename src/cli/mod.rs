@@ -19,6 +19,7 @@ mod sink;
 mod recording;
 mod inspect;
 mod impact;
+mod forces;
 mod batch;
 mod solve;
 mod sweep;
@@ -65,6 +66,7 @@ const COLORS: Choices<ColorChoice> = &[
 enum Command {
     Inspect(inspect::Args),
     Impact(impact::Args),
+    Forces(forces::Args),
     Batch(batch::Args),
     Solve(solve::Args),
     Sweep(sweep::Args),
@@ -113,6 +115,7 @@ pub fn run(cli: Cli) -> ExitCode {
     let completion = match cli.command {
         Command::Inspect(args) => inspect::run(&args),
         Command::Impact(args) => impact::run(&args),
+        Command::Forces(args) => forces::run(&args),
         Command::Batch(args) => batch::run(&args),
         Command::Solve(args) => solve::run(&args),
         Command::Sweep(args) => sweep::run(&args),

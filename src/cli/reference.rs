@@ -10,7 +10,7 @@ use heelstrike::write::schema;
 use heelstrike::{Error, Reason};
 use serde_json::Value;
 
-/// Write the JSON Schema of a state, a result, a problem, a study, its sweep or a report on accuracy
+/// Write the JSON Schema of a state, a result, forces, a problem, a study, its sweep or a report on accuracy
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -23,8 +23,9 @@ pub struct SchemaArgs {
 }
 
 const SCHEMAS: Choices<fn() -> Value> = &[
-    ("state", "What `impact` and `batch` read", schema::state),
+    ("state", "What `impact`, `forces` and `batch` read", schema::state),
     ("result", "A line of what `impact`, `batch` and `solve` write as JSON", schema::result),
+    ("forces", "A line of what `forces` writes as JSON", schema::forces),
     ("problem", "What `solve` reads", schema::problem),
     ("study", "What `sweep` reads", schema::study),
     ("sweep", "What `sweep` writes as JSON", schema::sweep),

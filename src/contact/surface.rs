@@ -129,6 +129,14 @@ impl Surface {
         }
     }
 
+    /// Whether a contact's normal is that of no straight piece of the ground.
+    pub fn is_corner(&self, contact: &Contact) -> bool {
+        match self {
+            Self::HalfPlane(_) => false,
+            Self::Profile(terrain) => terrain.segments().iter().all(|face| face.axes() != contact.ground),
+        }
+    }
+
     /// How far a foot is from the ground \[m\].
     pub fn clearance(&self, foot: &Foot, placement: &Placement) -> f64 {
         match self {

@@ -108,4 +108,10 @@ impl<T: Real> Wrench<T> {
     pub fn seen_from(self, arm: Vector<T>) -> Self {
         Self { moment: self.moment + arm.perpendicular().dot(self.linear), linear: self.linear }
     }
+
+    /// Both as one; they must be given about the same point.
+    #[inline]
+    pub fn with(self, other: Self) -> Self {
+        Self { moment: self.moment + other.moment, linear: self.linear + other.linear }
+    }
 }

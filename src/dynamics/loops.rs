@@ -14,6 +14,7 @@
 //! before all others. Source: Featherstone 2008, sections 8.1 and 8.5 (loop joints of two constraints each, KKT form).
 //! Cost: O(m nv depth + (m^2 + m n) nv) for m loops.
 
+use super::bias::point_drift;
 use super::bounds::Reach;
 use super::delassus::from_half;
 use super::jacobian::{ContactPoint, point_velocity, walk};
@@ -42,12 +43,14 @@ pub struct Constraints<'a> {
 }
 
 /// What [`close`] closes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Closed {
+#[derive(Debug, Clone, Copy)]
+pub enum Closed<'a, T> {
     /// The velocity before the impact; a foot of the constraints that rests before it rests after it.
     Velocity,
     /// What impulses change in it.
     Change,
+    /// The acceleration, with kappa of each loop: what of it is there while no coordinate accelerates \[m/s^2\].
+    Acceleration(&'a [Vector<T>]),
 }
 
 impl<T: Real> Loop<T> {
@@ -76,6 +79,14 @@ impl<T: Real> Loop<T> {
     /// The velocity of a against b, that is K v \[m/s\].
     pub fn opening(&self, plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> Vector<T> {
         let [a, b] = self.velocities(plan, velocity, workspace);
+        a - b
+    }
+
+    /// kappa: the acceleration of a against b while no coordinate accelerates, after [`bias`](super::bias())
+    /// \[m/s^2\].
+    pub fn drift(&self, workspace: &Workspace<T>) -> Vector<T> {
+        let arms = self.arms(workspace);
+        let [a, b] = [0, 1].map(|end| point_drift(self.bodies[end], arms[end], workspace));
         a - b
     }
 
@@ -231,26 +242,31 @@ pub fn eliminate_loops<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
     from_half(plan, workspace);
 }
 
-/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v. Gives
-/// the amplitude of each constraint for [`loop_impulse`] and [`spent_energy`].
+/// Gives `velocity` (dq/dt by coordinate) the impulses of the loops that close them: v := v - M^-1 K^T W^-1 K v, or as
+/// `closed` says a change of it or an acceleration. Gives the amplitude of each constraint for [`loop_impulse`] and
+/// [`spent_energy`].
 pub fn close<T: Real>(
     plan: &Plan<T>,
     loops: &[Loop<T>],
-    closed: Closed,
+    closed: Closed<'_, T>,
     velocity: &mut [T],
     workspace: &Workspace<T>,
 ) -> Vec<T> {
     let LoopRows { kept, rows, basis_by_d, squares, coupling, .. } = &workspace.loops;
     let (nv, all) = (plan.columns(), squares.len());
-    let openings: Vec<Vector<T>> = loops.iter().map(|own| own.opening(plan, velocity, workspace)).collect();
+    let is_velocity = matches!(closed, Closed::Velocity);
+    let mut openings: Vec<Vector<T>> = loops.iter().map(|own| own.opening(plan, velocity, workspace)).collect();
+    if let Closed::Acceleration(drifts) = closed {
+        openings.iter_mut().zip(drifts).for_each(|(opening, &drift)| *opening += drift);
+    }
     // Whatever rate a kept coordinate has before the impact is what it keeps; and a foot may move in the impact.
-    let used = if closed == Closed::Velocity { all } else { kept.len() + rows.len() };
+    let used = if is_velocity { all } else { kept.len() + rows.len() };
     if used == 0 {
         // Nothing is to be closed, and of a robot without loops there need be no factor.
         return Vec::new();
     }
     let own = |i: usize| match (kept.get(i), i.checked_sub(kept.len()).and_then(|row| rows.get(row))) {
-        (Some(&coordinate), _) if closed == Closed::Change => velocity[coordinate],
+        (Some(&coordinate), _) if !is_velocity => velocity[coordinate],
         (None, Some(row)) => openings[row / 2].components()[row % 2],
         _ => T::zero(),
     };
@@ -266,11 +282,11 @@ pub fn close<T: Real>(
     }
     workspace.factor.other_half_solve(plan, &mut change);
     for (&coordinate, &change) in plan.coordinates.iter().zip(&change) {
-        velocity[coordinate] = match (kept.contains(&coordinate), closed) {
+        velocity[coordinate] = match (kept.contains(&coordinate), is_velocity) {
             (false, _) => velocity[coordinate] + change,
             // What is kept is kept without rounding.
-            (true, Closed::Velocity) => velocity[coordinate],
-            (true, Closed::Change) => T::zero(),
+            (true, true) => velocity[coordinate],
+            (true, false) => T::zero(),
         };
     }
     amplitudes

@@ -3,6 +3,7 @@
 //! ```text
 //!     kinematics --> crba (M) --> ltl (M = L^T D L) ──┐
 //!          ├──────── jacobian (J, c = J v) ───────────┴──> delassus (G = J M^-1 J^T), effect of impulses on v
+//!          ├──────── bias (gravity, terms of v v; sigma) ────> free accelerations of coordinates and contacts
 //!          ├──────── loops (K) ──────────────────────────────> G without what loops do not let move, their impulses
 //!          └──────── articulated ────────────────────────> the same G and effect, without M
 //! ```
@@ -18,11 +19,13 @@ mod crba;
 mod jacobian;
 mod delassus;
 mod bounds;
+mod bias;
 mod loops;
 mod articulated;
 
 pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
 pub use articulated_inertia::ArticulatedInertia;
+pub use bias::bias;
 pub use bounds::{Arm, Reach, RoundingBounds};
 pub use crba::{factorize, mass_matrix};
 pub use delassus::{PointImpulse, add_impulse, delassus};
@@ -39,6 +42,7 @@ pub use workspace::{LoopRows, Workspace};
 mod tests {
     //! Each algorithm against an independent one, on random branching trees with revolute and prismatic joints.
 
+    use super::jacobian::walk;
     use super::*;
     use crate::dynamics::plan::{Configuration, Plan};
     use crate::planar::{Rotation, Vector};
@@ -216,6 +220,54 @@ mod tests {
                 prop_assert!((axis.dot(at) - found[(row, row)]).abs() <= tolerance);
                 // A sum of at most eleven products of order ten.
                 prop_assert!((own - workspace.contact_velocity[row / 2][row % 2]).abs() < 1e4 * f64::EPSILON);
+            }
+        }
+
+        #[test]
+        fn bias_moves_no_coordinate(case in case(true), gravity in 0.0..20.0f64) {
+            type Exact = Ball<DoubleDouble>;
+            let plan = Plan::new(&case.robot, &[], &[]);
+            let mut workspace = case.computed(&plan, &[]);
+            bias(&plan, &case.velocity, gravity, &mut workspace);
+            // Positions on the straight way q + v t, a little before and after, by which points accelerate.
+            let exact_plan = Plan::<Exact>::new(&case.robot, &[], &[]);
+            let step = f64::exp2(-27.0);
+            let places = |time: f64| {
+                let (mut configuration, mut workspace) = (Configuration::default(), Workspace::default());
+                configuration.set(&exact_plan, &case.position);
+                for body in exact_plan.bodies.iter().filter(|body| plan.floating || body.parent.is_some()) {
+                    let rate = case.velocity.get(body.coordinate).copied().unwrap_or(0.0);
+                    let shift = time * rate * body.mimic.map_or(1.0, |mimic| mimic.multiplier);
+                    configuration.turn_on(body.place, Rotation::by(shift));
+                    configuration.displacement[body.place] = configuration.displacement[body.place] + Exact::from_f64(shift);
+                }
+                kinematics(&exact_plan, &configuration, &mut workspace);
+                workspace
+            };
+            let ways = [-step, 0.0, step].map(places);
+            let accelerated = |index: usize, local: Vector<f64>| {
+                let [before, at, after] = [0, 1, 2].map(|way: usize| {
+                    let arms = exact_plan.way_to_root(index).map(|(body, _)| ways[way].arm[body]);
+                    arms.fold(ways[way].rotation[index].apply(local.map(Exact::from_f64)), |sum, arm| sum + arm)
+                });
+                let second = |entry: Exact| entry.to_f64() / (step * step);
+                (before - at + after - at).map(second)
+            };
+            // Terms of order v^2 (v / step)^0, of a few hundred each; the next order of the difference is v^4 step^2.
+            let tolerance = 1e-9;
+            let mut forces = vec![0.0; plan.columns()];
+            for (index, body) in case.robot.bodies.iter().enumerate() {
+                let com = accelerated(index, body.com);
+                let point = ContactPoint { body: index, center: body.com, radius: 0.5, ground: Rotation::identity() };
+                let off = point.drift(false, &workspace) - com;
+                prop_assert!(off.length() < tolerance * com.length().max(1.0), "{off:?} {com:?}");
+                let arm = workspace.rotation[index].apply(body.com);
+                walk(&plan, index, arm, &case.velocity, &workspace, |column, unit| {
+                    forces[column] += body.mass * unit.dot(com + Vector::new(0.0, gravity));
+                });
+            }
+            for (found, expected) in workspace.bias.iter().zip(&forces) {
+                prop_assert!((found - expected).abs() < 1e2 * tolerance * expected.abs().max(1.0), "{found} {expected}");
             }
         }
 

@@ -37,6 +37,14 @@ pub struct Workspace<T = f64> {
     /// Contact velocities c = J v, braked joints' rates included \[m/s\]. n
     pub contact_velocity: Vec<Pair<T>>,
 
+    // Computed by `bias`.
+    /// Rate of turn of each body \[rad/s\]. nb
+    pub spin: Vec<T>,
+    /// Acceleration of each body's origin while no coordinate accelerates, in the world's axes \[m/s^2\]. nb
+    pub drift: Vec<Vector<T>>,
+    /// Forces that keep the coordinates from accelerating, against gravity as well \[N, N m\]. nv
+    pub bias: Vec<T>,
+
     // Computed by `orthogonalize`.
     pub loops: LoopRows<T>,
 

@@ -47,7 +47,7 @@ pub fn is_possible<T: Ordered>(problem: &ContactProblem<T>, choices: &[Choice]) 
             Choice::Any => velocities.push((normal, Ordering::Greater)),
             Choice::Closed => velocities.push((normal, Ordering::Equal)),
             Choice::One(mode) => {
-                let rows = [normal - 1, normal].into_iter().zip(mode.velocity());
+                let rows = [normal - 1, normal].into_iter().zip(law.velocity(mode));
                 velocities.extend(rows.filter_map(|(row, sign)| Some((row, sign?))));
             }
         }

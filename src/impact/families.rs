@@ -63,7 +63,7 @@ impl FamiliesPass<'_, '_> {
         let mut family =
             FamilyCorners { dimension: velocities.dimension, is_sharp: true, places: Vec::new(), new: Vec::new() };
         for velocity in velocities.corners {
-            let modes = modes_of(&velocity)?;
+            let modes = modes_of(&velocity, exact.laws())?;
             let mut place = None;
             for (at, (other, same)) in known.iter().enumerate() {
                 if *other == modes && is_same(&velocity, same)? {

@@ -10,7 +10,7 @@
 use super::linear::{Unsettled, settled, solve};
 use super::outcome::RejectionReason;
 use super::problem::ContactProblem;
-use crate::law::Mode;
+use crate::law::{Law, Mode};
 use crate::scalar::Ordered;
 use std::cmp::Ordering;
 
@@ -50,18 +50,18 @@ impl Kernel {
     }
 
     /// Why no outcome can have these modes; `None` if the kernel leaves it open.
-    pub fn excludes(&self, modes: &[Mode]) -> Option<RejectionReason> {
-        let broken = self.relations.iter().find(|relation| relation.excludes(modes))?;
+    pub fn excludes(&self, modes: &[Mode], laws: &[Law]) -> Option<RejectionReason> {
+        let broken = self.relations.iter().find(|relation| relation.excludes(modes, laws))?;
         // At rest on both sides the velocity belongs to other modes; else the equations contradict each other.
         Some(if broken.constant.is_eq() { RejectionReason::RedundantTwin } else { RejectionReason::NoSolution })
     }
 }
 
 impl Relation {
-    fn excludes(&self, modes: &[Mode]) -> bool {
+    fn excludes(&self, modes: &[Mode], laws: &[Law]) -> bool {
         let mut sum = Ordering::Equal;
         for &(row, sign) in &self.terms {
-            let moves = match modes[row / 2].velocity()[row % 2] {
+            let moves = match laws[row / 2].velocity(modes[row / 2])[row % 2] {
                 None => return false,
                 Some(Ordering::Equal) => continue,
                 Some(moves) => moves,
@@ -91,6 +91,7 @@ mod tests {
         let before = vec![[0.5, -1.0], [0.5, -2.0]];
         let problem = ContactProblem::new(delassus, before, vec![Friction::Infinite; 2], vec![0.0; 2]).unwrap();
         let kernel = Kernel::of(&problem.map(Certified::<Ball>::from_f64)).unwrap();
+        let laws = problem.laws();
         use Mode::{Separate, SlideMinus, SlidePlus, Stick};
         for (modes, excluded) in [
             ([SlidePlus, SlidePlus], false),
@@ -100,8 +101,8 @@ mod tests {
             ([Stick, SlideMinus], true),
             ([Separate, SlideMinus], false),
         ] {
-            assert_eq!(kernel.excludes(&modes).is_some(), excluded, "{modes:?}");
+            assert_eq!(kernel.excludes(&modes, laws).is_some(), excluded, "{modes:?}");
         }
-        assert_eq!(kernel.excludes(&[SlidePlus, Stick]), Some(RejectionReason::RedundantTwin));
+        assert_eq!(kernel.excludes(&[SlidePlus, Stick], laws), Some(RejectionReason::RedundantTwin));
     }
 }

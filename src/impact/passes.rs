@@ -104,7 +104,7 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
         let before = open.len();
         // What the contacts' dependence excludes is not solved for; if it cannot be shown, everything is.
         let kernel = T::freeing(|| Kernel::of(exact)).unwrap_or_default();
-        open.retain(|pending| match kernel.excludes(&pending.modes) {
+        open.retain(|pending| match kernel.excludes(&pending.modes, exact.laws()) {
             Some(because) => {
                 let rejection = || Rejection::of(&pending.modes, because);
                 self.collected.reject(pending.number, &pending.modes, rejection);

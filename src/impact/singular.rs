@@ -23,7 +23,7 @@ use super::outcome::{Motion, Range, Rejection, RejectionReason};
 use super::problem::ContactProblem;
 use super::program::least_impulse;
 use super::slack::Scale;
-use crate::law::{Condition, Inequality, Mode};
+use crate::law::{Condition, Inequality, Law, Mode};
 use crate::planar::Pair;
 use crate::scalar::{Ordered, dot};
 use std::cmp::Ordering;
@@ -81,8 +81,8 @@ pub struct Equations<'a, T> {
 }
 
 /// The velocity rows that a combination sets to zero.
-fn zero_rows(modes: &[Mode]) -> impl Iterator<Item = usize> {
-    let rows = modes.iter().flat_map(|mode| mode.velocity()).enumerate();
+fn zero_rows(modes: &[Mode], laws: &[Law]) -> impl Iterator<Item = usize> {
+    let rows = modes.iter().zip(laws).flat_map(|(&mode, law)| law.velocity(mode)).enumerate();
     rows.filter_map(|(row, sign)| (sign == Some(Ordering::Equal)).then_some(row))
 }
 
@@ -104,7 +104,8 @@ impl<'a, T: Ordered> Equations<'a, T> {
     fn velocities(&self) -> Result<SingularCase<Solutions<T>>, Unsettled> {
         let Self { problem, modes, generators, .. } = self;
         let equation = |row: usize| extended(&generators.velocity_row(problem, row), -problem.free_row(row));
-        let Some(solutions) = solve(generators.count(), zero_rows(modes).map(equation).collect())? else {
+        let Some(solutions) = solve(generators.count(), zero_rows(modes, problem.laws()).map(equation).collect())?
+        else {
             return Ok(SingularCase::Rejected(Rejection::of(modes, RejectionReason::NoSolution)));
         };
         let inequalities = self.inequalities(&solutions);
@@ -342,7 +343,7 @@ impl<'a, T: Ordered> Equations<'a, T> {
     /// The impulse that `lambda` gives, and the velocity of `space` at its origin, `[c_t, xi_n]` per contact.
     fn solution(&self, space: &Solutions<T>, lambda: &[T]) -> [Vec<Pair<T>>; 2] {
         let mut velocity: Vec<T> = (0..2 * self.modes.len()).map(|row| self.velocity(space, row).constant).collect();
-        for row in zero_rows(self.modes) {
+        for row in zero_rows(self.modes, self.problem.laws()) {
             velocity[row] = T::zero();
         }
         let pairs = |rows: Vec<T>| rows.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
@@ -351,11 +352,11 @@ impl<'a, T: Ordered> Equations<'a, T> {
 }
 
 /// The strict modes of a velocity, `[c_t, xi_n]` by rows.
-pub fn modes_of<T: Ordered>(velocity: &[T]) -> Result<Vec<Mode>, Unsettled> {
-    let mode = |pair: &[T]| match settled(pair[1])? {
+pub fn modes_of<T: Ordered>(velocity: &[T], laws: &[Law]) -> Result<Vec<Mode>, Unsettled> {
+    let mode = |(pair, law): (&[T], &Law)| match settled(pair[1])? {
         Ordering::Greater => Ok(Mode::Separate),
-        Ordering::Equal => Ok(Mode::closed(settled(pair[0])?)),
+        Ordering::Equal => Ok(law.closed(settled(pair[0])?)),
         Ordering::Less => Err(Unsettled),
     };
-    velocity.chunks_exact(2).map(mode).collect()
+    velocity.chunks_exact(2).zip(laws).map(mode).collect()
 }

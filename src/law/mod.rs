@@ -8,6 +8,13 @@
 //! The velocities are those of [`Mode`], with Newton's restitution in Moreau's form: xi_n = c_n+ + e min(c_n-, 0). The
 //! impulses are each law's own, and all of a law is in [`Law`]: code that enumerates, bounds or reads combinations asks
 //! it, and matches on no mode and no friction itself.
+//!
+//! In sustained contact the same holds with forces for impulses and accelerations for velocities, for contacts at rest.
+//! One that slides already has a direction, and its friction with it:
+//!
+//! ```text
+//!     separate  a_n > 0,  f = 0        slide+-  a_n = 0,  f = lambda (-+mu, 1), lambda >= 0,  whatever a_t is
+//! ```
 
 mod inequality;
 mod condition;
@@ -42,6 +49,8 @@ pub enum Law<T = f64> {
     Coulomb(T),
     /// No bound on L_t: a sticking contact is held whatever it takes, and one that slides has no normal impulse.
     Unbounded,
+    /// It slides already as this mode says, before any force acts: it slides on or separates.
+    Sliding(Friction<T>, Mode),
 }
 
 impl<T: Real> Law<T> {
@@ -51,6 +60,7 @@ impl<T: Real> Law<T> {
             Self::Frictionless => Friction::Finite(T::zero()),
             Self::Coulomb(mu) => Friction::Finite(mu),
             Self::Unbounded => Friction::Infinite,
+            Self::Sliding(friction, _) => friction,
         }
     }
 
@@ -62,7 +72,21 @@ impl<T: Real> Law<T> {
             Self::Coulomb(_) | Self::Unbounded => {
                 &[&[Mode::Separate], &[Mode::Stick], &[Mode::SlidePlus], &[Mode::SlideMinus]]
             }
+            Self::Sliding(_, Mode::SlideMinus) => &[&[Mode::Separate], &[Mode::SlideMinus]],
+            Self::Sliding(..) => &[&[Mode::Separate], &[Mode::SlidePlus]],
         }
+    }
+
+    /// The signs of the velocity after a mode, as [`Mode::velocity`] has them, or of the acceleration of a contact that
+    /// slides already.
+    pub fn velocity(&self, mode: Mode) -> [Option<Ordering>; 2] {
+        let [tangential, normal] = mode.velocity();
+        [if matches!(self, Self::Sliding(..)) { None } else { tangential }, normal]
+    }
+
+    /// The mode of a closed contact whose tangential velocity has this sign.
+    pub fn closed(&self, velocity: Ordering) -> Mode {
+        if let Self::Sliding(_, mode) = self { *mode } else { Mode::closed(velocity) }
     }
 
     /// The mode that stands for those with the same impulses.
@@ -76,6 +100,11 @@ impl<T: Real> Law<T> {
             (_, Mode::Separate) => Impulse::Zero,
             // Minus zero: times the lambda of a contact that is pulled it is a plain zero.
             (Self::Frictionless, _) => Impulse::Along([T::from_f64(-0.0), T::one()]),
+            // However it is closed, its friction has its direction.
+            (Self::Sliding(friction, mode), _) => match friction {
+                Friction::Finite(mu) => Impulse::Along([T::from_f64(-mode.direction()) * mu, T::one()]),
+                Friction::Infinite => Impulse::Along([T::from_f64(-mode.direction()), T::zero()]),
+            },
             (_, Mode::Stick) => Impulse::Free,
             (Self::Coulomb(mu), _) => Impulse::Along([T::from_f64(-mode.direction()) * mu, T::one()]),
             (Self::Unbounded, _) => Impulse::Along([T::from_f64(-mode.direction()), T::zero()]),
@@ -89,6 +118,10 @@ impl<T: Real> Law<T> {
             Self::Frictionless => vec![([zero, one], false)],
             Self::Coulomb(mu) => vec![([-mu, one], false), ([mu, one], false)],
             Self::Unbounded => vec![([one, zero], true), ([zero, one], false)],
+            Self::Sliding(_, mode) => match self.impulse(mode) {
+                Impulse::Along(ray) => vec![(ray, false)],
+                Impulse::Zero | Impulse::Free => Vec::new(),
+            },
         }
     }
 
@@ -98,7 +131,7 @@ impl<T: Real> Law<T> {
         let mut ask = |inequality, function| visit(Condition { inequality, function });
         match (*self, mode) {
             (_, Mode::Separate) => {}
-            (Self::Unbounded, Mode::SlidePlus | Mode::SlideMinus) => {
+            (Self::Unbounded, Mode::SlidePlus | Mode::SlideMinus) | (Self::Sliding(Friction::Infinite, _), _) => {
                 ask(Inequality::TangentialImpulse, Function::Second);
             }
             (Self::Coulomb(mu), Mode::Stick) => {
@@ -106,13 +139,14 @@ impl<T: Real> Law<T> {
                 ask(Inequality::FrictionCone, Function::ConeMinus(mu));
                 ask(Inequality::FrictionCone, Function::ConePlus(mu));
             }
-            (Self::Frictionless | Self::Coulomb(_) | Self::Unbounded, _) => {
+            (Self::Frictionless | Self::Coulomb(_) | Self::Unbounded | Self::Sliding(..), _) => {
                 ask(Inequality::NormalImpulse, Function::Second);
             }
         }
         match mode {
             Mode::Separate => ask(Inequality::NormalVelocity, Function::Second),
             Mode::Stick => {}
+            _ if matches!(self, Self::Sliding(..)) => {}
             Mode::SlidePlus => ask(Inequality::TangentialVelocity, Function::First),
             Mode::SlideMinus => ask(Inequality::TangentialVelocity, Function::MinusFirst),
         }
@@ -128,7 +162,7 @@ impl<T: Real> Law<T> {
     /// sign of L_t. Without friction the direction of a slide changes without a border.
     pub fn beyond(&self, mode: Mode, inequality: Inequality, tangential: Ordering) -> Vec<Mode> {
         let at_edge = match self {
-            Self::Frictionless => return vec![Mode::Separate],
+            Self::Frictionless | Self::Sliding(..) => return vec![Mode::Separate],
             Self::Coulomb(_) => inequality == Inequality::FrictionCone,
             Self::Unbounded => tangential.is_ne(),
         };

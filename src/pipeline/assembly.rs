@@ -3,6 +3,7 @@
 //! ```text
 //!     configuration --place--> poses --factorize--> M = L^T D L, or articulated bodies --rest, close--> v
 //!     v, points --contact_jacobian--> J, c = J v --delassus--> G = J M^-1 J^T      impulses p --applied, free--> c_free
+//!                                                                loads --acceleration, contact_accelerations--> c'_free
 //! ```
 //!
 //! Each step reads what the steps before it left in the workspace. The f64 pipeline finds contacts and bounds its
@@ -11,13 +12,24 @@
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
     Closed, Constraints, ContactPoint, Loop, PointImpulse, Workspace, add_articulated_impulse, add_impulse,
-    articulated_delassus, articulated_inertias, close, contact_jacobian, delassus, eliminate_loops, factorize,
+    articulated_delassus, articulated_inertias, bias, close, contact_jacobian, delassus, eliminate_loops, factorize,
     kinematics, loop_impulse, mass_matrix, orthogonalize, point_velocity,
 };
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Real;
 use crate::state::Scene;
+
+/// What acts on a robot in sustained contact, apart from the contacts.
+#[derive(Debug, Clone, Copy)]
+pub struct Loads<'a> {
+    /// Along -z of the world \[m/s^2\].
+    pub gravity: f64,
+    /// By joint \[N m, N\]; empty for none.
+    pub torque: &'a [f64],
+    /// Contacts of a body that does not turn, because several of its points stay on the ground.
+    pub still: &'a [bool],
+}
 
 /// How M^-1 is applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -109,11 +121,47 @@ impl<T: Real> Assembly<T> {
 
     /// Adds to a `change` of velocity what the constraints answer; gives the loops' impulses on their points a.
     pub fn answer(&self, change: &mut [T]) -> Vec<Vector<T>> {
+        self.answer_to(Closed::Change, change)
+    }
+
+    /// As [`Assembly::answer`], to a change of velocity or to an acceleration, as `closed` says.
+    pub fn answer_to(&self, closed: Closed<'_, T>, change: &mut [T]) -> Vec<Vector<T>> {
         if !self.is_constrained() {
             return Vec::new();
         }
-        let amplitudes = close(&self.plan, &self.loops, Closed::Change, change, &self.workspace);
+        let amplitudes = close(&self.plan, &self.loops, closed, change, &self.workspace);
         loop_impulse(self.loops.len(), &amplitudes, &self.workspace)
+    }
+
+    /// The acceleration by coordinate \[m/s^2, rad/s^2\] that the loads alone give, without contacts and constraints,
+    /// and kappa of each loop. M must be factorized.
+    pub fn acceleration(&mut self, velocity: &[T], loads: Loads<'_>) -> (Vec<T>, Vec<Vector<T>>) {
+        let Self { plan, workspace, column, loops, .. } = self;
+        bias(plan, velocity, T::from_f64(loads.gravity), workspace);
+        let base = if plan.floating { 3 } else { 0 };
+        let torque = |coordinate: usize| coordinate.checked_sub(base).and_then(|joint| loads.torque.get(joint));
+        column.clear();
+        column.extend(plan.coordinates.iter().zip(&workspace.bias).map(|(&coordinate, &bias)| {
+            match torque(coordinate) {
+                Some(&torque) if torque != 0.0 => T::from_f64(torque) - bias,
+                _ => -bias,
+            }
+        }));
+        workspace.factor.solve(plan, column);
+        let mut acceleration = vec![T::zero(); velocity.len()];
+        for (&coordinate, &own) in plan.coordinates.iter().zip(column.iter()) {
+            acceleration[coordinate] = own;
+        }
+        (acceleration, loops.iter().map(|own| own.drift(workspace)).collect())
+    }
+
+    /// The contacts' accelerations J a + sigma for an acceleration by coordinate.
+    pub fn contact_accelerations(&self, acceleration: &[T], loads: Loads<'_>) -> Vec<Pair<T>> {
+        let own = self.points.iter().zip(loads.still).map(|(point, &still)| {
+            let total = self.velocity_of(point, acceleration) + point.drift(still, &self.workspace);
+            point.axes().map(|axis| axis.dot(total))
+        });
+        own.collect()
     }
 
     /// J and c. The contact `stance` is exactly at rest.

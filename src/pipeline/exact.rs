@@ -1,15 +1,25 @@
 //! One state's contact problem in numbers of any kind: what its f64 numbers were rounded from.
 
-use super::assembly::{Assembly, Elimination};
+use super::assembly::{Assembly, Elimination, Loads};
 use crate::contact::{Contact, Level};
 use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{Constraints, ContactPoint};
+use crate::dynamics::{Closed, Constraints, ContactPoint};
 use crate::impact::{ContactProblem, Errors, Source};
 use crate::law::Law;
 use crate::planar::Pair;
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Real, Trigonometry};
 use crate::state::Scene;
+
+/// What is asked about a state.
+#[derive(Debug, Clone, Copy)]
+pub enum Asked<'a> {
+    Impact,
+    /// An impact at contacts that neither approach nor leave: all c_n are exactly zero.
+    Shock,
+    /// Accelerations in place of velocities.
+    Forces(Loads<'a>),
+}
 
 /// A state with its contacts, every f64 of which is meant as the number that it is.
 pub struct ExactState<'a> {
@@ -35,6 +45,7 @@ pub struct ExactState<'a> {
     pub laws: &'a [Law],
     pub restitution: &'a [f64],
     pub errors: Errors<'a>,
+    pub asked: Asked<'a>,
 }
 
 /// What of a state is a number that may be known inexactly.
@@ -107,7 +118,12 @@ impl ExactState<'_> {
     /// G, which leaves the assembly, and both c, once all steps are done.
     pub fn collect<T: Real>(&self, assembly: &mut Assembly<T>) -> Contacts<T> {
         let speeds = assembly.workspace.contact_velocity.iter().zip(self.resting);
-        let before = speeds.map(|(&speed, &rests)| if rests { [T::zero(); 2] } else { speed }).collect::<Vec<_>>();
+        let before = speeds.map(|(&[tangential, normal], &rests)| match self.asked {
+            _ if rests => [T::zero(); 2],
+            Asked::Shock => [tangential, T::zero()],
+            Asked::Impact | Asked::Forces(_) => [tangential, normal],
+        });
+        let before = before.collect::<Vec<_>>();
         let free = match self.scene.impulses.is_empty() {
             true => before.clone(),
             false => {
@@ -118,19 +134,35 @@ impl ExactState<'_> {
         Contacts { delassus: std::mem::take(&mut assembly.workspace.delassus), before, free }
     }
 
-    /// G and c for these `inputs`, with the contacts as they are.
+    /// G, and the contacts' accelerations without forces in place of both c.
+    fn collect_accelerations<T: Real>(
+        &self,
+        assembly: &mut Assembly<T>,
+        velocity: &[T],
+        loads: Loads<'_>,
+    ) -> Contacts<T> {
+        let (mut acceleration, drifts) = assembly.acceleration(velocity, loads);
+        assembly.answer_to(Closed::Acceleration(&drifts), &mut acceleration);
+        let free = assembly.contact_accelerations(&acceleration, loads);
+        Contacts { delassus: std::mem::take(&mut assembly.workspace.delassus), before: free.clone(), free }
+    }
+
+    /// G and c for these `inputs`, with the contacts as they are; accelerations in place of c, if forces are asked for.
     pub fn contacts<T: Trigonometry>(&self, inputs: Inputs<T>) -> Contacts<T> {
         let Inputs { configuration, mut velocity, plan } = inputs;
         let mut assembly = self.assembly(plan);
         assembly.configuration = configuration;
-        if assembly.has_articulated_bodies() {
+        if assembly.has_articulated_bodies() && !matches!(self.asked, Asked::Forces(_)) {
             assembly.elimination = Elimination::ArticulatedBodies;
         }
         self.place(&mut assembly);
         assembly.factorize();
         self.contact_velocities(&mut assembly, &mut velocity);
         assembly.delassus();
-        self.collect(&mut assembly)
+        match self.asked {
+            Asked::Forces(loads) => self.collect_accelerations(&mut assembly, &velocity, loads),
+            Asked::Impact | Asked::Shock => self.collect(&mut assembly),
+        }
     }
 }
 

@@ -9,17 +9,19 @@ pub(crate) mod exact;
 mod loops;
 mod resting;
 mod prepared;
+mod forces;
 pub mod robust;
 
 use self::assembly::{Assembly, Elimination};
 use self::exact::ExactState;
+pub use self::forces::Forces;
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::{NearestFoot, Unsolved};
 pub(crate) use self::resting::AT_REST;
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{ContactPoint, PointImpulse, RoundingBounds, articulated_inertias};
+use crate::dynamics::{Closed, ContactPoint, PointImpulse, RoundingBounds, articulated_inertias};
 use crate::error::{Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, Verdict, too_many_contacts,
@@ -107,6 +109,26 @@ pub struct Impact {
 }
 
 impl Impact {
+    /// What is known of a state before its analysis.
+    fn of(prepared: Prepared) -> Self {
+        Self {
+            velocity_before: prepared.problem.velocity_before().to_vec(),
+            placement: prepared.placement,
+            contacts: prepared.contacts,
+            nearest: prepared.nearest,
+            kinetic_energy: prepared.kinetic_energy,
+            problem: prepared.problem,
+            resting: prepared.resting,
+            stance: prepared.stance,
+            analysis: None,
+            friction_needed: None,
+            holds: None,
+            matrices: None,
+            left_out: Vec::new(),
+            notes: prepared.notes,
+        }
+    }
+
     /// Every outcome and the verdict.
     ///
     /// # Errors
@@ -245,7 +267,7 @@ impl<'r> Pipeline<'r> {
     /// As [`Pipeline::impact_explaining`], if any modes are `chosen`.
     fn answer(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
-        let prepared = self.prepare(state)?;
+        let mut prepared = self.prepare(state)?;
         let Prepared { velocity, applied, change, contacts, problem, .. } = &prepared;
         let free: Vec<f64> = velocity.iter().zip(change).map(|(before, change)| before + change).collect();
         for &entry in &free {
@@ -276,29 +298,15 @@ impl<'r> Pipeline<'r> {
             articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
         }
         for outcome in outcomes {
-            self.set_velocity(outcome, velocity, applied, &free);
+            self.set_velocity(outcome, velocity, applied, &free, Closed::Change);
         }
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
-        let mut notes = prepared.notes;
-        notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
-        notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
-        let impact = Impact {
-            velocity_before: prepared.problem.velocity_before().to_vec(),
-            left_out,
-            matrices: self.options.matrices.then(|| self.matrices()),
-            placement: prepared.placement,
-            contacts: prepared.contacts,
-            nearest: prepared.nearest,
-            kinetic_energy: prepared.kinetic_energy,
-            problem: prepared.problem,
-            resting: prepared.resting,
-            stance: prepared.stance,
-            analysis,
-            friction_needed,
-            holds: None,
-            notes,
-        };
-        Ok(Answer { impact, foot: prepared.foot, rows: self.assembly.rows.clone() })
+        prepared.notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
+        prepared.notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
+        let foot = prepared.foot.take();
+        let matrices = self.options.matrices.then(|| self.matrices());
+        let impact = Impact { left_out, matrices, analysis, friction_needed, ..Impact::of(prepared) };
+        Ok(Answer { impact, foot, rows: self.assembly.rows.clone() })
     }
 
     /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows
@@ -340,12 +348,20 @@ impl<'r> Pipeline<'r> {
     }
 
     /// Completes an outcome by the robot's velocity after it and the impulses of the loops. `applied` is what applied
-    /// impulses alone change in the `velocity` before, `free` the velocity after them without contact impulses.
-    fn set_velocity(&mut self, outcome: &mut Outcome, velocity: &[f64], applied: &[f64], free: &[f64]) {
+    /// impulses alone change in the `velocity` before, `free` the velocity after them without contact impulses; of
+    /// forces, what the loads alone give and the acceleration with which the loops stay `closed`.
+    fn set_velocity(
+        &mut self,
+        outcome: &mut Outcome,
+        velocity: &[f64],
+        applied: &[f64],
+        free: &[f64],
+        closed: Closed<'_, f64>,
+    ) {
         let constrained = self.assembly.is_constrained();
         let mut after = self.struck(if constrained { applied } else { free }, &outcome.impulse);
         if constrained {
-            let impulse = self.assembly.answer(&mut after);
+            let impulse = self.assembly.answer_to(closed, &mut after);
             outcome.loop_impulse = (!impulse.is_empty()).then_some(impulse);
             after.iter_mut().zip(velocity).for_each(|(after, before)| *after += before);
         }

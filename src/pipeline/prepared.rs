@@ -7,7 +7,7 @@
 //! ```
 
 use super::assembly::Assembly;
-use super::exact::ExactState;
+use super::exact::{Asked, ExactState};
 use super::resting::Standing;
 use super::{CONTACT_TOLERANCE, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
@@ -98,6 +98,7 @@ impl Prepared {
             laws: self.problem.laws(),
             restitution: self.problem.restitution(),
             errors,
+            asked: Asked::Impact,
         }
     }
 }
@@ -415,7 +416,7 @@ impl Pipeline<'_> {
     }
 
     /// Bounds the rounding of c; the foot of the stance rests.
-    fn bound_velocities(
+    pub(super) fn bound_velocities(
         &mut self,
         contacts: &[Contact],
         levels: &[Option<Level>],
@@ -435,7 +436,7 @@ impl Pipeline<'_> {
     }
 
     /// Bounds the rounding of G; without proofs it is taken for what was measured.
-    fn bound_delassus(&mut self) {
+    pub(super) fn bound_delassus(&mut self) {
         if self.options.no_proof {
             self.bounds.delassus = DYNAMICS_ROUNDING;
         } else {
@@ -443,7 +444,7 @@ impl Pipeline<'_> {
         }
     }
 
-    fn problem(&self, scene: &Scene, contacts: &[Contact], change: &[f64]) -> Result<ContactProblem> {
+    pub(super) fn problem(&self, scene: &Scene, contacts: &[Contact], change: &[f64]) -> Result<ContactProblem> {
         let friction = contacts.iter().map(|contact| {
             scene.friction.of(contact.link).ok_or_else(|| {
                 let name = &self.robot.links[contact.link].name;

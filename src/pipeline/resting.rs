@@ -13,8 +13,10 @@ use super::Pipeline;
 use crate::contact::Contact;
 use crate::dynamics::plan::JointMotion;
 use crate::dynamics::point_velocity;
+use crate::error::{Error, Reason, Result};
 use crate::planar::{Pair, Vector};
 use crate::state::State;
+use std::cmp::Ordering;
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -60,15 +62,7 @@ impl Pipeline<'_> {
             if place == Some(index) || (slow == 0.0 && foot.is_some_and(|foot| foot.body == contact.body)) {
                 continue;
             }
-            let because = match self.options.resting_speed {
-                Some(limit) => (slow < limit).then_some(Because::Option(limit)),
-                None if bound == 0.0 || state.uncertainty.is_some() => None,
-                None if slow <= bound => Some(Because::Rounding(bound)),
-                None => {
-                    let digits = self.digits(state, velocity, slow, contact, foot);
-                    digits.map(|digits| bound + digits).filter(|&limit| slow <= limit).map(Because::Digits)
-                }
-            };
+            let because = self.rests(state, velocity, [slow, bound], contact, foot);
             let name = &contact.name;
             if let Some(because) = because {
                 resting[index] = true;
@@ -85,6 +79,64 @@ impl Pipeline<'_> {
             }
         }
         resting
+    }
+
+    /// Why a contact is taken as resting whose speed, or one component of it, is `slow`, rounded by up to `bound`; `None`
+    /// if it moves.
+    fn rests(
+        &self,
+        state: &State,
+        velocity: &[f64],
+        [slow, bound]: [f64; 2],
+        contact: &Contact,
+        foot: Option<&Contact>,
+    ) -> Option<Because> {
+        match self.options.resting_speed {
+            Some(limit) => (slow < limit).then_some(Because::Option(limit)),
+            None if bound == 0.0 || state.uncertainty.is_some() => None,
+            None if slow <= bound => Some(Because::Rounding(bound)),
+            None => {
+                let digits = self.digits(state, velocity, slow, contact, foot);
+                digits.map(|digits| bound + digits).filter(|&limit| slow <= limit).map(Because::Digits)
+            }
+        }
+    }
+
+    /// How each contact slides, which must not approach the ground: the sign of its tangential velocity; `None` of one
+    /// that leaves. What is so slow that a contact would rest with it is taken as exactly zero, and noted.
+    pub(super) fn slips(
+        &mut self,
+        state: &State,
+        velocity: &[f64],
+        contacts: &[Contact],
+        foot: Option<&Contact>,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<Option<Ordering>>> {
+        let mut slips = Vec::with_capacity(contacts.len());
+        for (index, contact) in contacts.iter().enumerate() {
+            let (own, bounds) = (self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]);
+            for (row, along) in [(1, "along the normal"), (0, "along the ground")] {
+                let slow = own[row].abs();
+                if slow == 0.0 {
+                    continue;
+                }
+                let Some(because) = self.rests(state, velocity, [slow, bounds[row]], contact, foot) else { continue };
+                self.assembly.workspace.contact_velocity[index][row] = 0.0;
+                let name = &contact.name;
+                notes.push(format!("{name} moves at {slow:.1e} m/s {along}, which is taken as zero ({because})"));
+            }
+            let [tangential, normal] = self.assembly.workspace.contact_velocity[index];
+            if normal < 0.0 {
+                let reason =
+                    format!("{} approaches the ground at {:.3e} m/s: that is an impact", contact.name, -normal);
+                return Err(Error::new(Reason::Inconsistent(reason)).at("velocity").hint(
+                    "ask `impact` what it does, and continue from a velocity after it; or take slow contacts as resting by \
+                     a greater `resting_speed`",
+                ));
+            }
+            slips.push((normal == 0.0).then(|| tangential.partial_cmp(&0.0).unwrap_or(Ordering::Equal)));
+        }
+        Ok(slips)
     }
 
     /// How fast a contact that rests may move by what the state's numbers were rounded to \[m/s\]; `None` if it moves too

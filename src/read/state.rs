@@ -59,6 +59,8 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
             "rotor_inertia" => scene.rotor_inertia = rotor_inertia(field, robot)?,
             "contacts" => scene.contacts = Some(contacts(field, robot)?),
             "impulse" => scene.impulses = impulses(field, robot)?,
+            "gravity" => scene.gravity = Some(field.number()?),
+            "torque" => scene.torque = torque(field, robot)?,
             "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
             _ => return Err(field.unknown_field("State")),
@@ -240,6 +242,15 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
         inertia[place] = entry.number_from_zero("rotor inertia")?;
     }
     Ok(inertia)
+}
+
+/// An object of torques by joint.
+fn torque(field: Node, robot: &Robot) -> Result<Vec<f64>> {
+    let mut torque = vec![0.0; robot.joints.len()];
+    for entry in field.fields("joint")? {
+        torque[joint(entry, entry.key(), robot)?] = entry.number()?;
+    }
+    Ok(torque)
 }
 
 /// A list of `{"link", "offset", "radius"}`.

@@ -42,6 +42,15 @@ pub struct Scene {
     pub loops: Vec<NamedLoop>,
     /// Impulses applied at the instant of the impact.
     pub impulses: Vec<AppliedImpulse>,
+    /// Gravity along -z of the world \[m/s^2\], of forces alone; [`Scene::GRAVITY`] if none is given.
+    pub gravity: Option<f64>,
+    /// Torque, or of a slide force, of each joint, of forces alone \[N m, N\]; empty for none.
+    pub torque: Vec<f64>,
+}
+
+impl Scene {
+    /// Standard gravity, rounded \[m/s^2\].
+    pub const GRAVITY: f64 = 9.81;
 }
 
 /// A value per link, with a default for links that are not named.

@@ -4,6 +4,7 @@
 //!     Impact (a robot's state)  ──┐
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result
 //!                                         └────> text for people        text
+//!     Forces (sustained contact) ───> Report ──> the same under other names   forces.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Survey, Map ──> Regions, samples ──> JSON, CSV, text              sweep
 //!     CaseStudy, Comparison ──> Accuracy ──> JSON, text                 accuracy
@@ -13,6 +14,7 @@ pub(crate) mod table;
 pub(crate) mod words;
 mod state;
 mod result;
+mod forces;
 mod text;
 mod csv;
 mod inspection;
@@ -25,11 +27,12 @@ pub mod schema;
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
 pub use csv::{Columns, RowKind};
+pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
 pub use inspection::Inspection;
 pub(crate) use result::short_id;
 pub use result::{
     Brief, CarriedFields, ContactInBrief, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, OutcomeInBrief,
-    Refused, Rejected, Report, Touchdown,
+    Refused, Rejected, Report, Sustained, Touchdown,
 };
 pub use state::{CounterexampleRecord, HoldsRecord};
 pub use text::{Subject, text};

@@ -11,6 +11,7 @@
 
 #![expect(dead_code, reason = "of these types the schema is all that is wanted")]
 
+use super::forces::ForcesRecord;
 use super::result::{Brief, Refused, Report};
 use super::state::HoldsRecord;
 use super::sweep::{MapSweep, RefusedSample, Sweep};
@@ -39,6 +40,11 @@ pub fn study() -> Value {
     schema
 }
 
+/// The schema of a line of forces: a result, one in brief, or a refusal.
+pub fn forces() -> Value {
+    schema_of::<ForcesLine>()
+}
+
 pub fn sweep() -> Value {
     schema_of::<SweepWhole>()
 }
@@ -59,6 +65,16 @@ pub fn accuracy() -> Value {
 #[schemars(title = "Result")]
 enum ResultLine<'a> {
     Whole(Box<Report<'a>>),
+    Brief(Box<Brief<'a>>),
+    Refused(Refused),
+}
+
+/// One line of results in sustained contact.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(title = "Forces")]
+enum ForcesLine<'a> {
+    Whole(Box<ForcesRecord<'a>>),
     Brief(Box<Brief<'a>>),
     Refused(Refused),
 }

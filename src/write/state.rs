@@ -115,6 +115,8 @@ impl Serialize for StateRecord<'_> {
         let impulses = scene.impulses.iter().map(
             |applied| json!({"link": self.link(applied.link), "offset": applied.offset, "vector": applied.vector}),
         );
+        entry(&mut map, "gravity", scene.gravity.is_some(), &scene.gravity)?;
+        entry(&mut map, "torque", !scene.torque.is_empty(), &self.by_joint(&scene.torque))?;
         entry(&mut map, "impulse", !scene.impulses.is_empty(), &impulses.collect::<Vec<_>>())?;
         map.end()
     }

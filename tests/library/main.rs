@@ -10,6 +10,7 @@ mod constraints;
 mod courses;
 mod csv;
 mod families;
+mod forces;
 mod ground;
 mod limits;
 mod loader;

@@ -1,6 +1,6 @@
 //! A state whose numbers vary in a box while its contacts are kept.
 
-use super::super::exact::{Contacts, ExactState, Inputs};
+use super::super::exact::{Asked, Contacts, ExactState, Inputs};
 use super::super::{Answer, Impact, Pipeline};
 use super::Counterexample;
 use super::combination::UncertainProblem;
@@ -111,6 +111,7 @@ impl KeptContacts<'_, '_> {
             laws: &[],
             restitution: &[],
             errors: crate::impact::Errors::UNKNOWN,
+            asked: Asked::Impact,
         };
         let plan = whole.plan::<N>(robot, &scene.braked, &scene.rotor_inertia);
         let Contacts { delassus, before, free } = exact.contacts(Inputs {

@@ -20,7 +20,7 @@ pub(crate) fn short_id(id: Value) -> Value {
 #[serde(untagged)]
 #[schemars(inline)]
 #[expect(dead_code, reason = "the schema is all that is wanted of it")]
-pub(super) enum Id {
+pub(in crate::write) enum Id {
     /// A name.
     Text(String),
     /// A number.

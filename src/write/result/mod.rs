@@ -13,7 +13,7 @@ mod brief;
 pub use brief::{Brief, ContactInBrief, OutcomeInBrief};
 pub use contact::{ContactRecord, NearestRecord};
 #[cfg(feature = "schema")]
-use id::Id;
+pub(super) use id::Id;
 pub(crate) use id::short_id;
 pub use left_out::LeftOutRecord;
 pub use recorded::{CarriedFields, Touchdown};
@@ -22,10 +22,10 @@ pub use refused::{ErrorObject, Refused};
 use super::Detail;
 use super::state::{CounterexampleRecord, HoldsRecord};
 use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Rejection, Verdict};
-use crate::pipeline::{Impact, NearestFoot};
+use crate::pipeline::{Forces, Impact, NearestFoot};
 use crate::planar::Pair;
 use crate::read::Problem;
-use crate::state::State;
+use crate::state::{Named, State};
 use crate::{Mode, Robot};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -138,6 +138,17 @@ pub struct Report<'a> {
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
+    /// Of a state in sustained contact: what it has in addition; it is written under other names then.
+    #[serde(skip)]
+    pub sustained: Option<Sustained<'a>>,
+}
+
+/// What a report of forces has in addition to one of an impact.
+#[derive(Debug, Clone)]
+pub struct Sustained<'a> {
+    pub(super) forces: &'a Forces,
+    pub(super) gravity: f64,
+    pub(super) torque: Named,
 }
 
 /// A combination of modes that is not an outcome.
@@ -240,7 +251,11 @@ impl<'a> Report<'a> {
 
     /// Appends the result as one line of JSON, whole or in brief.
     pub fn append_json(&self, detail: Detail, out: &mut Vec<u8>) {
-        if detail.brief { super::append_line(out, &self.brief()) } else { super::append_line(out, self) }
+        match self.forces() {
+            _ if detail.brief => super::append_line(out, &self.brief()),
+            Some(forces) => super::append_line(out, &forces),
+            None => super::append_line(out, self),
+        }
     }
 }
 

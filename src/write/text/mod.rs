@@ -10,13 +10,45 @@ use super::table::{Table, is_residue, number, scale};
 use super::{Detail, Palette, words};
 use crate::error::visible;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
-use crate::planar::Vector;
+use crate::planar::{Pair, Vector};
 use crate::read::Problem;
-use crate::{Friction, Impact, Mode, Robot, State};
+use crate::{Forces, Friction, Impact, Mode, Robot, State};
 use std::fmt::Write;
 
 /// The room for what was left out, in characters.
 const LEFT_OUT: usize = 200;
+
+/// What an impact's numbers are called, and those of sustained contact.
+#[derive(Debug)]
+struct Wording {
+    energy: &'static str,
+    before: [&'static str; 2],
+    impulse: [&'static str; 2],
+    after: [&'static str; 2],
+    on_loops: [&'static str; 2],
+    coordinates: &'static str,
+    others: &'static str,
+}
+
+const IMPACT: Wording = Wording {
+    energy: "Kinetic energy before the impact",
+    before: ["before: t [m/s]", "n [m/s]"],
+    impulse: ["impulse: t [N s]", "n [N s]"],
+    after: ["after: t [m/s]", "n [m/s]"],
+    on_loops: ["impulse on a: x [N s]", "z [N s]"],
+    coordinates: "velocity after",
+    others: "other impulses give the same velocities",
+};
+
+const FORCES: Wording = Wording {
+    energy: "Kinetic energy",
+    before: ["velocity: t [m/s]", "n [m/s]"],
+    impulse: ["force: t [N]", "n [N]"],
+    after: ["acceleration: t [m/s^2]", "n [m/s^2]"],
+    on_loops: ["force on a: x [N]", "z [N]"],
+    coordinates: "acceleration",
+    others: "other forces give the same accelerations",
+};
 
 /// What a text needs in addition to the report.
 #[derive(Debug)]
@@ -28,6 +60,7 @@ pub struct Subject<'a> {
     /// The unit of each entry of v.
     units: Vec<&'static str>,
     analysis: Option<&'a Analysis>,
+    wording: &'static Wording,
 }
 
 impl<'a> Subject<'a> {
@@ -37,7 +70,13 @@ impl<'a> Subject<'a> {
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
             units: robot.units().map(|(_, unit)| unit).collect(),
             analysis: impact.analysis.as_ref(),
+            wording: &IMPACT,
         }
+    }
+
+    pub fn of_forces(robot: &Robot, state: &State, forces: &'a Forces) -> Self {
+        let units = robot.units().map(|(_, unit)| if unit.starts_with('m') { "m/s^2" } else { "rad/s^2" });
+        Self { units: units.collect(), wording: &FORCES, ..Self::of_state(robot, state, &forces.answer) }
     }
 
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
@@ -46,6 +85,7 @@ impl<'a> Subject<'a> {
             friction: problem.contact.friction().map(Some).collect(),
             units: Vec::new(),
             analysis: Some(analysis),
+            wording: &IMPACT,
         }
     }
 }
@@ -70,7 +110,7 @@ impl<'w> Writer<'w> {
         let Palette { strong, plain, .. } = *self.palette;
         writeln!(self.out, "{strong}{}{plain}: {}", self.subject.title, touching(&self.report.contacts))?;
         if let Some(energy) = self.report.kinetic_energy {
-            writeln!(self.out, "Kinetic energy before the impact: {} J.", number(energy))?;
+            writeln!(self.out, "{}: {} J.", self.subject.wording.energy, number(energy))?;
         }
         if !detail.brief && !self.report.contacts.is_empty() {
             self.out.push('\n');
@@ -104,11 +144,17 @@ impl<'w> Writer<'w> {
         self.report.contacts.iter().map(|contact| &*contact.name)
     }
 
-    /// The fastest contact velocity before or after.
+    /// The fastest contact velocity before or after; of forces the greatest acceleration.
     fn speeds(&self) -> f64 {
         let before = self.report.contacts.iter().map(|contact| contact.velocity_before);
+        let before = before.filter(|_| self.report.sustained.is_none()).chain(self.free().copied());
         let outcomes = self.report.outcomes.as_deref().unwrap_or_default().iter();
         scale(before.chain(outcomes.flat_map(|outcome| outcome.velocity_after.iter().copied())).flatten())
+    }
+
+    /// Accelerations of contacts without forces; none of an impact.
+    fn free(&self) -> impl Iterator<Item = &'w Pair<f64>> + use<'w> {
+        self.report.sustained.iter().flat_map(|own| own.forces.answer.problem.velocity_free())
     }
 
     fn contacts(&mut self) {
@@ -128,12 +174,17 @@ impl<'w> Writer<'w> {
         if normals().any(|normal| Some(normal) != normals().next()) {
             table = table.pairs(["n: x", "z"], 1.0, normals());
         }
-        let before = contacts.iter().map(|contact| contact.velocity_before);
+        let before = || contacts.iter().map(|contact| contact.velocity_before);
         let friction = self.subject.friction.iter().map(|friction| friction.map_or("-".into(), |mu| mu.to_string()));
-        table
-            .pairs(["before: t [m/s]", "n [m/s]"], self.speeds(), before)
-            .text("friction", friction.collect::<Vec<String>>())
-            .write(&mut self.out);
+        table = match self.report.sustained {
+            None => table.pairs(self.subject.wording.before, self.speeds(), before()),
+            Some(_) => table.pairs(self.subject.wording.before, scale(before().flatten()), before()).pairs(
+                ["unforced: t [m/s^2]", "n [m/s^2]"],
+                self.speeds(),
+                self.free().copied(),
+            ),
+        };
+        table.text("friction", friction.collect::<Vec<String>>()).write(&mut self.out);
         let Palette { faint, plain, .. } = *self.palette;
         self.out.extend(["  ", faint, "t: along the ground, forward; n: away from the ground", plain, "\n"]);
     }
@@ -141,6 +192,7 @@ impl<'w> Writer<'w> {
     fn verdict(&mut self) -> std::fmt::Result {
         let Palette { strong, plain, .. } = *self.palette;
         let sentence = match (self.report.verdict, &self.report.outcomes) {
+            (Some(Verdict::None), _) if self.report.sustained.is_some() => self.no_forces(),
             (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes, self.report.open.as_ref()),
             _ => "No outcomes are known.".to_owned(),
         };
@@ -149,6 +201,19 @@ impl<'w> Writer<'w> {
             writeln!(self.out, "{}", error.message)?;
         }
         self.holds()
+    }
+
+    /// What happens without finite forces.
+    fn no_forces(&self) -> String {
+        let sentence = "No forces are consistent: velocities jump, by an impact without approach";
+        match self.report.sustained.as_ref().and_then(|own| own.forces.shock.as_deref()) {
+            None => format!("{sentence} whose outcomes are not decided."),
+            Some([]) => format!("{sentence}, for which there is none with an impulse, either."),
+            Some(shock) => {
+                let shock: Vec<String> = shock.iter().map(|own| self.in_words(&own.modes)).collect();
+                format!("{sentence}: {}.", shock.join("; or "))
+            }
+        }
     }
 
     fn holds(&mut self) -> std::fmt::Result {

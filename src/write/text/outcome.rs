@@ -24,8 +24,8 @@ impl Writer<'_> {
         let mut table = Table::default()
             .text("contact", self.names())
             .text("mode", outcome.modes.iter().map(Mode::to_string))
-            .pairs(["impulse: t [N s]", "n [N s]"], impulses, outcome.impulse.iter().copied())
-            .pairs(["after: t [m/s]", "n [m/s]"], speeds, outcome.velocity_after.iter().copied());
+            .pairs(self.subject.wording.impulse, impulses, outcome.impulse.iter().copied())
+            .pairs(self.subject.wording.after, speeds, outcome.velocity_after.iter().copied());
         if outcome.friction_needed.iter().any(Option::is_some) {
             table = table.numbers("friction needed", 1.0, outcome.friction_needed.iter().copied());
         }
@@ -35,7 +35,7 @@ impl Writer<'_> {
         if !outcome.impulse_unique {
             let own = outcome.friction_needed.iter().flatten().count() > 1;
             let own = if own { "; each friction needed is the least of that contact alone" } else { "" };
-            writeln!(self.out, "  other impulses give the same velocities; these are the least{own}")?;
+            writeln!(self.out, "  {}; these are the least{own}", self.subject.wording.others)?;
         }
         if outcome.family {
             self.out.push_str("  a corner of a family\n");
@@ -71,11 +71,20 @@ impl Writer<'_> {
         let size = scale(impulses.iter().copied().flat_map(Vector::components));
         Table::default()
             .text("loop", (0..impulses.len()).map(|index| format!("loops[{index}]")))
-            .pairs(["impulse on a: x [N s]", "z [N s]"], size, impulses.iter().map(|impulse| impulse.components()))
+            .pairs(self.subject.wording.on_loops, size, impulses.iter().map(|impulse| impulse.components()))
             .write(&mut self.out);
     }
 
     fn energy(&mut self, outcome: &Outcome) -> std::fmt::Result {
+        if let Some(sustained) = &self.report.sustained {
+            let power = sustained.forces.power(outcome);
+            let verb = if power > 0.0 { "gives" } else { "takes" };
+            return if power == 0.0 {
+                Ok(())
+            } else {
+                writeln!(self.out, "  the ground {verb} {} W", number(power.abs()))
+            };
+        }
         let loss = outcome.energy_loss;
         if loss == 0.0 {
             return writeln!(self.out, "  no energy is lost");
@@ -89,7 +98,8 @@ impl Writer<'_> {
     /// v after the impact, one column per outcome.
     pub(super) fn velocities(&mut self, outcomes: &[Outcome]) {
         let Some(first) = outcomes.first().map(coordinates).filter(|names| !names.is_empty()) else { return };
-        let mut table = Table::default().text("velocity after", first).text("", self.subject.units.iter().copied());
+        let mut table =
+            Table::default().text(self.subject.wording.coordinates, first).text("", self.subject.units.iter().copied());
         let velocities = scale(outcomes.iter().flat_map(Outcome::velocity));
         for (at, outcome) in outcomes.iter().enumerate() {
             let head = if outcomes.len() == 1 { String::new() } else { format!("{}", at + 1) };

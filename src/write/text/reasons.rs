@@ -62,8 +62,8 @@ impl Writer<'_> {
             self.out.push('\n');
             Table::default()
                 .text(name, rejected.iter().map(|rejection| modes(&rejection.modes)))
-                .pairs(["impulse: t [N s]", "n [N s]"], largest, impulses().map(of_contact))
-                .pairs(["after: t [m/s]", "n [m/s]"], speeds, after().map(of_contact))
+                .pairs(self.subject.wording.impulse, largest, impulses().map(of_contact))
+                .pairs(self.subject.wording.after, speeds, after().map(of_contact))
                 .write(&mut self.out);
         }
     }

@@ -130,6 +130,8 @@ fn schema_and_reader_of_states_agree() {
             "friction": {"default": 0.1, "left_foot": 0}, "rotor_inertia": {"left_hip": 0.1},
         },
         "impulse": [{"link": "torso", "offset": [0, 0, 0], "vector": [0, 0]}],
+        "gravity": 9.81,
+        "torque": {"left_knee": 1.5},
     });
     let standing = json!({"id": 1, "stance": "left_foot", "friction": 0.8, "restitution": 0.5,
         "position": {"base": {"pitch": 0.1}}, "ground": {"profile": [[-1, 0], [1, 0.5], [2, 0.5]]},
@@ -234,6 +236,24 @@ fn every_form_of_result_is_valid() {
         seen += assert_valid(&schema::result(), arguments, input, "").len();
     }
     assert_eq!(seen, 15);
+}
+
+#[test]
+fn every_form_of_forces_is_valid() {
+    let stands = ["forces", "urdf/ramone.urdf", "examples/ramone_stands.json"];
+    let paradoxes = ["forces", "urdf/block.urdf", "examples/painleve.json"];
+    let mut verdicts = Vec::new();
+    for (arguments, input) in [
+        (&stands[..], ""),
+        (&[&stands[..], &["--explain", "--matrices"]].concat(), ""),
+        (&[&stands[..], &["--brief"]].concat(), ""),
+        (&paradoxes, ""),
+        (&["forces", "urdf/block.urdf", "-"], "{\"friction\": 1, \"velocity\": {\"base\": {\"z\": -1}}}"),
+    ] {
+        let found = assert_valid(&schema::forces(), arguments, input, "");
+        verdicts.extend(found.iter().map(|own| own["verdict"].as_str().unwrap_or("refused").to_owned()));
+    }
+    assert_eq!(verdicts, ["unique", "unique", "unique", "none", "ambiguous", "refused"]);
 }
 
 #[test]

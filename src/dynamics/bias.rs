@@ -1,0 +1,93 @@
+//! What a motion and gravity demand while no coordinate accelerates: bias forces, and accelerations of points.
+//!
+//! ```text
+//!     M a = tau - b + J^T f          c' = J a + sigma          K a + kappa = 0
+//!
+//!     o_i = o_p - omega_p^2 r_i + 2 omega_p turned(d_i) q'_i        outward; r_i the arm from p, d_i of a prismatic joint
+//!     F_i = m (o_i - g) - omega_i^2 h_i,  N_i = turned(h_i) . (o_i - g)      inward as a wrench, b = S_i . wrench
+//!     sigma = o_i - omega_i^2 r                                     of a point, or of a circle's center, at r
+//! ```
+//!
+//! No body has an angular acceleration of its own: in the plane the axes of all joints are parallel, so that rates of
+//! turn only add up. A circle rolls on straight ground: its lowest point lies at a constant distance below its center,
+//! so that both accelerate alike. Source: Featherstone 2008, section 5.3 (recursive Newton-Euler), in world axes. Cost:
+//! O(nb).
+
+use super::articulated_inertia::Wrench;
+use super::jacobian::ContactPoint;
+use super::workspace::Workspace;
+use crate::dynamics::plan::{JointMotion, Plan};
+use crate::planar::Vector;
+use crate::scalar::Real;
+
+/// Computes b (nv, columns of the plan; N, N m) and every body's motion while no coordinate accelerates, from the
+/// kinematics, for `velocity` (dq/dt, braked joints included) and `gravity` along -z of the world \[m/s^2\].
+pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut Workspace<T>) {
+    let Workspace { rotation, arm, direction, spin, drift, bias, .. } = workspace;
+    spin.clear();
+    drift.clear();
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let Some(parent) = body.parent else {
+            spin.push(if plan.floating { velocity[2] } else { T::zero() });
+            drift.push(Vector::zero());
+            continue;
+        };
+        let turning = spin[parent];
+        let (turn, slide) = match body.motion {
+            JointMotion::Revolute { rate, .. } => (turning + rate * velocity[body.coordinate], Vector::zero()),
+            JointMotion::Prismatic { .. } => {
+                let twice = turning + turning;
+                (turning, direction[index].perpendicular() * (twice * velocity[body.coordinate]))
+            }
+            JointMotion::Root | JointMotion::Fixed => (turning, Vector::zero()),
+        };
+        spin.push(turn);
+        drift.push(drift[parent] - arm[index] * (turning * turning) + slide);
+    }
+
+    let weight = Vector { x: T::zero(), z: gravity };
+    let mut wrenches: Vec<Wrench<T>> = (plan.bodies.iter().zip(&*rotation).zip(spin.iter().zip(&*drift)))
+        .map(|((body, turn), (&spin, &drift))| {
+            let (first, lifted) = (turn.apply(body.inertia.first), drift + weight);
+            Wrench {
+                linear: lifted * body.inertia.mass - first * (spin * spin),
+                moment: first.perpendicular().dot(lifted),
+            }
+        })
+        .collect();
+    bias.clear();
+    bias.resize(plan.columns(), T::zero());
+    for (index, body) in plan.bodies.iter().enumerate().rev() {
+        let own = wrenches[index];
+        if let Some(parent) = body.parent {
+            wrenches[parent] = wrenches[parent].with(own.seen_from(arm[index]));
+        }
+        let Some(column) = body.column else { continue };
+        let part = match body.motion {
+            JointMotion::Root => {
+                (bias[0], bias[1]) = (own.linear.x, own.linear.z);
+                own.moment
+            }
+            JointMotion::Revolute { rate, .. } => rate * own.moment,
+            JointMotion::Prismatic { .. } => direction[index].dot(own.linear),
+            JointMotion::Fixed => continue,
+        };
+        plan.bring(&mut bias[column], part);
+    }
+}
+
+/// Acceleration of the point at `arm` from the origin of `body` while no coordinate accelerates \[m/s^2\].
+pub(super) fn point_drift<T: Real>(body: usize, arm: Vector<T>, workspace: &Workspace<T>) -> Vector<T> {
+    let spin = workspace.spin[body];
+    workspace.drift[body] - arm * (spin * spin)
+}
+
+impl<T: Real> ContactPoint<T> {
+    /// sigma, in the world's axes \[m/s^2\], after [`bias`]; of a body that is `still` without its rate of turn.
+    pub fn drift(&self, still: bool, workspace: &Workspace<T>) -> Vector<T> {
+        match still {
+            true => workspace.drift[self.body],
+            false => point_drift(self.body, workspace.rotation[self.body].apply(self.center), workspace),
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! The result of a state in sustained contact: a [`Report`] with forces and accelerations under their own names.
+
+use super::Detail;
+use super::result::{ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report, Sustained};
+use crate::impact::outcome::Range;
+use crate::impact::{Border, Family, OpenCombinations, Outcome, Verdict};
+use crate::pipeline::Forces;
+use crate::planar::{Pair, Vector};
+use crate::state::{Named, Scene, State};
+use crate::{Mode, Robot};
+use serde::Serialize;
+use serde_json::Value;
+use std::cmp::Ordering;
+
+impl<'a> Report<'a> {
+    /// The result of a state in sustained contact, with forces for impulses and accelerations for velocities after an
+    /// impact. It is written under their names.
+    ///
+    /// # Errors
+    /// As [`Report::of_state`].
+    pub fn of_forces(robot: &'a Robot, state: &'a State, forces: &'a Forces, detail: Detail) -> crate::Result<Self> {
+        let scene = &state.scene;
+        let torque = |joint: usize| scene.torque.get(joint).copied().unwrap_or(0.0);
+        let joints = robot.joints.iter().enumerate();
+        let mut report = Self::of_state(robot, state, &forces.answer, detail)?;
+        if let Some(last) = report.left_out.as_mut().and_then(|all| all.last_mut()) {
+            *last = LeftOutRecord { what: "joint limits".into(), why: "do not enter the forces".into() };
+        }
+        let sustained = Sustained {
+            forces,
+            gravity: scene.gravity.unwrap_or(Scene::GRAVITY),
+            torque: joints.map(|(index, joint)| (joint.name.clone(), torque(index))).collect(),
+        };
+        Ok(Self { sustained: Some(sustained), ..report })
+    }
+
+    /// The result under the names of forces; `None` of an impact.
+    pub fn forces(&self) -> Option<ForcesRecord<'_>> {
+        let sustained = self.sustained.as_ref()?;
+        let forces = sustained.forces;
+        let contacts = self.contacts.iter().zip(&forces.slips).zip(forces.answer.problem.velocity_free());
+        let outcomes = self.outcomes.as_ref().map(|all| all.iter().map(|own| ForceOutcome::of(own, forces)).collect());
+        let rejected = self.rejected.as_ref().map(|all| all.iter().map(RejectedForces::of).collect());
+        Some(ForcesRecord {
+            id: self.id.as_deref(),
+            line: self.line,
+            verdict: self.verdict,
+            proven: self.proven,
+            contacts: contacts.map(|((own, &slip), &free)| SustainedContact::of(own, slip, free)).collect(),
+            nearest: self.nearest.as_ref(),
+            outcomes,
+            shock: (self.verdict == Some(Verdict::None)).then_some(forces.shock.as_deref()),
+            open: self.open,
+            families: &self.families,
+            rejected,
+            gravity: sustained.gravity,
+            torque: &sustained.torque,
+            kinetic_energy: self.kinetic_energy,
+            condition: self.condition,
+            rank: self.rank,
+            left_out: self.left_out.as_deref(),
+            notes: &self.notes,
+            coordinates: self.coordinates.as_deref(),
+            mass_matrix: self.mass_matrix.as_deref(),
+            contact_jacobian: self.contact_jacobian.as_deref(),
+            delassus: self.delassus.as_deref(),
+            error: self.error.as_ref(),
+        })
+    }
+}
+
+/// The result of a state in sustained contact.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "Forces")]
+pub struct ForcesRecord<'a> {
+    /// What the user calls it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<super::result::Id>"))]
+    pub id: Option<&'a Value>,
+    /// The line on which the input begins, from 1; in a batch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<usize>,
+    /// The answer in one word; absent next to an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
+    /// Every combination is decided by an error bound; absent next to an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proven: Option<bool>,
+    /// The contacts that take part, in the order of all lists per contact.
+    pub contacts: Vec<SustainedContact<'a>>,
+    /// The lowest foot that does not touch; absent if every foot touches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest: Option<&'a NearestRecord<'a>>,
+    /// Every outcome; absent next to an `error`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outcomes: Option<Vec<ForceOutcome<'a>>>,
+    /// With the verdict `none`, the outcomes of the impact without approach by which the velocities jump; null if these
+    /// are not decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
+    pub shock: Option<Option<&'a [Outcome]>>,
+    /// How much is open, of an undecided state.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<OpenCombinations>,
+    /// Lists of modes with many accelerations, all of which are outcomes; only if there are some.
+    #[serde(skip_serializing_if = "<[Family]>::is_empty")]
+    pub families: &'a [Family],
+    /// Every other combination, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rejected: Option<Vec<RejectedForces<'a>>>,
+    /// Gravity along -z of the world \[m/s^2\].
+    pub gravity: f64,
+    /// What acts at each joint \[N m, N\].
+    pub torque: &'a Named,
+    /// Kinetic energy \[J\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kinetic_energy: Option<f64>,
+    /// Condition number of the Delassus matrix scaled to a unit diagonal; null if it is singular.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(extend("x-may-be-null" = true)))]
+    pub condition: Option<Option<f64>>,
+    /// Rank of the Delassus matrix.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rank: Option<usize>,
+    /// What of the robot's file and of the scene does not enter the analysis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<&'a [LeftOutRecord<'a>]>,
+    /// What a reader should know, in whole sentences.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    pub notes: &'a [String],
+    /// Names of the kept coordinates in the order of q, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coordinates: Option<&'a [String]>,
+    /// M, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_matrix: Option<&'a [Vec<f64>]>,
+    /// J, rows tangential and normal per contact, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_jacobian: Option<&'a [Vec<f64>]>,
+    /// G = J M^-1 J^T, without what the loops do not let move; if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delassus: Option<&'a [Vec<f64>]>,
+    /// Why there are no outcomes although the matrices are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<&'a ErrorObject>,
+}
+
+/// A contact that takes part.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SustainedContact<'a> {
+    /// The URDF link that carries the shape.
+    pub link: Option<&'a str>,
+    /// Its name, which is its link's, or link/0, link/1 ... if a link has several.
+    pub name: &'a str,
+    /// The contact point in the world \[m\].
+    pub point: Option<Vector<f64>>,
+    /// Unit normal of the ground, toward the robot.
+    pub normal: Option<Vector<f64>>,
+    /// Height above the ground along the normal \[m\].
+    pub gap: Option<f64>,
+    /// Its velocity, [tangential, normal] \[m/s\].
+    pub velocity: Pair<f64>,
+    /// "+" or "-" of a contact that slides along t or against it; null of one at rest.
+    pub slip: Option<&'static str>,
+    /// Its acceleration if the ground gave no force, [tangential, normal] \[m/s^2\].
+    pub acceleration_free: Pair<f64>,
+}
+
+impl<'a> SustainedContact<'a> {
+    fn of(contact: &'a ContactRecord, slip: Ordering, acceleration_free: Pair<f64>) -> Self {
+        let &ContactRecord { ref link, ref name, point, normal, gap, velocity_before } = contact;
+        Self {
+            link: link.as_deref(),
+            name,
+            point,
+            normal,
+            gap,
+            velocity: velocity_before,
+            slip: match slip {
+                Ordering::Less => Some("-"),
+                Ordering::Equal => None,
+                Ordering::Greater => Some("+"),
+            },
+            acceleration_free,
+        }
+    }
+}
+
+/// A consistent combination of modes.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ForceOutcome<'a> {
+    /// One mode per contact; of one that slides already `slide+` or `slide-` is to slide on.
+    pub modes: &'a [Mode],
+    /// Contact forces, [tangential, normal] per contact \[N\].
+    pub force: &'a [Pair<f64>],
+    /// Contact accelerations, [tangential, normal] per contact \[m/s^2\].
+    pub contact_acceleration: &'a [Pair<f64>],
+    /// Acceleration of the base \[m/s^2, rad/s^2\]; only of a robot that is not bolted to the world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_acceleration: Option<&'a Named>,
+    /// Accelerations of the joints, braked ones included \[rad/s^2, m/s^2\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_acceleration: Option<&'a Named>,
+    /// Force on point a of each loop, [x, z] in the world \[N\]; the opposite acts on b. Only of a state with loops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loop_force: Option<&'a [Vector]>,
+    /// Power of the contact forces \[W\]; negative where friction takes energy.
+    pub power: f64,
+    /// False if other admissible forces give the same accelerations; `force` then has the least sum of squares.
+    pub force_unique: bool,
+    /// Least and greatest of every entry of `force`, null if it has no bound; only if `force` is not unique.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_range: Option<&'a [Pair<Range>]>,
+    /// |f_t| / f_n of each sticking contact that is pressed on the ground, as in an impact; null for others.
+    pub friction_needed: &'a [Option<f64>],
+    /// Sign of det A; null if it is not defined, as on a border.
+    pub index: Option<i8>,
+    /// The smallest slack of the outcome's inequalities, free of units; null if there is no inequality.
+    pub margin: Option<f64>,
+    /// What is exactly zero, and the lists of modes beyond; only on a border. An impulse there is a force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub border: Option<&'a Border>,
+    /// True, and only then present, of a corner of a family.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub family: bool,
+    /// Every sign is shown by an error bound, and every force and contact acceleration is right to 1e-10 of its scale.
+    pub proven: bool,
+    /// False, and only then present, if the combination is neither shown nor excluded.
+    #[serde(skip_serializing_if = "Clone::clone")]
+    pub decided: bool,
+}
+
+impl<'a> ForceOutcome<'a> {
+    fn of(own: &'a Outcome, forces: &Forces) -> Self {
+        Self {
+            modes: &own.modes,
+            force: &own.impulse,
+            contact_acceleration: &own.velocity_after,
+            base_acceleration: own.base_velocity_after.as_ref(),
+            joint_acceleration: own.joint_velocity_after.as_ref(),
+            loop_force: own.loop_impulse.as_deref(),
+            power: forces.power(own),
+            force_unique: own.impulse_unique,
+            force_range: own.impulse_range.as_deref(),
+            friction_needed: &own.friction_needed,
+            index: own.index,
+            margin: own.margin,
+            border: own.border.as_ref(),
+            family: own.family,
+            proven: own.proven,
+            decided: own.decided,
+        }
+    }
+}
+
+/// A combination of modes that is not an outcome.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RejectedForces<'a> {
+    /// One mode per contact.
+    pub modes: &'a [Mode],
+    /// Why it is none, with the contact's name.
+    pub because: &'a str,
+    /// The smallest slack, negative; null if the combination has no solution at all.
+    pub margin: Option<f64>,
+    /// The forces that it would have needed \[N\].
+    pub force: Option<&'a [Pair<f64>]>,
+    /// The contact accelerations that it would have led to \[m/s^2\].
+    pub contact_acceleration: Option<&'a [Pair<f64>]>,
+}
+
+impl<'a> RejectedForces<'a> {
+    fn of(rejected: &'a Rejected) -> Self {
+        Self {
+            modes: &rejected.modes,
+            because: &rejected.because,
+            margin: rejected.margin,
+            force: rejected.impulse.as_deref(),
+            contact_acceleration: rejected.velocity_after.as_deref(),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! States that are in no sustained contact.
+
+use super::{rod, try_forces};
+use crate::support::impact::robot;
+use crate::support::urdf::{body, collision};
+use serde_json::json;
+
+#[test]
+fn contact_that_approaches_is_an_impact() {
+    let state = json!({"velocity": {"base": {"z": -0.2}}, "contacts": [{"link": "rod", "offset": [0, 0, 0]}]});
+    let error = try_forces(&rod(1.0, 1.0), &state).unwrap_err();
+    assert!(error.to_string().contains("rod approaches the ground at 2.000e-1 m/s"), "{error}");
+    assert!(error.remedy().unwrap().contains("`impact`"), "{error}");
+    let state = json!({"impulse": [{"link": "rod", "vector": [0, 1]}]});
+    assert_eq!(try_forces(&rod(1.0, 1.0), &state).unwrap_err().place(), Some("impulse"));
+}
+
+#[test]
+fn wheel_on_a_corner_may_stand_but_not_roll() {
+    let wheel = robot(&body(0.1, &collision([0.0; 2], "sphere radius=\"0.25\"")));
+    let profile = json!({"profile": [[-1, -1], [0, 0], [1, -1]]});
+    let standing = json!({"position": {"base": {"z": 0.25}}, "ground": profile});
+    assert!(try_forces(&wheel, &standing).is_ok());
+    let mut rolling = standing;
+    rolling["velocity"] = json!({"base": {"x": 0.25, "pitch": 1.0}});
+    let error = try_forces(&wheel, &rolling).unwrap_err();
+    assert_eq!(error.place(), Some("ground.profile"), "{error}");
+}

@@ -1,0 +1,142 @@
+//! Bodies that stand, slide and roll on level ground and slopes.
+
+use super::{forces, modes, outcomes};
+use crate::support::impact::robot;
+use crate::support::urdf::{HINGE, POINT, body, collision, joint, link, robot as urdf};
+use heelstrike::impact::{Mode, Verdict};
+use serde_json::{Value, json};
+
+const GRAVITY: f64 = 9.81;
+
+/// A body of 2 kg on two points, 0.3 m behind and 0.1 m ahead of its center, 0.2 m below it.
+fn block() -> heelstrike::Robot {
+    robot(&body(0.05, &(collision([-0.3, -0.2], POINT) + &collision([0.1, -0.2], POINT))))
+}
+
+fn on_slope(slope: f64, velocity: f64) -> Value {
+    // The sole lies in the ground, the center 0.2 m above it along the normal.
+    let [sin, cos] = [slope.sin(), slope.cos()];
+    json!({
+        "position": {"base": {"x": -0.2 * sin, "z": 0.2 * cos, "pitch": -slope}},
+        "velocity": {"base": {"x": velocity * cos, "z": velocity * sin}},
+        "ground": {"slope": slope},
+    })
+}
+
+#[test]
+fn block_stands_by_the_lever_rule() {
+    let found = forces(&block(), on_slope(0.0, 0.0));
+    assert_eq!(modes(&found), [[Mode::Stick; 2]]);
+    let outcome = &outcomes(&found)[0];
+    // Both share what holds the block along the ground, so that only the sum of that is determined: here none.
+    assert!(!outcome.impulse_unique && outcome.proven);
+    for (found, expected) in outcome.impulse.iter().zip([0.25, 0.75]) {
+        assert!((found[1] - expected * 2.0 * GRAVITY).abs() < 1e-13 && found[0].abs() < 1e-14, "{outcome:?}");
+    }
+    assert!(outcome.velocity().all(|entry| entry.abs() < 1e-14), "{outcome:?}");
+}
+
+#[test]
+fn block_on_a_slope_holds_within_its_friction() {
+    // tan(slope) = 0.5 is the edge.
+    let edge = 0.5_f64.atan();
+    for (slope, velocity, expected) in [
+        (0.9 * edge, 0.0, Mode::Stick),
+        (-0.9 * edge, 0.0, Mode::Stick),
+        (1.1 * edge, 0.0, Mode::SlideMinus),
+        (-1.1 * edge, 0.0, Mode::SlidePlus),
+        (0.9 * edge, -0.3, Mode::SlideMinus),
+        (0.9 * edge, 0.3, Mode::SlidePlus),
+    ] {
+        let found = forces(&block(), on_slope(slope, velocity));
+        assert_eq!(modes(&found), [[expected; 2]], "{slope} {velocity}");
+        assert!(found.answer.analysis.as_ref().unwrap().proven);
+        let outcome = &outcomes(&found)[0];
+        let (down, press) = (2.0 * GRAVITY * slope.sin(), 2.0 * GRAVITY * slope.cos());
+        let [t, n] = [0, 1].map(|row| outcome.impulse[0][row] + outcome.impulse[1][row]);
+        let friction = if expected == Mode::Stick { down } else { -0.5 * press * expected.direction() };
+        assert!((n - press).abs() < 1e-12 && (t - friction).abs() < 1e-12, "{outcome:?}");
+        let along = (friction - down) / 2.0;
+        assert!(
+            outcome.velocity_after.iter().all(|own| (own[0] - along).abs() < 1e-12 && own[1] == 0.0),
+            "{outcome:?}"
+        );
+        assert!((found.power(outcome) - velocity * friction).abs() < 1e-12);
+    }
+}
+
+/// On the edge of the cone the block is on the border between standing and sliding, exactly where f64 has it.
+#[test]
+fn block_that_tips_lifts_its_rear_point() {
+    // 8 rad/s^2 forward would need more than the rear point can give: the center is pushed ahead of the front one.
+    let found = forces(&block(), {
+        let mut state = on_slope(0.0, 4.0);
+        state["friction"] = json!(0.6);
+        state
+    });
+    // Friction 0.6 at 0.2 m below the center turns the nose down: the front bears more, and the rear 0.25 - 0.3 < 0.
+    assert_eq!(modes(&found), [[Mode::Separate, Mode::SlidePlus]]);
+}
+
+/// A wheel of radius r rolls down a slope with g sin / (1 + I / (m r^2)); its lowest point has no acceleration along
+/// the ground, and none of its own.
+#[test]
+fn wheel_rolls_down_a_slope() {
+    let (radius, slope, spin) = (0.25, -0.2_f64, 3.0);
+    let wheel = robot(&body(0.1, &collision([0.0; 2], "sphere radius=\"0.25\"")));
+    let [sin, cos] = [slope.sin(), slope.cos()];
+    let found = forces(
+        &wheel,
+        json!({
+            "position": {"base": {"x": -radius * sin, "z": radius * cos, "pitch": 0.3}},
+            "velocity": {"base": {"x": spin * radius * cos, "z": spin * radius * sin, "pitch": spin}},
+            "ground": {"slope": slope},
+        }),
+    );
+    assert_eq!(modes(&found), [[Mode::Stick]]);
+    let along = -GRAVITY * sin / (1.0 + 0.1 / (2.0 * radius * radius));
+    let expected = [along * cos, along * sin, along / radius];
+    for (found, expected) in outcomes(&found)[0].velocity().zip(expected) {
+        assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+    }
+}
+
+#[test]
+fn nothing_touches_in_mid_flight() {
+    let found = forces(&block(), json!({"position": {"base": {"z": 3.0}}, "gravity": 1.62}));
+    assert_eq!(found.answer.analysis.as_ref().unwrap().verdict, Verdict::NoContact);
+    assert_eq!(outcomes(&found)[0].velocity().collect::<Vec<_>>(), [0.0, -1.62, 0.0]);
+}
+
+/// A heel that lifts off with the turning foot takes no part; the toe about which it turns does.
+#[test]
+fn heel_leaves_while_the_foot_turns() {
+    let found = forces(
+        &block(),
+        json!({"position": {"base": {"x": 0.0, "z": 0.2}}, "velocity": {"base": {"x": 0.2, "z": 0.1, "pitch": 1.0}}}),
+    );
+    let names: Vec<&str> = found.answer.contacts.iter().map(|own| own.name.as_str()).collect();
+    assert_eq!((names, modes(&found).len()), (vec!["body/1"], 1));
+    let notes = found.answer.notes.join("\n");
+    assert!(notes.contains("body/0 leaves the ground"), "{notes}");
+}
+
+/// A leg that hangs from a bolted base, held by its torque.
+#[test]
+fn torque_holds_a_pendulum() {
+    let elements = [
+        link("world", 1.0, [0.0; 2], 0.1, ""),
+        link("arm", 2.0, [0.5, 0.0], 0.1, ""),
+        joint("hinge", HINGE, ["world", "arm"], [0.0; 2], ""),
+    ];
+    let mut reduction = heelstrike::robot::Reduction::default();
+    reduction.base = Some(heelstrike::robot::Base::Fixed);
+    let arm = crate::support::impact::reduced(&urdf(&elements), &reduction);
+    // About the normal, forward weight turns the arm down: a positive turn.
+    let held = json!({"torque": {"hinge": -2.0 * GRAVITY * 0.5}, "contacts": []});
+    let loose = json!({"contacts": []});
+    let accelerations = |state: Value| outcomes(&forces(&arm, state))[0].velocity().collect::<Vec<_>>();
+    assert!(accelerations(held)[0].abs() < 1e-14);
+    let expected = 2.0 * GRAVITY * 0.5 / (0.1 + 2.0 * 0.25);
+    assert!((accelerations(loose)[0] - expected).abs() < 1e-13);
+}
