@@ -8,10 +8,10 @@
 //! recursive but the poses.
 
 use crate::balls::number::Number;
-use heelstrike::impact::Friction;
+use heelstrike::impact::{Friction, Mode};
 use heelstrike::planar::Vector;
 use heelstrike::robot::{Axis, ParentJoint, Robot};
-use heelstrike::state::{Ground, State};
+use heelstrike::state::{Ground, NamedContact, State};
 use std::cmp::Ordering;
 
 /// What the contacts need to know; rows 2k (tangential) and 2k + 1 (normal) belong to contact k.
@@ -24,6 +24,8 @@ pub struct Problem<N> {
     pub approach: Vec<N>,
     pub friction: Vec<Friction>,
     pub restitution: Vec<f64>,
+    /// Of contacts that slide already, the mode that they slide on with; forces are asked for then.
+    pub slides: Vec<Option<Mode>>,
     /// The precision of all numbers.
     pub bits: usize,
 }
@@ -79,14 +81,14 @@ fn dot<'a, N: Number + 'a>(pairs: impl IntoIterator<Item = (&'a N, &'a N)>, bits
 }
 
 /// Where every body is; the root's origin lies at zero, since only differences of points count.
-fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>> {
+fn poses<N: Number>(robot: &Robot, position: &[N], bits: usize) -> Vec<Pose<N>> {
     let number = |value: f64| N::new(value, bits);
     let base = robot.base_dofs();
     let mut poses: Vec<Pose<N>> = Vec::with_capacity(robot.bodies.len());
     for body in &robot.bodies {
         let pose = match body.joint {
             None => {
-                let angle = number(if base == 3 { position[2] } else { 0.0 });
+                let angle = if base == 3 { position[2].clone() } else { number(0.0) };
                 let origin = [number(0.0), number(0.0)];
                 let (mut velocities, mut rates) = (vec![origin.clone(); robot.dofs()], vec![0.0; robot.dofs()]);
                 if base == 3 {
@@ -102,7 +104,7 @@ fn poses<N: Number>(robot: &Robot, position: &[f64], bits: usize) -> Vec<Pose<N>
                 let parent = &poses[joint.parent];
                 let coordinate = base + index;
                 let mut pose = Pose { origin: parent.point(&joint.origin.map(number).components()), ..parent.clone() };
-                let displacement = number(position[coordinate]);
+                let displacement = position[coordinate].clone();
                 let own = match joint.axis {
                     Axis::Revolute { sign } => {
                         pose.angle = parent.angle.plus(&displacement.times(&number(sign)));
@@ -183,10 +185,20 @@ impl<N: Number> Factor<N> {
 /// The contact problem of a state whose contacts are named; `None` if the mass matrix is not positive for certain.
 ///
 /// A stance must name a link with one contact; those that are `resting` are exactly at rest, too.
-pub fn problem<N: Number>(robot: &Robot, state: &State, resting: &[bool], bits: usize) -> Option<Problem<N>> {
+///
+/// With `slips`, the signs of the contacts' sliding velocities, all have accelerations in place of velocities: those of
+/// points by second differences of their places on the way q + v t, and generalized forces body by body (d'Alembert).
+pub fn problem<N: Number>(
+    robot: &Robot,
+    state: &State,
+    resting: &[bool],
+    slips: Option<&[Ordering]>,
+    bits: usize,
+) -> Option<Problem<N>> {
     let number = |value: f64| N::new(value, bits);
     let scene = &state.scene;
-    let poses = poses::<N>(robot, &state.position, bits);
+    let position: Vec<N> = state.position.iter().copied().map(number).collect();
+    let poses = poses::<N>(robot, &position, bits);
     let free: Vec<usize> = (0..robot.dofs())
         .filter(|coordinate| !scene.braked.iter().any(|held| robot.base_dofs() + held == *coordinate))
         .collect();
@@ -269,6 +281,44 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, resting: &[bool], bits: 
             *entry = entry.plus(&dot(velocities[*coordinate].iter().zip(&vector), bits));
         }
     }
+    let before = match slips {
+        None => before,
+        Some(_) => {
+            // A third of the digits for the step: its square and what is left of the difference stay small.
+            let step = number(f64::exp2(-(bits as f64 / 3.0).floor()));
+            let moved = |way: f64| {
+                let shift = step.times(&number(way));
+                let at: Vec<N> = position.iter().zip(&velocity).map(|(q, v)| q.plus(&v.times(&shift))).collect();
+                self::poses(robot, &at, bits)
+            };
+            let ways = [moved(-1.0), moved(1.0)];
+            let accelerated = |body: usize, local: &Pair<N>| -> Pair<N> {
+                let [at, behind, ahead] = [&poses, &ways[0], &ways[1]].map(|poses| poses[body].point(local));
+                let second = |k: usize| behind[k].plus(&ahead[k]).minus(&at[k]).minus(&at[k]);
+                [second(0), second(1)].map(|entry| entry.over(&step).over(&step))
+            };
+            let gravity = number(scene.gravity.unwrap_or(9.81));
+            for (at, body) in robot.bodies.iter().enumerate() {
+                let com = body.com.map(number).components();
+                let [x, z] = accelerated(at, &com).map(|entry| entry.times(&number(-body.mass)));
+                let force = [x, z.minus(&gravity.times(&number(body.mass)))];
+                let velocities = poses[at].velocities(&poses[at].point(&com), bits);
+                for (entry, coordinate) in applied.iter_mut().zip(&free) {
+                    *entry = entry.plus(&dot(velocities[*coordinate].iter().zip(&force), bits));
+                }
+            }
+            for (entry, coordinate) in applied.iter_mut().zip(&free) {
+                let torque = coordinate.checked_sub(robot.base_dofs()).and_then(|joint| scene.torque.get(joint));
+                *entry = entry.plus(&number(torque.copied().unwrap_or(0.0)));
+            }
+            let drift = |contact: &NamedContact| {
+                let center = in_body(contact.link, contact.offset);
+                let drift = accelerated(robot.links[contact.link].body, &center);
+                axes.each_ref().map(|axis| dot(drift.iter().zip(axis), bits))
+            };
+            contacts.iter().flat_map(drift).collect()
+        }
+    };
     let applied = factor.forward(&applied);
     let half: Vec<Vec<N>> = rows
         .iter()
@@ -287,7 +337,14 @@ pub fn problem<N: Number>(robot: &Robot, state: &State, resting: &[bool], bits: 
         approach: before.into_iter().skip(1).step_by(2).collect(),
         delassus,
         friction: contacts.iter().map(|contact| scene.friction.of(contact.link).expect("a friction")).collect(),
-        restitution: contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect(),
+        restitution: match slips {
+            None => contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect(),
+            Some(_) => vec![0.0; contacts.len()],
+        },
+        slides: match slips {
+            None => vec![None; contacts.len()],
+            Some(slips) => slips.iter().map(|&slip| slip.is_ne().then(|| Mode::closed(slip))).collect(),
+        },
         bits,
     })
 }

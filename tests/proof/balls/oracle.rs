@@ -49,13 +49,29 @@ pub struct Answer {
 
 /// Every outcome of the contacts that the state names, some of them `resting`; `None` if the mass matrix is singular.
 pub fn answer(robot: &Robot, state: &State, resting: &[bool]) -> Option<Answer> {
+    answer_about(robot, state, resting, None)
+}
+
+/// Every set of forces of the contacts that the state names, which slide with these signs; `None` if the mass matrix is
+/// singular.
+pub fn forces(robot: &Robot, state: &State, slips: &[Ordering]) -> Option<Answer> {
+    answer_about(robot, state, &[], Some(slips))
+}
+
+fn answer_about(robot: &Robot, state: &State, resting: &[bool], slips: Option<&[Ordering]>) -> Option<Answer> {
     let mut outcomes = Vec::new();
     let mut dependent = false;
     let mut open: Option<Vec<Vec<Mode>>> = None;
     for bits in BITS {
-        let problem = problem::<Ball>(robot, state, resting, bits)?;
+        let problem = problem::<Ball>(robot, state, resting, slips, bits)?;
         let last = bits == BITS[BITS.len() - 1];
-        let lists = open.take().unwrap_or_else(|| lists(problem.friction.len()));
+        let lists = open.take().unwrap_or_else(|| {
+            let may =
+                |(mode, slides): (&Mode, &Option<Mode>)| slides.is_none_or(|own| [Mode::Separate, own].contains(mode));
+            let mut lists = lists(problem.friction.len());
+            lists.retain(|modes| modes.iter().zip(&problem.slides).all(may));
+            lists
+        });
         let mut left = Vec::new();
         for modes in lists {
             match judge(&problem, &modes, Zero { last }) {
@@ -79,7 +95,7 @@ pub fn answer(robot: &Robot, state: &State, resting: &[bool]) -> Option<Answer> 
 
 /// The lists of modes that f64 takes for outcomes; nothing is proven by them.
 pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
-    let Some(problem) = problem::<f64>(robot, state, &[], 0) else { return Vec::new() };
+    let Some(problem) = problem::<f64>(robot, state, &[], None, 0) else { return Vec::new() };
     let mut lists = lists(problem.friction.len());
     lists.retain(|modes| matches!(judge(&problem, modes, Zero { last: false }), Judgment::Outcome(_)));
     lists
@@ -89,7 +105,7 @@ pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
 /// each other.
 pub fn truth(robot: &Robot, state: &State, modes: &[Mode]) -> Option<Truth> {
     let bits = BITS[BITS.len() - 1];
-    let problem = problem::<Ball>(robot, state, &[], bits)?;
+    let problem = problem::<Ball>(robot, state, &[], None, bits)?;
     let zero = Zero { last: true };
     let [speed, mobility] =
         [largest(problem.free.iter()), largest((0..problem.free.len()).map(|i| &problem.delassus[i][i]))];
@@ -282,6 +298,8 @@ fn judge<N: Number>(problem: &Problem<N>, modes: &[Mode], zero: Zero) -> Judgmen
     let speeds = |(k, &mode): (usize, &Mode)| match mode {
         Mode::Separate => Some((velocity(2 * k + 1), Comparison::Positive)),
         Mode::Stick => problem.friction[k].is_zero().then(|| (velocity(2 * k), Comparison::Zero)),
+        // One that slides already may be slowed or sped up.
+        _ if problem.slides[k].is_some() => None,
         _ => Some((velocity(2 * k).times(&number(mode.direction())), Comparison::Positive)),
     };
     // Impulses first: most lists fail by them, and velocities cost more.

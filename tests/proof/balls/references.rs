@@ -43,7 +43,7 @@ fn the_papers_outcomes_are_found() {
                 let mut value = model.state(alpha.parse().expect("an angle"), at.pose.as_ref(), friction);
                 value["contacts"] = json!(contacts);
                 let state = state(&value, &robot);
-                let problem = problem::<Ball>(&robot, &state, &[], 256).expect("a regular mass matrix");
+                let problem = problem::<Ball>(&robot, &state, &[], None, 256).expect("a regular mass matrix");
                 // As many digits as the rounding of the reference's pose leaves.
                 for (found, should) in [
                     (nearest(problem.delassus.iter().flatten()), at.delassus.concat()),
@@ -75,7 +75,7 @@ fn matrices_are_those_of_pinocchio() {
         let mut state = state(&json!({"friction": 1.0, "contacts": contacts}), &robot);
         for (number, config) in variant["configs"].as_array().expect("configurations").iter().enumerate() {
             (state.position, state.velocity) = (parsed(&config["q"]), parsed(&config["v"]));
-            let problem = problem::<Ball>(&robot, &state, &[], 256).expect("a regular mass matrix");
+            let problem = problem::<Ball>(&robot, &state, &[], None, 256).expect("a regular mass matrix");
             let should = parsed::<Vec<Vec<f64>>>(&config["G"]).concat();
             let found = nearest(problem.delassus.iter().flatten());
             // The reference is f64 itself.

@@ -5,6 +5,7 @@ use crate::support::command::read;
 use crate::support::random::Random;
 use crate::support::urdf::{self, Axis};
 use heelstrike::impact::{Friction, Mode};
+use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::planar::Vector;
 use heelstrike::robot::Robot;
 use heelstrike::state::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene, State};
@@ -149,6 +150,47 @@ impl Model {
         }
         state.scene = self.scene(random);
         state
+    }
+
+    /// A state in sustained contact, and with torques; `None` if its contacts depend on each other.
+    pub fn sustained(&self, random: &mut Random) -> Option<State> {
+        let mut state = self.random(random);
+        state.scene.impulses.clear();
+        state.scene.stance = None;
+        state.scene.gravity = random.once_in(4).then(|| random.between(0.0, 20.0));
+        state.scene.torque = self.robot.joints.iter().map(|_| random.between(-20.0, 20.0)).collect();
+        let contacts = state.scene.contacts.as_deref().unwrap_or_default();
+        let is_shared = |at: usize| (0..at).any(|other| contacts[other].link == contacts[at].link);
+        if random.once_in(3) || (0..contacts.len()).any(is_shared) {
+            state.velocity.fill(0.0);
+            return Some(state);
+        }
+        // Where every contact goes for a unit rate of each coordinate, those of braked joints, too.
+        let options = Options { matrices: true, ..Options::default() };
+        let loose = State { scene: Scene { braked: Vec::new(), ..state.scene.clone() }, ..state.clone() };
+        let rows = Pipeline::new(&self.robot, options).impact(&loose).ok()?.matrices?.contact_jacobian;
+        // All normal velocities are taken out, and some of those along the ground.
+        let wanted: Vec<usize> = (0..rows.len()).filter(|at| at % 2 == 1 || random.once_in(3)).collect();
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let subtract = |from: &mut Vec<f64>, own: &[f64]| {
+            let part = dot(from, own) / dot(own, own);
+            from.iter_mut().zip(own).for_each(|(entry, own)| *entry -= part * own);
+        };
+        for at in wanted {
+            let mut row = rows[at].clone();
+            for _ in 0..2 {
+                basis.iter().for_each(|own| subtract(&mut row, own));
+            }
+            if dot(&row, &row) < 1e-12 * dot(&rows[at], &rows[at]) {
+                return None;
+            }
+            basis.push(row);
+        }
+        for _ in 0..2 {
+            basis.iter().for_each(|own| subtract(&mut state.velocity, own));
+        }
+        Some(state)
     }
 
     fn scene(&self, random: &mut Random) -> Scene {
