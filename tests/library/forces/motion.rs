@@ -3,12 +3,17 @@
 use super::{outcomes, try_forces};
 use crate::support::impact::robot;
 use crate::support::mechanism::{Kind, Link, Mechanism, mechanism, motion};
+use heelstrike::contact::Placement;
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::{Defaults, State};
 use nalgebra::DVector;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use serde_json::json;
 
 const GRAVITY: f64 = 9.81;
+/// Length of the five-bar's thigh \[m\].
+const THIGH: f64 = 0.4;
 
 fn kinetic(mechanism: &Mechanism, q: &[f64], v: &DVector<f64>) -> f64 {
     0.5 * v.dot(&(mechanism.mass_matrix(q) * v))
@@ -81,4 +86,42 @@ proptest! {
             prop_assert!((change - power).abs() < 1e-9 * size * size, "{change} {power}");
         }
     }
+}
+
+/// Both ends of a loop accelerate alike, so that a step of second order keeps it closed to third order.
+#[test]
+fn loop_stays_closed_while_it_moves() {
+    let robot = robot(include_str!("../../../urdf/five_bar.urdf"));
+    let [hip, knee] = [0.6, -1.309842048791_f64];
+    // Mirrored legs whose common end stays in the middle.
+    let rate = -(1.0 + THIGH * hip.cos() / (0.5 * (hip + knee).cos()));
+    let end = |link: &str| json!({"link": link, "offset": [0.0, 0.0, -0.5]});
+    let state = json!({
+        "position": {"joints": {"left_hip": hip, "left_knee": knee, "right_hip": -hip, "right_knee": -knee}},
+        "velocity": {
+            "base": {"x": 0.3, "pitch": 0.7},
+            "joints": {"left_hip": 1.0, "left_knee": rate, "right_hip": -1.0, "right_knee": -rate}
+        },
+        "torque": {"left_hip": 2.0, "right_knee": -1.0},
+        "loops": [{"a": end("left_shank"), "b": end("right_shank")}],
+        "contacts": [],
+    });
+    let state = State::from_json(&state.to_string(), &robot, &Defaults::default()).unwrap();
+    let found = Pipeline::new(&robot, Options::default()).forces(&state).unwrap();
+    let outcome = &outcomes(&found)[0];
+    let a: Vec<f64> = outcome.velocity().collect();
+    assert!(outcome.loop_impulse.as_ref().unwrap()[0].length() > 1.0, "{outcome:?}");
+    let gap = |time: f64| {
+        let way = (0..a.len()).map(|k| state.position[k] + time * state.velocity[k] + 0.5 * time * time * a[k]);
+        let placement = Placement::of_robot(&robot, &way.collect::<Vec<_>>());
+        let at = |name: &str| {
+            let link = &robot.links[robot.link(name).unwrap()];
+            placement.world(link.body, link.point([0.0, 0.0, -0.5]))
+        };
+        at("left_shank") - at("right_shank")
+    };
+    let step = 1e-4;
+    let second = (gap(step) + gap(-step) - gap(0.0) - gap(0.0)) * (1.0 / (step * step));
+    // The next order is step^2 times the fourth power of rates of 3 rad/s; without kappa it is 0.04.
+    assert!(second.length() < 1e-5, "{second:?}");
 }

@@ -1,9 +1,15 @@
 //! Bodies that stand, slide and roll on level ground and slopes.
 
 use super::{forces, modes, outcomes};
+use crate::support::command::read;
 use crate::support::impact::robot;
+use crate::support::robots::{Contact, ROBOTS, robot_and_reference};
 use crate::support::urdf::{HINGE, POINT, body, collision, joint, link, robot as urdf};
+use heelstrike::contact::Placement;
 use heelstrike::impact::{Mode, Verdict};
+use heelstrike::robot::Base;
+use heelstrike::{Defaults, State};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 const GRAVITY: f64 = 9.81;
@@ -139,4 +145,48 @@ fn torque_holds_a_pendulum() {
     assert!(accelerations(held)[0].abs() < 1e-14);
     let expected = 2.0 * GRAVITY * 0.5 / (0.1 + 2.0 * 0.25);
     assert!((accelerations(loose)[0] - expected).abs() < 1e-13);
+}
+
+/// Whatever the contacts do, their forces and the weight move the whole: along z by m a_z.
+#[test]
+fn real_robots_bear_their_weight() {
+    let mut pressed = 0;
+    for folder in ROBOTS {
+        let (path, Reference { contacts, .. }): (String, Reference) = robot_and_reference(folder);
+        let robot = robot(&read(&path));
+        let standing = |held: Vec<&str>| {
+            let state = json!({"contacts": contacts, "friction": 0.7, "held": held});
+            (forces(&robot, &state), State::from_json(&state.to_string(), &robot, &Defaults::default()).unwrap())
+        };
+        if robot.base == Base::Fixed {
+            continue;
+        }
+        for held in [vec![], robot.joints.iter().map(|joint| joint.name.as_str()).collect()] {
+            let (found, state) = standing(held);
+            let mass: f64 = robot.bodies.iter().map(|body| body.mass).sum();
+            let height = |position: &[f64]| {
+                let placement = Placement::of_robot(&robot, position);
+                let falls = robot.bodies.iter().enumerate();
+                falls.map(|(index, body)| body.mass * placement.world(index, body.com).z).sum::<f64>()
+            };
+            for outcome in outcomes(&found) {
+                // From rest the center moves along a, to first order.
+                let step = 1e-5;
+                let way = |time: f64| -> Vec<f64> {
+                    state.position.iter().zip(outcome.velocity()).map(|(q, a)| q + time * a).collect()
+                };
+                let rising = (height(&way(step)) - height(&way(-step))) / (2.0 * step);
+                let normal: f64 = outcome.impulse.iter().map(|force| force[1]).sum();
+                let size = mass * (GRAVITY + outcome.velocity().fold(0.0, |most: f64, a| most.max(a.abs())));
+                assert!((normal - mass * GRAVITY - rising).abs() < 1e-7 * size, "{path}: {normal} {rising}");
+                pressed += usize::from(normal > 0.0);
+            }
+        }
+    }
+    assert!(pressed > 4, "{pressed}");
+}
+
+#[derive(Deserialize)]
+struct Reference {
+    contacts: Vec<Contact>,
 }
