@@ -17,6 +17,8 @@ pub struct Truth {
     pub impulse: Vec<[f64; 2]>,
     pub energy_loss: f64,
     pub friction_needed: Vec<Option<f64>>,
+    /// dq/dt after, and its scale, by coordinate; of a robot.
+    pub rates: Vec<[f64; 2]>,
 }
 
 /// Of what a tangential impulse is known, in parts of the normal one.
@@ -85,5 +87,14 @@ impl Truth {
             }
         }
         check("energy", outcome.energy_loss, self.energy_loss, 0.0)
+    }
+
+    /// The largest error of base and joint velocities, relative to their scale.
+    pub fn worst_rate(&self, outcome: &Outcome) -> f64 {
+        let named = [&outcome.base_velocity_after, &outcome.joint_velocity_after].into_iter().flatten();
+        let found: Vec<f64> = named.flat_map(|named| named.values().iter().copied()).collect();
+        let error =
+            |(is, [should, scale]): (&f64, &[f64; 2])| if is == should { 0.0 } else { (is - should).abs() / scale };
+        found.iter().zip(&self.rates).map(error).fold(0.0, f64::max)
     }
 }

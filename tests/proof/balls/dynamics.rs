@@ -26,6 +26,12 @@ pub struct Problem<N> {
     pub restitution: Vec<f64>,
     /// Of contacts that slide already, the mode that they slide on with; forces are asked for then.
     pub slides: Vec<Option<Mode>>,
+    /// dq/dt before the impact, that of a stance included.
+    pub velocity: Vec<N>,
+    /// What each row's impulse changes in dq/dt: the columns of M^-1 J^T; empty unless wanted.
+    pub responses: Vec<Vec<N>>,
+    /// (M^-1)_ii by coordinate, if wanted; zero of a braked one.
+    pub ease: Vec<N>,
     /// The precision of all numbers.
     pub bits: usize,
 }
@@ -170,6 +176,17 @@ impl<N: Number> Factor<N> {
         solved
     }
 
+    /// L^-T D^-1 b.
+    fn backward(&self, b: &[N]) -> Vec<N> {
+        let mut solved: Vec<N> = b.iter().zip(&self.rows).enumerate().map(|(k, (b, row))| b.over(&row[k])).collect();
+        for k in (0..solved.len()).rev() {
+            let below = (k + 1..solved.len()).map(|i| (&self.rows[i][k], &solved[i]));
+            let known = dot(below, self.bits);
+            solved[k] = solved[k].minus(&known);
+        }
+        solved
+    }
+
     /// a D^-1 b.
     fn product(&self, a: &[N], b: &[N]) -> N {
         let mut sum = N::new(0.0, self.bits);
@@ -194,6 +211,18 @@ pub fn problem<N: Number>(
     resting: &[bool],
     slips: Option<&[Ordering]>,
     bits: usize,
+) -> Option<Problem<N>> {
+    problem_and_rates(robot, state, resting, slips, bits, false)
+}
+
+/// As [`problem`], with what impulses do to dq/dt if `rates` are wanted.
+pub fn problem_and_rates<N: Number>(
+    robot: &Robot,
+    state: &State,
+    resting: &[bool],
+    slips: Option<&[Ordering]>,
+    bits: usize,
+    rates: bool,
 ) -> Option<Problem<N>> {
     let number = |value: f64| N::new(value, bits);
     let scene = &state.scene;
@@ -332,7 +361,21 @@ pub fn problem<N: Number>(
             delassus[j][i] = delassus[i][j].clone();
         }
     }
+    let response = |half: &Vec<N>| {
+        let mut response = vec![number(0.0); robot.dofs()];
+        free.iter().zip(factor.backward(half)).for_each(|(&coordinate, entry)| response[coordinate] = entry);
+        response
+    };
+    let mut ease = vec![number(0.0); robot.dofs()];
+    for (at, &coordinate) in free.iter().enumerate().filter(|_| rates) {
+        let unit: Vec<N> = (0..free.len()).map(|entry| number(if entry == at { 1.0 } else { 0.0 })).collect();
+        let half = factor.forward(&unit);
+        ease[coordinate] = factor.product(&half, &half);
+    }
     Some(Problem {
+        ease,
+        responses: half.iter().filter(|_| rates).map(response).collect(),
+        velocity,
         free: before.iter().zip(&half).map(|(before, row)| before.plus(&factor.product(row, &applied))).collect(),
         approach: before.into_iter().skip(1).step_by(2).collect(),
         delassus,

@@ -5,7 +5,7 @@
 //! 2^-150 of its scale is taken for zero, and the state for one on a border. Where that makes equations dependent, the
 //! impulses that are left free are eliminated from the inequalities one by one (Fourier and Motzkin).
 
-use crate::balls::dynamics::{Problem, problem};
+use crate::balls::dynamics::{Problem, problem, problem_and_rates};
 use crate::balls::linear::{Affine, Inequality, Solution, Solved, Zero, feasible, solve};
 use crate::balls::number::{Ball, Number};
 use crate::support::digits::{Truth, needed};
@@ -105,7 +105,7 @@ pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
 /// each other.
 pub fn truth(robot: &Robot, state: &State, modes: &[Mode]) -> Option<Truth> {
     let bits = BITS[BITS.len() - 1];
-    let problem = problem::<Ball>(robot, state, &[], None, bits)?;
+    let problem = problem_and_rates::<Ball>(robot, state, &[], None, bits, true)?;
     let zero = Zero { last: true };
     let [speed, mobility] =
         [largest(problem.free.iter()), largest((0..problem.free.len()).map(|i| &problem.delassus[i][i]))];
@@ -141,8 +141,18 @@ pub fn truth(robot: &Robot, state: &State, modes: &[Mode]) -> Option<Truth> {
     let push = speed / mobility;
     let pushes: Vec<[f64; 2]> = pairs(&impulse, push);
     let diagonal: Vec<Ball> = (0..resting.len()).map(|row| problem.delassus[row][row].clone()).collect();
+    // What the impulses can do to a coordinate, however they point: |(M^-1 J^T)_jr| <= sqrt((M^-1)_jj G_rr).
+    let pressed: f64 = (0..resting.len()).map(|r| impulse[r].size() * problem.delassus[r][r].size().sqrt()).sum();
+    let rates = (0..problem.velocity.len()).map(|coordinate| {
+        let parts = problem.responses.iter().zip(&impulse).map(|(response, l)| response[coordinate].times(l));
+        let before = &problem.velocity[coordinate];
+        let after = parts.fold(before.clone(), |sum, part| sum.plus(&part));
+        let scale = before.size().max(problem.ease[coordinate].size().sqrt() * pressed);
+        [number(&after, scale), scale]
+    });
     Some(Truth {
         of_robot: true,
+        rates: rates.collect(),
         mobility: pairs(&diagonal, 0.0).into_iter().map(|pair| pair.map(f64::sqrt)).collect(),
         before: pairs(&problem.free, speed),
         after: pairs(&after, speed),

@@ -80,6 +80,7 @@ fn truth(problem: &Problem, combination: &Combination) -> Truth {
         energy_loss: to_f64(&(work / ratio(-2, 1))),
         friction_needed: needed(&combination.modes, &pairs(&impulse)),
         impulse: pairs(&impulse),
+        rates: Vec::new(),
     }
 }
 
@@ -206,6 +207,7 @@ fn digits_of_a_flat_foot_are_right() {
             impulse: [0, 1].map(|own| [to_f64(&tangential[own]), to_f64(&pressed[own])]).to_vec(),
             energy_loss: to_f64(&energy),
             friction_needed: [0, 1].map(|own| Some(needed(own))).to_vec(),
+            rates: Vec::new(),
         };
         let found = foot.outcome().unwrap_or_else(|| panic!("seed {seed}: the foot does not stick"));
         let fail = |difference: String| -> ! { panic!("seed {seed}: {difference}\n{found:?}\n{truth:?}") };
