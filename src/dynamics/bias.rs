@@ -3,7 +3,7 @@
 //! ```text
 //!     M a = tau - b + J^T f          c' = J a + sigma          K a + kappa = 0
 //!
-//!     o_i = o_p - omega_p^2 r_i + 2 omega_p turned(d_i) q'_i        outward; r_i the arm from p, d_i of a prismatic joint
+//!     o_i = o_p - omega_p^2 r_i + 2 omega_p turned(d_i) q'_i     outward; r_i the arm from p, d_i of a prismatic joint
 //!     F_i = m (o_i - g) - omega_i^2 h_i,  N_i = turned(h_i) . (o_i - g)      inward as a wrench, b = S_i . wrench
 //!     sigma = o_i - omega_i^2 r                                     of a point, or of a circle's center, at r
 //! ```

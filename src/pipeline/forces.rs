@@ -4,8 +4,8 @@
 //!     M a = h + J^T f + K^T l,   K a + kappa = 0      c' = J a + sigma = c'_free + G f      h = tau - b (gravity, v v)
 //! ```
 //!
-//! With forces for impulses and accelerations for velocities it is the contact problem of an impact, with the same G and
-//! the same law, for contacts that neither approach nor leave; those that slide already keep their direction
+//! With forces for impulses and accelerations for velocities it is the contact problem of an impact, with the same G
+//! and the same law, for contacts that neither approach nor leave; those that slide already keep their direction
 //! ([`Law::Sliding`]). No theorem forces an outcome upon those: none and two are Painleve's paradoxes. Without one the
 //! velocities jump, by an impact without approach.
 
