@@ -36,7 +36,7 @@
 //! * else the one at which the point is [`Thresholds::above`] over that level; before it the foot still has the
 //!   velocity with which it strikes.
 //!
-//! With [`At::Row`] the state is the last row before that moment; without noise before the last one of these moments.
+//! With [`At::Row`] the state is the last row before that moment; without noise, before the third of these moments.
 //! With [`At::Crossing`] it is the state at the moment. In the first two cases positions are those of line and
 //! polynomial, and velocities their rates if they are differences; recorded velocities are on a line through the same
 //! rows with noise, else through the last two. In the last case:
