@@ -17,14 +17,16 @@ use super::outcome::{Analysis, OpenCombinations, Outcome, Verdict};
 use super::passes::{F64Pass, UndecidedPass};
 use super::problem::{ContactProblem, Precision, Source, escalate};
 use super::rank::{rank_and_condition, shows_regular};
+use super::relaxation::Relaxation;
 use super::slack::Scale;
+use super::survivors::{EXPLAINED, SEARCHED, Search, beneath};
 use crate::budget::is_spent;
 use crate::error::{Error, Reason, Result};
 use crate::law::{Impulse, Law, Mode};
 use std::collections::BTreeMap;
 
-/// All combinations are tried up to this many contacts (4^10 is a million).
-pub const CONTACT_LIMIT: usize = 10;
+/// The most contacts of a problem (4^16 combinations are four billions).
+pub const CONTACT_LIMIT: usize = 16;
 
 pub fn too_many_contacts(contacts: usize) -> Error {
     Error::new(Reason::TooManyContacts { contacts, limit: CONTACT_LIMIT })
@@ -38,6 +40,7 @@ pub struct Scratch {
     scale: Scale,
     bounds: LeafBounds,
     labels: Labels,
+    relaxation: Relaxation,
 }
 
 /// Every outcome of a `problem` given as matrices, whose digits are taken exactly; with the `rejections`
@@ -136,10 +139,30 @@ impl Scratch {
             undecided: Vec::new(),
             collected: Collected::new(problem, &self.scale, options, &name),
         };
-        self.tableau.visit(&mut pass);
+        let lists_all = options.rejections == ListedRejections::Everything;
+        if contacts < SEARCHED || lists_all && contacts <= EXPLAINED {
+            self.tableau.visit(&mut pass);
+        } else {
+            let without_slip = self.tableau.without_slip;
+            let mut search = Search::of((problem, source), &self.scale, &mut self.relaxation, without_slip);
+            search.add_listed(options.rejections);
+            pass.collected.effort = search.effort;
+            pass.shares = false;
+            for modes in &search.survivors {
+                pass.collected.total = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
+                self.tableau.visit_one(modes, &mut pass);
+            }
+            pass.collected.total = beneath(0, contacts) - search.unvisited;
+            if lists_all {
+                pass.collected.unlisted = pass.collected.total - search.survivors.len() as u64;
+            }
+        }
         let F64Pass { mut regular, undecided, mut collected, .. } = pass;
         let is_asked = !(options.brief || self.tableau.without_slip);
-        if is_asked && problem.laws().iter().any(|law| law.impulse(Mode::Stick) != Impulse::Free) {
+        // If all combinations are visited, so is the one in which every contact sticks, which shows it by itself.
+        let is_shown =
+            contacts < SEARCHED && problem.laws().iter().all(|law| law.impulse(Mode::Stick) == Impulse::Free);
+        if is_asked && !is_shown {
             regular = regular || shows_regular(&mut self.tableau, &mut self.bounds, contacts);
         }
         if !undecided.is_empty() {

@@ -141,7 +141,7 @@ impl Bound {
 }
 
 /// Whether products of the problem's magnitudes stay so far from underflow that all rounding is relative.
-fn is_far_from_underflow(scale: &Scale) -> bool {
+pub fn is_far_from_underflow(scale: &Scale) -> bool {
     let (least, most) = scale
         .mobility
         .iter()

@@ -16,8 +16,7 @@ use std::cmp::Ordering;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListedRejections<'a> {
     Nothing,
-    /// All, or of more than [`MOST_REJECTIONS`] those nearest to being outcomes; and the paper's section 4 for each
-    /// contact.
+    /// All of up to [`EXPLAINED`](super::survivors::EXPLAINED) contacts, and the paper's section 4 for each of them.
     Everything,
     Only(&'a [Vec<Mode>]),
 }
@@ -58,22 +57,19 @@ impl Default for AnalysisOptions<'_> {
     }
 }
 
-/// So many rejected combinations are listed, all of six contacts.
-pub const MOST_REJECTIONS: usize = 4096;
-
 /// So many undecided combinations are listed; there may be 4^n.
 const LISTED: u64 = 100;
 
 /// A combination that needs more digits, with its number among all, from 0.
 #[derive(Debug, Clone)]
 pub struct Pending {
-    pub number: usize,
+    pub number: u64,
     pub modes: Vec<Mode>,
 }
 
 /// An outcome and the combination that led to it.
 struct Numbered {
-    number: usize,
+    number: u64,
     outcome: Outcome,
 }
 
@@ -91,7 +87,7 @@ pub enum Corner {
     /// The outcome at this place, whose velocity is the only one of its modes.
     Isolated(usize),
     /// One of many velocities of a combination of this number.
-    OfFamily(usize, SingularOutcome),
+    OfFamily(u64, SingularOutcome),
 }
 
 /// All that was found, in the order of the combinations.
@@ -113,7 +109,7 @@ pub struct Collected<'a> {
     pub scale: &'a Scale,
     pub options: AnalysisOptions<'a>,
     name: &'a dyn Fn(usize) -> String,
-    pub total: usize,
+    pub total: u64,
     pub effort: Effort,
     /// Combinations that no precision decided.
     pub undecided: u64,
@@ -121,9 +117,9 @@ pub struct Collected<'a> {
     /// Combinations whose velocities form a set.
     pub pending_families: Vec<Pending>,
     /// Corners are still in the order in which they were found.
-    families: Vec<(usize, Family)>,
-    rejected: Vec<(usize, Rejection)>,
-    unlisted: u64,
+    families: Vec<(u64, Family)>,
+    rejected: Vec<(u64, Rejection)>,
+    pub unlisted: u64,
 }
 
 impl<'a> Collected<'a> {
@@ -168,7 +164,7 @@ impl<'a> Collected<'a> {
     /// Adds an outcome whose equations have one solution.
     pub fn add_regular(
         &mut self,
-        number: usize,
+        number: u64,
         modes: &[Mode],
         reading: CombinationReading,
         index: i8,
@@ -180,7 +176,7 @@ impl<'a> Collected<'a> {
         self.push(number, outcome);
     }
 
-    fn push(&mut self, number: usize, outcome: Outcome) {
+    fn push(&mut self, number: u64, outcome: Outcome) {
         self.outcomes.push(Numbered { number, outcome });
     }
 
@@ -199,28 +195,13 @@ impl<'a> Collected<'a> {
     }
 
     /// Adds a rejected combination, if it is to be listed.
-    pub fn reject(&mut self, number: usize, modes: &[Mode], rejection: impl FnOnce() -> Rejection) {
+    pub fn reject(&mut self, number: u64, modes: &[Mode], rejection: impl FnOnce() -> Rejection) {
         if self.options.rejections.contain(modes) {
             let mut rejection = rejection();
             rejection.margin = rejection.margin.filter(|margin| margin.is_finite());
             rejection.motion = rejection.motion.filter(Motion::is_finite);
             self.rejected.push((number, rejection));
-            if self.rejected.len() == 2 * MOST_REJECTIONS {
-                self.drop_far();
-            }
         }
-    }
-
-    /// Drops the rejected combinations that are farthest from being outcomes, beyond so many as are listed.
-    fn drop_far(&mut self) {
-        let Some(far @ 1..) = self.rejected.len().checked_sub(MOST_REJECTIONS) else { return };
-        let key = |(number, own): &(usize, Rejection)| (own.margin.map_or(f64::INFINITY, f64::abs), *number);
-        self.rejected.select_nth_unstable_by(MOST_REJECTIONS, |a, b| {
-            let (a, b) = (key(a), key(b));
-            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-        });
-        self.rejected.truncate(MOST_REJECTIONS);
-        self.unlisted += far as u64;
     }
 
     /// The place of the decided outcome with these modes.
@@ -269,7 +250,6 @@ impl<'a> Collected<'a> {
             self.families.sort_by_key(|(number, _)| *number);
         }
         self.outcomes.sort_by_key(|own| own.number);
-        self.drop_far();
         self.rejected.sort_by_key(|(number, _)| *number);
         Findings {
             outcomes: self.outcomes.into_iter().map(|own| own.outcome).collect(),
@@ -277,7 +257,7 @@ impl<'a> Collected<'a> {
             rejected: self.rejected.into_iter().map(|(_, rejection)| rejection).collect(),
             unlisted: self.unlisted,
             effort: self.effort,
-            visited: self.total as u64,
+            visited: self.total,
             undecided: self.undecided,
         }
     }

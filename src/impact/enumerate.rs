@@ -95,6 +95,20 @@ impl<T: Real> Tableau<T> {
         self.descend(0, 0, visitor);
     }
 
+    /// Visits one combination.
+    pub fn visit_one(&mut self, modes: &[Mode], visitor: &mut impl Visitor<T>) {
+        let mut source = 0;
+        for (contact, &mode) in modes.iter().enumerate() {
+            self.modes[contact] = mode;
+            let depth = self.decide(contact, mode, source);
+            if depth != source {
+                visitor.eliminated(self, contact, source);
+            }
+            source = depth;
+        }
+        visitor.leaf(&self.at(source));
+    }
+
     /// Eliminates all impulses of one contact after the other, as if each stuck and had friction, and calls `visit`
     /// after each. The laws that it was loaded with are lost.
     pub fn stick_all(&mut self, mut visit: impl FnMut(&Self, usize)) {

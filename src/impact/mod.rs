@@ -21,15 +21,16 @@ mod singular;
 mod combination;
 mod explanation;
 mod rank;
+mod relaxation;
+mod survivors;
 mod collected;
-mod choice;
 mod passes;
 mod families;
 pub mod analysis;
 
 pub use crate::law::{Friction, Inequality, Law, Mode};
 pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
-pub use collected::{AnalysisOptions, ListedRejections, MOST_REJECTIONS};
+pub use collected::{AnalysisOptions, ListedRejections};
 pub use inequalities::Inequalities;
 pub use outcome::{
     Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, OpenCombinations, Outcome, Rejection,

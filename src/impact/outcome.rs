@@ -260,18 +260,18 @@ pub enum ImpulseRegion {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Effort {
     /// f64 with an error bound.
-    pub bound: usize,
+    pub bound: u64,
     /// Balls around f64.
-    pub ball: usize,
+    pub ball: u64,
     /// Balls around pairs of f64.
-    pub double_double: usize,
+    pub double_double: u64,
     /// More digits than that.
-    pub precise: usize,
+    pub precise: u64,
 }
 
 impl Effort {
     /// All combinations that the laws of the contacts admit.
-    pub fn combinations(self) -> usize {
+    pub fn combinations(self) -> u64 {
         self.bound + self.ball + self.double_double + self.precise
     }
 }
@@ -301,7 +301,7 @@ pub struct Analysis {
     pub open: Option<OpenCombinations>,
     /// Lists of modes with more than one velocity; all of them are outcomes, of which `outcomes` has the corners.
     pub families: Vec<Family>,
-    /// Every other combination, if asked for; of thousands those nearest to being outcomes.
+    /// Every other combination, if asked for; of many contacts those that a search does not exclude.
     pub rejected: Vec<Rejection>,
     /// How many more were asked for.
     pub unlisted: u64,
@@ -331,9 +331,13 @@ impl Analysis {
 
     /// A note if not all rejected combinations are listed that were asked for.
     pub fn unlisted_note(&self) -> Option<String> {
-        let (listed, all) = (self.rejected.len(), self.rejected.len() as u64 + self.unlisted);
-        (self.unlisted > 0)
-            .then(|| format!("of {all} rejected combinations the {listed} nearest to being outcomes are listed"))
+        let listed = self.rejected.len();
+        (self.unlisted > 0).then(|| {
+            let others = self.unlisted;
+            format!(
+                "{listed} rejected combinations are listed; of {others} others a search shows that nothing leads there"
+            )
+        })
     }
 
     /// A note if an outcome gains energy: Newton's restitution with Coulomb friction can.

@@ -1,7 +1,6 @@
 //! The passes over all combinations: first in f64, then with more digits those that need them.
 
 use super::bound::LeafBounds;
-use super::choice::{Choice, is_possible};
 use super::collected::{Collected, Pending};
 use super::combination::{CombinationSolver, Solved};
 use super::digits::{Numbers, f64_serves};
@@ -12,17 +11,12 @@ use super::outcome::{Motion, Rejection};
 use super::problem::{ContactProblem, Precision, PrecisionTask};
 use super::reading::{F64Reader, motion};
 use crate::budget::{ROUNDS, is_spent_after};
-use crate::law::{Impulse, Mode};
+use crate::law::Impulse;
 use crate::scalar::{Ordered, Sign};
 use std::collections::BTreeMap;
 
 /// Combinations that are tried with many digits: more of many contacts take too long, and what is left is undecided.
 const PRECISE_COMBINATIONS: usize = 2_000;
-
-/// Fewer combinations than those of four contacts are solved one by one.
-const MANY: usize = 65;
-/// From so many combinations on it is first asked whether impulses lead to any of them.
-const WORTHWHILE: usize = 4;
 
 /// All combinations in f64.
 pub struct F64Pass<'a, 'm> {
@@ -82,7 +76,7 @@ impl Visitor<f64> for F64Pass<'_, '_> {
 pub struct UndecidedPass<'a, 'c> {
     pub undecided: Vec<Pending>,
     /// Solutions with outcomes that need still more digits, by the combination's number.
-    pub blunt: BTreeMap<usize, Solved>,
+    pub blunt: BTreeMap<u64, Solved>,
     pub collected: &'c mut Collected<'a>,
 }
 
@@ -113,18 +107,10 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
             None => true,
         });
         let left = if precision == Precision::Interval { PRECISE_COMBINATIONS } else { usize::MAX };
-        let choices = vec![Choice::Any; exact.contacts()];
-        Attempt { pass: self, exact, solver: CombinationSolver::new(exact), precision, left, choices }.divide(open, 0);
+        let mut attempt = Attempt { pass: self, solver: CombinationSolver::new(exact), precision, left };
+        open.into_iter().for_each(|pending| attempt.solve(pending));
         let Self { undecided, collected, .. } = self;
-        for divided in [&mut *undecided, &mut collected.pending_families] {
-            divided.sort_unstable_by_key(|pending| pending.number);
-        }
-        let effort = match precision {
-            Precision::Ball => &mut collected.effort.ball,
-            Precision::DoubleDouble => &mut collected.effort.double_double,
-            Precision::Interval => &mut collected.effort.precise,
-        };
-        *effort += before - undecided.len();
+        *precision.share(&mut collected.effort) += (before - undecided.len()) as u64;
         undecided.is_empty()
     }
 }
@@ -132,54 +118,13 @@ impl PrecisionTask for UndecidedPass<'_, '_> {
 /// One kind of numbers that decides what it can, and leaves the rest to the pass.
 struct Attempt<'p, 'a, 'c, 'e, T> {
     pass: &'p mut UndecidedPass<'a, 'c>,
-    exact: &'e ContactProblem<T>,
     solver: CombinationSolver<'e, T>,
     precision: Precision,
     /// How many combinations may still be solved.
     left: usize,
-    /// What is known of the modes of those at hand.
-    choices: Vec<Choice>,
 }
 
 impl<T: Ordered> Attempt<'_, '_, '_, '_, T> {
-    /// Decides combinations, all at once if no impulses lead to any of them: first it divides them by which contacts are
-    /// closed, then by how these move. Steps count the divisions, one of each kind per contact.
-    fn divide(&mut self, mut open: Vec<Pending>, step: usize) {
-        if step == 0 && open.len() < MANY {
-            return open.into_iter().for_each(|pending| self.solve(pending));
-        }
-        let contact = step % self.choices.len();
-        let before = self.choices[contact];
-        let parts = match before {
-            Choice::Any => vec![Choice::One(Mode::Separate), Choice::Closed],
-            Choice::Closed => [Mode::Stick, Mode::SlidePlus, Mode::SlideMinus].map(Choice::One).to_vec(),
-            Choice::One(_) => return self.divide(open, step + 1),
-        };
-        for part in parts {
-            let is_part = |pending: &Pending| part == Choice::Closed || part == Choice::One(pending.modes[contact]);
-            let (own, others) = open.into_iter().partition(is_part);
-            open = others;
-            self.choices[contact] = part;
-            self.decide(own, step + 1);
-        }
-        self.choices[contact] = before;
-    }
-
-    fn decide(&mut self, open: Vec<Pending>, step: usize) {
-        if open.len() < WORTHWHILE {
-            open.into_iter().for_each(|pending| self.solve(pending));
-        } else if !self.is_impossible(&open) {
-            self.divide(open, step);
-        }
-    }
-
-    /// Whether no impulses lead to any of these combinations; not asked if one of them is listed with its own numbers.
-    fn is_impossible(&self, open: &[Pending]) -> bool {
-        let rejections = self.pass.collected.options.rejections;
-        !open.iter().any(|pending| rejections.contain(&pending.modes))
-            && T::freeing(|| is_possible(self.exact, &self.choices)) == Ok(false)
-    }
-
     fn solve(&mut self, pending: Pending) {
         let UndecidedPass { undecided, blunt, collected } = &mut *self.pass;
         let rounds = if self.precision == Precision::Interval { ROUNDS } else { 1 };

@@ -10,6 +10,7 @@
 
 use super::{ContactProblem, Origin};
 use crate::budget::{ROUNDS, is_spent, is_spent_after};
+use crate::impact::outcome::Effort;
 use crate::planar::Pair;
 use crate::scalar::{Ball, Certified, DoubleDouble, Interval, Ordered, Trigonometry};
 
@@ -86,6 +87,17 @@ pub enum Precision {
     Ball,
     DoubleDouble,
     Interval,
+}
+
+impl Precision {
+    /// How many combinations were decided in these numbers.
+    pub fn share(self, effort: &mut Effort) -> &mut u64 {
+        match self {
+            Self::Ball => &mut effort.ball,
+            Self::DoubleDouble => &mut effort.double_double,
+            Self::Interval => &mut effort.precise,
+        }
+    }
 }
 
 /// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open or the

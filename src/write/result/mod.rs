@@ -88,7 +88,7 @@ pub struct Report<'a> {
     /// Lists of modes with many velocities, all of which are outcomes; only if there are some.
     #[serde(default, skip_serializing_if = "<[Family]>::is_empty")]
     pub families: Cow<'a, [Family]>,
-    /// Every other combination, if asked for; of thousands those nearest to being outcomes, as a note says.
+    /// Every other combination, if asked for; of many contacts those that a search does not exclude, as a note says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejected: Option<Vec<Rejected<'a>>>,
     /// Kinetic energy before the impact \[J\]; of a robot.

@@ -16,7 +16,7 @@ impl Writer<'_> {
         // Corners of families may have the same modes, and a family those of a corner.
         let families = self.report.families.iter().map(|family| &family.modes);
         let outcomes = outcomes.iter().map(|outcome| &outcome.modes).chain(families).collect::<BTreeSet<_>>().len();
-        let others = analysis.effort.combinations().saturating_sub(outcomes);
+        let others = analysis.effort.combinations().saturating_sub(outcomes as u64);
         match (others, outcomes) {
             (0, _) => return Ok(()),
             (1, 0) => write!(self.out, "\nthe other combination of modes fails")?,

@@ -1,0 +1,142 @@
+//! The combinations that are left once those are gone to which no impulses lead: a search tree of many contacts.
+//!
+//! Contacts are decided one after the other, and a beginning that the [`Relaxation`] shows to be impossible ends all
+//! combinations that begin so. Where an error bound does not show it, numbers that know their signs do, or the search
+//! goes on beneath it.
+
+use super::collected::ListedRejections;
+use super::outcome::Effort;
+use super::problem::{ContactProblem, Precision, PrecisionTask, Source, escalate};
+use super::relaxation::{Claim, Lack, Relaxation};
+use super::slack::Scale;
+use crate::budget::{ROUNDS, is_spent_after};
+use crate::law::{Law, Mode};
+use crate::scalar::Ordered;
+
+/// So many contacts are searched; the combinations of fewer are visited one by one.
+pub const SEARCHED: usize = 4;
+
+/// So many contacts have all their rejected combinations listed, each with its reason.
+pub const EXPLAINED: usize = 6;
+
+/// Finds the combinations that may be outcomes.
+pub struct Search<'a> {
+    relaxation: &'a mut Relaxation,
+    laws: &'a [Law],
+    without_slip: bool,
+    modes: Vec<Mode>,
+    /// Those that may be outcomes.
+    pub survivors: Vec<Vec<Mode>>,
+    /// Beginnings that f64 holds for impossible and has not shown to be.
+    open: Vec<Claim>,
+    /// How many combinations more digits than those of f64 have shown to be impossible.
+    pub effort: Effort,
+    /// How many combinations were not looked at.
+    pub unvisited: u64,
+}
+
+impl<'a> Search<'a> {
+    /// All combinations of a problem, `without_slip` those in which nothing slides.
+    pub fn of<S: Source>(
+        (problem, source): (&'a ContactProblem, &S),
+        scale: &Scale,
+        relaxation: &'a mut Relaxation,
+        without_slip: bool,
+    ) -> Self {
+        relaxation.load(problem, scale, source.errors());
+        let (modes, survivors, open) = (Vec::new(), Vec::new(), Vec::new());
+        let (laws, effort) = (problem.laws(), Effort::default());
+        let mut search = Self { relaxation, laws, without_slip, modes, survivors, open, effort, unvisited: 0 };
+        search.descend(&mut |relaxation, modes, lack| {
+            if relaxation.shows(modes.len() - 1, lack) { Finding::Impossible } else { Finding::Open }
+        });
+        if !search.open.is_empty() {
+            escalate(source, Precision::Ball, &mut search);
+        }
+        search.unvisited += search.open.iter().map(|claim| beneath(claim.modes.len(), problem.contacts())).sum::<u64>();
+        search.survivors.sort_unstable();
+        search
+    }
+
+    /// Adds combinations that are listed though they may be rejected.
+    pub fn add_listed(&mut self, listed: ListedRejections<'_>) {
+        if let ListedRejections::Only(chosen) = listed {
+            self.survivors.extend_from_slice(chosen);
+            self.survivors.sort_unstable();
+            self.survivors.dedup();
+        }
+    }
+
+    /// Searches beneath the modes that are decided; `shown` says what is known of a beginning that f64 holds for
+    /// impossible.
+    fn descend(&mut self, shown: &mut impl FnMut(&mut Relaxation, &[Mode], Lack) -> Finding) {
+        let contact = self.modes.len();
+        if contact == self.laws.len() {
+            return self.survivors.push(self.modes.clone());
+        }
+        if is_spent_after(1) {
+            self.unvisited += beneath(contact, self.laws.len());
+            return;
+        }
+        for mode in Mode::ALL {
+            if self.without_slip && mode.slides() {
+                continue;
+            }
+            self.modes.push(mode);
+            let lack = self.relaxation.decide(contact, mode);
+            match lack.map_or(Finding::Possible, |lack| shown(self.relaxation, &self.modes, lack)) {
+                Finding::Possible => self.descend(shown),
+                Finding::Impossible => {}
+                Finding::Open => {
+                    self.open.extend(lack.map(|lack| self.relaxation.claim(&self.modes, lack)));
+                }
+            }
+            self.modes.pop();
+        }
+    }
+}
+
+/// What is known of a beginning.
+enum Finding {
+    Possible,
+    Impossible,
+    Open,
+}
+
+/// How many combinations begin with so many decided contacts.
+pub fn beneath(decided: usize, contacts: usize) -> u64 {
+    4_u64.pow((contacts - decided) as u32)
+}
+
+impl PrecisionTask for Search<'_> {
+    fn attempt<T: Ordered>(&mut self, problem: &ContactProblem<T>, precision: Precision) -> bool {
+        // The last numbers decide; what even they leave open is left to each combination's own.
+        let is_last = precision == Precision::Interval;
+        let mut impossible = 0;
+        let mut find = |claim: &Claim| match T::freeing(|| claim.holds(problem)) {
+            Ok(true) => {
+                impossible += beneath(claim.modes.len(), problem.contacts());
+                Finding::Impossible
+            }
+            Err(_) if !is_last || is_spent_after(ROUNDS) => Finding::Open,
+            _ => Finding::Possible,
+        };
+        for claim in std::mem::take(&mut self.open) {
+            match find(&claim) {
+                Finding::Impossible => {}
+                Finding::Open => self.open.push(claim),
+                Finding::Possible => {
+                    self.modes.clear();
+                    for &mode in &claim.modes {
+                        self.relaxation.decide(self.modes.len(), mode);
+                        self.modes.push(mode);
+                    }
+                    self.descend(&mut |relaxation, modes, lack| find(&relaxation.claim(modes, lack)));
+                    self.modes.clear();
+                }
+            }
+        }
+        *precision.share(&mut self.effort) += impossible;
+        self.open.is_empty()
+    }
+}
