@@ -149,7 +149,6 @@ impl Scratch {
             pass.collected.effort = search.effort;
             pass.shares = false;
             for modes in &search.survivors {
-                pass.collected.total = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
                 self.tableau.visit_one(modes, &mut pass);
             }
             pass.collected.total = beneath(0, contacts) - search.unvisited;

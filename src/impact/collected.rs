@@ -60,7 +60,7 @@ impl Default for AnalysisOptions<'_> {
 /// So many undecided combinations are listed; there may be 4^n.
 const LISTED: u64 = 100;
 
-/// A combination that needs more digits, with its number among all, from 0.
+/// A combination that needs more digits, with its number among all 4^n, from 0: its modes as digits.
 #[derive(Debug, Clone)]
 pub struct Pending {
     pub number: u64,

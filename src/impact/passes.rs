@@ -49,11 +49,11 @@ impl Visitor<f64> for F64Pass<'_, '_> {
             && leaf.modes.iter().zip(problem.laws()).all(|(&mode, law)| law.impulse(mode) == Impulse::Free);
         let reader = F64Reader::new(problem, scale, bound);
         labels.visit(leaf.modes, problem.laws(), *shares, |modes| {
-            let number = collected.total;
             collected.total += 1;
             if reader.rejects(leaf, modes) && !options.rejections.contain(modes) {
                 return;
             }
+            let number = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
             let reading = reader.read(leaf, modes);
             let motion = || motion(leaf, modes, problem, |number| number);
             let outcome = (reading.sign == Sign::Positive).then(motion);

@@ -71,7 +71,7 @@ fn a_batch_of_hard_states_ends_as_a_whole() {
 }
 
 #[test]
-fn thousands_of_rejections_are_cut_with_a_word() {
+fn thousands_of_rejections_are_counted() {
     let contacts = 7;
     let row = |row| (0..2 * contacts).map(|column| if row == column { 2.0 } else { 0.1 }).collect::<Vec<_>>();
     let problem = json!({
@@ -81,14 +81,11 @@ fn thousands_of_rejections_are_cut_with_a_word() {
     });
     let problem = problem.to_string();
     let result = ends(&["solve", "-", "--format", "json", "--explain"], &problem).well().line();
-    let margins = each(&result["rejected"], "margin");
-    assert_eq!(margins.len(), 4096);
-    let note = "of 16383 rejected combinations the 4096 nearest to being outcomes are listed";
+    assert_eq!(list(&result["rejected"]).len(), 0);
+    let note = "0 rejected combinations are listed; of 16383 others a search shows that nothing leads there";
     assert_eq!(result["notes"], json!([note]));
-    let farthest = margins.iter().map(|margin| margin.as_f64().expect("a number").abs()).fold(0.0, f64::max);
-    assert!(farthest < 0.9, "of all it is 1, and of these {farthest}");
     let text = ends(&["solve", "-", "--explain", "--format", "text"], &problem).text();
-    assert!(text.contains("the other 16383 combinations of modes fail.\n") && text.contains(note));
+    assert!(text.contains("the other 16383 combinations of modes fail.\n") && text.contains(note), "{text}");
 }
 
 #[test]
