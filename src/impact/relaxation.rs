@@ -419,3 +419,69 @@ impl Claim {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Friction;
+    use crate::scalar::{Ball, Certified, Real};
+
+    /// One body of mass 1 on two points, one above the other's line: both strike.
+    fn struck(friction: Friction) -> ContactProblem {
+        let rows = [[1.0, 0.0, 0.5], [0.0, 1.0, -1.0], [1.0, 0.0, 0.5], [0.0, 1.0, 1.0]];
+        let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let delassus = rows.iter().flat_map(|a| rows.iter().map(|b| dot(a, b)).collect::<Vec<_>>()).collect();
+        ContactProblem::new(delassus, vec![[0.5, -1.0]; 2], vec![friction; 2], vec![0.0; 2]).unwrap()
+    }
+
+    /// Whether f64 finds these beginnings impossible, whether it shows so, and whether exact numbers do.
+    fn found(problem: &ContactProblem, modes: &[Mode]) -> Option<(bool, bool)> {
+        let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
+        scale.measure(problem, Errors::NONE);
+        relaxation.load(problem, &scale, Errors::NONE);
+        let lacks: Vec<Option<Lack>> =
+            modes.iter().enumerate().map(|(contact, &mode)| relaxation.decide(contact, mode)).collect();
+        let lack = lacks.last().copied().flatten()?;
+        let claim = relaxation.claim(modes, lack);
+        let exact = problem.map(Certified::<Ball>::from_f64);
+        Some((relaxation.shows(modes.len() - 1, lack), claim.holds(&exact).unwrap()))
+    }
+
+    #[test]
+    fn what_is_impossible_is_shown() {
+        use Mode::{Separate, SlideMinus, SlidePlus, Stick};
+        for (friction, modes, expected) in [
+            // The body falls flat: one point alone turns the other into the ground.
+            (0.3, vec![Separate, Separate], Some((true, true))),
+            (0.3, vec![Separate, Stick], Some((true, true))),
+            (0.3, vec![SlideMinus], Some((true, true))),
+            (0.3, vec![SlidePlus, SlidePlus], None),
+            (0.8, vec![Stick, Stick], None),
+            // Both points move along the ground alike, so that only strictness speaks against these: no bound shows it.
+            (0.8, vec![Stick, SlidePlus], Some((false, true))),
+            (0.8, vec![SlidePlus, Stick], Some((false, true))),
+        ] {
+            assert_eq!(found(&struck(Friction::Finite(friction)), &modes), expected, "{friction} {modes:?}");
+        }
+    }
+
+    #[test]
+    fn a_false_claim_is_seen_through() {
+        // A claim about another problem, in which the first point may well leave.
+        let problem = struck(Friction::Finite(0.3));
+        let (mut relaxation, mut scale) = (Relaxation::default(), Scale::default());
+        scale.measure(&problem, Errors::NONE);
+        relaxation.load(&problem, &scale, Errors::NONE);
+        let modes = [Mode::SlideMinus];
+        let lack = relaxation.decide(0, modes[0]).expect("it slides the other way");
+        let claim = relaxation.claim(&modes, lack);
+        let backward = ContactProblem::new(
+            (0..16).map(|entry| problem.delassus(entry / 4, entry % 4)).collect(),
+            vec![[-0.5, -1.0]; 2],
+            vec![Friction::Finite(0.3); 2],
+            vec![0.0; 2],
+        );
+        let exact = backward.unwrap().map(Certified::<Ball>::from_f64);
+        assert_eq!(claim.holds(&exact), Ok(false));
+    }
+}

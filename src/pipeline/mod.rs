@@ -62,7 +62,7 @@ pub struct Options {
     /// Parts of the computation to leave out if a scene does not need them.
     pub reductions: Reductions,
     /// How much time a state may take; what it leaves open is undecided. Without one a state takes what it takes, which
-    /// may be hours for ten contacts that are nearly dependent.
+    /// may be hours for many contacts that are nearly dependent.
     pub budget: Option<Budget>,
 }
 
