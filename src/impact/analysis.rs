@@ -9,7 +9,7 @@
 //! every sign in an answer was shown, and nothing is guessed.
 
 use super::bound::LeafBounds;
-use super::collected::{AnalysisOptions, Collected, Findings, FoundFamilies, ListedRejections};
+use super::collected::{AnalysisOptions, Collected, EXPLAINED, Findings, FoundFamilies, ListedRejections};
 use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
 use super::families::FamiliesPass;
@@ -19,10 +19,10 @@ use super::problem::{ContactProblem, Precision, Source, escalate};
 use super::rank::{rank_and_condition, shows_regular};
 use super::relaxation::Relaxation;
 use super::slack::Scale;
-use super::survivors::{EXPLAINED, SEARCHED, Search, beneath};
+use super::survivors::{SEARCHED, Search, combinations};
 use crate::budget::is_spent;
 use crate::error::{Error, Reason, Result};
-use crate::law::{Impulse, Law, Mode};
+use crate::law::{Impulse, Mode};
 use std::collections::BTreeMap;
 
 /// The most contacts of a problem (4^16 combinations are four billions).
@@ -69,8 +69,7 @@ impl Scratch {
         self.tableau.without_slip = false;
         let (findings, regular) = self.find(problem, source, options);
         let Findings { outcomes, families, rejected, unlisted, effort, visited, undecided } = findings;
-        let modes = |law: &Law| law.modes().iter().map(|group| group.len() as u64).sum::<u64>();
-        let combinations = problem.laws().iter().map(modes).product::<u64>();
+        let combinations = combinations(problem.laws());
         let undecided = undecided + (combinations - visited);
         let open = (undecided > 0).then(|| OpenCombinations { combinations, undecided, beyond_budget: is_spent() });
         let indices = || outcomes.iter().map(|outcome| outcome.index.map(i32::from)).sum();
@@ -151,7 +150,7 @@ impl Scratch {
             for modes in &search.survivors {
                 self.tableau.visit_one(modes, &mut pass);
             }
-            pass.collected.total = beneath(0, contacts) - search.unvisited;
+            pass.collected.total = combinations(problem.laws()) - search.unvisited;
             if lists_all {
                 pass.collected.unlisted = pass.collected.total - search.survivors.len() as u64;
             }

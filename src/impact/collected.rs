@@ -12,11 +12,14 @@ use crate::planar::Pair;
 use crate::reductions::Reductions;
 use std::cmp::Ordering;
 
+/// So many contacts have all their rejected combinations listed, each with its reason.
+pub const EXPLAINED: usize = 6;
+
 /// Which rejected combinations an analysis lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListedRejections<'a> {
     Nothing,
-    /// All of up to [`EXPLAINED`](super::survivors::EXPLAINED) contacts, and the paper's section 4 for each of them.
+    /// All of up to [`EXPLAINED`] contacts, and the paper's section 4 for each of them.
     Everything,
     Only(&'a [Vec<Mode>]),
 }

@@ -183,7 +183,9 @@ impl Relaxation {
         self.errors = [errors.delassus + rounding, scale.noise + rounding * largest];
         let matrix = DMatrix::from_fn(rows, rows, scaled);
         let up = DVector::from_fn(rows, |row, _| if row % 2 == 1 { 1.0 / mobility[row] } else { 0.0 });
-        let known = errors.delassus.is_finite() && is_far_from_underflow(scale);
+        let known = errors.delassus.is_finite()
+            && is_far_from_underflow(scale)
+            && problem.laws().iter().all(Law::is_dissipative);
         self.reach = if known { self.bound(&matrix, &up.unscale(up.amax()), &along) } else { f64::INFINITY };
         self.depths.resize_with(problem.contacts() + 1, Dictionary::default);
         let multipliers = self.rays.iter().map(|ray| ray.range(&self.laws[ray.contact], None));
@@ -237,7 +239,7 @@ impl Relaxation {
         let (before, after) = self.depths.split_at_mut(contact + 1);
         let dictionary = &mut after[0];
         dictionary.copy(&before[contact]);
-        for (row, sign) in [2 * contact, 2 * contact + 1].into_iter().zip(mode.velocity()) {
+        for (row, sign) in [2 * contact, 2 * contact + 1].into_iter().zip(self.laws[contact].velocity(mode)) {
             if let Some(sign) = sign {
                 dictionary.ranges[row] = Range::of(sign);
                 if sign.is_ne() {
@@ -398,7 +400,8 @@ impl Claim {
             if !self.ranges[row].admits(factor) {
                 return Ok(false);
             }
-            let moves = self.modes.get(row / 2).and_then(|mode| mode.velocity()[row % 2]);
+            let contact = row / 2;
+            let moves = self.modes.get(contact).and_then(|&mode| problem.laws()[contact].velocity(mode)[row % 2]);
             is_strict |= factor.is_ne() && moves.is_some_and(Ordering::is_ne);
         }
         for (index, ray) in rays.iter().enumerate() {

@@ -16,9 +16,6 @@ use crate::scalar::Ordered;
 /// So many contacts are searched; the combinations of fewer are visited one by one.
 pub const SEARCHED: usize = 4;
 
-/// So many contacts have all their rejected combinations listed, each with its reason.
-pub const EXPLAINED: usize = 6;
-
 /// Finds the combinations that may be outcomes.
 pub struct Search<'a> {
     relaxation: &'a mut Relaxation,
@@ -53,7 +50,7 @@ impl<'a> Search<'a> {
         if !search.open.is_empty() {
             escalate(source, Precision::Ball, &mut search);
         }
-        search.unvisited += search.open.iter().map(|claim| beneath(claim.modes.len(), problem.contacts())).sum::<u64>();
+        search.unvisited += search.open.iter().map(|claim| combinations(&laws[claim.modes.len()..])).sum::<u64>();
         search.survivors.sort_unstable();
         search
     }
@@ -75,10 +72,10 @@ impl<'a> Search<'a> {
             return self.survivors.push(self.modes.clone());
         }
         if is_spent_after(1) {
-            self.unvisited += beneath(contact, self.laws.len());
+            self.unvisited += combinations(&self.laws[contact..]);
             return;
         }
-        for mode in Mode::ALL {
+        for &mode in self.laws[contact].modes().iter().copied().flatten() {
             if self.without_slip && mode.slides() {
                 continue;
             }
@@ -103,9 +100,9 @@ enum Finding {
     Open,
 }
 
-/// How many combinations begin with so many decided contacts.
-pub fn beneath(decided: usize, contacts: usize) -> u64 {
-    4_u64.pow((contacts - decided) as u32)
+/// How many combinations of modes contacts have.
+pub fn combinations(laws: &[Law]) -> u64 {
+    laws.iter().map(|law| law.modes().iter().map(|group| group.len() as u64).sum::<u64>()).product()
 }
 
 impl PrecisionTask for Search<'_> {
@@ -115,7 +112,7 @@ impl PrecisionTask for Search<'_> {
         let mut impossible = 0;
         let mut find = |claim: &Claim| match T::freeing(|| claim.holds(problem)) {
             Ok(true) => {
-                impossible += beneath(claim.modes.len(), problem.contacts());
+                impossible += combinations(&problem.laws()[claim.modes.len()..]);
                 Finding::Impossible
             }
             Err(_) if !is_last || is_spent_after(ROUNDS) => Finding::Open,

@@ -84,6 +84,11 @@ impl<T: Real> Law<T> {
         [if matches!(self, Self::Sliding(..)) { None } else { tangential }, normal]
     }
 
+    /// Whether L . xi <= 0 in every mode. Friction on a contact that slides already does not ask for its acceleration.
+    pub fn is_dissipative(&self) -> bool {
+        !matches!(self, Self::Sliding(..))
+    }
+
     /// The mode of a closed contact whose tangential velocity has this sign.
     pub fn closed(&self, velocity: Ordering) -> Mode {
         if let Self::Sliding(_, mode) = self { *mode } else { Mode::closed(velocity) }
