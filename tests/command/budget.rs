@@ -33,12 +33,16 @@ fn feet_in_the_ground_end_within_the_budget() {
     }
 }
 
+/// A plank at rest on points that are all given: merging would leave two. Any modes come near to its zero velocities.
+fn resting_on_many_points() -> Value {
+    let points: Vec<Value> =
+        (0..12).map(|at| json!({"link": "block", "offset": [0.01 * f64::from(at), 0, -0.1]})).collect();
+    json!({"velocity": {"base": {}}, "friction": 0.5, "contacts": points})
+}
+
 #[test]
 fn a_batch_counts_what_its_budget_leaves_open() {
-    // A plank on many points at once, all of them given: merging would leave two.
-    let points: Vec<Value> =
-        (0..8).map(|at| json!({"link": "block", "offset": [0.01 * f64::from(at), 0, -0.1]})).collect();
-    let state = json!({"velocity": {"base": {"z": -1, "pitch": 1e-9}}, "friction": 0.5, "contacts": points});
+    let state = resting_on_many_points();
     let summary = place("summary.json");
     let arguments = ["batch", BLOCK, "-", "--no-reduction=merge", "--budget", "0", "--summary", &summary];
     let run = ends(&arguments, &format!("{state}\n{state}\n")).well();
@@ -49,9 +53,7 @@ fn a_batch_counts_what_its_budget_leaves_open() {
 
 #[test]
 fn a_batch_of_hard_states_ends_as_a_whole() {
-    let points: Vec<Value> =
-        (0..9).map(|at| json!({"link": "block", "offset": [0.01 * f64::from(at), 0, -0.1]})).collect();
-    let hard = json!({"velocity": {"base": {"z": -1, "pitch": 1e-9}}, "friction": 0.5, "contacts": points});
+    let hard = resting_on_many_points();
     let easy = json!({"velocity": {"base": {"z": -1}}, "friction": 0.5, "place": "lowest"});
     let states = format!("{hard}\n").repeat(12) + &easy.to_string();
     let run = |more: &[&str]| {
