@@ -58,12 +58,12 @@
 //! [`Thresholds::above`] of z = 0; if it is below, the moment is the one at which it crosses z = 0. In every case the
 //! base is then shifted along z so that the striking point is at z = 0 (a base that is fixed to the world is not).
 //!
-//! A simulation without noise can be taken at its word ([`Heights::True`]): a point touches the ground when it crosses z
-//! = 0, or stops within a millionth of the robot's size of it, after a descent of [`Thresholds::drop`] or more. The
+//! A simulation without noise can be taken at its word ([`Heights::True`]): a point touches the ground when it crosses
+//! z = 0, or stops within a millionth of the robot's size of it, after a descent of [`Thresholds::drop`] or more. The
 //! moment is where its height is zero if all coordinates go on as the polynomial through up to six rows before it, none
-//! of them from before the last touchdown or from before two rows of one time. Velocities go on as recorded; differences
-//! are replaced by the rates of the polynomial. If that does not reach the ground before the next row, time and
-//! positions lie on the line between both rows. A clip that ends aloft ends without a touchdown.
+//! of them from before the last touchdown or from before two rows of one time. Velocities go on as recorded;
+//! differences are replaced by the rates of the polynomial. If that does not reach the ground before the next row, time
+//! and positions lie on the line between both rows. A clip that ends aloft ends without a touchdown.
 //!
 //! A jump back in time starts a new clip, and so does a step more than ten times the longest of the clip so far. A
 //! refused sample is passed on in its place and left out of the motion. Touchdowns come in the order of the ends of
@@ -73,6 +73,10 @@
 mod carry;
 mod clip;
 mod points;
+mod window;
+mod noise;
+mod strike;
+mod arrival;
 mod find;
 mod rates;
 pub mod spatial;

@@ -1,0 +1,155 @@
+//! The state with which a point strikes.
+
+use super::carry::{Interpolation, Onward, on_line};
+use super::points::Points;
+use super::strike::{Strike, Way};
+use super::window::{BEFORE, Frame, Window};
+use super::{At, Heights, Sample};
+
+/// A moment between two rows is halved until it is known to 2^-44 of their distance.
+const HALVINGS: usize = 44;
+
+/// What the state at a strike is found from.
+#[derive(Debug)]
+pub(super) struct Arrival<'a, 'r, S> {
+    pub window: &'a Window<S>,
+    pub points: &'a mut Points<'r>,
+    pub at: At,
+    pub heights: Heights,
+    /// A point that is no higher above where it touches is there \[m\].
+    pub level: f64,
+}
+
+impl<S: Clone> Arrival<'_, '_, S> {
+    /// The sample at the moment of a strike; its row and source are those of the row before.
+    pub fn sample(&mut self, &Strike { point, row, height, smooth, onward }: &Strike) -> Sample<S> {
+        match (onward, height) {
+            (Way::Through(rows), height) => return self.through(point, row, rows, height),
+            (Way::Along(rows), Some(level)) => {
+                if let Some((time, rows)) = self.window.along(point, row, rows, level) {
+                    return self.on_line_of(&rows, time);
+                }
+            }
+            _ => {}
+        }
+        let mut sample = self.window.frames[row].sample.clone();
+        let first = (0..row).rfind(|&row| self.window.frames[row].before_impact).map_or(0, |impact| impact + 1);
+        let (At::Crossing, Some(height), Some(next)) = (self.at, height, self.window.frames.get(row + 1)) else {
+            if sample.rate_over[1] > self.window.frames[smooth.max(row)].sample.time {
+                self.velocity(first, smooth.max(row), sample.time, &mut sample.state.velocity);
+            }
+            return sample;
+        };
+        let onward = if smooth > row { None } else { self.onward(point, first, row, height) };
+        if let Some((onward, later)) = onward {
+            sample.time += later;
+            for (entry, own) in sample.state.position.iter_mut().enumerate() {
+                *own = onward.value(|back| self.window.frames[row - back].sample.state.position[entry], later);
+            }
+        } else {
+            let (above, below) = (self.window.height(point, row), next.places[point].z);
+            let part = if below < above { ((above - height) / (above - below)).clamp(0.0, 1.0) } else { 0.0 };
+            sample.time += part * (next.sample.time - sample.time);
+            for (own, next) in sample.state.position.iter_mut().zip(&next.sample.state.position) {
+                *own += part * (next - *own);
+            }
+        }
+        self.velocity(first, smooth, sample.time, &mut sample.state.velocity);
+        sample
+    }
+
+    /// The sample of `row`, the last one above the ground, at the moment at which `point` is down at `level`, if that
+    /// is before the next row, by the polynomial through `most` rows.
+    fn through(&mut self, point: usize, row: usize, most: usize, level: Option<f64>) -> Sample<S> {
+        let mut sample = self.window.frames[row].sample.clone();
+        let rows = self.window.smooth_rows(row, most);
+        if let (Some(level), At::Crossing) = (level, self.at) {
+            let [start, end] = [row, row + 1].map(|row| self.window.frames[row].sample.time);
+            let down = self.window.onward_position(&rows, end);
+            if self.points.at(&down)[point].z <= level + self.level {
+                let (mut above, mut below) = (start, end);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (above + below);
+                    let position = self.window.onward_position(&rows, middle);
+                    *(if self.points.at(&position)[point].z > level { &mut above } else { &mut below }) = middle;
+                }
+                (sample.time, sample.state.position) = (below, self.window.onward_position(&rows, below));
+            } else {
+                let [from, to] = [row, row + 1].map(|row| self.window.height(point, row) - level);
+                let part = (from / (from - to)).clamp(0.0, 1.0);
+                sample.time += part * (end - start);
+                let next = &self.window.frames[row + 1].sample.state.position;
+                for (own, next) in sample.state.position.iter_mut().zip(next) {
+                    *own += part * (next - *own);
+                }
+            }
+        }
+        if rows.len() > 1 {
+            let times = self.window.times(rows.iter().copied());
+            // Recorded rates may have noise that heights do not show.
+            let used = if self.heights == Heights::Recorded && !is_difference(&sample) { 2 } else { rows.len() };
+            self.carry_velocity(&rows, &Interpolation::at(sample.time, &times[..used]), &mut sample);
+        }
+        sample
+    }
+
+    /// The sample at `time` on the line through `rows`, the last one first.
+    fn on_line_of(&self, rows: &[usize], time: f64) -> Sample<S> {
+        let mut sample = self.window.frames[rows[0]].sample.clone();
+        let times = self.window.times(rows.iter().copied());
+        if self.at == At::Crossing {
+            sample.time = time;
+            let line = Interpolation::along(time, &times);
+            for (entry, own) in sample.state.position.iter_mut().enumerate() {
+                *own = line.value(|at| self.window.frames[rows[at]].sample.state.position[entry]);
+            }
+        }
+        self.carry_velocity(rows, &Interpolation::along(sample.time, &times), &mut sample);
+        sample
+    }
+
+    /// Gives a sample the velocity of `rows`: as recorded, or the rate of their positions.
+    fn carry_velocity(&self, rows: &[usize], onward: &Interpolation, sample: &mut Sample<S>) {
+        let state = |at: usize| &self.window.frames[rows[at]].sample.state;
+        let differences = is_difference(sample);
+        for (entry, own) in sample.state.velocity.iter_mut().enumerate() {
+            *own = match differences {
+                true => onward.rate(|at| state(at).position[entry]),
+                false => onward.value(|at| state(at).velocity[entry]),
+            };
+        }
+    }
+
+    /// How the motion of rows `first` to `at` goes on, and how much later the point is at `height`, if that is before
+    /// the next row.
+    fn onward(&self, point: usize, first: usize, at: usize, height: f64) -> Option<(Onward, f64)> {
+        let times = self.window.times((first..=at).rev().take(BEFORE));
+        let next = self.window.frames[at + 1].sample.time - self.window.frames[at].sample.time;
+        let onward = Onward::from(&times, next)?;
+        let later = onward.down_to(height, |back| self.window.height(point, at - back))?;
+        (later <= next).then_some((onward, later))
+    }
+
+    /// Replaces `velocity` by that at `time`, from the rows `first` to `smooth`.
+    fn velocity(&self, first: usize, smooth: usize, time: f64, velocity: &mut [f64]) {
+        let ends = self.window.frames[smooth].sample.time;
+        let middle = |sample: &Sample<S>| 0.5 * (sample.rate_over[0] + sample.rate_over[1]);
+        let mut around: [Option<&Sample<S>>; 2] = [None; 2];
+        for Frame { sample, .. } in self.window.frames.range(first..=smooth) {
+            if sample.rate_over[1] <= ends && around[1].is_none_or(|last| middle(last) < time) {
+                around = [around[1], Some(sample)];
+            }
+        }
+        let [before, Some(last)] = around else { return };
+        let before = before.unwrap_or(last);
+        for (entry, own) in velocity.iter_mut().enumerate() {
+            let value = |sample: &Sample<S>| (middle(sample), sample.state.velocity[entry]);
+            *own = on_line([value(before), value(last)], time);
+        }
+    }
+}
+
+/// Whether the velocity of a sample was taken from rows.
+fn is_difference<S>(sample: &Sample<S>) -> bool {
+    sample.rate_over[0] < sample.rate_over[1]
+}

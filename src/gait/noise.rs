@@ -1,0 +1,67 @@
+//! The noise of heights, and lines through so many rows that they show the motion in it.
+
+use super::carry::Interpolation;
+use super::window::{SMOOTH, Window};
+use crate::planar::Vector;
+
+/// The noise of a height is measured on so many rows, and a line is laid through no more.
+pub(super) const MEASURED: usize = 64;
+/// So many rows of a clip and more measure noise.
+const FEWEST: usize = 12;
+/// The median of |x| over the standard deviation of a normal x.
+const MEDIAN: f64 = 0.6745;
+
+impl<S> Window<S> {
+    /// The noise of all points, at `places` after the window's rows.
+    pub fn noise(&self, time: f64, places: &[Vector<f64>]) -> Vec<f64> {
+        let Some(first) = self.frames.len().checked_sub(SMOOTH) else { return Vec::new() };
+        let rows = || self.frames.range(first..);
+        if rows().any(|frame| frame.before_impact) {
+            return Vec::new();
+        }
+        let onward = Interpolation::at(time, &rows().map(|frame| frame.sample.time).collect::<Vec<_>>());
+        let height = |point: usize| onward.value(|at| self.frames[first + at].places[point].z);
+        let noise = onward.noise();
+        places.iter().enumerate().map(|(point, place)| (height(point) - place.z).abs() / noise).collect()
+    }
+
+    /// The standard deviation of a point's noise \[m\]: by its median, so that impacts do not count.
+    pub fn deviation(&self, point: usize) -> f64 {
+        let noise = self.frames.iter().rev().filter_map(|frame| frame.noise.get(point)).take(MEASURED);
+        let mut noise: Vec<f64> = noise.copied().collect();
+        if noise.len() < FEWEST {
+            return 0.0;
+        }
+        let middle = noise.len() / 2;
+        *noise.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN
+    }
+
+    /// How many rows, each `passed` \[s\] after the one before, show the rate of a point: two, or if their noise is
+    /// faster than `slow` \[m/s\], so many that that of the line through them is two thirds of it.
+    pub fn rows_of_rate(&self, point: usize, passed: f64, slow: f64) -> usize {
+        let noise = self.deviation(point) / (slow * passed);
+        if 2.0 * noise * noise <= 1.0 {
+            return 2;
+        }
+        // The slope of n rows has the variance 12 / (n^3 - n) of one row's.
+        let shows = |&rows: &usize| 27.0 * noise * noise <= (rows * rows * rows - rows) as f64;
+        (3..MEASURED).find(shows).unwrap_or(MEASURED)
+    }
+
+    /// The mean height of a point in the last `rows` rows.
+    pub fn mean(&self, point: usize, rows: usize) -> f64 {
+        let sum: f64 = self.frames.iter().rev().take(rows).map(|frame| frame.places[point].z).sum();
+        sum / rows as f64
+    }
+
+    /// When the line through the last `rows` rows of a point up to `row` is down at `level`, and these rows, the last
+    /// one first.
+    pub fn along(&self, point: usize, row: usize, rows: usize, level: f64) -> Option<(f64, Vec<usize>)> {
+        let before = self.smooth_rows(row, rows);
+        let times = self.times(before.iter().copied());
+        let line = Interpolation::along(times[0], &times);
+        let height = |at: usize| self.height(point, before[at]);
+        let later = (level - line.value(height)) / line.rate(height);
+        (before.len() > 2 && line.rate(height) < 0.0 && later.is_finite()).then(|| (times[0] + later, before))
+    }
+}
