@@ -27,8 +27,8 @@ use std::cmp::Ordering;
 /// The answer for one state in sustained contact.
 #[derive(Debug, Clone)]
 pub struct Forces {
-    /// As of an impact, with forces \[N\] for impulses, accelerations \[m/s^2, rad/s^2\] for velocities after it, and in
-    /// the problem accelerations without contact forces for velocities. Its contacts are those that take part, and
+    /// As of an impact, with forces \[N\] for impulses, accelerations \[m/s^2, rad/s^2\] for velocities after it, and
+    /// in the problem accelerations without contact forces for velocities. Its contacts are those that take part, and
     /// `velocity_before` is how they move.
     pub answer: Impact,
     /// How each contact slides: the sign of its velocity along t.
@@ -194,7 +194,8 @@ impl Pipeline<'_> {
         Ok(still)
     }
 
-    /// Every outcome with an impulse of an impact at contacts that neither approach nor leave; `None` if it is undecided.
+    /// Every outcome with an impulse of an impact at contacts that neither approach nor leave; `None` if it is
+    /// undecided.
     fn shock(
         &mut self,
         state: &State,

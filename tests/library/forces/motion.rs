@@ -66,7 +66,8 @@ proptest! {
         for outcome in outcomes(&found) {
             let mut moving = outcome.velocity();
             let mut own: Vec<f64> = (0..3).map(|_| moving.next().unwrap()).collect();
-            own.extend(mechanism.links.iter().skip(1).map(|link| if link.moves() { moving.next().unwrap() } else { 0.0 }));
+            let joints = mechanism.links.iter().skip(1);
+            own.extend(joints.map(|link| if link.moves() { moving.next().unwrap() } else { 0.0 }));
             let a = DVector::from_vec(own);
             let energy = |time: f64| {
                 let at: Vec<f64> = (0..q.len()).map(|k| q[k] + time * v[k] + 0.5 * time * time * a[k]).collect();
@@ -74,7 +75,8 @@ proptest! {
             };
             // A stencil of five points: errors of h^4 and of the rounding over h.
             let step = 1e-3;
-            let change = (8.0 * (energy(step) - energy(-step)) - energy(2.0 * step) + energy(-2.0 * step)) / (12.0 * step);
+            let change = 8.0 * (energy(step) - energy(-step)) - energy(2.0 * step) + energy(-2.0 * step);
+            let change = change / (12.0 * step);
             let falls = |link: &Link| {
                 let offset = [link.com[0] - link.place[0], link.com[1] - link.place[1]];
                 -GRAVITY * link.mass * (mechanism.point_rates(&q, &link.name, offset) * &v)[1]

@@ -1,5 +1,5 @@
-//! Painleve's rod: its lower end slides along the ground, p = 1 + (l/k)^2 cos(theta) (cos(theta) - mu s sin(theta)), and
-//! b_n = l omega^2 sin(theta) - g.
+//! Painleve's rod: its lower end slides along the ground, p = 1 + (l/k)^2 cos(theta) (cos(theta) - mu s sin(theta)),
+//! and b_n = l omega^2 sin(theta) - g.
 
 use super::{forces, modes, outcomes, rod};
 use crate::support::random::Random;
