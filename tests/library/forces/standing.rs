@@ -135,8 +135,8 @@ fn torque_holds_a_pendulum() {
         link("arm", 2.0, [0.5, 0.0], 0.1, ""),
         joint("hinge", HINGE, ["world", "arm"], [0.0; 2], ""),
     ];
-    let mut reduction = heelstrike::robot::Reduction::default();
-    reduction.base = Some(heelstrike::robot::Base::Fixed);
+    let fixed = Some(heelstrike::robot::Base::Fixed);
+    let reduction = heelstrike::robot::Reduction { base: fixed, ..Default::default() };
     let arm = crate::support::impact::reduced(&urdf(&elements), &reduction);
     // About the normal, forward weight turns the arm down: a positive turn.
     let held = json!({"torque": {"hinge": -2.0 * GRAVITY * 0.5}, "contacts": []});

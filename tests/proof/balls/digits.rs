@@ -25,7 +25,7 @@ fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
             let fail = |difference: String| panic!("{}: {difference}\n{}", model.name, state.to_json(&model.robot));
             truth.check(outcome, &frictions(&state)).unwrap_or_else(fail);
             let worst = truth.worst_rate(outcome);
-            assert!(worst < rate_error(&model.name), "{}: {worst:e}\n{}", model.name, state.to_json(&model.robot));
+            assert!(worst < rate_error(model.name), "{}: {worst:e}\n{}", model.name, state.to_json(&model.robot));
         } else {
             counts[1] += 1;
         }
