@@ -21,6 +21,8 @@ pub struct Merged {
     pub outer: Vec<usize>,
     /// How far the inner ones are off the straight line between the outer ones, at most \[m\]; 0 if by rounding alone.
     pub off: f64,
+    /// Whether circles of other radii were left out at the same place, which roll otherwise.
+    pub is_uneven: bool,
 }
 
 /// Leaves out of all contacts that are `together` those between the outer two, but none that `stays`; places are the
@@ -73,7 +75,8 @@ pub(super) fn merge(
             continue;
         }
         let off = inner.iter().map(|&at| off(at).abs()).filter(|&off| off > rounding).fold(0.0, f64::max);
-        merged.push(Merged { inner: inner.len(), outer, off });
+        let is_uneven = coincide && inner.iter().any(|&at| contacts[at].radius != contacts[rear].radius);
+        merged.push(Merged { inner: inner.len(), outer, off, is_uneven });
         inner.into_iter().for_each(|at| remains[at] = false);
     }
     for own in merged.iter_mut().flat_map(|merged| &mut merged.outer) {

@@ -143,8 +143,8 @@ impl Scratch {
             self.tableau.visit(&mut pass);
         } else {
             let without_slip = self.tableau.without_slip;
-            let mut search = Search::of((problem, source), &self.scale, &mut self.relaxation, without_slip);
-            search.add_listed(options.rejections);
+            let search =
+                Search::of((problem, source), &self.scale, &mut self.relaxation, without_slip, options.rejections);
             pass.collected.effort = search.effort;
             pass.shares = false;
             for modes in &search.survivors {

@@ -142,6 +142,8 @@ pub struct Relaxation {
     response: Vec<f64>,
     /// What their entries may be off by.
     errors: Pair<f64>,
+    /// Whether these errors are bounds.
+    is_known: bool,
     /// A bound of the sum of all multipliers; infinite if there is none.
     reach: f64,
     /// After the decisions on the first contacts.
@@ -158,13 +160,14 @@ impl Relaxation {
         self.rays.extend(Ray::all(problem.laws()));
         let mobility = &scale.mobility;
         let scaled = |i: usize, j: usize| problem.delassus(i, j) / (mobility[i] * mobility[j]);
-        // Scaled impulses along each ray; their entries' sizes add up to one.
+        // Scaled impulses along each ray; their entries' sizes add up to one. Friction may be so great that its products
+        // with mobilities are not.
         let along: Vec<Pair<f64>> = self
             .rays
             .iter()
             .map(|ray| {
-                let [t, n] =
-                    [ray.entries[0] * mobility[2 * ray.contact], ray.entries[1] * mobility[2 * ray.contact + 1]];
+                let greatest = ray.entries[0].abs().max(ray.entries[1].abs());
+                let [t, n] = [0, 1].map(|row| ray.entries[row] / greatest * mobility[2 * ray.contact + row]);
                 [t, n].map(|entry| entry / (t.abs() + n.abs()))
             })
             .collect();
@@ -183,10 +186,9 @@ impl Relaxation {
         self.errors = [errors.delassus + rounding, scale.noise + rounding * largest];
         let matrix = DMatrix::from_fn(rows, rows, scaled);
         let up = DVector::from_fn(rows, |row, _| if row % 2 == 1 { 1.0 / mobility[row] } else { 0.0 });
-        let known = errors.delassus.is_finite()
-            && is_far_from_underflow(scale)
-            && problem.laws().iter().all(Law::is_dissipative);
-        self.reach = if known { self.bound(&matrix, &up.unscale(up.amax()), &along) } else { f64::INFINITY };
+        self.is_known = errors.delassus.is_finite() && is_far_from_underflow(scale);
+        let is_bounded = self.is_known && problem.laws().iter().all(Law::is_dissipative);
+        self.reach = if is_bounded { self.bound(&matrix, &up.unscale(up.amax()), &along) } else { f64::INFINITY };
         self.depths.resize_with(problem.contacts() + 1, Dictionary::default);
         let multipliers = self.rays.iter().map(|ray| ray.range(&self.laws[ray.contact], None));
         let velocities = (0..rows).map(|row| if row % 2 == 1 { Range::ABOVE } else { Range::FREE });
@@ -263,7 +265,9 @@ impl Relaxation {
     pub fn shows(&mut self, contact: usize, Lack { variable, sign }: Lack) -> bool {
         let Dictionary { entries, basic, nonbasic, ranges } = &self.depths[contact + 1];
         let width = self.rays.len() + 1;
-        let Some(row) = basic.iter().position(|&other| other == variable) else { return false };
+        let Some(row) = basic.iter().position(|&other| other == variable).filter(|_| self.is_known) else {
+            return false;
+        };
         let [y, sums] = &mut self.multipliers;
         y.clear();
         y.resize(ranges.len(), 0.0);
@@ -282,6 +286,9 @@ impl Relaxation {
                 size += factor.abs();
                 sums.iter_mut().zip(response).for_each(|(sum, entry)| *sum += factor * entry);
             }
+        }
+        if sums.iter().any(|sum| !sum.is_finite()) {
+            return false;
         }
         let wrong = |(sum, range): (&f64, &Range)| match range {
             Range { above_zero: true, below_zero: false } => *sum,

@@ -21,6 +21,8 @@ pub struct Search<'a> {
     relaxation: &'a mut Relaxation,
     laws: &'a [Law],
     without_slip: bool,
+    /// Combinations that are looked at in any case.
+    listed: &'a [Vec<Mode>],
     modes: Vec<Mode>,
     /// Those that may be outcomes.
     pub survivors: Vec<Vec<Mode>>,
@@ -33,17 +35,20 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// All combinations of a problem, `without_slip` those in which nothing slides.
+    /// All combinations of a problem, `without_slip` those in which nothing slides; those of the `rejections` that are
+    /// listed by name survive.
     pub fn of<S: Source>(
         (problem, source): (&'a ContactProblem, &S),
         scale: &Scale,
         relaxation: &'a mut Relaxation,
         without_slip: bool,
+        rejections: ListedRejections<'a>,
     ) -> Self {
         relaxation.load(problem, scale, source.errors());
         let (modes, survivors, open) = (Vec::new(), Vec::new(), Vec::new());
         let (laws, effort) = (problem.laws(), Effort::default());
-        let mut search = Self { relaxation, laws, without_slip, modes, survivors, open, effort, unvisited: 0 };
+        let listed = if let ListedRejections::Only(listed) = rejections { listed } else { &[] };
+        let mut search = Self { relaxation, laws, without_slip, listed, modes, survivors, open, effort, unvisited: 0 };
         search.descend(&mut |relaxation, modes, lack| {
             if relaxation.shows(modes.len() - 1, lack) { Finding::Impossible } else { Finding::Open }
         });
@@ -53,15 +58,6 @@ impl<'a> Search<'a> {
         search.unvisited += search.open.iter().map(|claim| combinations(&laws[claim.modes.len()..])).sum::<u64>();
         search.survivors.sort_unstable();
         search
-    }
-
-    /// Adds combinations that are listed though they may be rejected.
-    pub fn add_listed(&mut self, listed: ListedRejections<'_>) {
-        if let ListedRejections::Only(chosen) = listed {
-            self.survivors.extend_from_slice(chosen);
-            self.survivors.sort_unstable();
-            self.survivors.dedup();
-        }
     }
 
     /// Searches beneath the modes that are decided; `shown` says what is known of a beginning that f64 holds for
@@ -80,7 +76,7 @@ impl<'a> Search<'a> {
                 continue;
             }
             self.modes.push(mode);
-            let lack = self.relaxation.decide(contact, mode);
+            let lack = self.relaxation.decide(contact, mode).filter(|_| !self.begins_listed());
             match lack.map_or(Finding::Possible, |lack| shown(self.relaxation, &self.modes, lack)) {
                 Finding::Possible => self.descend(shown),
                 Finding::Impossible => {}
@@ -90,6 +86,12 @@ impl<'a> Search<'a> {
             }
             self.modes.pop();
         }
+    }
+}
+
+impl Search<'_> {
+    fn begins_listed(&self) -> bool {
+        self.listed.iter().any(|own| own.len() == self.laws.len() && own.starts_with(&self.modes))
     }
 }
 

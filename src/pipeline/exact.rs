@@ -10,13 +10,15 @@ use crate::planar::Pair;
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Real, Trigonometry};
 use crate::state::Scene;
+use std::cmp::Ordering;
 
 /// What is asked about a state.
 #[derive(Debug, Clone, Copy)]
 pub enum Asked<'a> {
     Impact,
-    /// An impact at contacts that neither approach nor leave: all c_n are exactly zero.
-    Shock,
+    /// An impact at contacts that neither approach nor leave and slide so: all c_n are exactly zero, and c_t of those
+    /// that do not slide.
+    Shock(&'a [Ordering]),
     /// Accelerations in place of velocities.
     Forces(Loads<'a>),
 }
@@ -118,9 +120,10 @@ impl ExactState<'_> {
     /// G, which leaves the assembly, and both c, once all steps are done.
     pub fn collect<T: Real>(&self, assembly: &mut Assembly<T>) -> Contacts<T> {
         let speeds = assembly.workspace.contact_velocity.iter().zip(self.resting);
-        let before = speeds.map(|(&[tangential, normal], &rests)| match self.asked {
+        let before = speeds.enumerate().map(|(at, (&[tangential, normal], &rests))| match self.asked {
             _ if rests => [T::zero(); 2],
-            Asked::Shock => [tangential, T::zero()],
+            Asked::Shock(slips) if slips[at].is_eq() => [T::zero(); 2],
+            Asked::Shock(_) => [tangential, T::zero()],
             Asked::Impact | Asked::Forces(_) => [tangential, normal],
         });
         let before = before.collect::<Vec<_>>();
@@ -161,7 +164,7 @@ impl ExactState<'_> {
         assembly.delassus();
         match self.asked {
             Asked::Forces(loads) => self.collect_accelerations(&mut assembly, &velocity, loads),
-            Asked::Impact | Asked::Shock => self.collect(&mut assembly),
+            Asked::Impact | Asked::Shock(_) => self.collect(&mut assembly),
         }
     }
 }

@@ -66,6 +66,13 @@ impl Pipeline<'_> {
             return Err(Error::new(reason).at("impulse").hint("leave it out, or ask `impact`"));
         }
         let mut prepared = self.prepare(state)?;
+        if let Some(merged) = prepared.merged.iter().find(|merged| merged.is_uneven) {
+            let name = merged.outer.first().map_or("", |&at| &prepared.contacts[at].name);
+            let reason =
+                format!("circles of different radii touch the ground at one place, {name}, and roll differently");
+            let hint = "name the one that carries in contacts, or switch off the reduction merge";
+            return Err(Error::new(Reason::Inconsistent(reason)).hint(hint));
+        }
         let slips = self.take_part(state, &mut prepared)?;
         if state.uncertainty.is_some() {
             prepared.notes.push("the uncertainty is not asked about: forces are those of the given numbers".to_owned());
@@ -106,7 +113,7 @@ impl Pipeline<'_> {
         }
         let is_none = analysis.as_ref().is_some_and(|own| own.verdict == Verdict::None);
         let mut shock = match is_none {
-            true => self.shock(state, &prepared, &struck, asked),
+            true => self.shock(state, &prepared, (&struck, &slips), asked),
             false => None,
         };
 
@@ -200,12 +207,12 @@ impl Pipeline<'_> {
         &mut self,
         state: &State,
         prepared: &Prepared,
-        struck: &ContactProblem,
+        (struck, slips): (&ContactProblem, &[Ordering]),
         asked: AnalysisOptions<'_>,
     ) -> Option<Vec<Outcome>> {
         let exact = prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN);
         let (laws, restitution) = (struck.laws(), struck.restitution());
-        let source = ExactState { asked: Asked::Shock, laws, restitution, ..exact };
+        let source = ExactState { asked: Asked::Shock(slips), laws, restitution, ..exact };
         let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
         let analysis = self.scratch.analyze(struck, &source, asked).ok().filter(|own| own.open.is_none())?;
         let pushes = |outcome: &Outcome| outcome.impulse.as_flattened().iter().any(|&entry| entry != 0.0);

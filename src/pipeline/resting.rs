@@ -62,7 +62,9 @@ impl Pipeline<'_> {
             if place == Some(index) || (slow == 0.0 && foot.is_some_and(|foot| foot.body == contact.body)) {
                 continue;
             }
-            let because = self.rests(state, velocity, [slow, bound], contact, foot);
+            // Of what is known to its uncertainty no speed is taken as zero, unless that is asked for.
+            let is_strict = state.uncertainty.is_some() && self.options.resting_speed.is_none();
+            let because = if is_strict { None } else { self.rests(state, velocity, [slow, bound], contact, foot) };
             let name = &contact.name;
             if let Some(because) = because {
                 resting[index] = true;
@@ -93,7 +95,7 @@ impl Pipeline<'_> {
     ) -> Option<Because> {
         match self.options.resting_speed {
             Some(limit) => (slow < limit).then_some(Because::Option(limit)),
-            None if bound == 0.0 || state.uncertainty.is_some() => None,
+            None if bound == 0.0 => None,
             None if slow <= bound => Some(Because::Rounding(bound)),
             None => {
                 let digits = self.digits(state, velocity, slow, contact, foot);

@@ -298,3 +298,41 @@ fn a_search_finds_what_trying_all_finds() {
 fn of_four(random: &mut Random) -> Parts {
     std::iter::repeat_with(|| Parts::random(random)).find(|parts| parts.friction.len() == 4).expect("one of four")
 }
+
+/// The verdicts with and without all reasons: by trying all combinations and by a search.
+fn verdicts(problem: &ContactProblem) -> [(Verdict, bool); 2] {
+    [ListedRejections::Everything, ListedRejections::Nothing].map(|rejections| {
+        let Analysis { verdict, proven, .. } = analyze(problem, rejections).expect("few contacts");
+        (verdict, proven)
+    })
+}
+
+#[test]
+fn a_search_shows_nothing_by_numbers_that_overflow() {
+    let delassus = (0..64).map(|entry| if entry % 9 == 0 { 4.0 } else { 0.0 }).collect();
+    let friction = vec![Friction::Finite(1.7e308); 4];
+    let problem = ContactProblem::new(delassus, vec![[0.5, -1.0]; 4], friction, vec![0.0; 4]).expect("valid");
+    assert_eq!(verdicts(&problem), [(Verdict::Unique, true); 2]);
+}
+
+#[test]
+fn a_search_trusts_no_velocity_without_a_bound() {
+    // J v cancels: c_n is 0.5, and -0.5 in f64.
+    let rows: Vec<Vec<f64>> = (0..4).flat_map(|_| [vec![0.0, 1.0, 0.0, 2.0], vec![1.0; 4]]).collect();
+    let mass: Vec<Vec<f64>> = (0..4).map(|i| (0..4).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    let velocity = [1e16, 1.0, -1e16, -0.5];
+    let friction = vec![Friction::Finite(0.5); 4];
+    let problem = ContactProblem::from_dynamics(&mass, &rows, &velocity, friction, vec![0.0; 4]).expect("valid");
+    assert_eq!(verdicts(&problem), [(Verdict::NoImpact, true); 2]);
+}
+
+#[test]
+fn combinations_are_listed_only_if_they_are_some_of_the_problem() {
+    let four = of_four(&mut Random::new(3));
+    let some = four.analyze().outcomes[0].modes.clone();
+    let rejected = [Mode::Separate, Mode::Separate, Mode::Separate, Mode::Separate].to_vec();
+    let listed = [rejected.clone(), vec![Mode::Stick], vec![Mode::Stick; 5], some];
+    let analysis = four.analyze_with(ListedRejections::Only(&listed));
+    assert_eq!(analysis.rejected.iter().map(|own| own.modes.clone()).collect::<Vec<_>>(), [rejected]);
+    assert_eq!(analysis.effort.combinations(), 256);
+}

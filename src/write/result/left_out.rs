@@ -43,7 +43,7 @@ impl<'a> LeftOutRecord<'a> {
                 LeftOut::NotAsked(count) => {
                     (format!("{} of the file", shapes(*count)), "contacts are named by hand".into())
                 }
-                LeftOut::Merged(Merged { inner, outer, off }) => {
+                LeftOut::Merged(Merged { inner, outer, off, .. }) => {
                     let points =
                         if *inner == 1 { "1 contact point".to_owned() } else { format!("{inner} contact points") };
                     let off = if *off > 0.0 { format!(", at most {off:.1e} m off their line") } else { String::new() };
