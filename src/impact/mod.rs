@@ -30,7 +30,7 @@ pub mod analysis;
 
 pub use crate::law::{Friction, Inequality, Law, Mode};
 pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
-pub use collected::{AnalysisOptions, ListedRejections};
+pub use collected::{AnalysisOptions, EXPLAINED, ListedRejections};
 pub use inequalities::Inequalities;
 pub use outcome::{
     Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, OpenCombinations, Outcome, Rejection,

@@ -172,13 +172,13 @@ impl Relaxation {
             })
             .collect();
         self.response.clear();
-        for row in 0..rows {
+        for (row, own) in mobility.iter().enumerate() {
             let by_rays = self
                 .rays
                 .iter()
                 .zip(&along)
                 .map(|(ray, [t, n])| t * scaled(row, 2 * ray.contact) + n * scaled(row, 2 * ray.contact + 1));
-            self.response.extend(by_rays.chain([problem.free_row(row) / (mobility[row] * scale.speed)]));
+            self.response.extend(by_rays.chain([problem.free_row(row) / (own * scale.speed)]));
         }
         let width = self.rays.len() + 1;
         let largest = self.response.chunks_exact(width).map(|row| row[width - 1].abs()).fold(1.0, f64::max);

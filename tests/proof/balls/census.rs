@@ -222,7 +222,7 @@ fn answer_state(
     };
     let effort = analysis.effort;
     let layers = [effort.bound, effort.ball, effort.double_double, effort.precise];
-    COLUMNS[11..].iter().zip(layers).for_each(|(layer, settled)| add(layer, settled as u64));
+    COLUMNS[11..].iter().zip(layers).for_each(|(layer, settled)| add(layer, settled));
     let finding = compare(&answer, &analysis);
     let column = match finding {
         Finding::Proven => "proven",
