@@ -188,16 +188,16 @@ fn every_example_is_answered() {
 
 #[test]
 fn too_many_contacts_have_matrices_and_an_error() {
-    let contacts: Vec<Value> = (0..11).map(|k| json!({"link": "block", "offset": [k, 0, 0]})).collect();
+    let contacts: Vec<Value> = (0..17).map(|k| json!({"link": "block", "offset": [k, 0, 0]})).collect();
     let state = json!({"id": 1, "friction": 1, "contacts": contacts}).to_string();
     for command in ["impact", "batch"] {
         let arguments = [command, BLOCK, "-", "--format", "json", "--matrices"];
         let run = heelstrike_reads(&arguments, state.as_str());
         let result = run.line();
-        assert_eq!((run.status, list(&result["delassus"]).len()), (1, 22));
-        assert!(result["error"]["message"].as_str().is_some_and(|message| message.starts_with("11 contacts")));
+        assert_eq!((run.status, list(&result["delassus"]).len()), (1, 34));
+        assert!(result["error"]["message"].as_str().is_some_and(|message| message.starts_with("17 contacts")));
         assert!(result.get("verdict").is_none() && result.get("outcomes").is_none());
-        assert!(run.stderr.starts_with("error: ") && run.stderr.contains("11 contacts"), "{}", run.stderr);
+        assert!(run.stderr.starts_with("error: ") && run.stderr.contains("17 contacts"), "{}", run.stderr);
         let without = heelstrike_reads(&arguments[..5], state.as_str());
         let fields = without.line();
         let fields: Vec<&str> = fields.as_object().expect("an object").keys().map(String::as_str).collect();

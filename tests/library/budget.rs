@@ -35,7 +35,7 @@ fn analyzed(contacts: usize, budget: Option<Budget>) -> Analysis {
 
 #[test]
 fn what_a_budget_leaves_open_is_undecided() {
-    for (contacts, count) in [(6, 2), (7, 0), (7, 2)] {
+    for (contacts, count) in [(10, 2), (10, 0), (12, 2)] {
         let Analysis { verdict, proven, outcomes, open, index_sum, no_slip_consistent, .. } =
             analyzed(contacts, Some(looks(count)));
         let OpenCombinations { combinations, undecided, beyond_budget } = open.expect("something is open");
@@ -46,8 +46,6 @@ fn what_a_budget_leaves_open_is_undecided() {
         // It may be among those that are not listed.
         assert!(no_slip_consistent != Some(false) || listed == undecided);
     }
-    let Analysis { open: none, outcomes, .. } = analyzed(7, Some(looks(0)));
-    assert_eq!((none.map(|open| open.undecided), outcomes.len()), (Some(4_u64.pow(7)), 0), "nothing was looked at");
 }
 
 #[test]

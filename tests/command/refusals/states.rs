@@ -111,7 +111,7 @@ fn states_are_refused_word_for_word() {
         format!("{{\"{}\": 1}}", "x".repeat(1_000_000)),
         format!("{{\"stance\": \"{}\"}}", "é".repeat(500_000)),
         format!("{{\"friction\": 1, \"contacts\": [{}]}}", feet(200_000)),
-        format!("{{\"friction\": 1, \"contacts\": [{}]}}", feet(11)),
+        format!("{{\"friction\": 1, \"contacts\": [{}]}}", feet(17)),
     ]);
     assert_refused("states", cases, &["impact", RAMONE, "-"], |text| {
         let state = State::from_json(text, robot, &Defaults::default())?;
