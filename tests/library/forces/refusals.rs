@@ -26,3 +26,25 @@ fn wheel_on_a_corner_may_stand_but_not_roll() {
     let error = try_forces(&wheel, &rolling).unwrap_err();
     assert_eq!(error.place(), Some("ground.profile"), "{error}");
 }
+
+#[test]
+fn circles_of_other_radii_at_one_place_are_told_apart() {
+    let circles = |radii: [f64; 2]| {
+        let shapes = radii.map(|radius| collision([0.0, radius], &format!("sphere radius=\"{radius}\"")));
+        try_forces(&robot(&body(0.1, &shapes.concat())), json!({"velocity": {"base": {"pitch": 2.0}}}))
+    };
+    assert!(circles([0.3, 0.3]).is_ok());
+    let error = circles([0.3, 0.1]).unwrap_err();
+    assert!(error.to_string().contains("circles of different radii touch the ground at one place"), "{error}");
+}
+
+#[test]
+fn uncertainty_leaves_what_is_zero_to_rounding() {
+    // A rolling wheel: the velocity of its lowest point is zero but for rounding.
+    let wheel = robot(&body(0.1, &collision([0.0; 2], "sphere radius=\"0.3\"")));
+    let mut state = json!({"position": {"base": {"z": 0.3, "pitch": 0.3}},
+        "velocity": {"base": {"x": 0.3 * 0.7, "z": 1e-17, "pitch": 0.7}}});
+    let without = format!("{:?}", try_forces(&wheel, &state).unwrap().slips);
+    state["uncertainty"] = json!({"friction": 0.01});
+    assert_eq!(format!("{:?}", try_forces(&wheel, &state).unwrap().slips), without);
+}
