@@ -128,7 +128,7 @@ pub use description::Description;
 pub use error::{Error, Reason, Result};
 pub use impact::{Analysis, ContactProblem, Outcome, Rejection, Verdict, analyze};
 pub use law::{Friction, Inequality, Mode};
-pub use pipeline::{Forces, Impact, Options, Pipeline};
+pub use pipeline::{Impact, Options, Pipeline};
 pub use read::Study;
 pub use robot::Robot;
 pub use state::{Defaults, Ground, Scene, State};

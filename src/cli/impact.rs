@@ -8,7 +8,7 @@ use super::robot::RobotOptions;
 use super::stream::{SUMMED_UP, answer_all, append};
 use super::{Completion, Failure, input};
 use heelstrike::draw::robot::picture;
-use heelstrike::pipeline::Pipeline;
+use heelstrike::pipeline::{Aspect, Pipeline};
 use heelstrike::state::{Defaults, State};
 use heelstrike::write::{Report, Subject};
 use heelstrike::{Error, Reason};
@@ -24,8 +24,18 @@ Examples:
   heelstrike impact urdf/block.urdf - --friction 0.5 --format json < examples/block.json")]
 pub struct Args {
     #[command(flatten)]
+    state: StateArgs,
+    /// Also find the forces just after each outcome: what the contacts do that are still on the ground then
+    #[arg(long, help_heading = "Output")]
+    next: bool,
+}
+
+/// A robot, states of it, and what is asked about them.
+#[derive(Debug, clap::Args)]
+pub(super) struct StateArgs {
+    #[command(flatten)]
     robot: RobotOptions,
-    /// The state just before the impact, or several after each other; "-" reads standard input
+    /// The state, or several after each other; "-" reads standard input
     #[arg(value_name = "STATE.json")]
     state: PathBuf,
     #[command(flatten)]
@@ -45,46 +55,54 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Completion {
-    args.output.check_ending()?;
-    let inputs = [Some(&args.robot.robot), Some(&args.state), args.loops.loops.as_ref()];
-    args.plot.claim(&inputs, args.output.path())?;
-    let robot = args.robot.load()?;
-    let feet = args.robot.feet(&robot)?;
-    let by_input = if input::is_ndjson(&args.state) { Format::Json } else { Format::Text };
-    let format = args.output.chosen().unwrap_or(by_input);
-    let detail = args.detail.detail();
-    let mut options =
-        pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions, args.budget.budget());
-    if format == Format::Text && !detail.brief {
-        // The text sums up why the other combinations fail even if it does not list them.
-        options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
-    }
-    let defaults = Defaults {
-        loops: args.loops.load(&robot)?,
-        place_lowest: args.contacts.place_lowest(&robot)?,
-        ..args.scene.defaults()
-    };
-    let plotted = args.plot.path().is_some();
-    let several = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
-    let several = Failure::Usage(Error::new(several).at("--plot").hint("give the states one by one"));
-    let several = if plotted { Err(several) } else { Ok(()) };
-    let (mut pipeline, mut drawn, mut own_friction) = (Pipeline::new(&robot, options), None, 0);
-    let answered = answer_all("state", &args.state, format, &args.output, several, |state, palette, out| {
-        let state = State::from_json(state, &robot, &defaults)?;
-        own_friction += u64::from(defaults.friction.is_some() && state.scene.friction.default != defaults.friction);
-        let impact = pipeline.impact(&state)?;
-        if plotted {
-            drawn = picture::impact(&robot, &feet, &state, &impact);
+    args.state.run(Aspect::Impact, args.next)
+}
+
+impl StateArgs {
+    /// Answers every state, also with what happens `next`.
+    pub fn run(&self, aspect: Aspect, next: bool) -> Completion {
+        self.output.check_ending()?;
+        let inputs = [Some(&self.robot.robot), Some(&self.state), self.loops.loops.as_ref()];
+        self.plot.claim(&inputs, self.output.path())?;
+        let robot = self.robot.load()?;
+        let feet = self.robot.feet(&robot)?;
+        let by_input = if input::is_ndjson(&self.state) { Format::Json } else { Format::Text };
+        let format = self.output.chosen().unwrap_or(by_input);
+        let detail = self.detail.detail();
+        let mut options =
+            pipeline_options(&self.contacts, feet.clone(), self.detail, &self.robot.reductions, self.budget.budget());
+        if format == Format::Text && !detail.brief {
+            // The text sums up why the other combinations fail even if it does not list them.
+            options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
         }
-        let report = Report::of_state(&robot, &state, &impact, detail)?;
-        append(&report, &Subject::of_state(&robot, &state, &impact), detail, palette, out);
-        Ok(impact.analyzed().err())
-    })?;
-    note_own_friction(own_friction, "state");
-    match &drawn {
-        Some(picture) => args.plot.draw(picture, "the state has no place in the plane")?,
-        None if plotted => note("no picture is drawn of a state that is refused"),
-        None => {}
+        (options.aspect, options.next) = (aspect, next);
+        let defaults = Defaults {
+            loops: self.loops.load(&robot)?,
+            place_lowest: self.contacts.place_lowest(&robot)?,
+            ..self.scene.defaults()
+        };
+        let plotted = self.plot.path().is_some();
+        let several = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
+        let several = Failure::Usage(Error::new(several).at("--plot").hint("give the states one by one"));
+        let several = if plotted { Err(several) } else { Ok(()) };
+        let (mut pipeline, mut drawn, mut own_friction) = (Pipeline::new(&robot, options), None, 0);
+        let answered = answer_all("state", &self.state, format, &self.output, several, |state, palette, out| {
+            let state = State::from_json(state, &robot, &defaults)?;
+            own_friction += u64::from(defaults.friction.is_some() && state.scene.friction.default != defaults.friction);
+            let impact = pipeline.answer(&state)?;
+            if plotted {
+                drawn = picture::impact(&robot, &feet, &state, &impact);
+            }
+            let report = Report::of_state(&robot, &state, &impact, detail)?;
+            append(&report, &Subject::of_state(&robot, &state, &impact), detail, palette, out);
+            Ok(impact.analyzed().err())
+        })?;
+        note_own_friction(own_friction, "state");
+        match &drawn {
+            Some(picture) => self.plot.draw(picture, "the state has no place in the plane")?,
+            None if plotted => note("no picture is drawn of a state that is refused"),
+            None => {}
+        }
+        Ok(answered)
     }
-    Ok(answered)
 }

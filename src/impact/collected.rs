@@ -298,6 +298,7 @@ impl<'a> Collected<'a> {
             family: false,
             proven: self.options.prove && are_sharp,
             decided: true,
+            next: None,
         }
     }
 }

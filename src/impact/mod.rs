@@ -33,7 +33,7 @@ pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
 pub use collected::{AnalysisOptions, EXPLAINED, ListedRejections};
 pub use inequalities::Inequalities;
 pub use outcome::{
-    Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, OpenCombinations, Outcome, Rejection,
-    RejectionReason, Verdict,
+    Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Next, OpenCombinations, Outcome,
+    Rejection, RejectionReason, Verdict,
 };
 pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

@@ -74,10 +74,26 @@ pub struct Outcome {
     pub family: bool,
     /// Every sign is shown by an error bound, and every number of this list is right to 1e-10 of its scale.
     pub proven: bool,
+    /// The forces just after the impact, if asked for; of a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<Next>,
     /// False, and only then present, if no precision settled a sign, or the budget of work was spent before: the
     /// combination is neither shown nor excluded.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub decided: bool,
+}
+
+/// The forces just after an outcome, in the same pose and at the velocities after it: contacts whose normal velocity is
+/// zero then take part.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Next {
+    /// The answer in one word, as of forces.
+    pub verdict: Verdict,
+    /// Every sign is shown by an error bound, at the velocities as they are printed and with the outcome's modes.
+    pub proven: bool,
+    /// The modes of every set of forces, one per contact of the impact; null of one that has left the ground.
+    pub modes: Vec<Vec<Option<Mode>>>,
 }
 
 /// Velocities of one list of modes that are all outcomes: a convex set that is bounded.

@@ -31,6 +31,13 @@ pub struct Loads<'a> {
     pub still: &'a [bool],
 }
 
+impl<'a> Loads<'a> {
+    /// Those of a scene.
+    pub fn of(scene: &'a Scene, still: &'a [bool]) -> Self {
+        Self { gravity: scene.gravity.unwrap_or(Scene::GRAVITY), torque: &scene.torque, still }
+    }
+}
+
 /// How M^-1 is applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Elimination {

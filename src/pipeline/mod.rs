@@ -14,7 +14,7 @@ pub mod robust;
 
 use self::assembly::{Assembly, Elimination};
 use self::exact::ExactState;
-pub use self::forces::Forces;
+pub use self::forces::Sustained;
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::{NearestFoot, Unsolved};
 pub(crate) use self::resting::AT_REST;
@@ -30,12 +30,25 @@ use crate::law::{Friction, Law, Mode};
 use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
+use crate::scalar::dot;
 use crate::state::{Named, NamedContact, Scene, State, check_length};
 use std::sync::Arc;
+
+/// What is asked about a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Aspect {
+    /// The impact: [`Pipeline::impact`].
+    #[default]
+    Impact,
+    /// Sustained contact: [`Pipeline::forces`].
+    Forces,
+}
 
 /// What the pipeline is asked for in addition to the outcomes; [`Pipeline`] has an example.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
+    /// What [`Pipeline::answer`] answers.
+    pub aspect: Aspect,
     /// How far from the ground a foot may be and still touch \[m\]; by default [`CONTACT_TOLERANCE`] times the robot's
     /// size.
     pub contact_tolerance: Option<f64>,
@@ -55,6 +68,8 @@ pub struct Options {
     /// Only what a result in brief shows: without velocities of base and joints, rank and condition of G, the nearest
     /// foot, notes on it and what is left out.
     pub brief: bool,
+    /// Compute the forces just after each outcome of an impact.
+    pub next: bool,
     /// Compute [`Impact::friction_needed`].
     pub friction_needed: bool,
     /// Do without bounds of the rounding in M, J and c: faster, and nothing is proven.
@@ -73,7 +88,7 @@ pub const CONTACT_TOLERANCE: f64 = 1e-6;
 const UNKNOWN_IN_TIME: &str =
     "whether the verdict holds on the box of the uncertainty is not known within the budget of work (`budget`)";
 
-/// The answer for one state; [`Pipeline`] has an example.
+/// The answer for one state, of an impact or, with [`Sustained`], of forces; [`Pipeline`] has an example.
 #[derive(Debug, Clone)]
 pub struct Impact {
     /// Where the bodies are.
@@ -98,6 +113,8 @@ pub struct Impact {
     /// |L_t| / L_n of the contacts that stick, infinite if one sticks without a normal impulse; of several outcomes
     /// without a sliding contact that of the one that needs least. `None` if infinite friction gives none.
     pub friction_needed: Option<f64>,
+    /// What it has of forces in place of an impact.
+    pub sustained: Option<Sustained>,
     /// Whether the outcomes are the same on the box of the state's uncertainty; `None` if it has none.
     pub holds: Option<robust::Robustness>,
     /// The matrices, if asked for.
@@ -122,6 +139,7 @@ impl Impact {
             stance: prepared.stance,
             analysis: None,
             friction_needed: None,
+            sustained: None,
             holds: None,
             matrices: None,
             left_out: Vec::new(),
@@ -135,6 +153,11 @@ impl Impact {
     /// [`TooManyContacts`](crate::Reason::TooManyContacts) for more contacts than are enumerated.
     pub fn analyzed(&self) -> Result<&Analysis> {
         self.analysis.as_ref().map_or_else(|| Err(too_many_contacts(self.contacts.len())), Ok)
+    }
+
+    /// Power of the contact forces of an outcome in sustained contact \[W\].
+    pub fn power(&self, outcome: &Outcome) -> f64 {
+        dot(outcome.impulse.as_flattened(), self.velocity_before.as_flattened()) + 0.0
     }
 
     /// As [`Impact::analyzed`], without the rest.
@@ -244,7 +267,7 @@ impl<'r> Pipeline<'r> {
     /// contacts, and `NotFinite` for numbers whose products leave the range of f64.
     pub fn impact(&mut self, state: &State) -> Result<Impact> {
         within(self.options.budget, || {
-            let mut answer = self.answer(state, None)?;
+            let mut answer = self.strike(state, None)?;
             if let Some(uncertainty) = &state.uncertainty {
                 answer.impact.holds = Some(self.robustness(state, uncertainty, &answer));
                 if is_spent() && answer.impact.analysis.as_ref().is_some_and(|analysis| analysis.open.is_none()) {
@@ -255,17 +278,31 @@ impl<'r> Pipeline<'r> {
         })
     }
 
-    /// As [`Pipeline::impact`], whatever the state's uncertainty is; of all rejected combinations those with `chosen`
+    /// The impact or the forces of one state, as [`Options::aspect`] says.
+    ///
+    /// # Errors
+    /// As [`Pipeline::impact`] and [`Pipeline::forces`].
+    pub fn answer(&mut self, state: &State) -> Result<Impact> {
+        match self.options.aspect {
+            Aspect::Impact => self.impact(state),
+            Aspect::Forces => self.forces(state),
+        }
+    }
+
+    /// As [`Pipeline::answer`], whatever the state's uncertainty is; of all rejected combinations those with `chosen`
     /// modes are listed.
     ///
     /// # Errors
-    /// As [`Pipeline::impact`].
-    pub fn impact_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Impact> {
-        within(self.options.budget, || self.answer(state, Some(chosen)).map(|answer| answer.impact))
+    /// As [`Pipeline::answer`].
+    pub fn answer_explaining(&mut self, state: &State, chosen: &[Vec<Mode>]) -> Result<Impact> {
+        within(self.options.budget, || match self.options.aspect {
+            Aspect::Impact => self.strike(state, Some(chosen)).map(|answer| answer.impact),
+            Aspect::Forces => self.sustained(state, Some(chosen)),
+        })
     }
 
-    /// As [`Pipeline::impact_explaining`], if any modes are `chosen`.
-    fn answer(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
+    /// As [`Pipeline::impact`]; if modes are `chosen`, of all rejected combinations those are listed.
+    fn strike(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let mut prepared = self.prepare(state)?;
         let Prepared { velocity, applied, change, contacts, problem, .. } = &prepared;
@@ -278,6 +315,7 @@ impl<'r> Pipeline<'r> {
         let source = prepared.exact(self.robot, state, &self.assembly, errors);
         let explain = contacts.len() <= self.options.explain_up_to && !contacts.is_empty();
         let Options { no_proof, reductions, brief, .. } = self.options;
+        let next = self.options.next && chosen.is_none();
         let rejections = chosen.map_or(explain.into(), ListedRejections::Only);
         let asked = AnalysisOptions { rejections, prove: !no_proof, brief, reductions };
         // More contacts than are enumerated are all that it refuses.
@@ -293,7 +331,8 @@ impl<'r> Pipeline<'r> {
             let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
             friction_needed = self.scratch.friction_without_slip(&rough, &source, asked);
         }
-        let outcomes = analysis.as_mut().filter(|_| !brief).map_or(&mut [][..], |analysis| &mut analysis.outcomes);
+        let outcomes =
+            analysis.as_mut().filter(|_| !brief || next).map_or(&mut [][..], |analysis| &mut analysis.outcomes);
         if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
             articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
         }
@@ -303,8 +342,10 @@ impl<'r> Pipeline<'r> {
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
         prepared.notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
         prepared.notes.extend(analysis.as_ref().and_then(Analysis::unlisted_note));
-        let foot = prepared.foot.take();
         let matrices = self.options.matrices.then(|| self.matrices());
+        let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
+        prepared.notes.extend(followed.into_iter().flatten());
+        let foot = prepared.foot.take();
         let impact = Impact { left_out, matrices, analysis, friction_needed, ..Impact::of(prepared) };
         Ok(Answer { impact, foot, rows: self.assembly.rows.clone() })
     }

@@ -9,7 +9,7 @@
 use super::assembly::Assembly;
 use super::exact::{Asked, ExactState};
 use super::resting::Standing;
-use super::{CONTACT_TOLERANCE, Pipeline};
+use super::{Aspect, CONTACT_TOLERANCE, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::Plan;
 use crate::dynamics::{Arm, Constraints, Workspace, kinetic_energy};
@@ -41,6 +41,7 @@ pub struct NearestFoot {
 }
 
 /// A state that is ready to be analyzed.
+#[derive(Clone)]
 pub struct Prepared {
     pub placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
@@ -110,12 +111,16 @@ impl Pipeline<'_> {
         prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN)
     }
 
-    /// The contact problem of a state as f64 has it, without its analysis.
+    /// The contact problem of a state as f64 has it, without its analysis: of its impact or of forces, as
+    /// [`Options::aspect`](super::Options::aspect) says.
     ///
     /// # Errors
-    /// As [`Pipeline::impact`].
+    /// As [`Pipeline::answer`].
     pub fn unsolved(&mut self, state: &State) -> Result<Unsolved> {
-        let Prepared { placement, contacts, problem, .. } = self.prepare(state)?;
+        let Prepared { placement, contacts, problem, .. } = match self.options.aspect {
+            Aspect::Impact => self.prepare(state)?,
+            Aspect::Forces => self.prepare_forces(state)?,
+        };
         let clearance = match state.scene.contacts {
             Some(_) => Vec::new(),
             None => {

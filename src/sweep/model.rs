@@ -111,7 +111,7 @@ impl<'a> Solver<'a> {
 
     /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
     pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
-        let impact = self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, modes))?;
+        let impact = self.at(point, |_, state, pipeline| pipeline.answer_explaining(&state, modes))?;
         let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
         Ok((names, impact.into_analysis()?))
     }
@@ -131,7 +131,7 @@ impl<'a> Solver<'a> {
 
     /// The regime of a point.
     pub fn regime(&mut self, point: &[f64]) -> Arc<Regime> {
-        let regime = Regime::of(&self.at(point, |_, state, pipeline| pipeline.impact_explaining(&state, &[])));
+        let regime = Regime::of(&self.at(point, |_, state, pipeline| pipeline.answer_explaining(&state, &[])));
         if let Some(known) = self.known.iter().find(|known| ***known == regime) {
             return Arc::clone(known);
         }

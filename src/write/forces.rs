@@ -1,45 +1,21 @@
 //! The result of a state in sustained contact: a [`Report`] with forces and accelerations under their own names.
 
-use super::Detail;
-use super::result::{ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report, Sustained};
+use super::result::{ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report};
+use crate::Mode;
 use crate::impact::outcome::Range;
 use crate::impact::{Border, Family, OpenCombinations, Outcome, Verdict};
-use crate::pipeline::Forces;
 use crate::planar::{Pair, Vector};
-use crate::state::{Named, Scene, State};
-use crate::{Mode, Robot};
+use crate::state::Named;
 use serde::Serialize;
 use serde_json::Value;
 use std::cmp::Ordering;
 
-impl<'a> Report<'a> {
-    /// The result of a state in sustained contact, with forces for impulses and accelerations for velocities after an
-    /// impact. It is written under their names.
-    ///
-    /// # Errors
-    /// As [`Report::of_state`].
-    pub fn of_forces(robot: &'a Robot, state: &'a State, forces: &'a Forces, detail: Detail) -> crate::Result<Self> {
-        let scene = &state.scene;
-        let torque = |joint: usize| scene.torque.get(joint).copied().unwrap_or(0.0);
-        let joints = robot.joints.iter().enumerate();
-        let mut report = Self::of_state(robot, state, &forces.answer, detail)?;
-        if let Some(last) = report.left_out.as_mut().and_then(|all| all.last_mut()) {
-            *last = LeftOutRecord { what: "joint limits".into(), why: "do not enter the forces".into() };
-        }
-        let sustained = Sustained {
-            forces,
-            gravity: scene.gravity.unwrap_or(Scene::GRAVITY),
-            torque: joints.map(|(index, joint)| (joint.name.clone(), torque(index))).collect(),
-        };
-        Ok(Self { sustained: Some(sustained), ..report })
-    }
-
+impl Report<'_> {
     /// The result under the names of forces; `None` of an impact.
-    pub fn forces(&self) -> Option<ForcesRecord<'_>> {
-        let sustained = self.sustained.as_ref()?;
-        let forces = sustained.forces;
-        let contacts = self.contacts.iter().zip(&forces.slips).zip(forces.answer.problem.velocity_free());
-        let outcomes = self.outcomes.as_ref().map(|all| all.iter().map(|own| ForceOutcome::of(own, forces)).collect());
+    pub fn forces<'s>(&'s self) -> Option<ForcesRecord<'s>> {
+        let (sustained, of) = self.sustained?;
+        let contacts = self.contacts.iter().zip(&sustained.slips).zip(of.problem.velocity_free());
+        let outcomes = |all: &'s [Outcome]| all.iter().map(|own| ForceOutcome::of(own, of.power(own))).collect();
         let rejected = self.rejected.as_ref().map(|all| all.iter().map(RejectedForces::of).collect());
         Some(ForcesRecord {
             id: self.id.as_deref(),
@@ -48,8 +24,8 @@ impl<'a> Report<'a> {
             proven: self.proven,
             contacts: contacts.map(|((own, &slip), &free)| SustainedContact::of(own, slip, free)).collect(),
             nearest: self.nearest.as_ref(),
-            outcomes,
-            shock: (self.verdict == Some(Verdict::None)).then_some(forces.shock.as_deref()),
+            outcomes: self.outcomes.as_deref().map(outcomes),
+            shock: (self.verdict == Some(Verdict::None)).then_some(sustained.shock.as_deref()),
             open: self.open,
             families: &self.families,
             rejected,
@@ -234,7 +210,7 @@ pub struct ForceOutcome<'a> {
 }
 
 impl<'a> ForceOutcome<'a> {
-    fn of(own: &'a Outcome, forces: &Forces) -> Self {
+    fn of(own: &'a Outcome, power: f64) -> Self {
         Self {
             modes: &own.modes,
             force: &own.impulse,
@@ -242,7 +218,7 @@ impl<'a> ForceOutcome<'a> {
             base_acceleration: own.base_velocity_after.as_ref(),
             joint_acceleration: own.joint_velocity_after.as_ref(),
             loop_force: own.loop_impulse.as_deref(),
-            power: forces.power(own),
+            power,
             force_unique: own.impulse_unique,
             force_range: own.impulse_range.as_deref(),
             friction_needed: &own.friction_needed,

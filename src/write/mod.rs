@@ -4,7 +4,7 @@
 //!     Impact (a robot's state)  ──┐
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result
 //!                                         └────> text for people        text
-//!     Forces (sustained contact) ───> Report ──> the same under other names   forces.rs
+//!     Impact (sustained contact) ───> Report ──> the same under other names   forces.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Survey, Map ──> Regions, samples ──> JSON, CSV, text              sweep
 //!     CaseStudy, Comparison ──> Accuracy ──> JSON, text                 accuracy
@@ -32,7 +32,7 @@ pub use inspection::Inspection;
 pub(crate) use result::short_id;
 pub use result::{
     Brief, CarriedFields, ContactInBrief, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, OutcomeInBrief,
-    Refused, Rejected, Report, Sustained, Touchdown,
+    Refused, Rejected, Report, Touchdown,
 };
 pub use state::{CounterexampleRecord, HoldsRecord};
 pub use text::{Subject, text};

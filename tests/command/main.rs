@@ -82,6 +82,7 @@ fn texts_are_kept_word_for_word() {
         ("impact_uncertain", &["impact", RAMONE, "examples/ramone_measured.json", "--brief"], ""),
         ("impact_brief", &["impact", BLOCK, "examples/block_jams.json", "--brief"], ""),
         ("impact_in_the_air", &["impact", BLOCK, "-"], IN_THE_AIR),
+        ("impact_next", &["impact", WALKER, "examples/minimalistic.json", "--next", "--brief"], ""),
     ] {
         insta::assert_snapshot!(name, heelstrike_reads(arguments, stdin).text());
     }

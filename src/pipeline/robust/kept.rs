@@ -50,7 +50,7 @@ impl KeptContacts<'_, '_> {
     /// The proven answer at a point, if its contacts are the same.
     fn analysis(&mut self, point: &[f64]) -> Option<(State, Analysis)> {
         let state = self.at(point);
-        let Answer { impact, foot, rows } = self.pipeline.answer(&state, None).ok()?;
+        let Answer { impact, foot, rows } = self.pipeline.strike(&state, Some(&[])).ok()?;
         let same_foot = match (&foot, &self.answer.foot) {
             (Some(one), Some(other)) => {
                 let far = one.center - other.center;

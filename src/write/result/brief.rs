@@ -6,7 +6,7 @@ use super::id::Id;
 use super::recorded::Touchdown;
 use super::refused::ErrorObject;
 use crate::Mode;
-use crate::impact::{Family, OpenCombinations, Outcome, Verdict};
+use crate::impact::{Family, Next, OpenCombinations, Outcome, Verdict};
 use crate::write::state::HoldsRecord;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -22,6 +22,9 @@ pub struct OutcomeInBrief<'a> {
     pub index: Option<i8>,
     /// The smallest slack of the outcome's inequalities, free of units.
     pub margin: Option<f64>,
+    /// The forces just after it, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<Cow<'a, Next>>,
     /// False, and only then present, if the combination is neither shown nor excluded.
     #[serde(default = "yes", skip_serializing_if = "bool::clone")]
     pub decided: bool,
@@ -78,9 +81,9 @@ impl Report<'_> {
     /// The same in brief.
     pub fn brief(&self) -> Brief<'_> {
         let outcomes = self.outcomes.as_deref().unwrap_or_default().iter();
-        let in_brief = outcomes.map(|&Outcome { ref modes, index, margin, decided, .. }| {
+        let in_brief = outcomes.map(|&Outcome { ref modes, index, margin, decided, ref next, .. }| {
             let modes = Cow::Borrowed(&**modes);
-            OutcomeInBrief { modes, index, margin, decided }
+            OutcomeInBrief { modes, index, margin, next: next.as_ref().map(Cow::Borrowed), decided }
         });
         let contacts = self.contacts.iter().map(|contact| ContactInBrief { name: Cow::Borrowed(&*contact.name) });
         Brief {

@@ -20,8 +20,11 @@ pub struct LeftOutRecord<'a> {
 impl<'a> LeftOutRecord<'a> {
     /// All that was left out of `robot`, and of every robot.
     pub fn all(robot: &'a Robot) -> Vec<Self> {
-        let what = Cow::Borrowed("gravity, Coriolis forces, joint limits");
-        let never = Self { what, why: Cow::Borrowed("do not enter an impact") };
+        Self::of_robot(robot, ("gravity, Coriolis forces, joint limits", "do not enter an impact"))
+    }
+
+    fn of_robot(robot: &'a Robot, (what, why): (&'static str, &'static str)) -> Vec<Self> {
+        let never = Self { what: Cow::Borrowed(what), why: Cow::Borrowed(why) };
         let of_robot =
             robot.left_out.iter().map(|left| Self { what: Cow::Borrowed(&left.what), why: Cow::Borrowed(&left.why) });
         of_robot.chain([never]).collect()
@@ -55,6 +58,10 @@ impl<'a> LeftOutRecord<'a> {
             };
             Self { what: Cow::Owned(what), why }
         });
-        of_scene.chain(Self::all(robot)).collect()
+        let of_robot = match impact.sustained {
+            None => Self::all(robot),
+            Some(_) => Self::of_robot(robot, ("joint limits", "do not enter the forces")),
+        };
+        of_scene.chain(of_robot).collect()
     }
 }

@@ -22,10 +22,10 @@ pub use refused::{ErrorObject, Refused};
 use super::Detail;
 use super::state::{CounterexampleRecord, HoldsRecord};
 use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Rejection, Verdict};
-use crate::pipeline::{Forces, Impact, NearestFoot};
+use crate::pipeline::{Impact, NearestFoot, Sustained};
 use crate::planar::Pair;
 use crate::read::Problem;
-use crate::state::{Named, State};
+use crate::state::State;
 use crate::{Mode, Robot};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -138,17 +138,9 @@ pub struct Report<'a> {
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
-    /// Of a state in sustained contact: what it has in addition; it is written under other names then.
+    /// Of a state in sustained contact: its answer, which is written under other names.
     #[serde(skip)]
-    pub sustained: Option<Sustained<'a>>,
-}
-
-/// What a report of forces has in addition to one of an impact.
-#[derive(Debug, Clone)]
-pub struct Sustained<'a> {
-    pub(super) forces: &'a Forces,
-    pub(super) gravity: f64,
-    pub(super) torque: Named,
+    pub sustained: Option<(&'a Sustained, &'a Impact)>,
 }
 
 /// A combination of modes that is not an outcome.
@@ -194,6 +186,7 @@ impl<'a> Report<'a> {
             nearest,
             kinetic_energy: Some(impact.kinetic_energy),
             left_out: (!detail.brief).then(|| LeftOutRecord::of_impact(robot, impact)),
+            sustained: impact.sustained.as_ref().map(|own| (own, impact)),
             holds: impact.holds.as_ref().map(HoldsRecord::from),
             counterexample: impact.holds.as_ref().and_then(|holds| CounterexampleRecord::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),

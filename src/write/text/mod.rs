@@ -12,7 +12,7 @@ use crate::error::visible;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
-use crate::{Forces, Friction, Impact, Mode, Robot, State};
+use crate::{Friction, Impact, Mode, Robot, State};
 use std::fmt::Write;
 
 /// The room for what was left out, in characters.
@@ -65,18 +65,19 @@ pub struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
+        let is_of_forces = impact.sustained.is_some();
+        let unit = |(_, unit): (_, &'static str)| match (is_of_forces, unit.starts_with('m')) {
+            (false, _) => unit,
+            (true, true) => "m/s^2",
+            (true, false) => "rad/s^2",
+        };
         Self {
             title: words::titled(&robot.name, &state.id),
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
-            units: robot.units().map(|(_, unit)| unit).collect(),
+            units: robot.units().map(unit).collect(),
             analysis: impact.analysis.as_ref(),
-            wording: &IMPACT,
+            wording: if is_of_forces { &FORCES } else { &IMPACT },
         }
-    }
-
-    pub fn of_forces(robot: &Robot, state: &State, forces: &'a Forces) -> Self {
-        let units = robot.units().map(|(_, unit)| if unit.starts_with('m') { "m/s^2" } else { "rad/s^2" });
-        Self { units: units.collect(), wording: &FORCES, ..Self::of_state(robot, state, &forces.answer) }
     }
 
     pub fn of_problem(problem: &Problem, analysis: &'a Analysis) -> Self {
@@ -125,6 +126,7 @@ impl<'w> Writer<'w> {
                 let family = if outcome.family { ", a corner of a family" } else { "" };
                 let words = self.in_words(&outcome.modes);
                 writeln!(self.out, "  {}  {words}{border}{family}{}", at + 1, graded(outcome))?;
+                self.next(outcome)?;
             }
             return self.families();
         }
@@ -154,7 +156,7 @@ impl<'w> Writer<'w> {
 
     /// Accelerations of contacts without forces; none of an impact.
     fn free(&self) -> impl Iterator<Item = &'w Pair<f64>> + use<'w> {
-        self.report.sustained.iter().flat_map(|own| own.forces.answer.problem.velocity_free())
+        self.report.sustained.iter().flat_map(|(_, of)| of.problem.velocity_free())
     }
 
     fn contacts(&mut self) {
@@ -206,7 +208,7 @@ impl<'w> Writer<'w> {
     /// What happens without finite forces.
     fn no_forces(&self) -> String {
         let sentence = "No forces are consistent: velocities jump, by an impact without approach";
-        match self.report.sustained.as_ref().and_then(|own| own.forces.shock.as_deref()) {
+        match self.report.sustained.and_then(|(own, _)| own.shock.as_deref()) {
             None => format!("{sentence} whose outcomes are not decided."),
             Some([]) => format!("{sentence}, for which there is none with an impulse, either."),
             Some(shock) => {

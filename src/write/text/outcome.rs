@@ -2,7 +2,7 @@
 
 use super::Writer;
 use crate::error::visible;
-use crate::impact::Family;
+use crate::impact::{Family, Next, Verdict};
 use crate::planar::Vector;
 use crate::write::Palette;
 use crate::write::table::{Table, number, scale};
@@ -40,7 +40,27 @@ impl Writer<'_> {
         if outcome.family {
             self.out.push_str("  a corner of a family\n");
         }
-        self.border(outcome)
+        self.border(outcome)?;
+        self.next(outcome)
+    }
+
+    /// What happens just after it.
+    pub(super) fn next(&mut self, outcome: &Outcome) -> std::fmt::Result {
+        let Some(Next { verdict, proven, modes }) = &outcome.next else { return Ok(()) };
+        let clauses = |modes: &Vec<Option<Mode>>| {
+            let closed = self.names().zip(modes).filter_map(|(name, mode)| Some((name, (*mode)?)));
+            let (names, modes): (Vec<&str>, Vec<Mode>) = closed.unzip();
+            if modes.is_empty() { "nothing touches the ground".to_owned() } else { words::modes(names, &modes) }
+        };
+        let all: Vec<String> = modes.iter().map(clauses).collect();
+        let words = match (verdict, &all[..]) {
+            (Verdict::None, _) => "no forces are consistent: velocities jump".to_owned(),
+            (Verdict::Undecided, []) => "undecided".to_owned(),
+            (Verdict::Undecided, all) => format!("undecided; {}", all.join("; or ")),
+            (_, all) => all.join("; or "),
+        };
+        let grade = if *proven { "" } else { " (not proven)" };
+        writeln!(self.out, "  just after: {words}{grade}")
     }
 
     /// One line per family: its modes and the numbers of the outcomes at its corners.
@@ -76,13 +96,12 @@ impl Writer<'_> {
     }
 
     fn energy(&mut self, outcome: &Outcome) -> std::fmt::Result {
-        if let Some(sustained) = &self.report.sustained {
-            let power = sustained.forces.power(outcome);
+        if let Some((_, of)) = self.report.sustained {
+            let power = of.power(outcome);
             let verb = if power > 0.0 { "gives" } else { "takes" };
-            return if power == 0.0 {
-                Ok(())
-            } else {
-                writeln!(self.out, "  the ground {verb} {} W", number(power.abs()))
+            return match power {
+                0.0 => Ok(()),
+                power => writeln!(self.out, "  the ground {verb} {} W", number(power.abs())),
             };
         }
         let loss = outcome.energy_loss;

@@ -222,6 +222,8 @@ fn every_form_of_result_is_valid() {
         (&ramone[..], ""),
         (&[&ramone[..], &["--explain", "--matrices"]].concat(), ""),
         (&[&ramone[..], &["--brief"]].concat(), ""),
+        (&[&ramone[..], &["--next"]].concat(), ""),
+        (&[&ramone[..], &["--next", "--brief"]].concat(), ""),
         (&measured, ""),
         (&[&measured[..], &["--brief"]].concat(), ""),
         (&["impact", "urdf/ramone.urdf", "-"], &badly),
@@ -235,7 +237,7 @@ fn every_form_of_result_is_valid() {
     ] {
         seen += assert_valid(&schema::result(), arguments, input, "").len();
     }
-    assert_eq!(seen, 15);
+    assert_eq!(seen, 17);
 }
 
 #[test]

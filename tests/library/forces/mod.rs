@@ -1,33 +1,25 @@
 //! Forces and accelerations in sustained contact: laws of mechanics that hold for every robot, and cases by hand.
 
 mod motion;
+mod next;
 mod painleve;
 mod refusals;
 mod standing;
 
-use crate::support::impact::robot;
-use heelstrike::impact::{Mode, Outcome};
-use heelstrike::pipeline::{Forces, Options, Pipeline};
-use heelstrike::{Defaults, Friction, Result, Robot, State};
+use crate::support::impact::{modes, outcomes, robot};
+use heelstrike::pipeline::{Options, Pipeline};
+use heelstrike::{Defaults, Friction, Impact, Result, Robot, State};
 use std::fmt::Display;
 
 /// The answer to a state in JSON; friction is 0.5 unless it is given.
-fn try_forces(robot: &Robot, state: impl Display) -> Result<Forces> {
+fn try_forces(robot: &Robot, state: impl Display) -> Result<Impact> {
     let defaults = Defaults { friction: Some(Friction::Finite(0.5)), ..Defaults::default() };
     let state = State::from_json(&state.to_string(), robot, &defaults)?;
     Pipeline::new(robot, Options { matrices: true, ..Options::default() }).forces(&state)
 }
 
-fn forces(robot: &Robot, state: impl Display) -> Forces {
+fn forces(robot: &Robot, state: impl Display) -> Impact {
     try_forces(robot, &state).unwrap_or_else(|error| panic!("{error}\n{state}"))
-}
-
-fn outcomes(forces: &Forces) -> &[Outcome] {
-    forces.answer.analysis.as_ref().map_or(&[], |analysis| &analysis.outcomes)
-}
-
-fn modes(forces: &Forces) -> Vec<Vec<Mode>> {
-    outcomes(forces).iter().map(|outcome| outcome.modes.clone()).collect()
 }
 
 /// A rigid body of mass m and moment m k^2 whose frame is at its center, without shapes.

@@ -3,8 +3,8 @@
 
 use super::{forces, modes, outcomes, rod};
 use crate::support::random::Random;
+use heelstrike::Impact;
 use heelstrike::impact::{Mode, Verdict};
-use heelstrike::pipeline::Forces;
 use serde_json::json;
 
 const GRAVITY: f64 = 9.81;
@@ -39,7 +39,7 @@ impl Rod {
         [-self.half * cos, -self.half * sin]
     }
 
-    fn forces(&self) -> Forces {
+    fn forces(&self) -> Impact {
         let [x, z] = self.end();
         let rod = rod(2.0, self.square);
         forces(
@@ -80,7 +80,7 @@ fn rod_is_in_the_region_of_its_closed_form() {
             slide: between(-1.0, 1.0),
         };
         let found = rod.forces();
-        let analysis = found.answer.analysis.as_ref().unwrap();
+        let analysis = found.analysis.as_ref().unwrap();
         let on = vec![if rod.slide < 0.0 { Mode::SlideMinus } else { Mode::SlidePlus }];
         let (pressure, lift) = (rod.pressure(), rod.lift());
         if pressure.abs() < 1e-6 || lift.abs() < 1e-6 {
@@ -101,7 +101,8 @@ fn rod_is_in_the_region_of_its_closed_form() {
             assert_eq!(outcome.velocity_after[0][1], 0.0);
         }
         // Without finite forces an impact without approach ends the slide.
-        let shock = found.shock.as_ref().map(|shock| shock.iter().map(|own| own.modes.clone()).collect::<Vec<_>>());
+        let shock =
+            found.sustained.unwrap().shock.map(|shock| shock.iter().map(|own| own.modes.clone()).collect::<Vec<_>>());
         assert_eq!(shock, (verdict == Verdict::None).then(|| vec![vec![Mode::Stick]]), "{rod:?}");
     }
     assert!(seen.iter().all(|&count| count > 10), "{seen:?}");

@@ -56,7 +56,7 @@ fn block_on_a_slope_holds_within_its_friction() {
     ] {
         let found = forces(&block(), on_slope(slope, velocity));
         assert_eq!(modes(&found), [[expected; 2]], "{slope} {velocity}");
-        assert!(found.answer.analysis.as_ref().unwrap().proven);
+        assert!(found.analysis.as_ref().unwrap().proven);
         let outcome = &outcomes(&found)[0];
         let (down, press) = (2.0 * GRAVITY * slope.sin(), 2.0 * GRAVITY * slope.cos());
         let [t, n] = [0, 1].map(|row| outcome.impulse[0][row] + outcome.impulse[1][row]);
@@ -110,7 +110,7 @@ fn wheel_rolls_down_a_slope() {
 #[test]
 fn nothing_touches_in_mid_flight() {
     let found = forces(&block(), json!({"position": {"base": {"z": 3.0}}, "gravity": 1.62}));
-    assert_eq!(found.answer.analysis.as_ref().unwrap().verdict, Verdict::NoContact);
+    assert_eq!(found.analysis.as_ref().unwrap().verdict, Verdict::NoContact);
     assert_eq!(outcomes(&found)[0].velocity().collect::<Vec<_>>(), [0.0, -1.62, 0.0]);
 }
 
@@ -121,9 +121,9 @@ fn heel_leaves_while_the_foot_turns() {
         &block(),
         json!({"position": {"base": {"x": 0.0, "z": 0.2}}, "velocity": {"base": {"x": 0.2, "z": 0.1, "pitch": 1.0}}}),
     );
-    let names: Vec<&str> = found.answer.contacts.iter().map(|own| own.name.as_str()).collect();
+    let names: Vec<&str> = found.contacts.iter().map(|own| own.name.as_str()).collect();
     assert_eq!((names, modes(&found).len()), (vec!["body/1"], 1));
-    let notes = found.answer.notes.join("\n");
+    let notes = found.notes.join("\n");
     assert!(notes.contains("body/0 leaves the ground"), "{notes}");
 }
 

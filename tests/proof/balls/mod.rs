@@ -74,11 +74,12 @@ fn forces_are_decided_rightly() {
     for model in models.iter().cycle().take(states) {
         let Some(state) = model.sustained(&mut random) else { continue };
         let Ok(found) = Pipeline::new(&model.robot, Options::default()).forces(&state) else { continue };
-        let analysis = found.answer.analysis.as_ref().expect("few contacts");
-        if Some(found.slips.len()) != state.scene.contacts.as_ref().map(Vec::len) {
+        let analysis = found.analysis.as_ref().expect("few contacts");
+        let slips = &found.sustained.as_ref().expect("of forces").slips;
+        if Some(slips.len()) != state.scene.contacts.as_ref().map(Vec::len) {
             continue;
         }
-        let Some(answer) = oracle::forces(&model.robot, &state, &found.slips) else { continue };
+        let Some(answer) = oracle::forces(&model.robot, &state, slips) else { continue };
         let finding = compare(&answer, analysis);
         assert!(
             matches!(finding, Finding::Proven | Finding::Unknown),
@@ -87,8 +88,8 @@ fn forces_are_decided_rightly() {
             state.to_json(&model.robot)
         );
         // In f64 it has lost the condition of M: straight legs leave eight digits.
-        let own = found.answer.problem.velocity_free().as_flattened();
-        let exact = dynamics::problem::<Ball>(&model.robot, &state, &[], Some(&found.slips), 256).expect("a regular M");
+        let own = found.problem.velocity_free().as_flattened();
+        let exact = dynamics::problem::<Ball>(&model.robot, &state, &[], Some(slips), 256).expect("a regular M");
         let size = own.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
         for (&own, exact) in own.iter().zip(&exact.free) {
             let off = exact.minus(&Ball::new(own, 256)).size();
@@ -96,7 +97,7 @@ fn forces_are_decided_rightly() {
         }
         seen += 1;
         proven += usize::from(finding == Finding::Proven);
-        sliding += usize::from(found.slips.iter().any(|slip| slip.is_ne()));
+        sliding += usize::from(slips.iter().any(|slip| slip.is_ne()));
         verdicts[answer.outcomes.len().min(2)] += 1;
     }
     println!("{seen} states, {proven} proven, {sliding} sliding; none, unique, ambiguous: {verdicts:?}");

@@ -1,0 +1,72 @@
+//! Forces just after an impact.
+
+use crate::support::impact::{modes, robot, try_impact};
+use crate::support::random::Random;
+use heelstrike::impact::{Next, Verdict};
+use heelstrike::law::Mode::{self, Separate, SlidePlus, Stick};
+use heelstrike::{Defaults, Options, Pipeline, Robot, State};
+use serde_json::{Value, json};
+use std::fmt::Display;
+
+const DISC: &str = r#"<robot name="disc"><link name="disc">
+    <inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="1"/></inertial>
+    <collision><geometry><sphere radius="0.5"/></geometry></collision></link></robot>"#;
+
+fn nexts(robot: &Robot, state: impl Display) -> Vec<Next> {
+    let found = try_impact(robot, Options { next: true, ..Options::default() }, &state);
+    let outcomes = found.unwrap_or_else(|error| panic!("{error}\n{state}")).into_analysis().unwrap().outcomes;
+    outcomes.into_iter().filter_map(|outcome| outcome.next).collect()
+}
+
+/// A disc that falls with a spin: it sticks or slides on under its weight, and with a bounce it is in the air.
+#[test]
+fn disc_rests_slides_or_bounces() {
+    let disc = robot(DISC);
+    let after = |change: Value, impulse: Value| {
+        let mut state =
+            json!({"position": {"base": {"z": 0.5}}, "velocity": {"base": {"z": -1.0}}, "impulse": impulse});
+        state.as_object_mut().unwrap().extend(change.as_object().unwrap().clone());
+        nexts(&disc, state)
+    };
+    let none = json!([]);
+    let expected = |verdict, modes: Option<Mode>| vec![Next { verdict, proven: true, modes: vec![vec![modes]] }];
+    assert_eq!(after(json!({}), none.clone()), expected(Verdict::Unique, Some(Stick)));
+    assert_eq!(after(json!({"gravity": -1.0}), none.clone()), expected(Verdict::Unique, Some(Separate)));
+    assert_eq!(after(json!({"restitution": 0.5}), none), expected(Verdict::NoContact, None));
+    // Pushed along the ground so hard that friction does not stop it.
+    let push = json!([{"link": "disc", "offset": [0, 0, 0], "vector": [40, 0]}]);
+    assert_eq!(after(json!({}), push), expected(Verdict::Unique, Some(SlidePlus)));
+}
+
+/// The same answer as to a state with the velocities after the impact.
+#[test]
+fn next_is_forces_at_the_velocities_after() {
+    let walker = robot(include_str!("../../../urdf/minimalistic.urdf"));
+    let (mut random, mut verdicts) = (Random::new(11), [0; 3]);
+    for case in 0..300 {
+        let mut between = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let (pitch, both) = (between(-1.3, 1.3), case % 3 > 0);
+        let hip = if both { 2.0 * pitch } else { between(-1.0, 1.0) };
+        let state = json!({
+            "position": {"base": {"pitch": pitch}, "joints": {"hip": hip}},
+            "velocity": {"base": {"x": between(-1.0, 1.0), "z": between(-2.0, 0.0), "pitch": between(-2.0, 2.0)},
+                         "joints": {"hip": between(-2.0, 2.0)}},
+            "friction": if case % 4 == 0 { json!("infinite") } else { json!(between(0.0, 3.0)) },
+            "restitution": if case % 5 == 0 { 0.4 } else { 0.0 }, "place": "lowest", "torque": {"hip": between(-5.0, 5.0)},
+        });
+        let state = State::from_json(&state.to_string(), &walker, &Defaults::default()).unwrap();
+        let found = Pipeline::new(&walker, Options { next: true, ..Options::default() }).impact(&state).unwrap();
+        for outcome in &found.analysis.as_ref().unwrap().outcomes {
+            let next = outcome.next.as_ref().unwrap();
+            let velocity = outcome.velocity().collect();
+            let after = State { velocity, position: state.position.clone(), ..state.clone() };
+            let options = Options { resting_speed: Some(1e-9), ..Options::default() };
+            let forces = Pipeline::new(&walker, options).forces(&after).unwrap();
+            let analysis = forces.analysis.as_ref().unwrap();
+            let kept: Vec<Vec<Mode>> = next.modes.iter().map(|own| own.iter().copied().flatten().collect()).collect();
+            assert_eq!((next.verdict, next.proven, kept), (analysis.verdict, true, modes(&forces)), "{outcome:?}");
+            verdicts[next.modes.len().min(2)] += 1;
+        }
+    }
+    assert!(verdicts.iter().all(|&count| count > 2), "{verdicts:?}");
+}
