@@ -63,6 +63,8 @@ pub struct RoundingBounds {
     pub delassus: f64,
     /// Of c, per contact \[m/s\].
     pub velocity: Vec<Pair<f64>>,
+    /// Of the base's velocity, if a stance gives it \[m/s\]; else zero.
+    pub base: f64,
     /// What part of the bounds of G and of c the errors are likely to reach; see `LIKELY`.
     pub likely: [f64; 2],
     bodies: Vec<Stretched>,
@@ -139,6 +141,7 @@ impl RoundingBounds {
         // The bound of G counts every column, and doubles twice.
         self.likely = [LIKELY / (4.0 * plan.columns().max(1) as f64 * roundings), LIKELY / roundings];
         let base = stance.map_or(0.0, |foot| 2.0 * self.speed(plan, foot, velocity));
+        self.base = eta * base;
         bounds.clear();
         bounds.extend(self.contacts.iter().enumerate().map(|(index, &contact)| {
             let bound = if rests(index) { 0.0 } else { eta * (self.speed(plan, contact, velocity) + base) };

@@ -31,9 +31,11 @@ pub mod analysis;
 pub use crate::law::{Friction, Inequality, Law, Mode};
 pub use analysis::{CONTACT_LIMIT, Scratch, analyze, too_many_contacts};
 pub use collected::{AnalysisOptions, EXPLAINED, ListedRejections};
+pub(crate) use digits::{DIGITS, is_known};
 pub use inequalities::Inequalities;
 pub use outcome::{
     Analysis, AtZero, Border, Effort, Explanation, Family, ImpulseRegion, Motion, Next, OpenCombinations, Outcome,
     Rejection, RejectionReason, Verdict,
 };
+pub(crate) use problem::{Attempt, Precision, climb};
 pub use problem::{ContactProblem, Errors, MATRIX_LIMIT, Source};

@@ -198,6 +198,15 @@ impl<T: Real> Assembly<T> {
         }
     }
 
+    /// Adds to `velocity` what an impulse [tangential, normal] at a contact point does to it, by a way that is prepared.
+    pub fn strike(&mut self, by: Elimination, contact: usize, [tangential, normal]: Pair<T>, velocity: &mut [T]) {
+        let point = self.points[contact];
+        let axes = point.axes();
+        let vector = axes[0] * tangential + axes[1] * normal;
+        let arm = point.arm(&self.workspace);
+        self.push(by, PointImpulse { body: point.body, arm, vector }, velocity);
+    }
+
     /// What the applied impulses change in v, by themselves.
     pub fn applied(&mut self, robot: &Robot, scene: &Scene, coordinates: usize) -> Vec<T> {
         let mut change = vec![T::zero(); coordinates];

@@ -6,7 +6,7 @@ use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{Closed, Constraints, ContactPoint};
 use crate::impact::{ContactProblem, Errors, Source};
 use crate::law::Law;
-use crate::planar::Pair;
+use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::{Ordered, Real, Trigonometry};
 use crate::state::Scene;
@@ -150,8 +150,47 @@ impl ExactState<'_> {
         Contacts { delassus: std::mem::take(&mut assembly.workspace.delassus), before: free.clone(), free }
     }
 
-    /// G and c for these `inputs`, with the contacts as they are; accelerations in place of c, if forces are asked for.
-    pub fn contacts<T: Trigonometry>(&self, inputs: Inputs<T>) -> Contacts<T> {
+    fn inputs<T: Trigonometry>(&self) -> Inputs<T> {
+        let (plan, mut configuration) = (self.plan(), Configuration::default());
+        configuration.set(&plan, self.position);
+        let velocity = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
+        Inputs { configuration, velocity, plan }
+    }
+
+    /// What the velocity by coordinate after these impulses of the contacts is the sum of, or the acceleration under
+    /// these forces: that without them, what applied impulses change, what each contact changes. The same of the
+    /// impulses of loops follows, [x, z] each.
+    pub fn response<T: Trigonometry>(&self, impulse: &[Pair<f64>]) -> Vec<Vec<T>> {
+        let (mut assembly, velocity) = self.assembled(self.inputs());
+        let rest = vec![T::zero(); velocity.len()];
+        let with = |mut rates: Vec<T>, loops: Vec<Vector<T>>| {
+            rates.extend(loops.into_iter().flat_map(Vector::components));
+            rates
+        };
+        let mut parts = match self.asked {
+            Asked::Forces(loads) => {
+                let (mut acceleration, drifts) = assembly.acceleration(&velocity, loads);
+                let loops = assembly.answer_to(Closed::Acceleration(&drifts), &mut acceleration);
+                vec![with(acceleration, loops)]
+            }
+            Asked::Impact | Asked::Shock(_) => {
+                let mut change = assembly.applied(self.robot, self.scene, velocity.len());
+                let loops = assembly.answer(&mut change);
+                let still = vec![Vector::zero(); loops.len()];
+                vec![with(velocity, still), with(change, loops)]
+            }
+        };
+        for (contact, own) in impulse.iter().enumerate() {
+            let mut change = rest.clone();
+            assembly.strike(assembly.elimination, contact, own.map(T::from_f64), &mut change);
+            let loops = assembly.answer(&mut change);
+            parts.push(with(change, loops));
+        }
+        parts
+    }
+
+    /// M^-1, J and c for these `inputs`, with the contacts as they are, and the velocity that keeps stance and loops.
+    fn assembled<T: Trigonometry>(&self, inputs: Inputs<T>) -> (Assembly<T>, Vec<T>) {
         let Inputs { configuration, mut velocity, plan } = inputs;
         let mut assembly = self.assembly(plan);
         assembly.configuration = configuration;
@@ -161,6 +200,12 @@ impl ExactState<'_> {
         self.place(&mut assembly);
         assembly.factorize();
         self.contact_velocities(&mut assembly, &mut velocity);
+        (assembly, velocity)
+    }
+
+    /// G and c for these `inputs`, with the contacts as they are; accelerations in place of c, if forces are asked for.
+    pub fn contacts<T: Trigonometry>(&self, inputs: Inputs<T>) -> Contacts<T> {
+        let (mut assembly, velocity) = self.assembled(inputs);
         assembly.delassus();
         match self.asked {
             Asked::Forces(loads) => self.collect_accelerations(&mut assembly, &velocity, loads),
@@ -171,10 +216,7 @@ impl ExactState<'_> {
 
 impl Source for ExactState<'_> {
     fn problem<T: Ordered + Trigonometry>(&self) -> ContactProblem<T> {
-        let (plan, mut configuration) = (self.plan(), Configuration::default());
-        configuration.set(&plan, self.position);
-        let velocity = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
-        let Contacts { delassus, before, free } = self.contacts(Inputs { configuration, velocity, plan });
+        let Contacts { delassus, before, free } = self.contacts(self.inputs());
         ContactProblem::of_parts(delassus, before, free, self.laws.to_vec(), self.restitution.to_vec())
     }
 

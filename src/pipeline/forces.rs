@@ -11,11 +11,12 @@
 
 use super::assembly::Loads;
 use super::exact::{Asked, ExactState};
+use super::response::Unstruck;
 use super::resting::Standing;
 use super::{Impact, Pipeline, Prepared};
 use crate::budget::within;
 use crate::contact::{Contact, Surface, level};
-use crate::dynamics::{Closed, ContactPoint, articulated_inertias};
+use crate::dynamics::{Closed, ContactPoint};
 use crate::error::{Error, Reason, Result, finite};
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Next, Outcome, Verdict};
 use crate::law::{Law, Mode};
@@ -86,16 +87,18 @@ impl Pipeline<'_> {
             false => None,
         };
 
-        if !self.assembly.plan.has_mimics && !prepared.contacts.is_empty() {
-            articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
-        }
         let rest = vec![0.0; free.len()];
-        let brief = self.options.brief;
-        for outcome in analysis.iter_mut().flat_map(|own| &mut own.outcomes).filter(|_| !brief) {
-            self.set_velocity(outcome, &rest, &unclosed, &free, Closed::Acceleration(&drifts));
+        if let Some(analysis) = analysis.as_mut().filter(|_| !self.options.brief) {
+            let unstruck =
+                Unstruck { before: &rest, applied: &unclosed, free: &free, closed: Closed::Acceleration(&drifts) };
+            let asked = Asked::Forces(Loads::of(scene, &still));
+            self.respond(&mut analysis.outcomes, (state, &prepared, asked), unstruck);
+            analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
-        for outcome in shock.iter_mut().flatten() {
-            self.set_velocity(outcome, &prepared.velocity, &rest, &prepared.velocity, Closed::Change);
+        if let Some(shock) = &mut shock {
+            let before = &prepared.velocity;
+            let unstruck = Unstruck { before, applied: &rest, free: before, closed: Closed::Change };
+            self.respond(shock, (state, &prepared, Asked::Shock(&slips)), unstruck);
         }
         let left_out = if self.options.brief { Vec::new() } else { self.left_out(scene, &prepared) };
         let torque = |joint: usize| scene.torque.get(joint).copied().unwrap_or(0.0);

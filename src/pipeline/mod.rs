@@ -9,19 +9,21 @@ pub(crate) mod exact;
 mod loops;
 mod resting;
 mod prepared;
+mod response;
 mod forces;
 pub mod robust;
 
-use self::assembly::{Assembly, Elimination};
-use self::exact::ExactState;
+use self::assembly::Assembly;
+use self::exact::{Asked, ExactState};
 pub use self::forces::Sustained;
 pub(crate) use self::prepared::Prepared;
 pub use self::prepared::{NearestFoot, Unsolved};
+use self::response::Unstruck;
 pub(crate) use self::resting::AT_REST;
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
-use crate::dynamics::{Closed, ContactPoint, PointImpulse, RoundingBounds, articulated_inertias};
+use crate::dynamics::{Closed, ContactPoint, RoundingBounds};
 use crate::error::{Result, finite};
 use crate::impact::{
     Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, Verdict, too_many_contacts,
@@ -31,7 +33,7 @@ use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
 use crate::scalar::dot;
-use crate::state::{Named, NamedContact, Scene, State, check_length};
+use crate::state::{NamedContact, Scene, State, check_length};
 use std::sync::Arc;
 
 /// What is asked about a state.
@@ -331,13 +333,10 @@ impl<'r> Pipeline<'r> {
             let asked = AnalysisOptions { rejections: ListedRejections::Nothing, ..asked };
             friction_needed = self.scratch.friction_without_slip(&rough, &source, asked);
         }
-        let outcomes =
-            analysis.as_mut().filter(|_| !brief || next).map_or(&mut [][..], |analysis| &mut analysis.outcomes);
-        if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
-            articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
-        }
-        for outcome in outcomes {
-            self.set_velocity(outcome, velocity, applied, &free, Closed::Change);
+        if let Some(analysis) = analysis.as_mut().filter(|_| !brief || next) {
+            let unstruck = Unstruck { before: velocity, applied, free: &free, closed: Closed::Change };
+            self.respond(&mut analysis.outcomes, (state, &prepared, Asked::Impact), unstruck);
+            analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
         let left_out = if brief { Vec::new() } else { self.left_out(scene, &prepared) };
         prepared.notes.extend(analysis.as_ref().and_then(Analysis::energy_note));
@@ -386,45 +385,6 @@ impl<'r> Pipeline<'r> {
         self.assembly.delassus();
         let before = self.assembly.workspace.contact_velocity.clone();
         ContactProblem::new(self.assembly.workspace.delassus.clone(), before, friction, restitution)
-    }
-
-    /// Completes an outcome by the robot's velocity after it and the impulses of the loops. `applied` is what applied
-    /// impulses alone change in the `velocity` before, `free` the velocity after them without contact impulses; of
-    /// forces, what the loads alone give and the acceleration with which the loops stay `closed`.
-    fn set_velocity(
-        &mut self,
-        outcome: &mut Outcome,
-        velocity: &[f64],
-        applied: &[f64],
-        free: &[f64],
-        closed: Closed<'_, f64>,
-    ) {
-        let constrained = self.assembly.is_constrained();
-        let mut after = self.struck(if constrained { applied } else { free }, &outcome.impulse);
-        if constrained {
-            let impulse = self.assembly.answer_to(closed, &mut after);
-            outcome.loop_impulse = (!impulse.is_empty()).then_some(impulse);
-            after.iter_mut().zip(velocity).for_each(|(after, before)| *after += before);
-        }
-        let [base, joints] = &self.names;
-        let rates = after.split_off(base.len());
-        outcome.base_velocity_after = (!base.is_empty()).then(|| Named::new(base.clone(), after));
-        outcome.joint_velocity_after = Some(Named::new(joints.clone(), rates));
-    }
-
-    /// The velocity by coordinate after contact impulses, from the one without them: by articulated bodies, which keep
-    /// thirteen digits and more in chains where M = L^T D L leaves eight, unless there are mimic joints.
-    fn struck(&mut self, free: &[f64], impulse: &[Pair<f64>]) -> Vec<f64> {
-        let mut after = free.to_vec();
-        let by = if self.assembly.plan.has_mimics { Elimination::Ltl } else { Elimination::ArticulatedBodies };
-        for (index, &[tangential, normal]) in impulse.iter().enumerate() {
-            let point = self.assembly.points[index];
-            let axes = point.axes();
-            let vector = axes[0] * tangential + axes[1] * normal;
-            let arm = point.arm(&self.assembly.workspace);
-            self.assembly.push(by, PointImpulse { body: point.body, arm, vector }, &mut after);
-        }
-        after
     }
 
     /// Lists what a scene leaves out.

@@ -100,21 +100,43 @@ impl Precision {
     }
 }
 
+/// A question that numbers with more digits may answer, whatever they are computed from.
+pub trait Attempt {
+    /// Tries to answer it in these numbers; true if nothing is left open.
+    fn attempt<T: Ordered + Trigonometry>(&mut self, precision: Precision) -> bool;
+}
+
+/// A question about the problem of a source.
+struct Posed<'a, S, Q> {
+    source: &'a S,
+    task: &'a mut Q,
+}
+
+impl<S: Source, Q: PrecisionTask> Attempt for Posed<'_, S, Q> {
+    fn attempt<T: Ordered + Trigonometry>(&mut self, precision: Precision) -> bool {
+        self.task.attempt(&self.source.problem::<T>(), precision)
+    }
+}
+
 /// Attempts a task in one kind of numbers after the other, beginning with `first`, until nothing is left open or the
 /// budget is spent.
 pub fn escalate<S: Source>(source: &S, first: Precision, task: &mut impl PrecisionTask) {
-    if first <= Precision::Ball && task.attempt(&source.problem::<Certified<Ball>>(), Precision::Ball) {
+    climb(first, &mut Posed { source, task });
+}
+
+/// As [`escalate`], of any question.
+pub fn climb(first: Precision, task: &mut impl Attempt) {
+    if first <= Precision::Ball && task.attempt::<Certified<Ball>>(Precision::Ball) {
         return;
     }
-    if is_spent() || task.attempt(&source.problem::<Certified<Ball<DoubleDouble>>>(), Precision::DoubleDouble) {
+    if is_spent() || task.attempt::<Certified<Ball<DoubleDouble>>>(Precision::DoubleDouble) {
         return;
     }
     for bits in BITS {
         if is_spent_after(ROUNDS) {
             return;
         }
-        let problem = || source.problem::<Certified<Interval>>();
-        if Interval::scope(bits, || task.attempt(&problem(), Precision::Interval)) {
+        if Interval::scope(bits, || task.attempt::<Certified<Interval>>(Precision::Interval)) {
             return;
         }
     }

@@ -4,7 +4,7 @@
 use super::environment;
 use super::oracle;
 use super::states::{Model, chain, models};
-use crate::support::digits::Truth;
+use crate::support::digits::{PROMISED, Truth};
 use crate::support::parallel::total;
 use crate::support::random::Random;
 use heelstrike::impact::Friction;
@@ -25,22 +25,12 @@ fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
             let fail = |difference: String| panic!("{}: {difference}\n{}", model.name, state.to_json(&model.robot));
             truth.check(outcome, &frictions(&state)).unwrap_or_else(fail);
             let worst = truth.worst_rate(outcome);
-            assert!(worst < rate_error(model.name), "{}: {worst:e}\n{}", model.name, state.to_json(&model.robot));
+            assert!(worst <= PROMISED, "{}: {worst:e}\n{}", model.name, state.to_json(&model.robot));
         } else {
             counts[1] += 1;
         }
     }
     counts
-}
-
-/// What velocities of base and joints are off by at most, of what the impulses could do to them; a few times what was
-/// measured. Two point masses of nearly aligned legs leave M nearly singular.
-fn rate_error(model: &str) -> f64 {
-    match model {
-        "minimalistic" => 1e-6,
-        "chain" => 1e-9,
-        _ => 1e-12,
-    }
 }
 
 fn frictions(state: &State) -> Vec<Friction> {

@@ -1,0 +1,125 @@
+//! What the whole robot does after an outcome: velocities of base and joints and the impulses of loops, or its
+//! accelerations under forces.
+//!
+//! ```text
+//!     v+ = v- + M^-1 (applied + J^T L + K^T l)      f64 --likely error too large--> balls ... intervals
+//! ```
+//!
+//! L is taken as it is printed. Each entry is right to 1e-10 of what it is the sum of: the velocity before, and what the
+//! applied impulses and those of each contact do to it (see [`digits`](crate::impact)).
+
+use super::assembly::Elimination;
+use super::exact::{Asked, ExactState};
+use super::{Pipeline, Prepared};
+use crate::dynamics::{Closed, articulated_inertias};
+use crate::impact::{Attempt, DIGITS, Errors, Outcome, Precision, climb, is_known};
+use crate::planar::{Pair, Vector};
+use crate::scalar::{Ordered, Trigonometry};
+use crate::state::{Named, State};
+
+/// How the robot moves if the contacts give no impulses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Unstruck<'a> {
+    /// The velocity before, by coordinate; of forces zero.
+    pub before: &'a [f64],
+    /// What applied impulses alone change in it; of forces the acceleration that the loads alone give.
+    pub applied: &'a [f64],
+    /// With both, and what the loops answer.
+    pub free: &'a [f64],
+    /// What the loops close.
+    pub closed: Closed<'a, f64>,
+}
+
+impl Pipeline<'_> {
+    /// Completes `outcomes` by the robot's velocity after each and the impulses of the loops, from articulated inertias
+    /// where there are no mimic joints. What remains to be seen of their digits makes them unproven.
+    pub(super) fn respond(
+        &mut self,
+        outcomes: &mut [Outcome],
+        (state, prepared, asked): (&State, &Prepared, Asked<'_>),
+        unstruck: Unstruck<'_>,
+    ) {
+        if !self.assembly.plan.has_mimics && outcomes.iter().any(|outcome| !outcome.impulse.is_empty()) {
+            articulated_inertias(&self.assembly.plan, &mut self.assembly.workspace);
+        }
+        for outcome in &mut *outcomes {
+            self.set_velocity(outcome, unstruck);
+        }
+        if self.options.no_proof || self.has_digits(prepared) {
+            return;
+        }
+        let source = ExactState { asked, ..prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN) };
+        for outcome in outcomes.iter_mut().filter(|outcome| outcome.proven) {
+            let mut sought = Response { source: &source, impulse: &outcome.impulse, found: None };
+            climb(Precision::Ball, &mut sought);
+            match sought.found {
+                Some(mut rates) => {
+                    let loops = rates.split_off(state.position.len());
+                    let loops = loops.chunks_exact(2).map(|own| Vector::new(own[0], own[1]));
+                    self.name(outcome, rates, loops.collect());
+                }
+                None => outcome.proven = false,
+            }
+        }
+    }
+
+    /// Whether f64 likely has the digits of all velocities, of which those of G tell.
+    fn has_digits(&self, prepared: &Prepared) -> bool {
+        let [of_delassus, of_velocity] = self.bounds.likely;
+        let base = prepared.velocity.iter().take(2).fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        of_velocity * self.bounds.base <= DIGITS * base && of_delassus * self.bounds.delassus <= DIGITS
+    }
+
+    fn set_velocity(&mut self, outcome: &mut Outcome, unstruck: Unstruck<'_>) {
+        let Unstruck { before, applied, free, closed } = unstruck;
+        let constrained = self.assembly.is_constrained();
+        // Articulated bodies keep thirteen digits and more in chains where M = L^T D L leaves eight.
+        let by = if self.assembly.plan.has_mimics { Elimination::Ltl } else { Elimination::ArticulatedBodies };
+        let mut after = if constrained { applied } else { free }.to_vec();
+        for (contact, &own) in outcome.impulse.iter().enumerate() {
+            self.assembly.strike(by, contact, own, &mut after);
+        }
+        let mut loops = Vec::new();
+        if constrained {
+            loops = self.assembly.answer_to(closed, &mut after);
+            after.iter_mut().zip(before).for_each(|(after, before)| *after += before);
+        }
+        self.name(outcome, after, loops);
+    }
+
+    fn name(&self, outcome: &mut Outcome, mut rates: Vec<f64>, loops: Vec<Vector>) {
+        let [base, joints] = &self.names;
+        let of_joints = rates.split_off(base.len());
+        outcome.loop_impulse = (!loops.is_empty()).then_some(loops);
+        outcome.base_velocity_after = (!base.is_empty()).then(|| Named::new(base.clone(), rates));
+        outcome.joint_velocity_after = Some(Named::new(joints.clone(), of_joints));
+    }
+}
+
+/// The velocities and loop impulses after these impulses of the contacts, sought.
+struct Response<'a> {
+    source: &'a ExactState<'a>,
+    impulse: &'a [Pair<f64>],
+    /// Velocities by coordinate, then x and z of each loop's impulse.
+    found: Option<Vec<f64>>,
+}
+
+impl Attempt for Response<'_> {
+    fn attempt<T: Ordered + Trigonometry>(&mut self, _: Precision) -> bool {
+        let parts = self.source.response::<T>(self.impulse);
+        let entries = parts.first().map_or(0, Vec::len);
+        let sum = |entry: usize| parts.iter().fold(T::zero(), |sum, part| sum + part[entry]);
+        let size = |entry: usize| parts.iter().map(|part| part[entry].to_f64().abs()).sum::<f64>();
+        let (rates, is_floating) = (self.source.position.len(), self.source.robot.base_dofs() > 0);
+        // Both components of one vector have one scale.
+        let scale = |entry: usize| match entry.checked_sub(rates) {
+            None if entry < 2 && is_floating => size(0).max(size(1)),
+            None => size(entry),
+            Some(row) => size(rates + (row & !1)).max(size(rates + (row | 1))),
+        };
+        if (0..entries).all(|entry| is_known(sum(entry), scale(entry))) {
+            self.found = Some((0..entries).map(|entry| sum(entry).to_f64()).collect());
+        }
+        self.found.is_some()
+    }
+}
