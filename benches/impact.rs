@@ -1,8 +1,8 @@
 //! One RAMone state (7 coordinates, 2 contacts) from (q, v) to its outcomes, stage by stage.
 //!
-//! `cargo bench` prints times; compare stages within one run, not runs with each other.
+//! `cargo bench --bench impact` prints times and allocations; compare stages within one run, not runs with each other.
 
-use divan::{Bencher, black_box};
+use divan::{AllocProfiler, Bencher, black_box};
 use heelstrike::Robot;
 use heelstrike::dynamics::plan::{Configuration, Plan};
 use heelstrike::dynamics::{
@@ -22,6 +22,9 @@ const STATE: &str = r#"{"position": {"base": {"z": 0.4, "pitch": 0.05},
   "contacts": [{"link": "left_foot", "offset": [0, 0, 0], "radius": 0.02815},
                {"link": "right_foot", "offset": [0, 0, 0], "radius": 0.02815}],
   "friction": 0.8}"#;
+
+#[global_allocator]
+static ALLOCATIONS: AllocProfiler = AllocProfiler::system();
 
 fn main() {
     divan::main();
