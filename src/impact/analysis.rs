@@ -139,7 +139,8 @@ impl Scratch {
             collected: Collected::new(problem, &self.scale, options, &name),
         };
         let lists_all = options.rejections == ListedRejections::Everything;
-        if contacts < SEARCHED || lists_all && contacts <= EXPLAINED {
+        let is_searched = contacts >= SEARCHED && !(lists_all && contacts <= EXPLAINED);
+        if !is_searched {
             self.tableau.visit(&mut pass);
         } else {
             let without_slip = self.tableau.without_slip;
@@ -164,8 +165,9 @@ impl Scratch {
             regular = regular || shows_regular(&mut self.tableau, &mut self.bounds, contacts);
         }
         if !undecided.is_empty() {
+            let first = Precision::first(regular || is_searched && self.relaxation.is_regular, problem);
             let mut pass = UndecidedPass { undecided, blunt: BTreeMap::new(), collected: &mut collected };
-            escalate(source, Precision::Ball, &mut pass);
+            escalate(source, first, &mut pass);
             pass.finish();
         }
         if !collected.pending_families.is_empty() {

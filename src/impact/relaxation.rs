@@ -144,6 +144,8 @@ pub struct Relaxation {
     errors: Pair<f64>,
     /// Whether these errors are bounds.
     is_known: bool,
+    /// Whether f64 shows that G is regular.
+    pub is_regular: bool,
     /// A bound of the sum of all multipliers; infinite if there is none.
     reach: f64,
     /// After the decisions on the first contacts.
@@ -188,6 +190,7 @@ impl Relaxation {
         let up = DVector::from_fn(rows, |row, _| if row % 2 == 1 { 1.0 / mobility[row] } else { 0.0 });
         self.is_known = errors.delassus.is_finite() && is_far_from_underflow(scale);
         let is_bounded = self.is_known && problem.laws().iter().all(Law::is_dissipative);
+        self.is_regular = false;
         self.reach = if is_bounded { self.bound(&matrix, &up.unscale(up.amax()), &along) } else { f64::INFINITY };
         self.depths.resize_with(problem.contacts() + 1, Dictionary::default);
         let multipliers = self.rays.iter().map(|ray| ray.range(&self.laws[ray.contact], None));
@@ -210,7 +213,7 @@ impl Relaxation {
     /// ```
     ///
     /// The first w is a motion that lifts all contacts.
-    fn bound(&self, matrix: &DMatrix<f64>, up: &DVector<f64>, along: &[Pair<f64>]) -> f64 {
+    fn bound(&mut self, matrix: &DMatrix<f64>, up: &DVector<f64>, along: &[Pair<f64>]) -> f64 {
         let rows = self.rows;
         let width = self.rays.len() + 1;
         let [of_matrix, of_free] = self.errors;
@@ -228,9 +231,9 @@ impl Relaxation {
         let by_lift = if kappa > 0.0 && !is_two_way { size(&w) / kappa } else { f64::INFINITY };
         let least = along.iter().filter(|entries| entries[1] != 0.0).map(|entries| entries[1]).fold(1.0, f64::min);
         // A Cholesky factor exists only if rounding hides no negative eigenvalue (Rump 2006).
-        let is_regular = (matrix - DMatrix::identity(rows, rows) * REGULAR).cholesky().is_some()
+        self.is_regular = (matrix - DMatrix::identity(rows, rows) * REGULAR).cholesky().is_some()
             && rows as f64 * (of_matrix + rows as f64 * f64::EPSILON) < 0.5 * REGULAR;
-        let by_eigenvalue = if is_regular { (2.0 * rows as f64 / REGULAR).sqrt() / least } else { f64::INFINITY };
+        let by_eigenvalue = if self.is_regular { (2.0 * rows as f64 / REGULAR).sqrt() / least } else { f64::INFINITY };
         let per_root = by_lift.min(by_eigenvalue);
         let rest = (&free - matrix * &z).amax() + of_free + z.lp_norm(1) * of_matrix;
         per_root * (size(&z) + per_root * rest)

@@ -53,7 +53,8 @@ impl<'a> Search<'a> {
             if relaxation.shows(modes.len() - 1, lack) { Finding::Impossible } else { Finding::Open }
         });
         if !search.open.is_empty() {
-            escalate(source, Precision::Ball, &mut search);
+            let first = Precision::first(search.relaxation.is_regular, problem);
+            escalate(source, first, &mut search);
         }
         search.unvisited += search.open.iter().map(|claim| combinations(&laws[claim.modes.len()..])).sum::<u64>();
         search.survivors.sort_unstable();

@@ -51,7 +51,7 @@ impl Pipeline<'_> {
         let source = ExactState { asked, ..prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN) };
         for outcome in outcomes.iter_mut().filter(|outcome| outcome.proven) {
             let mut sought = Response { source: &source, impulse: &outcome.impulse, found: None };
-            climb(Precision::Ball, &mut sought);
+            climb(Precision::Plain, &mut sought);
             match sought.found {
                 Some(mut rates) => {
                     let loops = rates.split_off(state.position.len());

@@ -1,11 +1,11 @@
 //! Where a contact problem's numbers come from, so that they can be computed again with more and more digits.
 //!
 //! ```text
-//!     f64 with an error bound --> balls --> balls around pairs of f64 --> intervals of 256, 1024, 4096 bits
+//!     f64 with an error bound --> plain balls --> balls --> balls around pairs of f64 --> intervals of 256, 1024, 4096 bits
 //! ```
 //!
 //! From the balls on, each number also has a residue that shows whether it is exactly zero (see
-//! [`Residue`](crate::scalar::Residue)). So borders and dependent contacts are recognized, and a number that is not
+//! [`Residue`](crate::scalar::Residue)); plain ones cost less than half, where no zeros are expected. So borders and dependent contacts are recognized, and a number that is not
 //! zero shows its sign once it has enough digits.
 
 use super::{ContactProblem, Origin};
@@ -84,16 +84,26 @@ pub trait PrecisionTask {
 /// A kind of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Precision {
+    /// Balls that do not recognize an exact zero.
+    Plain,
     Ball,
     DoubleDouble,
     Interval,
 }
 
 impl Precision {
+    /// What to begin with: numbers that recognize zeros where contacts may depend on each other, or where some rest or
+    /// have no friction.
+    pub fn first(is_regular: bool, problem: &ContactProblem) -> Self {
+        let rests = |velocity: &Pair<f64>| velocity.contains(&0.0);
+        let is_generic = is_regular && !problem.velocity_free().iter().any(rests);
+        if is_generic && problem.friction().all(|friction| !friction.is_zero()) { Self::Plain } else { Self::Ball }
+    }
+
     /// How many combinations were decided in these numbers.
     pub fn share(self, effort: &mut Effort) -> &mut u64 {
         match self {
-            Self::Ball => &mut effort.ball,
+            Self::Plain | Self::Ball => &mut effort.ball,
             Self::DoubleDouble => &mut effort.double_double,
             Self::Interval => &mut effort.precise,
         }
@@ -126,6 +136,9 @@ pub fn escalate<S: Source>(source: &S, first: Precision, task: &mut impl Precisi
 
 /// As [`escalate`], of any question.
 pub fn climb(first: Precision, task: &mut impl Attempt) {
+    if first <= Precision::Plain && task.attempt::<Ball>(Precision::Plain) {
+        return;
+    }
     if first <= Precision::Ball && task.attempt::<Certified<Ball>>(Precision::Ball) {
         return;
     }
