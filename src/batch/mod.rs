@@ -199,8 +199,8 @@ impl Answerer<'_> {
         let given = self.question.defaults.friction;
         block.summary.own_friction += u64::from(given.is_some() && state.scene.friction.default != given);
         let impact = match &self.question.total {
-            Some(total) => total.within(|| self.pipeline.impact(state)),
-            None => self.pipeline.impact(state),
+            Some(total) => total.within(|| self.pipeline.answer(state)),
+            None => self.pipeline.answer(state),
         };
         let impact = impact.map_err(|error| match error.reason() {
             Reason::Missing(_) if header.is_some() && error.place() == Some("friction") => {

@@ -3,7 +3,7 @@
 use crate::error::visible;
 use crate::impact::{Analysis, Outcome, Verdict};
 use crate::law::Mode;
-use crate::pipeline::Impact;
+use crate::pipeline::{Aspect, Impact};
 use crate::write::words;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -18,6 +18,9 @@ const LISTS: usize = 1000;
 /// Counts over the states of a batch. Its size is bounded, and it does not depend on how threads share the states.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Summary {
+    /// What was asked about the states.
+    #[serde(skip_serializing_if = "Aspect::is_impact")]
+    pub question: Aspect,
     /// All states, refused ones too.
     pub states: u64,
     /// States that were refused, also those whose matrices are known.
@@ -124,6 +127,7 @@ impl Summary {
     /// Counts a state that has outcomes.
     pub fn count(&mut self, state: impl Fn() -> StateRef, impact: &Impact, analysis: &Analysis) {
         self.states += 1;
+        self.question = impact.aspect();
         for ((verdict, _), count) in VERDICTS.iter().zip(&mut self.verdicts.0) {
             *count += u64::from(*verdict == analysis.verdict);
         }
@@ -152,6 +156,9 @@ impl Summary {
     /// Adds the summary of the states that follow.
     pub fn merge(&mut self, following: Self) {
         self.states += following.states;
+        if following.states > following.refused {
+            self.question = following.question;
+        }
         self.refused += following.refused;
         self.beyond_budget += following.beyond_budget;
         self.verdicts.0.iter_mut().zip(following.verdicts.0).for_each(|(count, more)| *count += more);
@@ -248,7 +255,8 @@ impl fmt::Display for Summary {
         if !self.smallest_margins.is_empty() {
             let near = self.smallest_margins.iter().take(SHOWN);
             let near = near.map(|Nearest { state, margin }| format!("{} {state}", two_digits(*margin)));
-            writeln!(f, "smallest margins with an impulse: {}", near.collect::<Vec<_>>().join(", "))?;
+            let given = if self.question == Aspect::Forces { "a force" } else { "an impulse" };
+            writeln!(f, "smallest margins with {given}: {}", near.collect::<Vec<_>>().join(", "))?;
         }
         if let Some(Needed { state, friction }) = &self.more_friction.greatest {
             let states = self.more_friction.states;

@@ -2,7 +2,7 @@
 
 use super::diagnostic::{is_quiet, note, note_own_friction, with_flags};
 use super::options::{
-    BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, SceneOptions, Seconds,
+    BudgetOptions, Choices, ContactOptions, CsvOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, Seconds,
     ThreadOptions, choice, pipeline_options, seconds,
 };
 use super::origin::{Asked, Origin};
@@ -19,10 +19,10 @@ use heelstrike::budget::TotalBudget;
 use heelstrike::error::Location;
 use heelstrike::error::excerpt::Excerpt;
 use heelstrike::gait::{Dropped, Thresholds};
-use heelstrike::pipeline::Options;
+use heelstrike::pipeline::{Aspect, Options};
 use heelstrike::read::table::Header;
 use heelstrike::state::{Defaults, NamedContact};
-use heelstrike::write::{self, Columns};
+use heelstrike::write::{self, Columns, RowKind};
 use heelstrike::{Detail, Error, Reason, Robot};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -58,6 +58,11 @@ pub struct Args {
     contacts: ContactOptions,
     #[command(flatten)]
     recording: RecordingOptions,
+    /// Answer each state as `forces` does: the contact forces and accelerations in sustained contact
+    #[arg(long, conflicts_with_all = ["touchdowns", "next"])]
+    forces: bool,
+    #[command(flatten)]
+    next: NextOption,
     #[command(flatten)]
     detail: DetailOptions,
     /// Write to this file, which is replaced
@@ -138,7 +143,11 @@ pub(super) fn run(args: &Args) -> Completion {
     // Before any file is replaced: does this robot have feet to look for?
     let thresholds = args.recording.thresholds(&robot, &feet);
     let thresholds = thresholds.map_err(|error| error.in_file(input::name(&args.robot.robot)))?;
-    let columns = || args.csv.columns(Columns::new(&robot, &feet, header.as_ref(), args.recording.kind()));
+    let kind = if args.forces { RowKind::Forces } else { args.recording.kind() };
+    let columns = || {
+        let columns = args.csv.columns(Columns::new(&robot, &feet, header.as_ref(), kind));
+        if args.next.next { columns.with_next() } else { columns }
+    };
     let columns = (format == RecordFormat::Csv).then(columns);
     let question = args.question(&robot, feet, header.as_ref(), columns.as_ref())?;
     // Tried before the work, which would otherwise be lost.
@@ -221,7 +230,11 @@ impl Args {
     ) -> Result<Question<'a>, Failure> {
         Ok(Question {
             robot,
-            options: pipeline_options(&self.contacts, feet, self.detail, &self.robot.reductions, self.budget.budget()),
+            options: Options {
+                aspect: if self.forces { Aspect::Forces } else { Aspect::Impact },
+                next: self.next.next,
+                ..pipeline_options(&self.contacts, feet, self.detail, &self.robot.reductions, self.budget.budget())
+            },
             defaults: Defaults {
                 loops: self.loops.load(robot)?,
                 place_lowest: self.contacts.place_lowest(robot)?,

@@ -1,7 +1,9 @@
 //! `heelstrike impact`: every outcome of one state, or of a few.
 
 use super::diagnostic::{note, note_own_friction};
-use super::options::{BudgetOptions, ContactOptions, DetailOptions, LoopOptions, SceneOptions, pipeline_options};
+use super::options::{
+    BudgetOptions, ContactOptions, DetailOptions, LoopOptions, NextOption, SceneOptions, pipeline_options,
+};
 use super::output::{Format, OutputOptions};
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
@@ -25,9 +27,8 @@ Examples:
 pub struct Args {
     #[command(flatten)]
     state: StateArgs,
-    /// Also find the forces just after each outcome: what the contacts do that are still on the ground then
-    #[arg(long, help_heading = "Output")]
-    next: bool,
+    #[command(flatten)]
+    next: NextOption,
 }
 
 /// A robot, states of it, and what is asked about them.
@@ -55,7 +56,7 @@ pub(super) struct StateArgs {
 }
 
 pub(super) fn run(args: &Args) -> Completion {
-    args.state.run(Aspect::Impact, args.next)
+    args.state.run(Aspect::Impact, args.next.next)
 }
 
 impl StateArgs {

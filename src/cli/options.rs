@@ -143,6 +143,14 @@ impl DetailOptions {
     }
 }
 
+/// Whether impacts are followed.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub(super) struct NextOption {
+    /// Also find the forces just after each outcome: what the contacts do that are still on the ground then
+    #[arg(long, help_heading = "Output")]
+    pub next: bool,
+}
+
 /// Which computations are skipped if the scene does not need them.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub(super) struct ReductionOptions {

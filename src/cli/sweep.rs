@@ -131,7 +131,7 @@ pub(super) fn run(args: &Args) -> Completion {
     let workers = Workers { threads: args.threads.count(), done: &done };
     let budget = StudyBudget { shared: args.budget.shared(), study: &study, input: &input };
     let findings = budget.within(|| Findings::of(&model, workers))?;
-    let regions = Regions::new(study.parameters(), &findings);
+    let regions = Regions::new(&study, &findings);
     let regimes = findings.regimes();
     if args.plot.path().is_some() {
         progress.inc_length(picture::work(&model, &findings) as u64);

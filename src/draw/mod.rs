@@ -15,6 +15,7 @@ pub use plot::Picture;
 pub use robot::Drawing;
 
 use crate::impact::OpenCombinations;
+use crate::pipeline::Aspect;
 use crate::state::{NamedContact, State};
 use crate::{Error, Impact, Outcome, Robot, Verdict};
 use serde_json::Value;
@@ -31,6 +32,7 @@ pub struct Keyframe {
 
 #[derive(Debug, Clone)]
 pub struct KeyframeAnswer {
+    pub aspect: Aspect,
     pub verdict: Verdict,
     /// Whether the list of outcomes is proven to be complete and right.
     pub proven: bool,
@@ -53,6 +55,7 @@ impl Keyframe {
     /// A state and its impact; `feet` are those in addition to the robot's own shapes.
     pub fn of_impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impact) -> Self {
         let answer = impact.analyzed().map(|analysis| KeyframeAnswer {
+            aspect: impact.aspect(),
             verdict: analysis.verdict,
             proven: analysis.proven,
             outcomes: analysis.outcomes.clone(),

@@ -52,7 +52,8 @@ pub struct Outcome {
     /// loops.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loop_impulse: Option<Vec<Vector>>,
-    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction adds some.
+    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction adds some. Of
+    /// forces the power that they take \[W\].
     pub energy_loss: f64,
     /// False if other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
     pub impulse_unique: bool,
@@ -153,7 +154,7 @@ impl schemars::JsonSchema for ZeroImpulse {
             all.get("oneOf")?.as_array()?.iter().find(|known| known["const"] == wanted).cloned()
         };
         let known: Vec<serde_json::Value> = Inequality::OF_IMPULSES.into_iter().filter_map(named).collect();
-        schemars::json_schema!({"description": "An impulse inequality that is zero.", "oneOf": known})
+        schemars::json_schema!({"description": "An inequality of impulses or forces that is zero.", "oneOf": known})
     }
 }
 
@@ -343,6 +344,24 @@ impl Analysis {
         modes.sort();
         modes.dedup();
         modes
+    }
+
+    /// The same with the inequalities named as those of forces and accelerations.
+    pub(crate) fn of_forces(mut self) -> Self {
+        for zero in self.outcomes.iter_mut().flat_map(|own| &mut own.border).flat_map(|border| &mut border.at_zero) {
+            zero.inequality = zero.inequality.of_forces();
+        }
+        for rejection in &mut self.rejected {
+            if let RejectionReason::Violated { inequality, .. } = &mut rejection.because {
+                *inequality = inequality.of_forces();
+            }
+        }
+        self.explanation = None;
+        // A contact without a force is an outcome like any other.
+        if self.verdict == Verdict::NoImpact {
+            self.verdict = Verdict::Unique;
+        }
+        self
     }
 
     /// A note if not all rejected combinations are listed that were asked for.

@@ -22,33 +22,55 @@ pub enum Inequality {
     TangentialVelocity,
     /// With infinite friction: L_t of a sliding contact acts against its slide.
     TangentialImpulse,
+    /// a_n > 0 of a contact that separates, in sustained contact.
+    NormalAcceleration,
+    /// f_n >= 0 of a closed contact, in sustained contact.
+    NormalForce,
+    /// a_t of a contact that begins to slide points along its slide.
+    TangentialAcceleration,
+    /// With infinite friction: f_t acts against the slide, in sustained contact.
+    TangentialForce,
+    /// f is finite: in sustained contact it may grow without bound, and turn its sign there.
+    UnboundedForce,
 }
 
 impl Inequality {
-    /// Those of impulses.
-    pub const OF_IMPULSES: [Self; 3] = [Self::NormalImpulse, Self::TangentialImpulse, Self::FrictionCone];
+    /// Those of impulses and forces.
+    pub const OF_IMPULSES: [Self; 5] =
+        [Self::NormalImpulse, Self::TangentialImpulse, Self::FrictionCone, Self::NormalForce, Self::TangentialForce];
+
+    /// The same in sustained contact.
+    pub fn of_forces(self) -> Self {
+        match self {
+            Self::NormalVelocity => Self::NormalAcceleration,
+            Self::NormalImpulse => Self::NormalForce,
+            Self::TangentialVelocity => Self::TangentialAcceleration,
+            Self::TangentialImpulse => Self::TangentialForce,
+            other => other,
+        }
+    }
 
     /// Whether it is about a velocity. It is strict then: a velocity of zero belongs to another mode.
     pub fn is_strict(self) -> bool {
-        matches!(self, Self::NormalVelocity | Self::TangentialVelocity)
+        matches!(self.of_forces(), Self::NormalAcceleration | Self::TangentialAcceleration)
     }
 
     /// The row that it is scaled by: 0 tangential, 1 normal.
     pub(super) fn row(self) -> usize {
-        match self {
-            Self::TangentialVelocity | Self::TangentialImpulse => 0,
-            Self::NormalVelocity | Self::NormalImpulse | Self::FrictionCone => 1,
-        }
+        usize::from(!matches!(self.of_forces(), Self::TangentialAcceleration | Self::TangentialForce))
     }
 
     /// What its violation means, as a clause about the contact of this name.
     pub fn violated_by(self, name: &str) -> String {
         match self {
             Self::NormalVelocity => format!("{name} moves into the ground"),
-            Self::NormalImpulse => format!("{name} is pulled toward the ground"),
+            Self::NormalAcceleration => format!("{name} accelerates into the ground"),
+            Self::NormalImpulse | Self::NormalForce => format!("{name} is pulled toward the ground"),
             Self::FrictionCone => format!("{name} needs more friction than there is"),
             Self::TangentialVelocity => format!("{name} moves against its own sliding direction"),
-            Self::TangentialImpulse => format!("friction at {name} drives the slide"),
+            Self::TangentialAcceleration => format!("{name} accelerates against its own sliding direction"),
+            Self::TangentialImpulse | Self::TangentialForce => format!("friction at {name} drives the slide"),
+            Self::UnboundedForce => format!("the force on {name} has no bound"),
         }
     }
 
@@ -56,10 +78,13 @@ impl Inequality {
     pub fn violation(self) -> &'static str {
         match self {
             Self::NormalVelocity => "a contact would move into the ground",
-            Self::NormalImpulse => "the ground would have to pull",
+            Self::NormalAcceleration => "a contact would accelerate into the ground",
+            Self::NormalImpulse | Self::NormalForce => "the ground would have to pull",
             Self::FrictionCone => "sticking would need more friction",
             Self::TangentialVelocity => "a contact would slide against its own direction",
-            Self::TangentialImpulse => "friction would drive the slide",
+            Self::TangentialAcceleration => "a contact would begin to slide against its own direction",
+            Self::TangentialImpulse | Self::TangentialForce => "friction would drive the slide",
+            Self::UnboundedForce => "a force would have no bound",
         }
     }
 }
@@ -73,6 +98,11 @@ impl fmt::Display for Inequality {
             Self::FrictionCone => "|L_t| = mu L_n",
             Self::TangentialVelocity => "c_t+ = 0",
             Self::TangentialImpulse => "L_t = 0",
+            Self::NormalAcceleration => "a_n = 0",
+            Self::NormalForce => "f_n = 0",
+            Self::TangentialAcceleration => "a_t = 0",
+            Self::TangentialForce => "f_t = 0",
+            Self::UnboundedForce => "f without bound",
         })
     }
 }

@@ -21,6 +21,7 @@ use crate::error::{Error, Reason, Result, finite};
 use crate::impact::{Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Next, Outcome, Verdict};
 use crate::law::{Law, Mode};
 use crate::planar::Vector;
+use crate::scalar::dot;
 use crate::state::{Named, Scene, State};
 use std::cmp::Ordering;
 
@@ -88,6 +89,10 @@ impl Pipeline<'_> {
         };
 
         let rest = vec![0.0; free.len()];
+        let velocity = self.assembly.workspace.contact_velocity.as_flattened();
+        for outcome in analysis.iter_mut().flat_map(|own| &mut own.outcomes) {
+            outcome.energy_loss = 0.0 - dot(outcome.impulse.as_flattened(), velocity);
+        }
         if let Some(analysis) = analysis.as_mut().filter(|_| !self.options.brief) {
             let unstruck =
                 Unstruck { before: &rest, applied: &unclosed, free: &free, closed: Closed::Acceleration(&drifts) };
@@ -233,11 +238,7 @@ impl Pipeline<'_> {
     ) -> Option<Analysis> {
         let exact = prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN);
         let source = ExactState { asked: Asked::Forces(Loads::of(&state.scene, still)), ..exact };
-        let mut analysis = self.scratch.analyze(&prepared.problem, &source, asked).ok()?;
-        if analysis.verdict == Verdict::NoImpact {
-            analysis.verdict = Verdict::Unique;
-        }
-        Some(analysis)
+        self.scratch.analyze(&prepared.problem, &source, asked).ok().map(Analysis::of_forces)
     }
 
     /// Leaves the contacts that have a slip and so take part, with what is known of them, and poses an impact there.

@@ -26,24 +26,32 @@ use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{Closed, ContactPoint, RoundingBounds};
 use crate::error::{Result, finite};
 use crate::impact::{
-    Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Outcome, Scratch, Verdict, too_many_contacts,
+    Analysis, AnalysisOptions, ContactProblem, Errors, ListedRejections, Scratch, Verdict, too_many_contacts,
 };
 use crate::law::{Friction, Law, Mode};
 use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
-use crate::scalar::dot;
 use crate::state::{NamedContact, Scene, State, check_length};
+use serde::Serialize;
 use std::sync::Arc;
 
 /// What is asked about a state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(inline))]
+#[serde(rename_all = "snake_case")]
 pub enum Aspect {
     /// The impact: [`Pipeline::impact`].
     #[default]
     Impact,
     /// Sustained contact: [`Pipeline::forces`].
     Forces,
+}
+
+impl Aspect {
+    pub(crate) fn is_impact(&self) -> bool {
+        *self == Self::Impact
+    }
 }
 
 /// What the pipeline is asked for in addition to the outcomes; [`Pipeline`] has an example.
@@ -157,9 +165,9 @@ impl Impact {
         self.analysis.as_ref().map_or_else(|| Err(too_many_contacts(self.contacts.len())), Ok)
     }
 
-    /// Power of the contact forces of an outcome in sustained contact \[W\].
-    pub fn power(&self, outcome: &Outcome) -> f64 {
-        dot(outcome.impulse.as_flattened(), self.velocity_before.as_flattened()) + 0.0
+    /// What it answers.
+    pub fn aspect(&self) -> Aspect {
+        if self.sustained.is_some() { Aspect::Forces } else { Aspect::Impact }
     }
 
     /// As [`Impact::analyzed`], without the rest.

@@ -4,6 +4,7 @@ use super::state as read;
 use super::variation;
 use crate::budget::BudgetSpent;
 use crate::description::Description;
+use crate::pipeline::Aspect;
 use crate::read::expression::{Names, is_name, names_in};
 use crate::read::json::{Node, Value};
 use crate::state::{Defaults, State};
@@ -31,6 +32,7 @@ const CONSTANT_LIMIT: usize = 256;
 #[derive(Debug, Clone)]
 pub struct Study<'t> {
     text: &'t str,
+    question: Aspect,
     tree: Value<'t>,
     parameters: Vec<Parameter>,
     constants: Names,
@@ -74,7 +76,9 @@ impl<'t> Study<'t> {
     pub fn from_json(text: &'t str) -> Result<Self> {
         let tree = Value::parse(text)?;
         let root = Node::root(&tree, text, None);
-        let [_, _, state, _] = root.object("Study", ["parameters", "constants", "state", "robot"])?;
+        let [_, _, state, _, question] =
+            root.object("Study", ["parameters", "constants", "state", "robot", "question"])?;
+        let question = question.map_or(Ok(Aspect::Impact), aspect)?;
         let constants = constants(&tree, text)?;
         let with_constants = Node::root(&tree, text, Some(&constants));
         let field = with_constants.field("parameters")?.ok_or_else(|| {
@@ -94,7 +98,12 @@ impl<'t> Study<'t> {
         if state.is_none() {
             return Err(root.missing("state").hint("as in `impact`, with expressions where numbers stand"));
         }
-        Ok(Self { text, parameters, constants, tree: tree.clone() })
+        Ok(Self { text, question, parameters, constants, tree: tree.clone() })
+    }
+
+    /// What is asked about each state.
+    pub fn question(&self) -> Aspect {
+        self.question
     }
 
     /// One or two parameters.
@@ -162,6 +171,15 @@ impl<'t> Study<'t> {
             Some(field) => variation::applied(field, description).map(Cow::Owned),
             None => Ok(Cow::Borrowed(description)),
         }
+    }
+}
+
+/// "impact" or "forces".
+fn aspect(field: Node) -> Result<Aspect> {
+    match field.text()? {
+        "impact" => Ok(Aspect::Impact),
+        "forces" => Ok(Aspect::Forces),
+        other => Err(field.expected("\"impact\" or \"forces\"").did_you_mean(other, ["impact", "forces"])),
     }
 }
 

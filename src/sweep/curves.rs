@@ -118,7 +118,7 @@ fn between(
 impl CurvePoint {
     /// The outcomes at `at`; `None` if they are not those of the regime.
     fn of(solver: &mut Solver, at: f64, regime: &Regime) -> Option<Self> {
-        let answer = solver.impact(&[at]);
+        let answer = solver.answer(&[at]);
         let same = Regime::of(&answer) == *regime;
         let analysis: Analysis = answer.ok().filter(|_| same)?.analysis?;
         let motion = |Outcome { modes, impulse, velocity_after, .. }| (modes, Motion { impulse, velocity_after });

@@ -1,4 +1,4 @@
-//! From a point of the parameters to the impact there.
+//! From a point of the parameters to the impact or the forces there.
 
 use super::Study;
 use super::regime::Regime;
@@ -63,6 +63,11 @@ pub(super) struct Inner {
 pub const WATCHED_CONTACTS: usize = 4;
 
 impl RobotStudy<'_> {
+    /// The options for what the study asks.
+    fn asked(&self) -> Options {
+        Options { aspect: self.study.question(), ..self.options.clone() }
+    }
+
     /// The first sample's refusal, if robot or state cannot be read there, nor in the middle, nor at the last one; else
     /// whether the state has friction of its own, so that the one of `defaults` is not its.
     pub fn has_own_friction(&self) -> Result<bool> {
@@ -80,7 +85,7 @@ impl RobotStudy<'_> {
 
 impl<'a> Solver<'a> {
     pub fn new(model: &'a RobotStudy<'a>) -> Self {
-        let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.options.clone()));
+        let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.asked()));
         Self { model, pipeline, known: Vec::new() }
     }
 
@@ -90,7 +95,7 @@ impl<'a> Solver<'a> {
         point: &[f64],
         ask: impl for<'p> FnOnce(&'p Robot, State, &mut Pipeline<'p>) -> Result<T>,
     ) -> Result<T> {
-        let RobotStudy { study, description, reduction, robot, options, defaults } = self.model;
+        let RobotStudy { study, description, reduction, robot, defaults, .. } = self.model;
         if is_spent() {
             return Err(Reason::BeyondBudget.into());
         }
@@ -101,12 +106,12 @@ impl<'a> Solver<'a> {
         let description: Cow<Description> = study.describe(&names, description)?;
         let robot = Robot::reduce(&description, reduction)?;
         let state = study.state(&names, &robot, defaults)?;
-        ask(&robot, state, &mut Pipeline::new(&robot, options.clone()))
+        ask(&robot, state, &mut Pipeline::new(&robot, self.model.asked()))
     }
 
-    /// The impact at a point, without regard to the state's uncertainty.
-    pub fn impact(&mut self, point: &[f64]) -> Result<Impact> {
-        self.at(point, |_, state, pipeline| pipeline.impact(&State { uncertainty: None, ..state }))
+    /// The answer at a point, without regard to the state's uncertainty.
+    pub fn answer(&mut self, point: &[f64]) -> Result<Impact> {
+        self.at(point, |_, state, pipeline| pipeline.answer(&State { uncertainty: None, ..state }))
     }
 
     /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.

@@ -112,17 +112,25 @@ impl Transition {
 
 /// Next to a border a margin is not greater than this, unless the state jumps there.
 const ZERO: f64 = 1e-4;
+/// Where a force has no bound, the margin of the outcome beyond it is less than this.
+const UNBOUNDED: f64 = -1e4;
 
 /// The outcomes of the `side` that is `here` which the other rejects, and for which inequality of a contact in `names`.
 fn ending(names: &[String], here: &Analysis, there: &Analysis, side: Side) -> Vec<EndedOutcome> {
     let cause = |outcome: &Outcome| {
         let modes = &outcome.modes;
-        // An outcome far from its own borders ends where the state jumps, and no inequality is zero.
-        if outcome.margin.is_some_and(|margin| margin > ZERO) {
-            return None;
-        }
         let rejection = there.rejected.iter().find(|rejection| rejection.modes == *modes)?;
         let RejectionReason::Violated { contact, inequality } = rejection.because else { return None };
+        let inequality = match inequality {
+            Inequality::NormalForce | Inequality::TangentialForce
+                if rejection.margin.is_some_and(|margin| margin < UNBOUNDED) =>
+            {
+                Inequality::UnboundedForce
+            }
+            // An outcome far from its own borders ends where the state jumps, and no inequality is zero.
+            _ if outcome.margin.is_some_and(|margin| margin > ZERO) => return None,
+            other => other,
+        };
         Some(EndedOutcome { contact: names.get(contact)?.clone(), inequality, modes: modes.clone(), side })
     };
     here.outcomes.iter().filter_map(cause).collect()

@@ -78,5 +78,8 @@ fn of_state(robot: &Robot, State { position, velocity, scene, .. }: &State) -> V
         Ground::Profile(_) => None,
     };
     let impulses = scene.impulses.iter().flat_map(|impulse| impulse.vector.components().map(|part| ("N s", part)));
-    positions.chain(velocities).chain(slope).chain(impulses).collect()
+    let gravity = scene.gravity.map(|gravity| ("m/s²", gravity));
+    let loads = robot.units().skip(robot.base_dofs()).map(|(unit, _)| if unit == "m" { "N" } else { "N m" });
+    let torques = loads.zip(scene.torque.iter().copied());
+    positions.chain(velocities).chain(slope).chain(impulses).chain(gravity).chain(torques).collect()
 }

@@ -1,8 +1,8 @@
 //! Results as CSV: one row per outcome.
 
 use crate::contact::Feet;
-use crate::impact::Family;
-use crate::pipeline::AT_REST;
+use crate::impact::{Family, Next};
+use crate::pipeline::{AT_REST, Aspect};
 use crate::read::table::{Carried, Header, prefixed};
 use crate::state::NamedContact;
 use crate::write::{Refused, Report, words};
@@ -12,6 +12,9 @@ use std::collections::{HashMap, HashSet};
 
 /// The columns between those that name the state and those of the contacts.
 const FIRST: [&str; 4] = ["verdict", "outcome", "margin", "proven"];
+
+/// With `next` these follow.
+const NEXT: [&str; 2] = ["next_verdict", "next_modes"];
 
 /// The columns of a touchdown, behind `touchdown_`; q and v before the impact follow, named as in a table of states.
 const TOUCHDOWN: [&str; 6] = ["row", "time", "striking", "shift_z", "at", "touching"];
@@ -28,7 +31,8 @@ const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 /// has a row with these cells empty. A contact is named after its link if it is the only one there, so a link that can
 /// touch at several points has columns of its own name and of link/0, link/1, ... A refused state has a row with the
 /// verdict `refused`, its id and copied columns if they can be read, and its line and reason in `error`. A copied
-/// column whose name the output already has gets the prefix `in_`.
+/// column whose name the output already has gets the prefix `in_`. Forces have `f_<contact>_t, f_<contact>_n` for the impulses and
+/// `a_<coordinate>` for the velocities after.
 #[derive(Debug, Clone)]
 pub struct Columns {
     names: Vec<String>,
@@ -39,6 +43,8 @@ pub struct Columns {
     coordinates: usize,
     kind: RowKind,
     carried: usize,
+    /// Whether it has columns for what follows an impact.
+    next: bool,
     /// Whether cells of text are kept from being formulas.
     guarded: bool,
 }
@@ -50,6 +56,18 @@ pub enum RowKind {
     State,
     /// A touchdown that was found in the input.
     Touchdown,
+    /// A state in sustained contact.
+    Forces,
+}
+
+impl RowKind {
+    /// Of states of which this is asked.
+    pub fn of(aspect: Aspect) -> Self {
+        match aspect {
+            Aspect::Impact => Self::State,
+            Aspect::Forces => Self::Forces,
+        }
+    }
 }
 
 /// A row in the making; cells that are not set stay empty.
@@ -75,22 +93,29 @@ impl Columns {
 
     /// The columns for states that have no line, with columns of these names that are carried through, and for contacts
     /// that states name themselves.
-    pub fn without_lines(robot: &Robot, feet: &[NamedContact], named: &[&str], through: &[&str]) -> Self {
-        let mut contacts = contacts(robot, feet, RowKind::State);
+    pub fn without_lines(
+        robot: &Robot,
+        feet: &[NamedContact],
+        named: &[&str],
+        through: &[&str],
+        kind: RowKind,
+    ) -> Self {
+        let mut contacts = contacts(robot, feet, kind);
         for name in named {
             if !contacts.iter().any(|known| known == name) {
                 contacts.push((*name).to_owned());
             }
         }
-        Self::with(robot, &["id"], contacts, through, RowKind::State)
+        Self::with(robot, &["id"], contacts, through, kind)
     }
 
     fn with(robot: &Robot, named: &[&str], contacts: Vec<String>, through: &[&str], kind: RowKind) -> Self {
         let mut names: Vec<String> = named.iter().chain(&FIRST).map(|name| (*name).to_owned()).collect();
+        let [given, taken] = if kind == RowKind::Forces { ["f", "a"] } else { ["p", "v_after"] };
         for contact in &contacts {
-            names.extend([format!("mode_{contact}"), format!("p_{contact}_t"), format!("p_{contact}_n")]);
+            names.extend([format!("mode_{contact}"), format!("{given}_{contact}_t"), format!("{given}_{contact}_n")]);
         }
-        names.extend(robot.coordinates().map(|name| format!("v_after_{}", prefixed(robot, name))));
+        names.extend(robot.coordinates().map(|name| format!("{taken}_{}", prefixed(robot, name))));
         if kind == RowKind::Touchdown {
             names.extend(TOUCHDOWN.map(|name| format!("touchdown_{name}")));
             let coordinates =
@@ -109,7 +134,15 @@ impl Columns {
         names.extend(LAST.map(str::to_owned));
         let contacts = contacts.into_iter().zip(0..).collect();
         let (named, carried) = (named.len(), through.len());
-        Self { names, named, contacts, coordinates: robot.dofs(), kind, carried, guarded: false }
+        Self { names, named, contacts, coordinates: robot.dofs(), kind, carried, next: false, guarded: false }
+    }
+
+    /// The same with columns `next_verdict` and `next_modes`, behind `proven`: the forces just after each outcome, in
+    /// whose modes a contact that has left the ground is `open`.
+    pub fn with_next(mut self) -> Self {
+        let at = self.contacts_start();
+        self.names.splice(at..at, NEXT.map(str::to_owned));
+        Self { next: true, ..self }
     }
 
     /// The same with an apostrophe before every cell of text that a spreadsheet would take as a formula: one that
@@ -194,6 +227,12 @@ impl Columns {
             cells.text(place, mode.to_string());
             impulse.iter().zip(place + 1..).for_each(|(&entry, at)| cells.number(at, entry));
         }
+        if let Some(Next { verdict, modes, .. }) = outcome.next.as_ref().filter(|_| self.next) {
+            let name = |mode: &Option<Mode>| mode.map_or_else(|| "open".to_owned(), |mode| mode.to_string());
+            let modes = modes.iter().map(|own| own.iter().map(name).collect::<Vec<_>>().join("/"));
+            cells.text(self.named + FIRST.len(), verdict.to_string());
+            cells.text(self.named + FIRST.len() + 1, modes.collect::<Vec<_>>().join("; "));
+        }
         let velocities = outcome.velocity().take(self.coordinates);
         velocities.zip(self.velocities()..).for_each(|(velocity, at)| cells.number(at, velocity));
         let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
@@ -228,7 +267,7 @@ impl Columns {
 
     /// The first column of a contact.
     fn contacts_start(&self) -> usize {
-        self.named + FIRST.len()
+        self.named + FIRST.len() + if self.next { NEXT.len() } else { 0 }
     }
 
     /// The first of a contact's columns.

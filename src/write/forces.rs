@@ -1,6 +1,6 @@
 //! The result of a state in sustained contact: a [`Report`] with forces and accelerations under their own names.
 
-use super::result::{ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report};
+use super::result::{CarriedFields, ContactRecord, ErrorObject, LeftOutRecord, NearestRecord, Rejected, Report};
 use crate::Mode;
 use crate::impact::outcome::Range;
 use crate::impact::{Border, Family, OpenCombinations, Outcome, Verdict};
@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 impl Report<'_> {
     /// The result under the names of forces; `None` of an impact.
     pub fn forces<'s>(&'s self) -> Option<ForcesRecord<'s>> {
-        let (sustained, of) = self.sustained?;
-        let contacts = self.contacts.iter().zip(&sustained.slips).zip(of.problem.velocity_free());
-        let outcomes = |all: &'s [Outcome]| all.iter().map(|own| ForceOutcome::of(own, of.power(own))).collect();
+        let (sustained, free) = self.sustained?;
+        let contacts = self.contacts.iter().zip(&sustained.slips).zip(free);
+        let outcomes = |all: &'s [Outcome]| all.iter().map(ForceOutcome::of).collect();
         let rejected = self.rejected.as_ref().map(|all| all.iter().map(RejectedForces::of).collect());
         Some(ForcesRecord {
             id: self.id.as_deref(),
@@ -40,6 +40,7 @@ impl Report<'_> {
             mass_matrix: self.mass_matrix.as_deref(),
             contact_jacobian: self.contact_jacobian.as_deref(),
             delassus: self.delassus.as_deref(),
+            carried: self.carried.as_ref(),
             error: self.error.as_ref(),
         })
     }
@@ -117,6 +118,10 @@ pub struct ForcesRecord<'a> {
     /// G = J M^-1 J^T, without what the loops do not let move; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delassus: Option<&'a [Vec<f64>]>,
+    /// Fields of the table that the state comes from and that mean nothing here, as they stand there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<std::collections::BTreeMap<String, String>>"))]
+    pub carried: Option<&'a CarriedFields<'a>>,
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<&'a ErrorObject>,
@@ -210,7 +215,7 @@ pub struct ForceOutcome<'a> {
 }
 
 impl<'a> ForceOutcome<'a> {
-    fn of(own: &'a Outcome, power: f64) -> Self {
+    fn of(own: &'a Outcome) -> Self {
         Self {
             modes: &own.modes,
             force: &own.impulse,
@@ -218,7 +223,7 @@ impl<'a> ForceOutcome<'a> {
             base_acceleration: own.base_velocity_after.as_ref(),
             joint_acceleration: own.joint_velocity_after.as_ref(),
             loop_force: own.loop_impulse.as_deref(),
-            power,
+            power: 0.0 - own.energy_loss,
             force_unique: own.impulse_unique,
             force_range: own.impulse_range.as_deref(),
             friction_needed: &own.friction_needed,

@@ -102,7 +102,7 @@ struct WithSamples<'a, T> {
 #[derive(JsonSchema)]
 #[schemars(rename = "Sample", extend("additionalProperties" = {"type": "number"}))]
 struct SampleWhole<'a> {
-    /// As of `impact`, or why there is none.
+    /// As of `impact` or `forces`, or why there is none.
     result: SampleResult<'a>,
 }
 
@@ -111,6 +111,7 @@ struct SampleWhole<'a> {
 #[schemars(inline)]
 enum SampleResult<'a> {
     Whole(Box<Report<'a>>),
+    Forces(Box<ForcesRecord<'a>>),
     Brief(Box<Brief<'a>>),
     Refused(RefusedSample),
 }

@@ -3,7 +3,9 @@
 use super::table::number;
 use crate::error::visible;
 use crate::impact::OpenCombinations;
+use crate::pipeline::Aspect;
 use crate::{Mode, Outcome, Verdict};
+use serde::Serialize;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -35,43 +37,125 @@ pub(crate) fn modes(names: impl IntoIterator<Item: AsRef<str>>, modes: &[Mode]) 
 
 const NUMBERS: [&str; 10] = ["No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine"];
 
-/// The verdict as a sentence; `open` is how much is, if anything.
-pub(crate) fn verdict(verdict: Verdict, outcomes: &[Outcome], open: Option<&OpenCombinations>) -> String {
-    if let Some(&OpenCombinations { combinations, undecided, beyond_budget }) = open {
-        let listed = outcomes.iter().filter(|outcome| !outcome.decided).count();
-        let listed = if listed as u64 == undecided { String::new() } else { format!(", of which {listed} are listed") };
-        if beyond_budget {
-            return format!(
-                "Undecided: the budget of work ended (`budget`), and {undecided} of {combinations} combinations of modes \
-                 are open{listed}."
-            );
-        }
-        if !listed.is_empty() {
-            return format!(
-                "Undecided: some sign was settled by no precision, and {undecided} of {combinations} combinations of \
-                 modes are open{listed}."
-            );
+/// What the numbers of an impact are called, or those of forces.
+#[derive(Debug)]
+pub(crate) struct Wording {
+    pub energy: &'static str,
+    /// Contact velocities in a table.
+    pub before: [&'static str; 2],
+    /// As in an outcome's table.
+    pub impulse: [&'static str; 2],
+    pub after: [&'static str; 2],
+    pub on_loops: [&'static str; 2],
+    /// All of v after it.
+    pub coordinates: &'static str,
+    pub rates: &'static str,
+    pub others: &'static str,
+    pub one_of_many: &'static str,
+    pub drawn: DrawnNames,
+}
+
+/// Names and units in pictures and pages.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct DrawnNames {
+    /// What the ground gives, and what a contact has then.
+    pub given: (&'static str, &'static str),
+    pub taken: (&'static str, &'static str),
+    /// How it moves before, and what is lost.
+    pub moving: &'static str,
+    pub lost: &'static str,
+}
+
+const IMPACT: Wording = Wording {
+    energy: "Kinetic energy before the impact",
+    before: ["before: t [m/s]", "n [m/s]"],
+    impulse: ["impulse: t [N s]", "n [N s]"],
+    after: ["after: t [m/s]", "n [m/s]"],
+    on_loops: ["impulse on a: x [N s]", "z [N s]"],
+    coordinates: "velocity after",
+    rates: "velocities",
+    others: "other impulses give the same velocities",
+    one_of_many: "one of many impulses",
+    drawn: DrawnNames {
+        given: ("impulse", "N s"),
+        taken: ("velocity after", "m/s"),
+        moving: "velocity before",
+        lost: "J lost",
+    },
+};
+
+const FORCES: Wording = Wording {
+    energy: "Kinetic energy",
+    before: ["velocity: t [m/s]", "n [m/s]"],
+    impulse: ["force: t [N]", "n [N]"],
+    after: ["acceleration: t [m/s^2]", "n [m/s^2]"],
+    on_loops: ["force on a: x [N]", "z [N]"],
+    coordinates: "acceleration",
+    rates: "accelerations",
+    others: "other forces give the same accelerations",
+    one_of_many: "one of many forces",
+    drawn: DrawnNames {
+        given: ("force", "N"),
+        taken: ("acceleration", "m/s\u{b2}"),
+        moving: "velocity",
+        lost: "W lost",
+    },
+};
+
+/// What happens without finite forces.
+pub(crate) const NO_FORCES: &str = "No forces are consistent: velocities jump";
+
+impl Wording {
+    pub fn of(aspect: Aspect) -> &'static Self {
+        match aspect {
+            Aspect::Impact => &IMPACT,
+            Aspect::Forces => &FORCES,
         }
     }
-    let sentence = match verdict {
-        Verdict::Unique => "Exactly one outcome.",
-        Verdict::Ambiguous => {
-            let count = outcomes.len();
-            let count = NUMBERS.get(count).map_or(count.to_string(), |word| (*word).to_owned());
-            let families = outcomes.iter().any(|outcome| outcome.family);
-            let families = if families { ", and so are the families of velocities between them" } else { "" };
-            return format!("{count} outcomes are equally valid{families}.");
+
+    /// The verdict as a sentence; `open` is how much is, if anything.
+    pub fn verdict(&self, verdict: Verdict, outcomes: &[Outcome], open: Option<&OpenCombinations>) -> String {
+        if let Some(&OpenCombinations { combinations, undecided, beyond_budget }) = open {
+            let listed = outcomes.iter().filter(|outcome| !outcome.decided).count();
+            let listed =
+                if listed as u64 == undecided { String::new() } else { format!(", of which {listed} are listed") };
+            if beyond_budget {
+                return format!(
+                    "Undecided: the budget of work ended (`budget`), and {undecided} of {combinations} combinations of modes \
+                     are open{listed}."
+                );
+            }
+            if !listed.is_empty() {
+                return format!(
+                    "Undecided: some sign was settled by no precision, and {undecided} of {combinations} combinations of \
+                     modes are open{listed}."
+                );
+            }
         }
-        // Regular contacts always have an outcome.
-        Verdict::None => {
-            "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on each \
-             other, or nothing that may move moves them."
-        }
-        Verdict::Undecided => "Undecided: some sign was settled by no precision; what it leaves open is listed.",
-        Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.",
-        Verdict::NoContact => "No contact: the ground gives no impulse.",
-    };
-    sentence.to_owned()
+        let sentence = match verdict {
+            Verdict::Unique => "Exactly one outcome.",
+            Verdict::Ambiguous => {
+                let count = outcomes.len();
+                let count = NUMBERS.get(count).map_or(count.to_string(), |word| (*word).to_owned());
+                let families = outcomes.iter().any(|outcome| outcome.family);
+                let families = match families {
+                    true => format!(", and so are the families of {} between them", self.rates),
+                    false => String::new(),
+                };
+                return format!("{count} outcomes are equally valid{families}.");
+            }
+            Verdict::None if self.drawn.given == FORCES.drawn.given => NO_FORCES,
+            // Regular contacts always have an outcome.
+            Verdict::None => {
+                "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on each \
+                 other, or nothing that may move moves them."
+            }
+            Verdict::Undecided => "Undecided: some sign was settled by no precision; what it leaves open is listed.",
+            Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.",
+            Verdict::NoContact => return format!("No contact: the ground gives no {}.", self.drawn.given.0),
+        };
+        sentence.to_owned()
+    }
 }
 
 fn verb(mode: Mode) -> &'static str {

@@ -65,7 +65,7 @@ fn straight_lines_stay_near_the_outcomes() {
                 let scales = [0, 1].map(|kind| largest(&motions().flat_map(|of| of[kind].clone()).collect::<Vec<_>>()));
                 for pair in places.windows(2) {
                     let at = line(pair[0].at, pair[1].at);
-                    let analysis = solver.impact(&[at]).expect("an impact").analysis.expect("an analysis");
+                    let analysis = solver.answer(&[at]).expect("an impact").analysis.expect("an analysis");
                     for ((modes, a), (_, b)) in pair[0].outcomes.iter().zip(&pair[1].outcomes) {
                         let own = analysis.outcomes.iter().find(|own| own.modes == *modes).expect("the outcome");
                         let own = Motion { velocity_after: own.velocity_after.clone(), impulse: own.impulse.clone() };

@@ -38,9 +38,10 @@ class Answer {
   }
 
   table({ pose: { contacts }, outcomes }, chosen) {
+    const { given, taken } = this.data.wording;
     const head = (text, span) => html("th", { scope: "col", colSpan: span }, text);
     const table = html("table", {}, html("thead", {}, html("tr", {},
-      head("contact", 1), head("impulse t, n [N s]", 2), head("velocity after t, n [m/s]", 2))));
+      head("contact", 1), ...[given, taken].map(([name, unit]) => head(`${name} t, n [${unit}]`, 2)))));
     outcomes.forEach((outcome, number) => {
       const body = html("tbody", { className: chosen === null || chosen === number ? "" : "faded" }, html("tr", {}, this.outcome(outcome, number, chosen)));
       contacts.forEach(({ name }, contact) => {
@@ -59,7 +60,7 @@ class Answer {
     button.setAttribute("aria-pressed", chosen === number);
     button.setAttribute("aria-label", `Show outcome ${number + 1} alone`);
     const sign = index === null ? "–" : index > 0 ? "+1" : "−1";
-    const grades = [`margin ${digits(margin)}`, `index ${sign}`, `${digits(energy_loss)} J lost`, ...marks.map((mark) => texts[mark])];
+    const grades = [`margin ${digits(margin)}`, `index ${sign}`, `${digits(energy_loss)} ${this.data.wording.lost}`, ...marks.map((mark) => texts[mark])];
     return html("th", { scope: "rowgroup", className: "outcome", colSpan: 5 }, button, ` ${texts[words]}`, html("br"), html("small", {}, grades.join(", ")));
   }
 }

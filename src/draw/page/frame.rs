@@ -4,7 +4,7 @@ use super::{Interned, PageState};
 use crate::draw::KeyframeAnswer;
 use crate::draw::robot::{Arrow, Drawing, DrawnBody, DrawnContact, DrawnShape, Extent, picture};
 use crate::planar::{Pair, Vector};
-use crate::write::words;
+use crate::write::words::Wording;
 use crate::{Error, Outcome, Verdict};
 use serde::Serialize;
 
@@ -88,9 +88,10 @@ pub(super) struct PageScale {
     follows: [bool; 2],
     /// Of the heaviest body \[kg\].
     mass: f64,
-    /// An impulse \[N s\] and a velocity \[m/s\] whose arrows have the usual length.
+    /// An impulse \[N s\], a velocity after \[m/s\] and one before it whose arrows have the usual length.
     impulse: f64,
     velocity: f64,
+    before: f64,
 }
 
 /// The view stays fixed if all states lie within this multiple of the largest robot's size.
@@ -119,7 +120,8 @@ impl PageScale {
             follows,
             mass: significant(masses.fold(0.0, f64::max), 5),
             impulse: usual(drawings.iter().map(|drawing| drawing.greatest_impulse())),
-            velocity: usual(drawings.iter().map(|drawing| drawing.greatest_velocity())),
+            velocity: usual(drawings.iter().map(|drawing| drawing.greatest_velocities()[1])),
+            before: usual(drawings.iter().map(|drawing| drawing.greatest_velocities()[0])),
         }
     }
 }
@@ -144,7 +146,9 @@ impl PageFrame {
             verdict: answer.ok().map(|answer| answer.verdict),
             proven: answer.ok().map(|answer| answer.proven),
             sentence: texts.number(match answer {
-                Ok(answer) => words::verdict(answer.verdict, &answer.outcomes, answer.open.as_ref()),
+                Ok(answer) => {
+                    Wording::of(answer.aspect).verdict(answer.verdict, &answer.outcomes, answer.open.as_ref())
+                }
                 Err(error) => refusal(error),
             }),
             notes: keyframe.notes.iter().map(|note| texts.number(note)).collect(),
@@ -165,7 +169,7 @@ fn outcomes(answer: &KeyframeAnswer, contacts: &[DrawnContact], texts: &mut Inte
     let pairs = |pairs: &[Pair<f64>]| pairs.iter().map(|pair| pair.map(|entry| significant(entry, 5))).collect();
     let outcome = |outcome: &Outcome| PageOutcome {
         words: texts.number(picture::modes(contacts.iter().map(|contact| &contact.name), outcome)),
-        remarks: picture::remarks(outcome).into_iter().map(|remark| texts.number(remark)).collect(),
+        remarks: picture::remarks(outcome, answer.aspect).into_iter().map(|remark| texts.number(remark)).collect(),
         margin: outcome.margin.map(|margin| significant(margin, 5)),
         index: outcome.index,
         energy_loss: significant(outcome.energy_loss, 5),

@@ -18,6 +18,7 @@ pub use study::Stops;
 
 use super::Keyframe;
 use super::plot::{PlotWindow, Rendered};
+use crate::write::words::{DrawnNames, Wording};
 use frame::{PageFrame, PageScale};
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -48,6 +49,7 @@ pub struct Page {
     parts: Vec<Box<RawValue>>,
     texts: Vec<String>,
     scale: PageScale,
+    wording: Option<DrawnNames>,
     windows: Vec<PlotWindow>,
     notes: Vec<String>,
     #[serde(skip)]
@@ -102,7 +104,9 @@ impl Page {
         let scale = PageScale::of(states);
         let frames = states.iter().map(|state| PageFrame::new(state, scale.unit, &mut parts, &mut texts)).collect();
         let parts = parts.all.into_iter().filter_map(|part| RawValue::from_string(part).ok()).collect();
-        Self { frames, parts, texts: texts.all, scale, windows, svg, ..Self::default() }
+        let aspect = states.iter().find_map(|state| Some(state.keyframe.answer.as_ref().ok()?.aspect));
+        let wording = Some(Wording::of(aspect.unwrap_or_default()).drawn);
+        Self { frames, wording, parts, texts: texts.all, scale, windows, svg, ..Self::default() }
     }
 
     pub fn html(&self) -> String {

@@ -1,4 +1,4 @@
-// The robot where it is, with an arrow for each impulse and velocity.
+// The robot where it is, with an arrow for each impulse and velocity, or force and acceleration.
 
 /** An element of SVG with these attributes. */
 function svg(name, attributes = {}, ...children) {
@@ -57,13 +57,14 @@ class Robot {
   fit() {
     const [width, height] = [this.element.clientWidth || 620, this.element.clientHeight || 400];
     this.element.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const { low, high, impulse, velocity } = this.data.scale;
+    const { low, high, impulse, velocity, before } = this.data.scale;
     const { side, above, below } = Robot.ROOM;
     const fits = [(width - 2 * side * height) / (high[0] - low[0]), (height * (1 - above - below)) / (high[1] - low[1])];
     this.zoom = Math.min(...fits.filter(Number.isFinite));
     if (!Number.isFinite(this.zoom)) this.zoom = height;
     this.middle = [width / 2, (height * (1 + above - below)) / 2];
-    this.length = { impulse: (Robot.USUAL * height) / impulse, velocity: (Robot.USUAL * height) / velocity };
+    const usual = (value) => (Robot.USUAL * height) / value;
+    this.length = { impulse: usual(impulse), velocity: usual(velocity), before: usual(before) };
     this.longest = Robot.LONGEST * height;
     this.key();
     this.show(...this.shown);
@@ -141,7 +142,7 @@ class Robot {
     for (const { point, normal, before } of pose.contacts) {
       const [x1, y1] = this.at(point);
       const [x2, y2] = [x1 + 34 * normal[0], y1 - 34 * normal[1]];
-      shapes.push(svg("line", { class: "normal", x1, y1, x2, y2 }), this.vector("before", "velocity", point, before));
+      shapes.push(svg("line", { class: "normal", x1, y1, x2, y2 }), this.vector("before", "before", point, before));
     }
     for (const { point, vector } of pose.applied ?? []) shapes.push(this.vector("applied", "impulse", point, vector));
     const tips = [];
@@ -198,13 +199,13 @@ class Robot {
 
   /** What the arrows are, each with one of a round length. */
   key() {
-    const { frames, scale: { impulse, velocity } } = this.data;
+    const { frames, scale: { impulse, velocity, before }, wording: { given, taken, moving } } = this.data;
     const some = (chosen) => frames.some((frame) => frame.pose && chosen(frame));
     const entries = [
-      ["impulse", "impulse", impulse, "N s", "impulse of the ground", some((frame) => frame.outcomes.some((outcome) => outcome.impulse.some(moves)))],
-      ["applied", "impulse", impulse, "N s", "applied impulse", some((frame) => frame.pose.applied)],
-      ["velocity", "velocity", velocity, "m/s", "velocity after", some((frame) => frame.outcomes.some((outcome) => outcome.after.some(moves)))],
-      ["before", "velocity", velocity, "m/s", "velocity before", some((frame) => frame.pose.contacts.some((contact) => moves(contact.before)))],
+      ["impulse", "impulse", impulse, given[1], `${given[0]} of the ground`, some((frame) => frame.outcomes.some((outcome) => outcome.impulse.some(moves)))],
+      ["applied", "impulse", impulse, given[1], `applied ${given[0]}`, some((frame) => frame.pose.applied)],
+      ["velocity", "velocity", velocity, taken[1], taken[0], some((frame) => frame.outcomes.some((outcome) => outcome.after.some(moves)))],
+      ["before", "before", before, "m/s", moving, some((frame) => frame.pose.contacts.some((contact) => moves(contact.before)))],
     ];
     this.legend.replaceChildren();
     for (const [kind, unit, usual, name, words, drawn] of entries) {

@@ -84,8 +84,8 @@ impl Page {
         let look = |solver: &mut _, index| look(model, solver, &stops.point(index));
         let seen = workers.map(stops.count(), || Solver::new(model), look);
         let (regions, notes) = match found {
-            Findings::Along(survey) => along(Sweep::new(&parameters[0], survey), survey),
-            Findings::Map(map) => areas(MapSweep::new(parameters, map), map),
+            Findings::Along(survey) => along(Sweep::new(model.study, survey), survey),
+            Findings::Map(map) => areas(MapSweep::new(model.study, map), map),
         };
         let state = |(index, (keyframe, regime)): (usize, (Keyframe, Regime))| {
             let region = match found {
@@ -112,7 +112,7 @@ impl Page {
 fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Regime) {
     let seen = solver.at(point, |robot, state, pipeline| {
         let state = State { uncertainty: None, ..state };
-        let impact = pipeline.impact(&state);
+        let impact = pipeline.answer(&state);
         let regime = Regime::of(&impact);
         let keyframe = match impact {
             Ok(impact) => Keyframe::of_impact(robot, &model.options.feet, &state, &impact),

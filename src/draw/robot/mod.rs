@@ -14,7 +14,7 @@
 pub mod picture;
 
 use crate::contact::{Contact, Feet, Placement};
-use crate::pipeline::Impact;
+use crate::pipeline::{Aspect, Impact};
 use crate::planar::{Pair, Vector};
 use crate::robot::{Body, FootShape, Rim, Robot};
 use crate::state::{AppliedImpulse, Ground, NamedContact, State};
@@ -23,6 +23,8 @@ use serde::Serialize;
 /// A robot in its configuration, its contacts and the outcomes of its impact.
 #[derive(Debug, Clone, Default)]
 pub struct Drawing {
+    /// Of forces impulses are forces \[N\], and velocities after it accelerations \[m/s^2\].
+    pub aspect: Aspect,
     /// Rigid bodies, in the robot's order.
     pub bodies: Vec<DrawnBody>,
     /// Where joints are, and where loops are closed.
@@ -134,6 +136,7 @@ impl Drawing {
         let effects = outcomes.map(|outcome| [&outcome.impulse, &outcome.velocity_after].map(|pairs| turned(pairs)));
         drawing.outcomes = effects.map(|[impulse, velocity_after]| DrawnOutcome { impulse, velocity_after }).collect();
         let arrow = |by: &AppliedImpulse| Arrow { point: in_world(by.link, by.offset), vector: by.vector };
+        drawing.aspect = impact.aspect();
         drawing.applied = scene.impulses.iter().map(arrow).collect();
         drawing.ground = drawing.extent().surface(&scene.ground, drawing.extent().scale());
         drawing
@@ -152,10 +155,12 @@ impl Drawing {
         greatest(self.outcomes.iter().flat_map(|outcome| &outcome.impulse).chain(applied))
     }
 
-    /// The greatest velocity of a contact, before the impact or after it \[m/s\].
-    pub fn greatest_velocity(&self) -> f64 {
-        let before = self.contacts.iter().map(|contact| &contact.velocity_before);
-        greatest(self.outcomes.iter().flat_map(|outcome| &outcome.velocity_after).chain(before))
+    /// The greatest velocity of a contact before the impact and after it, on one scale \[m/s\]; of forces its velocity, and
+    /// its acceleration \[m/s^2\].
+    pub fn greatest_velocities(&self) -> [f64; 2] {
+        let before = greatest(self.contacts.iter().map(|contact| &contact.velocity_before));
+        let after = greatest(self.outcomes.iter().flat_map(|outcome| &outcome.velocity_after));
+        if self.aspect.is_impact() { [before.max(after); 2] } else { [before, after] }
     }
 }
 

@@ -5,10 +5,11 @@ use crate::contact::Placement;
 use crate::draw::plot::{
     Color, Dash, LegendEntry, LegendKey, Mark, Panel, Picture, PlotAxis, PlotPoint, PlotShape, Stroke,
 };
+use crate::pipeline::Aspect;
 use crate::planar::Vector;
 use crate::state::{NamedContact, State};
 use crate::write::table::number;
-use crate::write::words;
+use crate::write::words::{self, DrawnNames, Wording};
 use crate::{Impact, Outcome, Robot};
 use std::iter;
 
@@ -55,7 +56,8 @@ pub fn impact(robot: &Robot, feet: &[NamedContact], state: &State, impact: &Impa
     if panels.is_empty() {
         panels.push(panel(String::new(), None));
     }
-    let sentence = words::verdict(analysis.verdict, &analysis.outcomes, analysis.open.as_ref());
+    let wording = Wording::of(impact.aspect());
+    let sentence = wording.verdict(analysis.verdict, &analysis.outcomes, analysis.open.as_ref());
     Some(Picture {
         title: format!("{}: {sentence}", words::titled(&robot.name, &state.id)),
         rows: panels.chunks(COLUMNS).map(<[Panel]>::to_vec).collect(),
@@ -110,7 +112,7 @@ pub fn robot(robot: &Robot, feet: &[NamedContact]) -> Picture {
 fn caption(impact: &Impact, several: bool, (at, outcome): (usize, &Outcome)) -> String {
     let words = modes(impact.contacts.iter().map(|contact| &contact.name), outcome);
     let grades = Some(words::grades(outcome.margin, outcome.index)).filter(|grades| !grades.is_empty());
-    let below: Vec<String> = grades.into_iter().chain(remarks(outcome)).collect();
+    let below: Vec<String> = grades.into_iter().chain(remarks(outcome, impact.aspect())).collect();
     let number = if several { format!("{}: ", at + 1) } else { String::new() };
     format!("{number}{words}\n{}", below.join(", "))
 }
@@ -120,14 +122,14 @@ pub(in crate::draw) fn modes(contacts: impl IntoIterator<Item: AsRef<str>>, outc
 }
 
 /// How sure and how special it is.
-pub(in crate::draw) fn remarks(outcome: &Outcome) -> Vec<String> {
+pub(in crate::draw) fn remarks(outcome: &Outcome, aspect: Aspect) -> Vec<String> {
     let border = outcome.border.as_ref().map(|border| {
         let zeros: Vec<String> = border.at_zero.iter().map(|zero| zero.inequality.to_string()).collect();
         format!("on a border: {}", zeros.join(", "))
     });
     let remarks = [
         (outcome.family, "a corner of a family"),
-        (!outcome.impulse_unique, "one of many impulses"),
+        (!outcome.impulse_unique, Wording::of(aspect).one_of_many),
         (!outcome.decided, "not excluded"),
         (outcome.decided && !outcome.proven, "not proven"),
     ];
@@ -166,9 +168,10 @@ struct DrawnScene<'d> {
     drawing: &'d Drawing,
     /// The robot's size \[m\].
     size: f64,
-    /// The lengths of arrows of 1 N s and of 1 m/s, the same for all outcomes \[m\].
+    /// The lengths of arrows of 1 N s and of 1 m/s, or 1 N, 1 m/s and 1 m/s^2, the same for all outcomes \[m\].
     impulse_scale: f64,
-    velocity_scale: f64,
+    before_scale: f64,
+    after_scale: f64,
     /// All that is drawn and the ground if it is near, with room around it.
     view: Extent,
 }
@@ -178,8 +181,9 @@ impl<'d> DrawnScene<'d> {
         let view @ Extent { low, high } = drawing.extent();
         let size = view.scale();
         let scale = |most: f64| if most > 0.0 { LONGEST * size / most } else { 0.0 };
-        let (impulse_scale, velocity_scale) = (scale(drawing.greatest_impulse()), scale(drawing.greatest_velocity()));
-        let mut scene = Self { drawing, size, impulse_scale, velocity_scale, view };
+        let impulse_scale = scale(drawing.greatest_impulse());
+        let [before_scale, after_scale] = drawing.greatest_velocities().map(scale);
+        let mut scene = Self { drawing, size, impulse_scale, before_scale, after_scale, view };
         let middle = 0.5 * (low.x + high.x);
         let mut pairs = drawing.ground.windows(2).map(|pair| [pair[0], pair[1]]);
         let under = pairs.find(|[from, to]| (from.x..=to.x).contains(&middle) && from.x < to.x);
@@ -196,16 +200,17 @@ impl<'d> DrawnScene<'d> {
     /// The arrows of an outcome, or of none: where each begins, how far it reaches and its shaft.
     fn arrows(&self, outcome: Option<&DrawnOutcome>) -> Vec<(Vector<f64>, Vector<f64>, Stroke)> {
         let Drawing { contacts, applied, .. } = self.drawing;
-        let (impulse, velocity) = (self.impulse_scale, self.velocity_scale);
+        let impulse = self.impulse_scale;
         let applied = applied.iter().map(|applied| (applied.point, applied.vector * impulse, APPLIED));
         let effects = outcome.into_iter().flat_map(|outcome| {
             let impulses = outcome.impulse.iter().map(|&vector| (vector * impulse, IMPULSE));
-            let after = outcome.velocity_after.iter().map(|&vector| (vector * velocity, AFTER));
+            let after = outcome.velocity_after.iter().map(|&vector| (vector * self.after_scale, AFTER));
             let at = contacts.iter().chain(contacts).map(|contact| contact.point);
             at.zip(impulses.chain(after)).map(|(point, (reach, stroke))| (point, reach, stroke))
         });
         // On top, because it may be the velocity after, too.
-        let before = contacts.iter().map(|contact| (contact.point, contact.velocity_before * velocity, BEFORE));
+        let before =
+            contacts.iter().map(|contact| (contact.point, contact.velocity_before * self.before_scale, BEFORE));
         applied.chain(effects).chain(before).collect()
     }
 
@@ -277,11 +282,12 @@ impl<'d> DrawnScene<'d> {
         let is_drawn = |stroke: Stroke| {
             arrows.iter().any(|(_, reach, own)| *own == stroke && (stroke == APPLIED || *reach != Vector::zero()))
         };
+        let DrawnNames { given, taken, moving, .. } = Wording::of(self.drawing.aspect).drawn;
         let kinds = [
-            (IMPULSE, self.impulse_scale, "N s", "impulse of the ground"),
-            (APPLIED, self.impulse_scale, "N s", "applied impulse"),
-            (AFTER, self.velocity_scale, "m/s", "velocity after"),
-            (BEFORE, self.velocity_scale, "m/s", "velocity before"),
+            (IMPULSE, self.impulse_scale, given.1, format!("{} of the ground", given.0)),
+            (APPLIED, self.impulse_scale, given.1, format!("applied {}", given.0)),
+            (AFTER, self.after_scale, taken.1, taken.0.to_owned()),
+            (BEFORE, self.before_scale, "m/s", moving.to_owned()),
         ];
         let drawn = kinds.into_iter().filter(|(stroke, ..)| is_drawn(*stroke));
         let entries = drawn.filter_map(|(stroke, scale, unit, what)| {

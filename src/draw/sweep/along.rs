@@ -6,20 +6,15 @@ use crate::draw::plot::{
 };
 use crate::impact::Motion;
 use crate::law::Mode;
+use crate::pipeline::Aspect;
 use crate::sweep::{CurvePoint, Region, RegionCurves, Survey, letter};
 use crate::write::sweep::Happening;
-use crate::write::words;
+use crate::write::words::{self, DrawnNames, Wording};
 
 struct PlottedQuantity {
-    name: &'static str,
-    unit: &'static str,
+    name: (&'static str, &'static str),
     of: fn(&Motion) -> &[[f64; 2]],
 }
-
-const QUANTITIES: [PlottedQuantity; 2] = [
-    PlottedQuantity { name: "velocity after", unit: "m/s", of: |motion| &motion.velocity_after },
-    PlottedQuantity { name: "impulse", unit: "N s", of: |motion| &motion.impulse },
-];
 
 /// Height inside of the axes \[px\].
 const HEIGHT: f64 = 176.0;
@@ -35,7 +30,7 @@ const NEAR_POLE: f64 = 1.5;
 const ZERO: f64 = 1e-12;
 
 /// The picture of a survey's regions, with these courses of their outcomes.
-pub fn picture<'s>(x: PlotAxis, survey: &'s Survey, courses: &[RegionCurves]) -> Picture {
+pub fn picture<'s>(x: PlotAxis, aspect: Aspect, survey: &'s Survey, courses: &[RegionCurves]) -> Picture {
     let look = |(region, color): (&'s Region, Color)| KindLook {
         letter: letter(region.kind),
         color,
@@ -43,7 +38,12 @@ pub fn picture<'s>(x: PlotAxis, survey: &'s Survey, courses: &[RegionCurves]) ->
     };
     let kinds: Vec<KindLook> = firsts(survey).into_iter().zip(fills_along(survey)).map(look).collect();
     let styles = OutcomeStyles::of(survey, &kinds);
-    let whole = Curves { survey, courses, styles: &styles };
+    let DrawnNames { given, taken, .. } = Wording::of(aspect).drawn;
+    let quantities = [
+        PlottedQuantity { name: taken, of: |motion| &motion.velocity_after },
+        PlottedQuantity { name: given, of: |motion| &motion.impulse },
+    ];
+    let whole = Curves { survey, courses, styles: &styles, quantities };
     let mut panels: Vec<Panel> = whole.contacts().iter().flat_map(|contact| whole.of_contact(contact)).collect();
     if panels.is_empty() {
         let nothing = PlotAxis { bare: true, ..PlotAxis::default() };
@@ -72,6 +72,7 @@ struct Curves<'a> {
     survey: &'a Survey,
     courses: &'a [RegionCurves],
     styles: &'a OutcomeStyles<'a>,
+    quantities: [PlottedQuantity; 2],
 }
 
 impl<'a> Curves<'a> {
@@ -83,10 +84,11 @@ impl<'a> Curves<'a> {
 
     /// Panels of a contact, without quantities that are zero everywhere.
     fn of_contact(&self, contact: &str) -> Vec<Panel> {
-        let (drawn, zero): (Vec<_>, Vec<_>) = QUANTITIES.iter().partition(|quantity| self.is_drawn(contact, quantity));
+        let (drawn, zero): (Vec<_>, Vec<_>) =
+            self.quantities.iter().partition(|quantity| self.is_drawn(contact, quantity));
         let mut panels: Vec<Panel> = drawn.iter().map(|quantity| self.panel(contact, quantity)).collect();
         if let Some(first) = panels.first_mut() {
-            let zero = zero.iter().map(|quantity| format!("\n{} is zero in every outcome", quantity.name));
+            let zero = zero.iter().map(|quantity| format!("\n{} is zero in every outcome", quantity.name.0));
             first.title = contact.to_owned() + &zero.collect::<String>();
         }
         panels
@@ -128,7 +130,7 @@ impl<'a> Curves<'a> {
             }
         }
         let within = range(ranges.into_iter().flat_map(|(least, most)| [least, most]));
-        let y = PlotAxis { within, ..PlotAxis::new(format!("{} [{}]", quantity.name, quantity.unit)) };
+        let y = PlotAxis { within, ..PlotAxis::new(format!("{} [{}]", quantity.name.0, quantity.name.1)) };
         Panel { shapes, size: (WIDTH, HEIGHT), ..Panel::new(PlotAxis::default(), y) }
     }
 }

@@ -22,7 +22,10 @@ const WIDTH: f64 = 540.0;
 /// The picture of the findings of `model`; `workers` count [`work`] pieces of work.
 pub fn of(model: &RobotStudy, findings: &Findings, workers: Workers) -> Picture {
     match findings {
-        Findings::Along(survey) => along::picture(axis(model, 0), survey, &RegionCurves::of(model, survey, workers)),
+        Findings::Along(survey) => {
+            let curves = RegionCurves::of(model, survey, workers);
+            along::picture(axis(model, 0), model.study.question(), survey, &curves)
+        }
         Findings::Map(map) => map::picture([axis(model, 0), axis(model, 1)], map),
     }
 }

@@ -22,7 +22,7 @@ pub use refused::{ErrorObject, Refused};
 use super::Detail;
 use super::state::{CounterexampleRecord, HoldsRecord};
 use crate::impact::{Analysis, Explanation, Family, OpenCombinations, Outcome, Rejection, Verdict};
-use crate::pipeline::{Impact, NearestFoot, Sustained};
+use crate::pipeline::{Aspect, Impact, NearestFoot, Sustained};
 use crate::planar::Pair;
 use crate::read::Problem;
 use crate::state::State;
@@ -138,9 +138,10 @@ pub struct Report<'a> {
     /// Why there are no outcomes although the matrices are known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorObject>,
-    /// Of a state in sustained contact: its answer, which is written under other names.
+    /// Of a state in sustained contact: what it has in addition, and the contacts' accelerations without forces; it is
+    /// written under other names.
     #[serde(skip)]
-    pub sustained: Option<(&'a Sustained, &'a Impact)>,
+    pub sustained: Option<(&'a Sustained, &'a [Pair<f64>])>,
 }
 
 /// A combination of modes that is not an outcome.
@@ -181,12 +182,18 @@ impl<'a> Report<'a> {
             Some(NearestRecord { name: Cow::Borrowed(&robot.links.get(link)?.name), height, velocity })
         });
         let matrices = impact.matrices.as_ref();
+        let whole = Self::of_analysis(contacts.collect(), impact.analysis.as_ref(), detail);
+        // No theorem is known of forces.
+        let whole = match impact.aspect() {
+            Aspect::Impact => whole,
+            Aspect::Forces => Self { no_slip_consistent: None, index_sum: None, explain: None, ..whole },
+        };
         Ok(Self {
             id: state.id.as_ref().map(Cow::Borrowed),
             nearest,
             kinetic_energy: Some(impact.kinetic_energy),
             left_out: (!detail.brief).then(|| LeftOutRecord::of_impact(robot, impact)),
-            sustained: impact.sustained.as_ref().map(|own| (own, impact)),
+            sustained: impact.sustained.as_ref().map(|own| (own, impact.problem.velocity_free())),
             holds: impact.holds.as_ref().map(HoldsRecord::from),
             counterexample: impact.holds.as_ref().and_then(|holds| CounterexampleRecord::of(robot, holds)),
             notes: Cow::Borrowed(&impact.notes),
@@ -195,7 +202,7 @@ impl<'a> Report<'a> {
             contact_jacobian: matrices.map(|matrices| Cow::Borrowed(&*matrices.contact_jacobian)),
             delassus: matrices.map(|matrices| Cow::Borrowed(&*matrices.delassus)),
             error: error.as_ref().map(ErrorObject::new),
-            ..Self::of_analysis(contacts.collect(), impact.analysis.as_ref(), detail)
+            ..whole
         })
     }
 

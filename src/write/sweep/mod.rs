@@ -13,8 +13,10 @@ pub(super) use samples::RefusedSample;
 pub use samples::{SampleRecord, columns};
 
 use super::ErrorObject;
+use crate::pipeline::Aspect;
 use crate::sweep::{
-    Area, BorderCurve, CELLS, Findings, Map, Parameter, Regime, Region, RegionBorder, Survey, WATCHED_CONTACTS, letter,
+    Area, BorderCurve, CELLS, Findings, Map, Parameter, Regime, Region, RegionBorder, Study, Survey, WATCHED_CONTACTS,
+    letter,
 };
 use crate::{Error, Mode, Verdict};
 use serde::Serialize;
@@ -23,6 +25,10 @@ use serde::Serialize;
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sweep<'a> {
+    /// What is asked; absent of impacts.
+    #[serde(skip_serializing_if = "Aspect::is_impact")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Aspect>"))]
+    pub question: Aspect,
     /// The parameter.
     pub parameter: &'a str,
     /// The regions, from the least to the greatest value.
@@ -84,18 +90,19 @@ pub struct Happening<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// The record of a study of these parameters.
-    pub fn new(parameters: &'a [Parameter], findings: &'a Findings) -> Self {
+    /// The record of a `study`.
+    pub fn new(study: &'a Study, findings: &'a Findings) -> Self {
         match findings {
-            Findings::Along(survey) => Self::Along(Sweep::new(&parameters[0], survey)),
-            Findings::Map(map) => Self::Map(MapSweep::new(parameters, map)),
+            Findings::Along(survey) => Self::Along(Sweep::new(study, survey)),
+            Findings::Map(map) => Self::Map(MapSweep::new(study, map)),
         }
     }
 }
 
 impl<'a> Sweep<'a> {
-    /// The record of a survey of `parameter`.
-    pub fn new(parameter: &'a Parameter, survey: &'a Survey) -> Self {
+    /// The record of a survey of the first parameter.
+    pub fn new(study: &'a Study, survey: &'a Survey) -> Self {
+        let parameter = &study.parameters()[0];
         let region = |region: &'a Region| RegionRecord {
             letter: letter(region.kind),
             from: region.from,
@@ -104,6 +111,7 @@ impl<'a> Sweep<'a> {
         };
         let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
         Self {
+            question: study.question(),
             parameter: &parameter.name,
             regions: survey.regions.iter().map(region).collect(),
             borders: &survey.borders,
@@ -117,6 +125,10 @@ impl<'a> Sweep<'a> {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MapSweep<'a> {
+    /// What is asked; absent of impacts.
+    #[serde(skip_serializing_if = "Aspect::is_impact")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Aspect>"))]
+    pub question: Aspect,
     /// The parameters.
     pub parameters: Vec<&'a str>,
     /// The regions.
@@ -147,8 +159,9 @@ pub struct MapRegion<'a> {
 }
 
 impl<'a> MapSweep<'a> {
-    /// The record of the `map` of these parameters.
-    pub fn new(parameters: &'a [Parameter], map: &'a Map) -> Self {
+    /// The record of the `map` of a study.
+    pub fn new(study: &'a Study, map: &'a Map) -> Self {
+        let parameters = study.parameters();
         let whole: f64 = parameters.iter().map(Parameter::range).product();
         let region = |(kind, area): (usize, &'a Area)| MapRegion {
             letter: letter(kind),
@@ -165,6 +178,7 @@ impl<'a> MapSweep<'a> {
             ));
         }
         Self {
+            question: study.question(),
             parameters: parameters.iter().map(|parameter| parameter.name.as_str()).collect(),
             regions: map.areas.iter().enumerate().map(region).collect(),
             borders: &map.curves,

@@ -3,7 +3,7 @@
 use crate::read::table::Carried;
 use crate::state::NamedContact;
 use crate::sweep::{Regime, RobotStudy, Solver};
-use crate::write::{Columns, Detail, ErrorObject, Report, append_line};
+use crate::write::{Columns, Detail, ErrorObject, Report, RowKind, append_line};
 use crate::{Impact, Result};
 use serde::Serialize;
 use serde_json::json;
@@ -46,7 +46,7 @@ impl<'a> SampleRecord<'a> {
     pub fn append_json(&self, solver: &mut Solver, detail: Detail, out: &mut Vec<u8>) -> bool {
         let mut result = Vec::new();
         let answered = solver.at(&self.point, |robot, state, pipeline| -> Result<()> {
-            let impact = pipeline.impact(&state)?;
+            let impact = pipeline.answer(&state)?;
             Report::of_state(robot, &state, &impact, detail)?.append_json(detail, &mut result);
             impact.analyzed().map(drop)
         });
@@ -73,7 +73,7 @@ impl<'a> SampleRecord<'a> {
         let values = || self.point.iter().map(|value| format!("{value:?}"));
         let carried = |impact: &Result<Impact>| Carried::new(values().chain([letter(&Regime::of(impact))]));
         let answered = solver.at(&self.point, |robot, state, pipeline| {
-            let impact = pipeline.impact(&state);
+            let impact = pipeline.answer(&state);
             let carried = carried(&impact);
             let impact = impact?;
             columns.append_result(&Report::of_state(robot, &state, &impact, Detail::default())?, Some(&carried), out)
@@ -89,5 +89,6 @@ impl<'a> SampleRecord<'a> {
 pub fn columns<'c>(model: &'c RobotStudy, feet: &[NamedContact], contacts: impl Iterator<Item = &'c str>) -> Columns {
     let parameters = model.study.parameters().iter().map(|parameter| parameter.name.as_str());
     let through: Vec<&str> = parameters.chain(["region"]).collect();
-    Columns::without_lines(model.robot, feet, &contacts.collect::<Vec<_>>(), &through)
+    let kind = RowKind::of(model.study.question());
+    Columns::without_lines(model.robot, feet, &contacts.collect::<Vec<_>>(), &through, kind)
 }

@@ -7,9 +7,11 @@ use self::outcome::graded;
 use super::result::{ContactRecord, NearestRecord, Report};
 use super::state::HoldsRecord;
 use super::table::{Table, is_residue, number, scale};
+use super::words::Wording;
 use super::{Detail, Palette, words};
 use crate::error::visible;
 use crate::impact::{Analysis, ImpulseRegion, Verdict};
+use crate::pipeline::Aspect;
 use crate::planar::{Pair, Vector};
 use crate::read::Problem;
 use crate::{Friction, Impact, Mode, Robot, State};
@@ -17,38 +19,6 @@ use std::fmt::Write;
 
 /// The room for what was left out, in characters.
 const LEFT_OUT: usize = 200;
-
-/// What an impact's numbers are called, and those of sustained contact.
-#[derive(Debug)]
-struct Wording {
-    energy: &'static str,
-    before: [&'static str; 2],
-    impulse: [&'static str; 2],
-    after: [&'static str; 2],
-    on_loops: [&'static str; 2],
-    coordinates: &'static str,
-    others: &'static str,
-}
-
-const IMPACT: Wording = Wording {
-    energy: "Kinetic energy before the impact",
-    before: ["before: t [m/s]", "n [m/s]"],
-    impulse: ["impulse: t [N s]", "n [N s]"],
-    after: ["after: t [m/s]", "n [m/s]"],
-    on_loops: ["impulse on a: x [N s]", "z [N s]"],
-    coordinates: "velocity after",
-    others: "other impulses give the same velocities",
-};
-
-const FORCES: Wording = Wording {
-    energy: "Kinetic energy",
-    before: ["velocity: t [m/s]", "n [m/s]"],
-    impulse: ["force: t [N]", "n [N]"],
-    after: ["acceleration: t [m/s^2]", "n [m/s^2]"],
-    on_loops: ["force on a: x [N]", "z [N]"],
-    coordinates: "acceleration",
-    others: "other forces give the same accelerations",
-};
 
 /// What a text needs in addition to the report.
 #[derive(Debug)]
@@ -65,18 +35,17 @@ pub struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     pub fn of_state(robot: &Robot, state: &State, impact: &'a Impact) -> Self {
-        let is_of_forces = impact.sustained.is_some();
-        let unit = |(_, unit): (_, &'static str)| match (is_of_forces, unit.starts_with('m')) {
-            (false, _) => unit,
-            (true, true) => "m/s^2",
-            (true, false) => "rad/s^2",
+        let unit = |(_, unit): (_, &'static str)| match (impact.aspect(), unit.starts_with('m')) {
+            (Aspect::Impact, _) => unit,
+            (Aspect::Forces, true) => "m/s^2",
+            (Aspect::Forces, false) => "rad/s^2",
         };
         Self {
             title: words::titled(&robot.name, &state.id),
             friction: impact.contacts.iter().map(|contact| state.scene.friction.of(contact.link)).collect(),
             units: robot.units().map(unit).collect(),
             analysis: impact.analysis.as_ref(),
-            wording: if is_of_forces { &FORCES } else { &IMPACT },
+            wording: Wording::of(impact.aspect()),
         }
     }
 
@@ -86,7 +55,7 @@ impl<'a> Subject<'a> {
             friction: problem.contact.friction().map(Some).collect(),
             units: Vec::new(),
             analysis: Some(analysis),
-            wording: &IMPACT,
+            wording: Wording::of(Aspect::Impact),
         }
     }
 }
@@ -156,7 +125,7 @@ impl<'w> Writer<'w> {
 
     /// Accelerations of contacts without forces; none of an impact.
     fn free(&self) -> impl Iterator<Item = &'w Pair<f64>> + use<'w> {
-        self.report.sustained.iter().flat_map(|(_, of)| of.problem.velocity_free())
+        self.report.sustained.iter().flat_map(|(_, free)| *free)
     }
 
     fn contacts(&mut self) {
@@ -195,7 +164,9 @@ impl<'w> Writer<'w> {
         let Palette { strong, plain, .. } = *self.palette;
         let sentence = match (self.report.verdict, &self.report.outcomes) {
             (Some(Verdict::None), _) if self.report.sustained.is_some() => self.no_forces(),
-            (Some(verdict), Some(outcomes)) => words::verdict(verdict, outcomes, self.report.open.as_ref()),
+            (Some(verdict), Some(outcomes)) => {
+                self.subject.wording.verdict(verdict, outcomes, self.report.open.as_ref())
+            }
             _ => "No outcomes are known.".to_owned(),
         };
         writeln!(self.out, "{strong}{sentence}{plain}")?;
@@ -207,7 +178,7 @@ impl<'w> Writer<'w> {
 
     /// What happens without finite forces.
     fn no_forces(&self) -> String {
-        let sentence = "No forces are consistent: velocities jump, by an impact without approach";
+        let sentence = format!("{}, by an impact without approach", words::NO_FORCES);
         match self.report.sustained.and_then(|(own, _)| own.shock.as_deref()) {
             None => format!("{sentence} whose outcomes are not decided."),
             Some([]) => format!("{sentence}, for which there is none with an impulse, either."),
@@ -284,9 +255,10 @@ impl<'w> Writer<'w> {
                 None => format!(" of {}, redundant", 2 * self.report.contacts.len()),
             };
             let hidden = if self.report.verdict == Some(Verdict::Undecided) { "unknown" } else { "hidden by a border" };
-            let sum = self.report.index_sum.flatten().map_or(hidden.to_owned(), |sum| sum.to_string());
+            let sum = self.report.index_sum.map(|sum| sum.map_or(hidden.to_owned(), |sum| sum.to_string()));
+            let sum = sum.map_or(String::new(), |sum| format!("; sum of indices {sum}"));
             let proven = if self.report.proven == Some(true) { "proven" } else { "not proven" };
-            writeln!(self.out, "Contacts: rank {rank}{condition}; sum of indices {sum}; {proven}.")?;
+            writeln!(self.out, "Contacts: rank {rank}{condition}{sum}; {proven}.")?;
         }
         if !struck && !self.report.notes.is_empty() {
             self.out.push('\n');

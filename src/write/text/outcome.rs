@@ -54,7 +54,7 @@ impl Writer<'_> {
         };
         let all: Vec<String> = modes.iter().map(clauses).collect();
         let words = match (verdict, &all[..]) {
-            (Verdict::None, _) => "no forces are consistent: velocities jump".to_owned(),
+            (Verdict::None, _) => words::NO_FORCES.replace("No", "no"),
             (Verdict::Undecided, []) => "undecided".to_owned(),
             (Verdict::Undecided, all) => format!("undecided; {}", all.join("; or ")),
             (_, all) => all.join("; or "),
@@ -66,7 +66,8 @@ impl Writer<'_> {
     /// One line per family: its modes and the numbers of the outcomes at its corners.
     pub(super) fn families(&mut self) -> std::fmt::Result {
         if !self.report.families.is_empty() {
-            self.out.push_str("\nFamilies: all velocities between their corners are outcomes, too\n");
+            let rates = self.subject.wording.rates;
+            writeln!(self.out, "\nFamilies: all {rates} between their corners are outcomes, too")?;
         }
         for Family { modes, dimension, corners } in self.report.families.iter() {
             let corners = corners.iter().map(|corner| (corner + 1).to_string()).collect::<Vec<_>>().join(", ");
@@ -96,22 +97,18 @@ impl Writer<'_> {
     }
 
     fn energy(&mut self, outcome: &Outcome) -> std::fmt::Result {
-        if let Some((_, of)) = self.report.sustained {
-            let power = of.power(outcome);
-            let verb = if power > 0.0 { "gives" } else { "takes" };
-            return match power {
-                0.0 => Ok(()),
-                power => writeln!(self.out, "  the ground {verb} {} W", number(power.abs())),
-            };
-        }
         let loss = outcome.energy_loss;
-        if loss == 0.0 {
-            return writeln!(self.out, "  no energy is lost");
-        }
         let verb = if loss < 0.0 { "gives" } else { "takes" };
-        let energy = self.report.kinetic_energy.filter(|&energy| energy > 0.0 && loss > 0.0);
-        let share = energy.map(|energy| format!(", {:.1} % of the kinetic energy", 100.0 * loss / energy));
-        writeln!(self.out, "  the ground {verb} {} J{}", number(loss.abs()), share.unwrap_or_default())
+        match (loss == 0.0, self.report.sustained) {
+            (true, None) => writeln!(self.out, "  no energy is lost"),
+            (true, Some(_)) => Ok(()),
+            (false, Some(_)) => writeln!(self.out, "  the ground {verb} {} W", number(loss.abs())),
+            (false, None) => {
+                let energy = self.report.kinetic_energy.filter(|&energy| energy > 0.0 && loss > 0.0);
+                let share = energy.map(|energy| format!(", {:.1} % of the kinetic energy", 100.0 * loss / energy));
+                writeln!(self.out, "  the ground {verb} {} J{}", number(loss.abs()), share.unwrap_or_default())
+            }
+        }
     }
 
     /// v after the impact, one column per outcome.

@@ -56,6 +56,42 @@ all outcomes slide because friction is too small: 2; most is needed by 3 (line 3
 }
 
 #[test]
+fn forces_are_answered_and_summed_up() {
+    let path = place("forces.json");
+    let resting = |x: f64| {
+        let velocity = json!({"base": {"x": x, "pitch": if x == 0.0 { 0.0 } else { 3.0 }}});
+        format!("{}\n", json!({"position": {"base": {"z": 0.5}}, "velocity": velocity}))
+    };
+    let states = resting(0.0) + &resting(1.0) + &strike(3, 0.0);
+    let run = batch(&["-", "--friction", "0.5", "--forces", "--summary", &path], states.clone());
+    let lines = run.lines();
+    // The weight of 2 kg.
+    assert_eq!(lines[0]["outcomes"][0]["force"], json!([[0.0, 19.62]]));
+    assert_eq!(lines[1]["outcomes"][0]["force"], json!([[9.81, 19.62]]));
+    assert!(lines[2]["error"]["message"].as_str().expect("a message").contains("that is an impact"));
+    let summary = parsed(&read(&path));
+    assert_eq!((&summary["question"], &summary["verdicts"]["unique"]), (&json!("forces"), &json!(2)));
+    assert!(run.stderr.contains("smallest margins with a force"), "{}", run.stderr);
+    let table = batch(&["-", "--friction", "0.5", "--forces", "--output-format", "csv"], states).stdout;
+    let head =
+        "id,line,verdict,outcome,margin,proven,mode_disc,f_disc_t,f_disc_n,a_base_x,a_base_z,a_base_pitch,border";
+    assert!(table.starts_with(head), "{table}");
+    assert!(table.contains(",stick,0.0,19.62,0.0,0.0,0.0,"), "{table}");
+}
+
+#[test]
+fn what_follows_has_columns_and_fields() {
+    let states = strike(1, 0.0) + &strike(2, 30.0);
+    let line = &batch(&["-", "--friction", "0.5", "--next", "--brief"], states.clone()).lines()[1];
+    let next = json!({"verdict": "unique", "proven": true, "modes": [["slide+"]]});
+    assert_eq!(line["outcomes"][0]["next"], next);
+    let table = batch(&["-", "--friction", "0.5", "--next", "--output-format", "csv"], states).stdout;
+    let rows: Vec<&str> = table.lines().collect();
+    assert!(rows[0].starts_with("id,line,verdict,outcome,margin,proven,next_verdict,next_modes,mode_disc"), "{table}");
+    assert!(rows[1].contains("true,unique,stick,stick,") && rows[2].contains("true,unique,slide+,slide+,"), "{table}");
+}
+
+#[test]
 fn a_single_state_has_a_summary_only_if_asked_for() {
     assert_eq!(batch(&["-", "--friction", "1"], strike(1, 0.0)).stderr, "");
     let path = file("single.json", "");

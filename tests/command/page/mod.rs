@@ -201,3 +201,30 @@ fn commands_without_pages_refuse_to_write_one() {
         assert!(stderr.contains(words), "{arguments:?}: {stderr}");
     }
 }
+
+/// The block of Painleve's paradoxes against its rate of turn: none, and two.
+#[test]
+fn pages_and_pictures_of_forces_name_them() {
+    let study = json!({"question": "forces", "parameters": {"omega": {"from": 0, "to": 4, "steps": 2}},
+        "state": {"velocity": {"base": {"x": 1, "pitch": "omega"}}, "friction": 3}});
+    let (page, _) = swept("urdf/block.urdf", &study, "forces.html");
+    assert!(page.contains("acceleration [m/s\u{b2}]") && page.contains("force [N]"));
+    let data = data(&page);
+    let expected = json!({"given": ["force", "N"], "taken": ["acceleration", "m/s\u{b2}"], "moving": "velocity",
+        "lost": "W lost"});
+    assert_eq!(data["wording"], expected);
+    let (frames, texts) = (list(&data["frames"]), &data["texts"]);
+    let [first, last] = [&frames[0], &frames[frames.len() - 1]];
+    let sentence = |frame: &Value| texts[frame["sentence"].as_u64().expect("a number") as usize].clone();
+    assert_eq!(sentence(first), "No forces are consistent: velocities jump");
+    assert_eq!(sentence(last), "Two outcomes are equally valid.");
+    // It slides at 1 m/s against 18.57 N.
+    let lost: Vec<&Value> = list(&last["outcomes"]).iter().map(|own| &own["energy_loss"]).collect();
+    assert_eq!(lost, [&json!(0.0), &json!(18.57)]);
+
+    let state = json!({"velocity": {"base": {"x": 1, "pitch": 4}}, "friction": 3}).to_string();
+    let (svg, _) = self::page(&["forces", "urdf/block.urdf", "-"], &state, "forces.svg");
+    for key in ["force of the ground: 10 N", "acceleration: 20 m/s\u{b2}", "velocity: 0.5 m/s"] {
+        assert!(svg.contains(key), "{key}");
+    }
+}

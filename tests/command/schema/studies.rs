@@ -40,6 +40,7 @@ fn sample() -> Value {
             "links": {"left_foot": {"mass": "1 + alpha", "com": [0, 0, "k"], "inertia": 0.1, "radius": 0.02}},
             "joints": {"left_hip": {"origin": [0, 0, "0.1*alpha"]}},
         },
+        "question": "impact",
     })
 }
 
@@ -116,6 +117,9 @@ fn every_form_of_sweep_is_valid() {
     let mut map = walker.clone();
     map["parameters"]["v"] = json!({"from": -1, "to": 1, "steps": 3});
     map["state"]["velocity"]["joints"] = json!({"hip": "v"});
+    let forces = json!({"question": "forces", "parameters": {"alpha": {"from": 1.5, "to": 4, "steps": 3}},
+        "state": {"position": {"joints": {"hip": 0.1}}, "place": "lowest", "gravity": 1.6, "torque": {"hip": 0.2},
+                  "friction": "alpha"}});
     for (study, arguments) in [
         (&walker, &[][..]),
         (&walker, &["--explain", "--matrices"]),
@@ -123,6 +127,8 @@ fn every_form_of_sweep_is_valid() {
         (&refused, &[]),
         (&lifting, &[]),
         (&map, &[]),
+        (&forces, &["--explain"]),
+        (&forces, &["--brief"]),
     ] {
         let command = [&["sweep", "urdf/minimalistic.urdf", "-"], arguments].concat();
         let found = assert_valid(&schema, &command, &study.to_string(), "/regions/0").remove(0);

@@ -5,6 +5,7 @@ mod next;
 mod painleve;
 mod refusals;
 mod standing;
+mod studies;
 
 use crate::support::impact::{modes, outcomes, robot};
 use heelstrike::pipeline::{Options, Pipeline};

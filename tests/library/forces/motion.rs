@@ -83,7 +83,7 @@ proptest! {
             };
             let falling: f64 = mechanism.links.iter().map(falls).sum();
             let driven: f64 = torque[3..].iter().zip(v.iter().skip(3)).map(|(torque, rate)| torque * rate).sum();
-            let power = falling + driven + found.power(outcome);
+            let power = falling + driven - outcome.energy_loss;
             let size = a.amax().max(1.0) * v.amax().max(1.0) * 10.0;
             prop_assert!((change - power).abs() < 1e-9 * size * size, "{change} {power}");
         }

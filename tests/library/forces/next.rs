@@ -38,6 +38,27 @@ fn disc_rests_slides_or_bounces() {
     assert_eq!(after(json!({}), push), expected(Verdict::Unique, Some(SlidePlus)));
 }
 
+/// Loops, an uncertainty and a brief answer change nothing in it, nor it in them.
+#[test]
+fn next_stands_next_to_all_else() {
+    let [ramone, bar] = [include_str!("../../../urdf/ramone.urdf"), include_str!("../../../urdf/five_bar.urdf")];
+    let states =
+        [include_str!("../../../examples/ramone_measured.json"), include_str!("../../../examples/five_bar.json")];
+    for (urdf, state) in [ramone, bar].into_iter().zip(states) {
+        let robot = robot(urdf);
+        let [plain, next, brief] = [(false, false), (true, false), (true, true)].map(|(next, brief)| {
+            try_impact(&robot, Options { next, brief, matrices: true, ..Options::default() }, state).unwrap()
+        });
+        let outcomes = |impact: &heelstrike::Impact| impact.analysis.as_ref().unwrap().outcomes.clone();
+        let mut without = outcomes(&next);
+        let found: Vec<Next> = without.iter_mut().filter_map(|own| own.next.take()).collect();
+        assert_eq!((without, &next.matrices), (outcomes(&plain), &plain.matrices));
+        assert_eq!(format!("{:?}", next.holds), format!("{:?}", plain.holds));
+        assert_eq!(found, outcomes(&brief).into_iter().filter_map(|own| own.next).collect::<Vec<_>>());
+        assert!(!found.is_empty() && found.iter().all(|own| own.verdict == Verdict::Unique), "{found:?}");
+    }
+}
+
 /// The same answer as to a state with the velocities after the impact.
 #[test]
 fn next_is_forces_at_the_velocities_after() {
