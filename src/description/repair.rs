@@ -25,11 +25,12 @@ impl<'a> Repaired<'a> {
         let text = match declarations(text) {
             found if found.is_empty() => Cow::Borrowed(text),
             found => {
-                let blank = |(at, character): (usize, char)| {
-                    let inside = found.iter().any(|range| range.contains(&at));
-                    if inside && character != '\n' { ' ' } else { character }
-                };
-                Cow::Owned(text.char_indices().map(blank).collect())
+                let mut repaired = text.to_owned();
+                for range in found.into_iter().rev() {
+                    let blank = |character| if character == '\n' { '\n' } else { ' ' };
+                    repaired.replace_range(range.clone(), &text[range].chars().map(blank).collect::<String>());
+                }
+                Cow::Owned(repaired)
             }
         };
         Self { text, prefixes: Vec::new(), inserted: None }

@@ -13,7 +13,7 @@
 
 use super::articulated_inertia::{ArticulatedInertia, Wrench};
 use super::delassus::PointImpulse;
-use super::jacobian::ContactPoint;
+use super::jacobian::{ContactPoint, Motion};
 use super::workspace::Workspace;
 use crate::dynamics::plan::{JointMotion, Plan, PlanBody};
 use crate::planar::Vector;
@@ -109,13 +109,26 @@ pub fn add_articulated_impulse<T: Real>(
     workspace: &Workspace<T>,
     impulse: PointImpulse<T>,
     rates: &mut Vec<T>,
-    motions: &mut Vec<(T, Vector<T>)>,
+    motions: &mut Vec<Motion<T>>,
     velocity: &mut [T],
 ) {
     rates.clear();
     rates.resize(plan.columns(), T::zero());
     let PointImpulse { body, arm, vector } = impulse;
     to_root(plan, workspace, body, Wrench::at(arm, vector), |column, _, by_d| rates[column] = by_d);
+    set_in_motion(plan, workspace, rates, motions);
+    for (&coordinate, &change) in plan.coordinates.iter().zip(rates.iter()) {
+        velocity[coordinate] = velocity[coordinate] + change;
+    }
+}
+
+/// Takes D^-1 y in `rates` to the rates that an impulse gives, and collects each body's motion.
+pub(super) fn set_in_motion<T: Real>(
+    plan: &Plan<T>,
+    workspace: &Workspace<T>,
+    rates: &mut [T],
+    motions: &mut Vec<Motion<T>>,
+) {
     motions.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
         let own = &workspace.articulated[index];
@@ -145,13 +158,10 @@ pub fn add_articulated_impulse<T: Real>(
             }
         });
     }
-    for (&coordinate, &change) in plan.coordinates.iter().zip(rates.iter()) {
-        velocity[coordinate] = velocity[coordinate] + change;
-    }
 }
 
 /// Takes D^-1 y of a floating base in `rates` to its rates, and gives the root's spin and the velocity of its origin.
-fn root_motion<T: Real>(workspace: &Workspace<T>, rates: &mut [T]) -> (T, Vector<T>) {
+fn root_motion<T: Real>(workspace: &Workspace<T>, rates: &mut [T]) -> Motion<T> {
     let root = &workspace.articulated[0];
     let [_, xz, zz] = root.without_turn(T::zero(), root.moment).linear;
     rates[1] = rates[1] - (xz / zz) * rates[0];

@@ -91,7 +91,7 @@ impl<T: Real> ArticulatedInertia<T> {
 }
 
 /// A force and its moment about a body's origin, in world axes \[N, N m\]; an impulse or a momentum \[N s, N m s\].
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Wrench<T> {
     pub moment: T,
     pub linear: Vector<T>,

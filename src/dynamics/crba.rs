@@ -14,20 +14,47 @@ use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
-/// Computes M (nv x nv, columns of the plan; kg, kg m, kg m^2) from the kinematics.
-pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
-    let nv = plan.columns();
-    let Workspace { rotation, arm, direction, composite, mass_matrix, .. } = workspace;
+/// Computes the inertia of every body with all that it carries from the kinematics.
+fn composite_inertias<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
+    let Workspace { rotation, arm, composite, .. } = workspace;
     composite.clear();
     composite.extend(plan.bodies.iter().zip(&*rotation).map(|(body, &turn)| body.inertia.turned(turn)));
+    for (index, body) in plan.bodies.iter().enumerate().rev() {
+        if let Some(parent) = body.parent {
+            composite[parent] = composite[parent].with(composite[index].seen_from(arm[index]));
+        }
+    }
+}
+
+/// Computes the diagonal of M alone, of a plan without mimic joints. Cost: O(nb).
+pub fn mass_diagonal<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
+    composite_inertias(plan, workspace);
+    let Workspace { direction, composite, diagonal, .. } = workspace;
+    diagonal.clear();
+    diagonal.resize(plan.columns(), T::zero());
+    for (index, body) in plan.bodies.iter().enumerate() {
+        let (own, Some(column)) = (composite[index], body.column) else { continue };
+        diagonal[column] = match body.motion {
+            JointMotion::Root => {
+                diagonal[..2].fill(own.mass);
+                own.second
+            }
+            JointMotion::Revolute { .. } => own.second + body.rotor,
+            JointMotion::Prismatic { .. } => own.mass * direction[index].dot(direction[index]) + body.rotor,
+            JointMotion::Fixed => continue,
+        };
+    }
+}
+
+/// Computes M (nv x nv, columns of the plan; kg, kg m, kg m^2) from the kinematics.
+pub fn mass_matrix<T: Real>(plan: &Plan<T>, workspace: &mut Workspace<T>) {
+    composite_inertias(plan, workspace);
+    let nv = plan.columns();
+    let Workspace { arm, direction, composite, mass_matrix, .. } = workspace;
     mass_matrix.clear();
     mass_matrix.resize(nv * nv, T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
-        let own = composite[index];
-        if let Some(parent) = body.parent {
-            composite[parent] = composite[parent].with(own.seen_from(arm[index]));
-        }
-        let Some(column) = body.column else { continue };
+        let (own, Some(column)) = (composite[index], body.column) else { continue };
         let momentum = match body.motion {
             JointMotion::Root => {
                 let linear = own.first.perpendicular();

@@ -9,6 +9,9 @@ use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::{Rotation, Vector};
 use crate::scalar::Real;
 
+/// A body's rate of turn \[rad/s\], and the velocity of its origin in the world's axes \[m/s\].
+pub type Motion<T> = (T, Vector<T>);
+
 /// A material point in touch with the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint<T = f64> {
@@ -132,6 +135,28 @@ fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     })
 }
 
+/// How a body moves, from how those before it do.
+fn motion<T: Real>(
+    plan: &Plan<T>,
+    index: usize,
+    velocity: &[T],
+    motions: &[Motion<T>],
+    workspace: &Workspace<T>,
+) -> Motion<T> {
+    let body = &plan.bodies[index];
+    let Some(parent) = body.parent else {
+        let still = (T::zero(), Vector::zero());
+        return if plan.floating { (velocity[2], Vector { x: velocity[0], z: velocity[1] }) } else { still };
+    };
+    let (spin, origin) = motions[parent];
+    let carried = origin + workspace.arm[index].perpendicular() * spin;
+    match body.motion {
+        JointMotion::Root | JointMotion::Fixed => (spin, carried),
+        JointMotion::Revolute { rate, .. } => (spin + rate * velocity[body.coordinate], carried),
+        JointMotion::Prismatic { .. } => (spin, carried + workspace.direction[index] * velocity[body.coordinate]),
+    }
+}
+
 /// Kinetic energy \[J\] for `velocity` (dq/dt, braked joints included): body by body, independent of the mass matrix.
 ///
 /// ```text
@@ -140,10 +165,14 @@ fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
 ///
 /// with u the velocity of a body's origin, h and I its first and second moments about it.
 pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> T {
-    let mut twice = T::zero();
+    let (mut twice, mut motions) = (T::zero(), Vec::new());
     for (index, body) in plan.bodies.iter().enumerate() {
-        let rate = spin(plan, index, velocity);
-        let origin = point_velocity(plan, index, Vector::zero(), velocity, workspace);
+        let (rate, origin) = if plan.is_long() {
+            motions.push(motion(plan, index, velocity, &motions, workspace));
+            motions[index]
+        } else {
+            (spin(plan, index, velocity), point_velocity(plan, index, Vector::zero(), velocity, workspace))
+        };
         let first = workspace.rotation[index].apply(body.inertia.first);
         let cross = rate * origin.dot(first.perpendicular());
         twice = twice + body.inertia.mass * origin.dot(origin) + cross + cross + body.inertia.second * rate * rate;

@@ -18,24 +18,28 @@ mod kinematics;
 mod crba;
 mod jacobian;
 mod delassus;
+mod articulated;
+mod stretch;
+mod balance;
 mod bounds;
 mod bias;
 mod loops;
-mod articulated;
 
 pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
 pub use articulated_inertia::ArticulatedInertia;
 pub use bias::bias;
-pub use bounds::{Arm, Reach, RoundingBounds};
-pub use crba::{factorize, mass_matrix};
+pub use balance::has_balance;
+pub use bounds::{Reach, RoundingBounds};
+pub use crba::{factorize, mass_diagonal, mass_matrix};
 pub use delassus::{PointImpulse, add_impulse, delassus};
-pub use jacobian::{ContactPoint, contact_jacobian, kinetic_energy, point_velocity};
+pub use jacobian::{ContactPoint, Motion, contact_jacobian, kinetic_energy, point_velocity};
 pub use kinematics::kinematics;
 pub use loops::{
     Closed, Constraints, Loop, close, eliminate_loops, follow_exactly, independent_rows, loop_impulse, orthogonalize,
     spent_energy,
 };
 pub use ltl::LtlFactor;
+pub use stretch::Arm;
 pub use workspace::{LoopRows, Workspace};
 
 #[cfg(test)]
@@ -47,11 +51,12 @@ mod tests {
     use crate::dynamics::plan::{Configuration, Plan};
     use crate::planar::{Rotation, Vector};
     use crate::robot::{Axis, Base, Body, Joint, MimicJoint, ParentJoint, Robot};
-    use crate::scalar::{Ball, DoubleDouble, Ordered, Real, Trigonometry};
+    use crate::scalar::{Ball, DoubleDouble, Interval, Ordered, Real, Trigonometry};
     use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
     use proptest::sample::Index;
     use std::cmp::Ordering;
+    use std::ops::Range;
 
     fn point() -> impl Strategy<Value = [f64; 2]> {
         prop::array::uniform2(-1.0..1.0f64)
@@ -76,10 +81,11 @@ mod tests {
         }
     }
 
-    /// A tree in which each joint but the first may mimic another.
-    fn tree(mimics: bool) -> impl Strategy<Value = Robot> {
+    /// A tree of so many joints, in which each but the first may mimic another. With `reach` a body is carried by one of
+    /// so many before it, so that branches are long.
+    fn tree(joints: Range<usize>, reach: usize, mimics: bool) -> impl Strategy<Value = Robot> {
         let ratio = prop::option::weighted(0.25, (any::<Index>(), -2.0..2.0f64, -1.0..1.0f64));
-        let parts = prop::collection::vec((joint_and_body(), ratio), 1..8);
+        let parts = prop::collection::vec((joint_and_body(), ratio), joints);
         (parts, prop::bool::weighted(0.2)).prop_map(move |(mut parts, bolted)| {
             parts.iter_mut().enumerate().filter(|(at, _)| *at == 0 || !mimics).for_each(|(_, part)| part.1 = None);
             let moving = parts.iter().filter(|(_, ratio)| ratio.is_none()).count();
@@ -96,7 +102,8 @@ mod tests {
                 reading: Default::default(),
             };
             for ((place, joint, body), ratio) in parts {
-                let (parent, child) = (place.index(robot.bodies.len()), robot.bodies.len());
+                let child = robot.bodies.len();
+                let parent = child - 1 - place.index(child.min(reach));
                 let joint = Joint { parent, child, ..joint };
                 let joint = match ratio {
                     None => {
@@ -124,9 +131,13 @@ mod tests {
         places: Vec<(Index, [f64; 2])>,
     }
 
-    /// A tree and a state, all of order one.
+    /// A small tree and a state, all of order one.
     fn case(mimics: bool) -> impl Strategy<Value = Case> {
-        tree(mimics).prop_flat_map(|robot| {
+        case_of(tree(1..8, usize::MAX, mimics))
+    }
+
+    fn case_of(robot: impl Strategy<Value = Robot>) -> impl Strategy<Value = Case> {
+        robot.prop_flat_map(|robot| {
             let numbers = prop::collection::vec(-3.0..3.0f64, robot.dofs());
             let places = prop::collection::vec((any::<Index>(), point()), 1..4);
             (Just(robot), numbers.clone(), numbers, places).prop_map(|(robot, position, velocity, places)| Case {
@@ -161,6 +172,36 @@ mod tests {
             delassus(plan, &mut workspace);
             workspace
         }
+
+        /// The Delassus matrix by articulated bodies.
+        fn by_bodies<T: Trigonometry>(&self, plan: &Plan<T>, points: &[ContactPoint<T>]) -> Workspace<T> {
+            let (mut configuration, mut workspace) = (Configuration::default(), Workspace::default());
+            configuration.set(plan, &self.position);
+            kinematics(plan, &configuration, &mut workspace);
+            articulated_inertias(plan, &mut workspace);
+            articulated_delassus(plan, points, &mut workspace);
+            workspace
+        }
+
+        /// The bounds of `points`, before that of the Delassus matrix.
+        fn bounds(&self, plan: &Plan, points: &[ContactPoint]) -> RoundingBounds {
+            let (mut bounds, mut configuration) = (RoundingBounds::default(), Configuration::default());
+            configuration.set(plan, &self.position);
+            let length = |own: &ContactPoint| own.center.x.abs() + own.center.z.abs() + own.radius;
+            bounds.stretch(plan, &configuration, points.iter().map(|own| Arm { body: own.body, length: length(own) }));
+            bounds.velocities(plan, &self.velocity, None, |_| false);
+            bounds
+        }
+    }
+
+    /// How far `found` is from G, relative to what it may be off by entry by entry.
+    fn error_of(found: &[f64], exact: &[Interval]) -> f64 {
+        let rows = found.len().isqrt();
+        let error = |at: usize| {
+            let scale = (found[at / rows * (rows + 1)] * found[at % rows * (rows + 1)]).sqrt();
+            (exact[at] - Interval::from_f64(found[at])).to_f64().abs() / scale
+        };
+        (0..found.len()).map(error).fold(0.0, f64::max)
     }
 
     fn dense(plan: &Plan, lower: &[f64]) -> DMatrix<f64> {
@@ -321,11 +362,7 @@ mod tests {
             type Exact = Ball<DoubleDouble>;
             let (plan, contacts) = (Plan::new(&case.robot, &[], &[]), case.points(0.0, Rotation::identity()));
             let workspace = case.computed(&plan, &contacts);
-            let (mut bounds, mut configuration) = (RoundingBounds::default(), Configuration::default());
-            configuration.set(&plan, &case.position);
-            let arm = |own: &ContactPoint| Arm { body: own.body, length: own.center.x.abs() + own.center.z.abs() };
-            bounds.stretch(&plan, &configuration, contacts.iter().map(arm));
-            bounds.velocities(&plan, &case.velocity, None, |_| false);
+            let mut bounds = case.bounds(&plan, &contacts);
             bounds.delassus(&plan, &workspace);
             prop_assume!(bounds.delassus.is_finite());
 
@@ -343,6 +380,43 @@ mod tests {
                 let (found, exact) = (workspace.contact_velocity[i / 2][i % 2], exact.contact_velocity[i / 2][i % 2]);
                 prop_assert!(off(found, exact) <= bounds.velocity[i / 2][i % 2]);
             }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn long_chains_keep_within_their_balance(
+            mut case in case_of(tree(1..60, 3, false)),
+            slides in any::<bool>(),
+            braked in prop::option::weighted(0.3, any::<Index>()),
+            rotor in prop_oneof![Just(0.0), 1e-3..1.0f64],
+            light in -6..1i32,
+            slope in -1.0..1.0f64,
+        ) {
+            for (at, body) in case.robot.bodies.iter_mut().enumerate() {
+                let factor = if at % 3 == 1 { libm::exp10(f64::from(light)) } else { 1.0 };
+                (body.mass, body.moment) = (body.mass * factor, (body.moment + 1e-4) * factor);
+            }
+            if !slides {
+                case.robot.joints.iter_mut().for_each(|joint| joint.axis = Axis::Revolute { sign: 1.0 });
+            }
+            let braked: Vec<usize> = braked.iter().map(|braked| braked.index(case.robot.joints.len())).collect();
+            let rotors = vec![rotor; case.robot.joints.len()];
+            let plan = Plan::new(&case.robot, &braked, &rotors);
+            prop_assert!(has_balance(&plan));
+            let points = case.points(0.1, Rotation::by(slope));
+            let workspace = case.by_bodies(&plan, &points);
+            let mut bounds = case.bounds(&plan, &points);
+            bounds.articulated_delassus(&plan, &points, &workspace);
+            let error = Interval::scope(512, || {
+                let plan = Plan::<Interval>::new(&case.robot, &braked, &rotors);
+                let exact = case.by_bodies(&plan, &case.points(0.1, Rotation::by(slope)));
+                error_of(&workspace.delassus, &exact.delassus)
+            });
+            let likely = bounds.likely[0] * bounds.delassus;
+            prop_assert!(error.is_nan() || error <= likely, "{error:e} > {likely:e}");
+            prop_assert!(likely <= bounds.delassus);
         }
     }
 }

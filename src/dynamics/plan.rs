@@ -21,6 +21,9 @@ use crate::planar::{Inertia, Rotation, Vector};
 use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
 use crate::scalar::{Real, Trigonometry};
 
+/// From how many columns on a plan is long.
+const LONG: usize = 16;
+
 /// A robot compiled in numbers of kind `T`.
 #[derive(Debug, Clone, Default)]
 pub struct Plan<T = f64> {
@@ -281,6 +284,12 @@ impl<T: Real> Plan<T> {
     /// A body and those between it and the root, with their indices.
     pub(crate) fn way_to_root(&self, body: usize) -> impl Iterator<Item = (usize, &PlanBody<T>)> {
         std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
+    }
+
+    /// Whether what grows faster than the number of joints costs more than it saves: M and its factor, walks from each
+    /// body to the root.
+    pub(crate) fn is_long(&self) -> bool {
+        self.columns() >= LONG
     }
 
     /// Number of columns: the coordinates whose joints are not braked.

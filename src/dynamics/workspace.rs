@@ -15,9 +15,15 @@ pub struct Workspace<T = f64> {
     /// Motion of each prismatic joint for a unit rate of its column, in the world's axes; of no meaning for others. nb
     pub direction: Vec<Vector<T>>,
 
-    // Computed by `mass_matrix`.
+    // Computed by `mass_matrix` and `mass_diagonal`.
     /// Inertia of each body and all that it carries, about its origin in the world's axes. nb
     pub composite: Vec<Inertia<T>>,
+
+    // Computed by `mass_diagonal`.
+    /// M's diagonal. nv
+    pub diagonal: Vec<T>,
+
+    // Computed by `mass_matrix`.
     /// M by rows, its lower triangle along the tree's branches; the rest is zero. nv x nv
     pub mass_matrix: Vec<T>,
 

@@ -11,7 +11,7 @@
 
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
-    Closed, Constraints, ContactPoint, Loop, PointImpulse, Workspace, add_articulated_impulse, add_impulse,
+    Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Workspace, add_articulated_impulse, add_impulse,
     articulated_delassus, articulated_inertias, bias, close, contact_jacobian, delassus, eliminate_loops, factorize,
     kinematics, loop_impulse, mass_matrix, orthogonalize, point_velocity,
 };
@@ -64,7 +64,7 @@ pub struct Assembly<T = f64> {
     /// Whether those are the rows that hold something, whatever digits the pose does not have.
     pub is_rank_certain: bool,
     column: Vec<T>,
-    motions: Vec<(T, Vector<T>)>,
+    motions: Vec<Motion<T>>,
 }
 
 impl<T: Real> Assembly<T> {
@@ -84,6 +84,14 @@ impl<T: Real> Assembly<T> {
                 factorize(&self.plan, &mut self.workspace);
             }
             Elimination::ArticulatedBodies => articulated_inertias(&self.plan, &mut self.workspace),
+        }
+    }
+
+    /// Takes M = L^T D L for what articulated bodies do not give.
+    pub fn take_mass_matrix(&mut self) {
+        if self.elimination == Elimination::ArticulatedBodies {
+            self.elimination = Elimination::Ltl;
+            self.factorize();
         }
     }
 

@@ -6,13 +6,13 @@
 //!                                                              applied impulses --> c_free     --> ContactProblem
 //! ```
 
-use super::assembly::Assembly;
+use super::assembly::{Assembly, Elimination};
 use super::exact::{Asked, ExactState};
 use super::resting::Standing;
 use super::{Aspect, CONTACT_TOLERANCE, Pipeline};
 use crate::contact::{Contact, Footing, Level, Merged, Placement, Surface, level};
 use crate::dynamics::plan::Plan;
-use crate::dynamics::{Arm, Constraints, Workspace, kinetic_energy};
+use crate::dynamics::{Arm, Constraints, Workspace, has_balance, kinetic_energy, mass_diagonal};
 use crate::error::{Error, Reason, Result, along_normal, finite};
 use crate::impact::problem::check_matrix_size;
 use crate::impact::{ContactProblem, Errors};
@@ -248,14 +248,24 @@ impl Pipeline<'_> {
             self.braked.clone_from(&scene.braked);
             self.rotor_inertia.clone_from(&scene.rotor_inertia);
         }
+        let Assembly { plan, kept, elimination, .. } = &mut self.assembly;
+        let by_bodies = plan.is_long() && kept.is_empty() && scene.loops.is_empty() && has_balance(plan);
+        *elimination = if by_bodies { Elimination::ArticulatedBodies } else { Elimination::Ltl };
     }
 
     /// Refuses a coordinate whose inertia is zero to rounding once all that it carries may move.
-    pub(super) fn check_inertia(&self, loops: &[NamedLoop]) -> Result<()> {
+    pub(super) fn check_inertia(&mut self, loops: &[NamedLoop]) -> Result<()> {
         let nv = self.assembly.plan.columns();
+        let by_bodies = self.assembly.elimination == Elimination::ArticulatedBodies;
+        if by_bodies {
+            mass_diagonal(&self.assembly.plan, &mut self.assembly.workspace);
+        }
         for column in (0..nv).rev() {
-            let Workspace { mass_matrix, factor, .. } = &self.assembly.workspace;
-            let (whole, rest) = (mass_matrix[column * nv + column], factor.pivot(column));
+            let Workspace { mass_matrix, factor, diagonal, pivots, .. } = &self.assembly.workspace;
+            let (whole, rest) = match by_bodies {
+                true => (diagonal[column], pivots[column]),
+                false => (mass_matrix[column * nv + column], factor.pivot(column)),
+            };
             // Each of up to nv eliminations loses at most a few units in the last place of the whole.
             finite(whole, || "the mass matrix".into())?;
             if rest.is_nan() || rest <= 4.0 * nv as f64 * f64::EPSILON * whole {
@@ -444,8 +454,12 @@ impl Pipeline<'_> {
     pub(super) fn bound_delassus(&mut self) {
         if self.options.no_proof {
             self.bounds.delassus = DYNAMICS_ROUNDING;
-        } else {
-            self.bounds.delassus(&self.assembly.plan, &self.assembly.workspace);
+            return;
+        }
+        let Assembly { plan, points, workspace, elimination, .. } = &self.assembly;
+        match elimination {
+            Elimination::Ltl => self.bounds.delassus(plan, workspace),
+            Elimination::ArticulatedBodies => self.bounds.articulated_delassus(plan, points, workspace),
         }
     }
 

@@ -103,13 +103,22 @@ fn coordinates(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Nod
                     }
                 }
             }
-            "joints" => {
-                for entry in part.fields("joint")? {
-                    joints[joint(entry, entry.key(), robot)?] = number(entry)?;
-                }
-            }
+            "joints" => by_joint(part, robot, joints, &number)?,
             _ => return Err(part.unknown_field("Coordinates")),
         }
+    }
+    Ok(())
+}
+
+/// An object of numbers by joint.
+fn by_joint(field: Node, robot: &Robot, into: &mut [f64], number: impl Fn(Node) -> Result<f64>) -> Result<()> {
+    let mut next = 0;
+    for entry in field.fields("joint")? {
+        // Most files have the joints in the robot's order, and a search for each takes the square of their number.
+        let is_next = robot.joints.get(next).is_some_and(|joint| joint.name == entry.key());
+        let at = if is_next { next } else { joint(entry, entry.key(), robot)? };
+        into[at] = number(entry)?;
+        next = at + 1;
     }
     Ok(())
 }
@@ -247,9 +256,7 @@ fn rotor_inertia(field: Node, robot: &Robot) -> Result<Vec<f64>> {
 /// An object of torques by joint.
 fn torque(field: Node, robot: &Robot) -> Result<Vec<f64>> {
     let mut torque = vec![0.0; robot.joints.len()];
-    for entry in field.fields("joint")? {
-        torque[joint(entry, entry.key(), robot)?] = entry.number()?;
-    }
+    by_joint(field, robot, &mut torque, |entry| entry.number())?;
     Ok(torque)
 }
 
@@ -340,11 +347,7 @@ fn uncertainty(field: Node, robot: &Robot) -> Result<Uncertainty> {
             "position" => read.position.fill(half_width(part)?),
             "velocity" => read.velocity.fill(half_width(part)?),
             "friction" => read.friction = by_link(part, robot, half_width)?,
-            "rotor_inertia" if part.is_object() => {
-                for entry in part.fields("joint")? {
-                    read.rotor_inertia[joint(entry, entry.key(), robot)?] = half_width(entry)?;
-                }
-            }
+            "rotor_inertia" if part.is_object() => by_joint(part, robot, &mut read.rotor_inertia, half_width)?,
             "rotor_inertia" => read.rotor_inertia.fill(half_width(part)?),
             _ => return Err(part.unknown_field("Uncertainty")),
         }

@@ -52,7 +52,9 @@ fn digits_of_states_are_right() {
 fn digits_of_chains_of_unequal_links_are_right() {
     let [compared, marked] = total(environment("HEELSTRIKE_DIGITS", 200), |seed| {
         let mut random = Random::new(seed);
-        compare(&chain(&mut random), &mut random)
+        // Every third chain is solved by articulated bodies alone.
+        let length = if seed % 3 == 2 { 26 } else { 10 };
+        compare(&chain(length, &mut random), &mut random)
     });
     println!("{compared} outcomes of chains, {marked} marked");
     assert!(compared > 150 && marked * 100 < compared, "{compared} compared, {marked} marked");

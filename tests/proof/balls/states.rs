@@ -34,21 +34,21 @@ fn telescope() -> String {
     ])
 }
 
-/// A chain of ten links with masses of 1e-4 to 1e4 kg, which points of its last links strike.
-pub fn chain(random: &mut Random) -> Model {
-    let links = (0..10).map(|link| {
+/// A chain of so many links with masses of 1e-4 to 1e4 kg, which points of some of them strike.
+pub fn chain(length: usize, random: &mut Random) -> Model {
+    let links = (0..length).map(|link| {
         let mass = random.decades(-4.0, 4.0);
         urdf::link(format!("link_{link}"), mass, [0.0, -random.between(0.1, 0.9)], 0.02 * mass, "")
     });
     let mut parts: Vec<String> = links.collect();
-    parts.extend((1..10).map(|link| {
+    parts.extend((1..length).map(|link| {
         let ends = [link - 1, link].map(|end| format!("link_{end}"));
         let joint = format!("joint_{link}");
         urdf::joint(joint, Axis::Revolute(1.0), [&ends[0], &ends[1]], [0.0, -1.0], "")
     }));
     let robot = Robot::from_urdf(&urdf::robot(&parts)).unwrap_or_else(|error| panic!("{error}"));
     let foot = |link: usize| NamedContact { link, offset: [0.1, 0.0, -1.0], radius: 0.0 };
-    let feet = [9, 7, 4].map(|link| foot(robot.link(&format!("link_{link}")).unwrap_or(link))).to_vec();
+    let feet = [length - 1, length - 3, 4].map(|link| foot(robot.link(&format!("link_{link}")).unwrap_or(link))).to_vec();
     Model { name: "chain", robot, feet, touching: 2, most: 3 }
 }
 

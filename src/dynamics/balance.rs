@@ -1,0 +1,277 @@
+//! How far G by articulated bodies is from that of the exact state, by what its motions leave unbalanced.
+//!
+//! For a unit impulse along row r let u_r be the velocities of all bodies b, with |u|^2 = sum of u_b . I_b u_b, twice
+//! the kinetic energy. Then G_rs = J_s u_r, and |u_r|^2 = G_rr. Any motion w that the joints allow, and any impulses F
+//! in the joints that do no work there, say how far w is from u_r (W. Prager, J. L. Synge, "Approximations in elasticity
+//! based on the concept of function space", Quart. Appl. Math. 5, 1947):
+//!
+//! ```text
+//!     |w - u_r|^2 <= sum over b of (I_b w_b - p_b) . I_b^-1 (I_b w_b - p_b)       p_b: of F and of the contact on b
+//!     |J_s w - G_rs| = |<u_s, w - u_r>| <= sqrt(G_ss) |w - u_r|
+//! ```
+//!
+//! w is what f64 found, and F what w asks for, summed from the outermost body inward. Both are taken as exactly these
+//! numbers, so that no error is passed on from body to body:
+//!
+//! 1. Through a revolute joint F has no moment but its rotor's: what the sum has is left on the body. Through a
+//!    prismatic joint it has no force along the joint; a rotor counts as a body of its own.
+//! 2. Origins in w are apart at a joint by rounding, delta. To move all that the joint carries by delta gives a motion
+//!    that the joints allow, at a distance of sqrt(mass carried) |delta|.
+//! 3. A rotation is off by [`TURN`] u per joint below it (see [`bounds`](super::bounds)), and so is an arm.
+//!
+//! Nothing is known of a body without mass or moment of inertia. Everything is doubled for the terms of second order,
+//! which are small because the bound counts as unknown beyond a tenth. Cost: O(n nb + n^2).
+
+use super::articulated::set_in_motion;
+use super::articulated_inertia::Wrench;
+use super::jacobian::{ContactPoint, Motion};
+use super::stretch::{Arm, LIKELY, SMALL, Stretched, UNIT_ROUNDOFF, length};
+use super::workspace::Workspace;
+use crate::dynamics::plan::{JointMotion, Plan, PlanBody};
+use crate::planar::Vector;
+
+/// Roundings of a rotation per joint: 4 of its cosine and sine, 3 of the product, in the sum of both components.
+const TURN: f64 = 16.0;
+/// Roundings of a few products and sums, with those of the inertia's own entries.
+const SUM: f64 = 16.0 * UNIT_ROUNDOFF;
+/// Roundings of the ground's axes, and of the place of a point on them.
+const GROUND: f64 = 64.0 * UNIT_ROUNDOFF;
+/// Covers the underflow of a few products.
+const UNDERFLOW: f64 = 1e-300;
+
+/// Memory that is reused.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Balance {
+    bodies: Vec<BodyScale>,
+    passed: Vec<Passed>,
+    motions: Vec<Motion<f64>>,
+    /// How far each body's origin may be from where the joints allow it, in w \[m/s\].
+    apart: Vec<f64>,
+    rates: Vec<f64>,
+}
+
+/// What all rows have in common.
+#[derive(Debug, Clone, Copy)]
+struct BodyScale {
+    /// Mass times the center of mass from the origin, in the world's axes, and at least its length \[kg m\].
+    first: Vector<f64>,
+    first_length: f64,
+    /// At least the distance of the center of mass from the origin \[m\].
+    com: f64,
+    /// 1 / sqrt(mass), and the same of the moment of inertia about the center of mass.
+    per_mass: f64,
+    per_moment: f64,
+    /// sqrt(mass that the joint carries).
+    carried: f64,
+    /// What a rotation is off by.
+    turn: f64,
+}
+
+impl BodyScale {
+    fn of(body: &PlanBody<f64>, stretched: &Stretched, first: Vector<f64>) -> Self {
+        let first_length = length(first);
+        let (mass, com) = (body.inertia.mass, first_length / body.inertia.mass);
+        Self {
+            first,
+            first_length,
+            com,
+            per_mass: 1.0 / mass.sqrt(),
+            per_moment: 1.0 / central_moment(body).sqrt(),
+            carried: stretched.mass.sqrt(),
+            turn: TURN * (stretched.depth + 1) as f64 * UNIT_ROUNDOFF,
+        }
+    }
+}
+
+/// At most the moment of inertia about the center of mass; not positive, or not a number, if it may be zero.
+fn central_moment(body: &PlanBody<f64>) -> f64 {
+    let (mass, first, second) = (body.inertia.mass, body.inertia.first, body.inertia.second);
+    second * (1.0 - SUM) - first.dot(first) / mass * (1.0 + SUM)
+}
+
+/// Whether something can be known by the balance: mimic joints have no articulated bodies, and a body without inertia
+/// no balance.
+pub fn has_balance(plan: &Plan) -> bool {
+    let is_heavy = |body: &PlanBody<f64>| central_moment(body) > 0.0;
+    let moves = |body: &PlanBody<f64>| body.parent.is_some() || plan.floating;
+    !plan.has_mimics && plan.bodies.iter().filter(|body| moves(body)).all(is_heavy)
+}
+
+/// What bodies beyond pass on, with the error of its force and of its moment.
+#[derive(Debug, Clone, Copy)]
+struct Passed {
+    wrench: Wrench<f64>,
+    force_error: f64,
+    moment_error: f64,
+}
+
+impl Balance {
+    /// How far an entry G_ij may be off, and how far it likely is, relative to sqrt(G_ii G_jj); the first is infinite if
+    /// nothing is known. `arms` are those of the `points`.
+    pub fn errors(
+        &mut self,
+        plan: &Plan,
+        stretched: &[Stretched],
+        (points, arms): (&[ContactPoint], &[Arm]),
+        workspace: &Workspace,
+    ) -> [f64; 2] {
+        self.bodies.clear();
+        let bodies = plan.bodies.iter().zip(stretched).zip(&workspace.rotation);
+        self.bodies.extend(
+            bodies.map(|((body, stretched), turn)| BodyScale::of(body, stretched, turn.apply(body.inertia.first))),
+        );
+        let (nv, rows) = (plan.columns(), 2 * points.len());
+        let entry = |row: usize, column: usize| workspace.delassus[row * rows + column];
+        let can_move = |point: &ContactPoint| plan.way_to_root(point.body).any(|(_, body)| body.column.is_some());
+        let [mut bound, mut seen] = [0.0_f64; 2];
+        for (index, (point, arm)) in points.iter().zip(arms).enumerate() {
+            if !can_move(point) {
+                continue;
+            }
+            for (row, axis) in (2 * index..).zip(point.axes()) {
+                self.rates.clear();
+                self.rates.extend(&workspace.half_by_d[row * nv..(row + 1) * nv]);
+                set_in_motion(plan, workspace, &mut self.rates, &mut self.motions);
+                let own = entry(row, row).sqrt();
+                let jumps = self.jumps(plan, stretched, workspace) / own;
+                let [off, energy] = self.imbalance(plan, stretched, workspace, (point, arm, axis), own);
+                for (other, (point, arm)) in points.iter().zip(arms).take(index + 1).enumerate() {
+                    if !can_move(point) {
+                        continue;
+                    }
+                    let (spin, origin) = self.motions[point.body];
+                    let velocity = origin + point.arm(workspace).perpendicular() * spin;
+                    let (speed, turning) = (length(origin), arm.length * spin.abs());
+                    let turn = self.bodies[point.body].turn;
+                    let rounding =
+                        self.apart[point.body] + (SUM + GROUND) * (speed + turning) + (2.0 * turn + GROUND) * turning;
+                    for (column, axis) in (2 * other..).zip(point.axes()) {
+                        let scale = own * entry(column, column).sqrt();
+                        // A row that vanishes although its contact can move is known to no relative error.
+                        let apart = axis.dot(velocity) - entry(row, column);
+                        let error = (apart.abs() + rounding) / scale + jumps + off;
+                        if error.is_nan() || error >= SMALL {
+                            return [f64::INFINITY; 2];
+                        }
+                        bound = bound.max(2.0 * error);
+                        if row == column {
+                            // 2 J w - |w|^2 is G but for the square of the distance.
+                            seen = seen.max((2.0 * apart + entry(row, row) - energy).abs() / scale);
+                        }
+                    }
+                }
+            }
+        }
+        let depth = stretched.iter().map(|body| body.depth).max().unwrap_or(0) + 1;
+        [bound, seen + LIKELY * (UNIT_ROUNDOFF + bound / (TURN * depth as f64))]
+    }
+
+    /// At what distance from the motion the joints allow one \[sqrt J\].
+    fn jumps(&mut self, plan: &Plan, stretched: &[Stretched], workspace: &Workspace) -> f64 {
+        let mut sum = 0.0;
+        self.apart.clear();
+        for (index, body) in plan.bodies.iter().enumerate() {
+            let Some(parent) = body.parent else {
+                self.apart.push(0.0);
+                continue;
+            };
+            let (own, ((spin, _), (_, origin))) = (&self.bodies[index], (self.motions[parent], self.motions[index]));
+            let mut jump = SUM * length(origin) + (SUM + own.turn) * stretched[index].arm * spin.abs() + UNDERFLOW;
+            if let (JointMotion::Prismatic { .. }, Some(column)) = (body.motion, body.column) {
+                jump += (SUM + own.turn) * length(workspace.direction[index]) * self.rates[column].abs();
+            }
+            sum += own.carried * jump;
+            self.apart.push(self.apart[parent] + jump);
+        }
+        sum
+    }
+
+    /// The distance of the motion from u, over `own`, the length of u, and the motion's own |w|^2.
+    fn imbalance(
+        &mut self,
+        plan: &Plan,
+        stretched: &[Stretched],
+        workspace: &Workspace,
+        (point, arm, axis): (&ContactPoint, &Arm, Vector<f64>),
+        own: f64,
+    ) -> [f64; 2] {
+        let nothing = Wrench { moment: 0.0, linear: Vector::zero() };
+        self.passed.clear();
+        self.passed.resize(plan.bodies.len(), Passed { wrench: nothing, force_error: 0.0, moment_error: 0.0 });
+        self.passed[point.body] = Passed {
+            wrench: Wrench::at(point.arm(workspace), -axis),
+            force_error: GROUND,
+            moment_error: 2.0 * (GROUND + self.bodies[point.body].turn) * arm.length,
+        };
+        // The first part covers squares that underflow.
+        let (mut squares, mut energy) = (1e-100, 0.0);
+        for (index, body) in plan.bodies.iter().enumerate().rev() {
+            if body.parent.is_none() && !plan.floating {
+                // The ground takes it.
+                continue;
+            }
+            let (scale, passed, (spin, origin)) = (&self.bodies[index], self.passed[index], self.motions[index]);
+            let (mass, turning, speed) = (body.inertia.mass, spin.abs(), length(origin));
+            let lever = scale.first.perpendicular();
+            let momentum = Wrench {
+                linear: origin * mass + lever * spin,
+                moment: body.inertia.second * spin + lever.dot(origin),
+            };
+            energy += momentum.linear.dot(origin) + momentum.moment * spin;
+            let wrench = passed.wrench.with(momentum);
+            let off_center = scale.turn * scale.first_length;
+            let force_error = passed.force_error
+                + SUM * (mass * speed + scale.first_length * turning + length(passed.wrench.linear))
+                + off_center * turning
+                + UNDERFLOW;
+            let moment_error = passed.moment_error
+                + SUM * (body.inertia.second * turning + scale.first_length * speed + passed.wrench.moment.abs())
+                + off_center * speed
+                + UNDERFLOW;
+            if let (Some(parent), Some(column)) = (body.parent, body.column) {
+                let rate = self.rates[column];
+                let sizes = rate.abs() + turning + self.motions[parent].0.abs();
+                let part = SUM * sizes * body.rotor.sqrt() / own;
+                squares += part * part;
+                energy += body.rotor * rate * rate;
+            }
+            // What the joint transmits, what remains on the body, and by how much the joint's force is inexact.
+            let (sent, left, inexact) = match (body.motion, body.column) {
+                (JointMotion::Root, _) => (nothing, wrench, 0.0),
+                (JointMotion::Fixed, _) | (_, None) => (wrench, nothing, 0.0),
+                (JointMotion::Revolute { sign, .. }, Some(column)) => {
+                    let moment = -sign * (body.rotor * self.rates[column]);
+                    (
+                        Wrench { moment, ..wrench },
+                        Wrench { moment: wrench.moment - moment, linear: Vector::zero() },
+                        0.0,
+                    )
+                }
+                (JointMotion::Prismatic { .. }, Some(column)) => {
+                    let (along, driven) = (workspace.direction[index], body.rotor * self.rates[column]);
+                    let square = along.dot(along);
+                    let left = along * ((along.dot(wrench.linear) + driven) / square);
+                    let linear = wrench.linear - left;
+                    let work = (along.dot(linear) + driven).abs()
+                        + (SUM + scale.turn) * (length(along) * length(linear) + driven.abs());
+                    (Wrench { linear, ..wrench }, Wrench { linear: left, moment: 0.0 }, 2.0 * work / square.sqrt())
+                }
+            };
+            let [force, moment] = [length(left.linear), left.moment.abs()];
+            let force = force + force_error + SUM * length(sent.linear) + inexact;
+            let moment = moment + moment_error + scale.com * force;
+            let [by_force, by_moment] = [force * scale.per_mass / own, moment * scale.per_moment / own];
+            squares += by_force * by_force + by_moment * by_moment;
+            let Some(parent) = body.parent else { continue };
+            let sum = self.passed[parent].wrench.with(sent.seen_from(workspace.arm[index]));
+            let (force, arm) = (length(sent.linear), stretched[index].arm);
+            let parent = &mut self.passed[parent];
+            parent.wrench = sum;
+            parent.force_error += inexact + SUM * length(sum.linear);
+            parent.moment_error += (SUM + scale.turn) * arm * force
+                + SUM * (sent.moment.abs() + sum.moment.abs())
+                + arm * inexact;
+        }
+        [squares.sqrt(), energy]
+    }
+}
