@@ -154,6 +154,41 @@ fn whole_state_from_json(bencher: Bencher) {
     });
 }
 
+/// A zigzag of so many links that strikes with both ends, to its outcomes.
+#[divan::bench(args = [10, 30, 100, 300, 1000])]
+fn chain(bencher: Bencher, links: usize) {
+    let (length, mass) = (2.0 / links as f64, 10.0 / links as f64);
+    let link = |at: usize| {
+        let com = format!("<origin xyz=\"0 0 {}\"/><mass value=\"{mass}\"/>", -length / 2.0);
+        let moment = mass * length * length / 12.0;
+        format!(
+            "<link name=\"l{at}\"><inertial>{com}<inertia ixx=\"{moment}\" iyy=\"{moment}\" izz=\"{moment}\"/></inertial></link>"
+        )
+    };
+    let joint = |at: usize| {
+        let ends = format!("<parent link=\"l{}\"/><child link=\"l{at}\"/>", at - 1);
+        let place = format!("<origin xyz=\"0 0 {}\"/><axis xyz=\"0 -1 0\"/>", -length);
+        format!("<joint name=\"j{at}\" type=\"continuous\">{ends}{place}</joint>")
+    };
+    let parts: String = (0..links).map(link).chain((1..links).map(joint)).collect();
+    let robot = Robot::from_urdf(&format!("<robot name=\"chain\">{parts}</robot>")).expect("a good robot");
+    let bend = if links < 50 { 0.3 } else { 0.1 };
+    let joint = |at: usize| format!("\"j{at}\": {}", if at % 2 == 0 { bend } else { -bend });
+    let joints = (1..links).map(joint).collect::<Vec<_>>().join(", ");
+    let state = format!(
+        r#"{{"position": {{"base": {{"z": 1, "pitch": 0.1}}, "joints": {{{joints}}}}},
+            "velocity": {{"base": {{"x": 0.3, "z": -1, "pitch": 0.2}}}}, "friction": 0.7,
+            "contacts": [{{"link": "l{}", "offset": [0, 0, {}]}}, {{"link": "l0"}}]}}"#,
+        links - 1,
+        -length
+    );
+    let state = State::from_json(&state, &robot, &Defaults::default()).expect("a good state");
+    let mut pipeline = Pipeline::new(&robot, Options { brief: true, ..Options::default() });
+    let impact = pipeline.impact(&state).expect("an answer");
+    assert!(impact.analyzed().expect("two contacts").proven);
+    bencher.bench_local(|| pipeline.impact(black_box(&state)));
+}
+
 /// A body with 24 boxes, two of which stand on the ground, to its contacts and outcomes.
 #[divan::bench]
 fn many_shapes(bencher: Bencher) {

@@ -8,7 +8,7 @@ use super::{Collision, Description, Inertial, JointKind, Mimic, UrdfJoint, UrdfL
 use crate::error::{Location, Reason, Result};
 use roxmltree::{Document, Node};
 
-/// The most joints that move: a chain of n of them takes n^3 / 3 steps to factorize.
+/// The most joints that move: where M is needed, a chain of n of them takes n^3 / 3 steps to factorize.
 const MOST_MOVING: usize = 2000;
 /// What Drake calls a spherical joint.
 const DRAKES_SPHERICAL: &str = "ball";

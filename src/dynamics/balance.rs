@@ -213,10 +213,8 @@ impl Balance {
             let (scale, passed, (spin, origin)) = (&self.bodies[index], self.passed[index], self.motions[index]);
             let (mass, turning, speed) = (body.inertia.mass, spin.abs(), length(origin));
             let lever = scale.first.perpendicular();
-            let momentum = Wrench {
-                linear: origin * mass + lever * spin,
-                moment: body.inertia.second * spin + lever.dot(origin),
-            };
+            let momentum =
+                Wrench { linear: origin * mass + lever * spin, moment: body.inertia.second * spin + lever.dot(origin) };
             energy += momentum.linear.dot(origin) + momentum.moment * spin;
             let wrench = passed.wrench.with(momentum);
             let off_center = scale.turn * scale.first_length;
@@ -268,9 +266,8 @@ impl Balance {
             let parent = &mut self.passed[parent];
             parent.wrench = sum;
             parent.force_error += inexact + SUM * length(sum.linear);
-            parent.moment_error += (SUM + scale.turn) * arm * force
-                + SUM * (sent.moment.abs() + sum.moment.abs())
-                + arm * inexact;
+            parent.moment_error +=
+                (SUM + scale.turn) * arm * force + SUM * (sent.moment.abs() + sum.moment.abs()) + arm * inexact;
         }
         [squares.sqrt(), energy]
     }

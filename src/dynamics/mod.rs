@@ -5,7 +5,7 @@
 //!          ├──────── jacobian (J, c = J v) ───────────┴──> delassus (G = J M^-1 J^T), effect of impulses on v
 //!          ├──────── bias (gravity, terms of v v; sigma) ────> free accelerations of coordinates and contacts
 //!          ├──────── loops (K) ──────────────────────────────> G without what loops do not let move, their impulses
-//!          └──────── articulated ────────────────────────> the same G and effect, without M
+//!          └──────── articulated ──> balance (how far off) ──> the same G and effect, without M, for long robots
 //! ```
 //!
 //! Every function reads a [`Plan`](crate::dynamics::plan::Plan) and writes into a [`Workspace`].
@@ -27,8 +27,8 @@ mod loops;
 
 pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
 pub use articulated_inertia::ArticulatedInertia;
-pub use bias::bias;
 pub use balance::has_balance;
+pub use bias::bias;
 pub use bounds::{Reach, RoundingBounds};
 pub use crba::{factorize, mass_diagonal, mass_matrix};
 pub use delassus::{PointImpulse, add_impulse, delassus};

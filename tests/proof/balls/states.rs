@@ -48,7 +48,8 @@ pub fn chain(length: usize, random: &mut Random) -> Model {
     }));
     let robot = Robot::from_urdf(&urdf::robot(&parts)).unwrap_or_else(|error| panic!("{error}"));
     let foot = |link: usize| NamedContact { link, offset: [0.1, 0.0, -1.0], radius: 0.0 };
-    let feet = [length - 1, length - 3, 4].map(|link| foot(robot.link(&format!("link_{link}")).unwrap_or(link))).to_vec();
+    let feet =
+        [length - 1, length - 3, 4].map(|link| foot(robot.link(&format!("link_{link}")).unwrap_or(link))).to_vec();
     Model { name: "chain", robot, feet, touching: 2, most: 3 }
 }
 
