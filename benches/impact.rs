@@ -173,7 +173,7 @@ fn chain(bencher: Bencher, links: usize) {
     let parts: String = (0..links).map(link).chain((1..links).map(joint)).collect();
     let robot = Robot::from_urdf(&format!("<robot name=\"chain\">{parts}</robot>")).expect("a good robot");
     let bend = if links < 50 { 0.3 } else { 0.1 };
-    let joint = |at: usize| format!("\"j{at}\": {}", if at % 2 == 0 { bend } else { -bend });
+    let joint = |at: usize| format!("\"j{at}\": {}", if at.is_multiple_of(2) { bend } else { -bend });
     let joints = (1..links).map(joint).collect::<Vec<_>>().join(", ");
     let state = format!(
         r#"{{"position": {{"base": {{"z": 1, "pitch": 0.1}}, "joints": {{{joints}}}}},

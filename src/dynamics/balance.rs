@@ -134,7 +134,7 @@ impl Balance {
                 set_in_motion(plan, workspace, &mut self.rates, &mut self.motions);
                 let own = entry(row, row).sqrt();
                 let jumps = self.jumps(plan, stretched, workspace) / own;
-                let [off, energy] = self.imbalance(plan, stretched, workspace, (point, arm, axis), own);
+                let [off, left] = self.imbalance(plan, stretched, workspace, (point, arm, axis), own);
                 for (other, (point, arm)) in points.iter().zip(arms).take(index + 1).enumerate() {
                     if !can_move(point) {
                         continue;
@@ -148,16 +148,13 @@ impl Balance {
                     for (column, axis) in (2 * other..).zip(point.axes()) {
                         let scale = own * entry(column, column).sqrt();
                         // A row that vanishes although its contact can move is known to no relative error.
-                        let apart = axis.dot(velocity) - entry(row, column);
-                        let error = (apart.abs() + rounding) / scale + jumps + off;
+                        let apart = (axis.dot(velocity) - entry(row, column)).abs();
+                        let error = (apart + rounding) / scale + jumps + off;
                         if error.is_nan() || error >= SMALL {
                             return [f64::INFINITY; 2];
                         }
                         bound = bound.max(2.0 * error);
-                        if row == column {
-                            // 2 J w - |w|^2 is G but for the square of the distance.
-                            seen = seen.max((2.0 * apart + entry(row, row) - energy).abs() / scale);
-                        }
+                        seen = seen.max(apart / scale + left);
                     }
                 }
             }
@@ -186,7 +183,7 @@ impl Balance {
         sum
     }
 
-    /// The distance of the motion from u, over `own`, the length of u, and the motion's own |w|^2.
+    /// The distance of the motion from u over `own`, the length of u, and the part of it that is not for rounding here.
     fn imbalance(
         &mut self,
         plan: &Plan,
@@ -204,7 +201,7 @@ impl Balance {
             moment_error: 2.0 * (GROUND + self.bodies[point.body].turn) * arm.length,
         };
         // The first part covers squares that underflow.
-        let (mut squares, mut energy) = (1e-100, 0.0);
+        let [mut squares, mut seen] = [1e-100; 2];
         for (index, body) in plan.bodies.iter().enumerate().rev() {
             if body.parent.is_none() && !plan.floating {
                 // The ground takes it.
@@ -213,10 +210,10 @@ impl Balance {
             let (scale, passed, (spin, origin)) = (&self.bodies[index], self.passed[index], self.motions[index]);
             let (mass, turning, speed) = (body.inertia.mass, spin.abs(), length(origin));
             let lever = scale.first.perpendicular();
-            let momentum =
-                Wrench { linear: origin * mass + lever * spin, moment: body.inertia.second * spin + lever.dot(origin) };
-            energy += momentum.linear.dot(origin) + momentum.moment * spin;
-            let wrench = passed.wrench.with(momentum);
+            let wrench = passed.wrench.with(Wrench {
+                linear: origin * mass + lever * spin,
+                moment: body.inertia.second * spin + lever.dot(origin),
+            });
             let off_center = scale.turn * scale.first_length;
             let force_error = passed.force_error
                 + SUM * (mass * speed + scale.first_length * turning + length(passed.wrench.linear))
@@ -231,7 +228,6 @@ impl Balance {
                 let sizes = rate.abs() + turning + self.motions[parent].0.abs();
                 let part = SUM * sizes * body.rotor.sqrt() / own;
                 squares += part * part;
-                energy += body.rotor * rate * rate;
             }
             // What the joint transmits, what remains on the body, and by how much the joint's force is inexact.
             let (sent, left, inexact) = match (body.motion, body.column) {
@@ -256,10 +252,13 @@ impl Balance {
                 }
             };
             let [force, moment] = [length(left.linear), left.moment.abs()];
-            let force = force + force_error + SUM * length(sent.linear) + inexact;
-            let moment = moment + moment_error + scale.com * force;
-            let [by_force, by_moment] = [force * scale.per_mass / own, moment * scale.per_moment / own];
-            squares += by_force * by_force + by_moment * by_moment;
+            let square = |force: f64, moment: f64| {
+                let by_force = force * scale.per_mass / own;
+                let by_moment = (moment + scale.com * force) * scale.per_moment / own;
+                by_force * by_force + by_moment * by_moment
+            };
+            squares += square(force + force_error + SUM * length(sent.linear) + inexact, moment + moment_error);
+            seen += square(force, moment);
             let Some(parent) = body.parent else { continue };
             let sum = self.passed[parent].wrench.with(sent.seen_from(workspace.arm[index]));
             let (force, arm) = (length(sent.linear), stretched[index].arm);
@@ -269,6 +268,6 @@ impl Balance {
             parent.moment_error +=
                 (SUM + scale.turn) * arm * force + SUM * (sent.moment.abs() + sum.moment.abs()) + arm * inexact;
         }
-        [squares.sqrt(), energy]
+        [squares.sqrt(), seen.sqrt()]
     }
 }

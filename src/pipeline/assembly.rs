@@ -149,8 +149,9 @@ impl<T: Real> Assembly<T> {
     }
 
     /// The acceleration by coordinate \[m/s^2, rad/s^2\] that the loads alone give, without contacts and constraints,
-    /// and kappa of each loop. M must be factorized.
+    /// and kappa of each loop.
     pub fn acceleration(&mut self, velocity: &[T], loads: Loads<'_>) -> (Vec<T>, Vec<Vector<T>>) {
+        self.take_mass_matrix();
         let Self { plan, workspace, column, loops, .. } = self;
         bias(plan, velocity, T::from_f64(loads.gravity), workspace);
         let base = if plan.floating { 3 } else { 0 };

@@ -420,7 +420,8 @@ impl<'r> Pipeline<'r> {
         all
     }
 
-    fn matrices(&self) -> Matrices {
+    fn matrices(&mut self) -> Matrices {
+        self.assembly.take_mass_matrix();
         let Assembly { plan, workspace, .. } = &self.assembly;
         let (nv, rows) = (plan.columns(), 2 * workspace.contact_velocity.len());
         // Columns of the plan run outward from the root, the user's coordinates in the file's order.
