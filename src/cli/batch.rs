@@ -21,7 +21,7 @@ use heelstrike::error::excerpt::Excerpt;
 use heelstrike::gait::{Dropped, Thresholds};
 use heelstrike::pipeline::{Aspect, Options};
 use heelstrike::read::table::Header;
-use heelstrike::state::{Defaults, NamedContact};
+use heelstrike::state::NamedContact;
 use heelstrike::write::{self, Columns, RowKind};
 use heelstrike::{Detail, Error, Reason, Robot};
 use std::io::{self, Read, Write};
@@ -235,11 +235,7 @@ impl Args {
                 next: self.next.next,
                 ..pipeline_options(&self.contacts, feet, self.detail, &self.robot.reductions, self.budget.budget())
             },
-            defaults: Defaults {
-                loops: self.loops.load(robot)?,
-                place_lowest: self.contacts.place_lowest(robot)?,
-                ..self.scene.defaults()
-            },
+            defaults: self.loops.defaults(&self.scene, &self.contacts, robot)?,
             detail: self.detail.detail(),
             total: self.budget.of_many(self.budget_total),
             header,

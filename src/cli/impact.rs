@@ -11,7 +11,7 @@ use super::stream::{SUMMED_UP, answer_all, append};
 use super::{Completion, Failure, input};
 use heelstrike::draw::robot::picture;
 use heelstrike::pipeline::{Aspect, Pipeline};
-use heelstrike::state::{Defaults, State};
+use heelstrike::state::State;
 use heelstrike::write::{Report, Subject};
 use heelstrike::{Error, Reason};
 use std::path::PathBuf;
@@ -77,11 +77,7 @@ impl StateArgs {
             options.explain_up_to = options.explain_up_to.max(SUMMED_UP);
         }
         (options.aspect, options.next) = (aspect, next);
-        let defaults = Defaults {
-            loops: self.loops.load(&robot)?,
-            place_lowest: self.contacts.place_lowest(&robot)?,
-            ..self.scene.defaults()
-        };
+        let defaults = self.loops.defaults(&self.scene, &self.contacts, &robot)?;
         let plotted = self.plot.path().is_some();
         let several = Reason::Inconsistent("a picture is drawn of one state, and several are given".into());
         let several = Failure::Usage(Error::new(several).at("--plot").hint("give the states one by one"));

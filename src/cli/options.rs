@@ -42,8 +42,19 @@ pub(super) struct LoopOptions {
 }
 
 impl LoopOptions {
+    /// What states of `robot` take that do not say it, these loops included.
+    pub fn defaults(
+        &self,
+        scene: &SceneOptions,
+        contacts: &ContactOptions,
+        robot: &Robot,
+    ) -> Result<Defaults, Failure> {
+        let (loops, place_lowest) = (self.load(robot)?, contacts.place_lowest(robot)?);
+        Ok(Defaults { loops, place_lowest, ..scene.defaults() })
+    }
+
     /// Reads the loops of `robot`.
-    pub fn load(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
+    fn load(&self, robot: &Robot) -> Result<Vec<NamedLoop>, Failure> {
         let Some(path) = &self.loops else { return Ok(Vec::new()) };
         let input = InputFile::read(path, InputFile::SMALL)?;
         input.text().and_then(|text| loops_from_json(text, robot)).map_err(|error| input.refuse(error))

@@ -15,7 +15,6 @@ use clap::ValueEnum;
 use heelstrike::budget::SharedBudget;
 use heelstrike::draw::page::{Page, Stops};
 use heelstrike::draw::sweep as picture;
-use heelstrike::state::Defaults;
 use heelstrike::sweep::{Findings, Regime, RobotStudy, Solver, Study, Workers, letter};
 use heelstrike::write::append_line;
 use heelstrike::write::sweep::{Regions, SampleRecord, columns};
@@ -115,11 +114,7 @@ pub(super) fn run(args: &Args) -> Completion {
         reduction: &reduction,
         robot: &robot,
         options: pipeline_options(&args.contacts, feet.clone(), args.detail, &args.robot.reductions, None),
-        defaults: Defaults {
-            loops: args.loops.load(&robot)?,
-            place_lowest: args.contacts.place_lowest(&robot)?,
-            ..args.scene.defaults()
-        },
+        defaults: args.loops.defaults(&args.scene, &args.contacts, &robot)?,
     };
     note_own_friction(model.has_own_friction().map_err(refuse)?.into(), "study");
     for name in study.unused() {

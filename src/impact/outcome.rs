@@ -52,8 +52,8 @@ pub struct Outcome {
     /// loops.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loop_impulse: Option<Vec<Vector>>,
-    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction adds some. Of
-    /// forces the power that they take \[W\].
+    /// Kinetic energy that the contacts took, -1/2 L.(c- + c+) \[J\]; negative if Newton's law with friction adds some.
+    /// Of forces the power that they take \[W\].
     pub energy_loss: f64,
     /// False if other admissible impulses give the same velocity; `impulse` then has the least sum of squares.
     pub impulse_unique: bool,

@@ -31,8 +31,8 @@ const LAST: [&str; 5] = ["border", "family", "families", "error", "notes"];
 /// has a row with these cells empty. A contact is named after its link if it is the only one there, so a link that can
 /// touch at several points has columns of its own name and of link/0, link/1, ... A refused state has a row with the
 /// verdict `refused`, its id and copied columns if they can be read, and its line and reason in `error`. A copied
-/// column whose name the output already has gets the prefix `in_`. Forces have `f_<contact>_t, f_<contact>_n` for the impulses and
-/// `a_<coordinate>` for the velocities after.
+/// column whose name the output already has gets the prefix `in_`. Forces have `f_<contact>_t, f_<contact>_n` for the
+/// impulses and `a_<coordinate>` for the velocities after.
 #[derive(Debug, Clone)]
 pub struct Columns {
     names: Vec<String>,

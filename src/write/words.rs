@@ -121,14 +121,14 @@ impl Wording {
                 if listed as u64 == undecided { String::new() } else { format!(", of which {listed} are listed") };
             if beyond_budget {
                 return format!(
-                    "Undecided: the budget of work ended (`budget`), and {undecided} of {combinations} combinations of modes \
-                     are open{listed}."
+                    "Undecided: the budget of work ended (`budget`), and {undecided} of {combinations} combinations of \
+                     modes are open{listed}."
                 );
             }
             if !listed.is_empty() {
                 return format!(
-                    "Undecided: some sign was settled by no precision, and {undecided} of {combinations} combinations of \
-                     modes are open{listed}."
+                    "Undecided: some sign was settled by no precision, and {undecided} of {combinations} combinations \
+                     of modes are open{listed}."
                 );
             }
         }
@@ -147,8 +147,8 @@ impl Wording {
             Verdict::None if self.drawn.given == FORCES.drawn.given => NO_FORCES,
             // Regular contacts always have an outcome.
             Verdict::None => {
-                "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on each \
-                 other, or nothing that may move moves them."
+                "No outcome is consistent: no impulse brings every contact to what is asked of it, since they depend on \
+                 each other, or nothing that may move moves them."
             }
             Verdict::Undecided => "Undecided: some sign was settled by no precision; what it leaves open is listed.",
             Verdict::NoImpact => "No impact: the only outcome needs no impulse from the ground.",

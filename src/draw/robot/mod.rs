@@ -155,8 +155,8 @@ impl Drawing {
         greatest(self.outcomes.iter().flat_map(|outcome| &outcome.impulse).chain(applied))
     }
 
-    /// The greatest velocity of a contact before the impact and after it, on one scale \[m/s\]; of forces its velocity, and
-    /// its acceleration \[m/s^2\].
+    /// The greatest velocity of a contact before the impact and after it, on one scale \[m/s\]; of forces its velocity,
+    /// and its acceleration \[m/s^2\].
     pub fn greatest_velocities(&self) -> [f64; 2] {
         let before = greatest(self.contacts.iter().map(|contact| &contact.velocity_before));
         let after = greatest(self.outcomes.iter().flat_map(|outcome| &outcome.velocity_after));

@@ -73,7 +73,9 @@ fn next_is_forces_at_the_velocities_after() {
             "velocity": {"base": {"x": between(-1.0, 1.0), "z": between(-2.0, 0.0), "pitch": between(-2.0, 2.0)},
                          "joints": {"hip": between(-2.0, 2.0)}},
             "friction": if case % 4 == 0 { json!("infinite") } else { json!(between(0.0, 3.0)) },
-            "restitution": if case % 5 == 0 { 0.4 } else { 0.0 }, "place": "lowest", "torque": {"hip": between(-5.0, 5.0)},
+            "restitution": if case % 5 == 0 { 0.4 } else { 0.0 },
+            "place": "lowest",
+            "torque": {"hip": between(-5.0, 5.0)},
         });
         let state = State::from_json(&state.to_string(), &walker, &Defaults::default()).unwrap();
         let found = Pipeline::new(&walker, Options { next: true, ..Options::default() }).impact(&state).unwrap();
