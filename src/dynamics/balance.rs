@@ -86,7 +86,7 @@ impl BodyScale {
 /// At most the moment of inertia about the center of mass; not positive, or not a number, if it may be zero.
 fn central_moment(body: &PlanBody<f64>) -> f64 {
     let (mass, first, second) = (body.inertia.mass, body.inertia.first, body.inertia.second);
-    second * (1.0 - SUM) - first.dot(first) / mass * (1.0 + SUM)
+    second * (1.0 - SUM) - first.dot(first * (1.0 / mass)) * (1.0 + SUM) - UNDERFLOW
 }
 
 /// Whether something can be known by the balance: mimic joints have no articulated bodies, and a body without inertia

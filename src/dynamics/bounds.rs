@@ -2,7 +2,7 @@
 //!
 //! With u the unit roundoff, D the depth of the tree, nb its bodies, nv its columns:
 //!
-//! 1. *Kinematics.* Cosines and sines are off by 2 u each (see [`Ball`](crate::scalar::Ball)), each product of
+//! 1. *Kinematics.* Cosines and sines are off by 4 u each (see [`Ball`](crate::scalar::Ball)), each product of
 //!    rotations adds 3 u; so after D joints a rotation is off by at most 7 D u, and an arm by that part of its length.
 //! 2. *M and J.* Each entry is a sum of products of masses and arms, collected over at most D levels and nb bodies.
 //!    Replacing every term by its magnitude gives K_i, the moment that column i would have to move if all arms were
