@@ -22,7 +22,7 @@ use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
 use crate::scalar::{Real, Trigonometry};
 
 /// From how many columns on a plan is long.
-const LONG: usize = 16;
+const LONG: usize = 12;
 
 /// A robot compiled in numbers of kind `T`.
 #[derive(Debug, Clone, Default)]
