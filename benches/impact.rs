@@ -134,6 +134,18 @@ fn whole_state(bencher: Bencher) {
     bencher.bench_local(|| pipeline.impact(black_box(&state)));
 }
 
+/// The same pose at rest on both feet, and on sliding ones, to all forces and accelerations.
+#[divan::bench(args = [0.0, 0.4])]
+fn whole_state_in_sustained_contact(bencher: Bencher, speed: f64) {
+    let robot = ramone();
+    let mut state = state(&robot);
+    state.velocity.fill(0.0);
+    state.velocity[0] = speed;
+    state.scene.torque = vec![1.0, -3.0, 0.5, 2.0];
+    let mut pipeline = Pipeline::new(&robot, Options::default());
+    bencher.bench_local(|| pipeline.forces(black_box(&state)));
+}
+
 /// The same without bounds of the dynamics' rounding, and so without a proof.
 #[divan::bench]
 fn whole_state_without_proof(bencher: Bencher) {

@@ -44,7 +44,7 @@ impl Placement {
     }
 
     /// The root's origin in the world \[m\].
-    pub(super) fn base(&self) -> Vector<f64> {
+    pub(crate) fn base(&self) -> Vector<f64> {
         self.origins.first().copied().unwrap_or_default()
     }
 

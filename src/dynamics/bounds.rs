@@ -17,7 +17,12 @@
 //!    counts for three levels. Its motion is multiplied by its rate, and where a column moves several joints b, the
 //!    triangle inequality of the energy norm gives sqrt(K_i) = sum |rate_b| sqrt(K_b), and A_ri is a sum of the same
 //!    form.
-//! 6. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
+//! 6. *Accelerations* a = M^-1 h of loads known to dh. The solve is exact for a matrix off by 3 gamma sqrt(K_i K_j) at
+//!    most (Higham 2002, theorem 10.4), so that exactly M (a^ - a) = r with |r_i| <= dh_i + (eta + 3 gamma) sqrt(K_i) sum
+//!    sqrt(K_j) |a^_j|. In the energy norm J M^-1 r is at most sqrt(G_rr) sum |r_i| sqrt((M^-1)_ii). J and sigma add eta
+//!    times the magnitude of their terms ([`Magnitude`]), and dh_i is eta times that of h_i: no result takes more
+//!    operations one on top of the other than an entry of M.
+//! 7. (M^-1)_ii is itself computed by a triangular solve, so it may be short by a factor (1 - gamma sqrt(nv tau))^2.
 //!
 //! Everything is doubled for the terms of second order, which are small because the bound counts as unknown beyond a
 //! tenth. The constants are generous: a sign that falls within them is settled by balls.
@@ -27,12 +32,11 @@ use super::jacobian::ContactPoint;
 use super::stretch::{Arm, LIKELY, SMALL, Stretched, UNIT_ROUNDOFF, stretch};
 use super::workspace::Workspace;
 use crate::dynamics::plan::{Configuration, JointMotion, Plan};
-use crate::planar::Pair;
+use crate::planar::{Pair, Rotation, Vector};
+use crate::scalar::{Magnitude, UNDERFLOW};
 
 /// Roundings in an entry of M or J, per level and body: twice those of step 2.
 const ENTRY: f64 = 96.0;
-/// Divided by the roundoff, it covers the underflow of a few products.
-const UNDERFLOW: f64 = 1e20 * f64::MIN_POSITIVE;
 /// What moves one end of a loop against the other, with every arm stretched.
 #[derive(Debug, Clone, Default)]
 pub struct Reach {
@@ -96,6 +100,59 @@ impl RoundingBounds {
             [bound; 2]
         }));
         self.velocity = bounds;
+    }
+
+    /// Bounds c' = J a + sigma of contacts by their accelerations without forces, for an `acceleration` by coordinate,
+    /// after [`RoundingBounds::delassus`]; infinite without it. Of the loads h by column and of J a + sigma the magnitudes are given; h has
+    /// `more` terms than a robot alone.
+    pub fn accelerations(
+        &self,
+        plan: &Plan,
+        acceleration: &[f64],
+        workspace: &Workspace,
+        (loads, more): (&[Magnitude], usize),
+        whole: &[Pair<Magnitude>],
+    ) -> Vec<Pair<f64>> {
+        let eta = (self.entry_roundings(plan) + 2.0 * more as f64) * UNIT_ROUNDOFF;
+        let gamma = 2.0 * (plan.columns() + 2) as f64 * UNIT_ROUNDOFF;
+        let columns = plan.coordinates.iter().zip(&self.roots);
+        let pushed = columns.fold(0.0, |sum, (&coordinate, root)| sum + root * acceleration[coordinate].abs());
+        let residuals = loads.iter().zip(self.roots.iter().zip(&self.ease));
+        let energy = residuals.fold(0.0, |sum, (load, (root, ease))| {
+            sum + ease * (eta * load.0 + (eta + 3.0 * gamma) * root * pushed + UNDERFLOW)
+        });
+        let rows = 2 * whole.len();
+        let bound = |row: usize, Magnitude(terms): Magnitude| {
+            let bound = 2.0 * (workspace.delassus[row * rows + row].max(0.0).sqrt() * energy + eta * terms);
+            // What is not a number bounds nothing.
+            let is_known = self.delassus.is_finite() && self.ease.len() == plan.columns();
+            if is_known && bound.is_finite() { bound } else { f64::INFINITY }
+        };
+        (0..whole.len()).map(|index| [0, 1].map(|axis| bound(2 * index + axis, whole[index][axis]))).collect()
+    }
+
+    /// The poses of a plan with every arm stretched, for computations of magnitudes.
+    pub fn stretched_poses(&self, plan: &Plan<Magnitude>, workspace: &mut Workspace<Magnitude>) {
+        let turned = Rotation { cos: Magnitude(1.0), sin: Magnitude(1.0) };
+        let Workspace { rotation, arm, direction, .. } = workspace;
+        rotation.clear();
+        rotation.resize(plan.bodies.len(), turned);
+        arm.clear();
+        arm.extend(self.bodies.iter().map(|body| Vector::new(body.arm, body.arm).map(Magnitude)));
+        direction.clear();
+        direction.extend(plan.bodies.iter().map(|body| match body.motion {
+            JointMotion::Prismatic { rate, .. } => turned.apply(rate),
+            _ => Vector::zero(),
+        }));
+    }
+
+    /// The contacts as points with their arms stretched.
+    pub fn stretched_points(&self) -> impl Iterator<Item = ContactPoint<Magnitude>> {
+        let turned = Rotation { cos: Magnitude(1.0), sin: Magnitude(1.0) };
+        self.contacts.iter().map(move |&Arm { body, length }| {
+            let center = Vector::new(length, length).map(Magnitude);
+            ContactPoint { body, center, radius: Magnitude(0.0), ground: turned }
+        })
     }
 
     /// The speed that a contact would have if no two terms of J v canceled each other \[m/s\].
@@ -181,6 +238,8 @@ impl RoundingBounds {
     pub fn articulated_delassus(&mut self, plan: &Plan, points: &[ContactPoint], workspace: &Workspace) {
         let [bound, likely] = self.balance.errors(plan, &self.bodies, (points, &self.contacts), workspace);
         self.delassus = bound;
+        // They bound no accelerations.
+        self.ease.clear();
         if bound > 0.0 && bound.is_finite() {
             self.likely[0] = likely / bound;
         }

@@ -127,7 +127,7 @@ pub(super) fn walk<T: Real>(
 }
 
 /// Rate at which a body turns about the plane's normal \[rad/s\].
-fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
+pub(super) fn spin<T: Real>(plan: &Plan<T>, body: usize, velocity: &[T]) -> T {
     let base = if plan.floating { velocity[2] } else { T::zero() };
     plan.way_to_root(body).fold(base, |rate, (_, body)| match body.motion {
         JointMotion::Revolute { rate: own, .. } => rate + own * velocity[body.coordinate],

@@ -4,6 +4,7 @@
 //!     kinematics --> crba (M) --> ltl (M = L^T D L) ──┐
 //!          ├──────── jacobian (J, c = J v) ───────────┴──> delassus (G = J M^-1 J^T), effect of impulses on v
 //!          ├──────── bias (gravity, terms of v v; sigma) ────> free accelerations of coordinates and contacts
+//!          ├──────── springs ──────────────────────────────> torques that imitate virtual springs
 //!          ├──────── loops (K) ──────────────────────────────> G without what loops do not let move, their impulses
 //!          └──────── articulated ──> balance (how far off) ──> the same G and effect, without M, for long robots
 //! ```
@@ -23,6 +24,7 @@ mod stretch;
 mod balance;
 mod bounds;
 mod bias;
+mod springs;
 mod loops;
 
 pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
@@ -39,6 +41,7 @@ pub use loops::{
     spent_energy,
 };
 pub use ltl::LtlFactor;
+pub use springs::{Spring, SpringLoad, SpringPoint};
 pub use stretch::Arm;
 pub use workspace::{LoopRows, Workspace};
 
@@ -51,7 +54,8 @@ mod tests {
     use crate::dynamics::plan::{Configuration, Plan};
     use crate::planar::{Rotation, Vector};
     use crate::robot::{Axis, Base, Body, Joint, MimicJoint, ParentJoint, Robot};
-    use crate::scalar::{Ball, DoubleDouble, Interval, Ordered, Real, Trigonometry};
+    use crate::scalar::{Ball, DoubleDouble, Interval, Magnitude, Ordered, Real, Trigonometry};
+    use crate::state::SpringLaw;
     use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
     use proptest::sample::Index;
@@ -202,6 +206,43 @@ mod tests {
             (exact[at] - Interval::from_f64(found[at])).to_f64().abs() / scale
         };
         (0..found.len()).map(error).fold(0.0, f64::max)
+    }
+
+    type SpringCase = ([(Index, [f64; 2]); 2], [SpringLaw; 3], bool);
+
+    impl Case {
+        /// Loads by column, accelerations by coordinate and of contacts, of bodies that may be `still`, under gravity
+        /// and a spring; `solve` takes the loads to accelerations.
+        fn accelerated<T: Real>(
+            &self,
+            plan: &Plan<T>,
+            points: &[ContactPoint<T>],
+            mut workspace: Workspace<T>,
+            (ends, laws, still): SpringCase,
+            solve: impl FnOnce(&mut [T], &Workspace<T>),
+        ) -> (Vec<T>, Vec<T>, Vec<[T; 2]>) {
+            let velocity: Vec<T> = self.velocity.iter().map(|&entry| T::from_f64(entry)).collect();
+            bias(plan, &velocity, T::from_f64(9.81), &mut workspace);
+            let end = |(body, point): (Index, [f64; 2])| {
+                SpringPoint::Body(body.index(self.robot.bodies.len()), Vector::from(point).map(T::from_f64))
+            };
+            let spring = Spring { ends: ends.map(end), laws };
+            let asked = spring.load(plan, &self.position, &velocity, &workspace).generalized;
+            let loads = plan.coordinates.iter().zip(&workspace.bias).map(|(&coordinate, &bias)| {
+                if coordinate < self.robot.base_dofs() { -bias } else { asked[coordinate] - bias }
+            });
+            let loads: Vec<T> = loads.collect();
+            let mut column = loads.clone();
+            solve(&mut column, &workspace);
+            let mut acceleration = vec![T::zero(); velocity.len()];
+            plan.coordinates.iter().zip(&column).for_each(|(&coordinate, &own)| acceleration[coordinate] = own);
+            let of_contact = |point: &ContactPoint<T>| {
+                let total = point_velocity(plan, point.body, point.arm(&workspace), &acceleration, &workspace);
+                point.axes().map(|axis| axis.dot(total + point.drift(still, &workspace)))
+            };
+            let contacts = points.iter().map(of_contact).collect();
+            (loads, acceleration, contacts)
+        }
     }
 
     fn dense(plan: &Plan, lower: &[f64]) -> DMatrix<f64> {
@@ -379,6 +420,57 @@ mod tests {
                 }
                 let (found, exact) = (workspace.contact_velocity[i / 2][i % 2], exact.contact_velocity[i / 2][i % 2]);
                 prop_assert!(off(found, exact) <= bounds.velocity[i / 2][i % 2]);
+            }
+        }
+
+        /// Of trees with mimic joints and a virtual spring, against balls of double-doubles.
+        #[test]
+        fn f64_accelerations_keep_within_their_bounds(
+            case in case(true),
+            ends in prop::array::uniform2((any::<Index>(), point())),
+            law in prop::array::uniform4(-3.0..3.0f64),
+            still in any::<bool>(),
+        ) {
+            type Exact = Ball<DoubleDouble>;
+            let [stiffness, damping, target, constant] = law;
+            let laws = [SpringLaw { stiffness, damping, target, constant }; 3];
+            let contacts = case.points(0.0, Rotation::identity());
+            let (mut bounds, mut configuration) = (RoundingBounds::default(), Configuration::default());
+            let plan = Plan::new(&case.robot, &[], &[]);
+            configuration.set(&plan, &case.position);
+            let arm = |own: &ContactPoint| Arm { body: own.body, length: own.center.x.abs() + own.center.z.abs() };
+            bounds.stretch(&plan, &configuration, contacts.iter().map(arm));
+
+            let workspace = case.computed(&plan, &contacts);
+            bounds.delassus(&plan, &workspace);
+            prop_assume!(bounds.delassus.is_finite());
+            let (_, acceleration, found) =
+                case.accelerated(&plan, &contacts, workspace.clone(), (ends, laws, still), |column, workspace| {
+                    workspace.factor.solve(&plan, column);
+                });
+            let exact_plan = Plan::<Exact>::new(&case.robot, &[], &[]);
+            let points = case.points(0.0, Rotation::identity());
+            let exact = case.computed(&exact_plan, &points);
+            let (.., exact) = case.accelerated(&exact_plan, &points, exact, (ends, laws, still), |column, workspace| {
+                workspace.factor.solve(&exact_plan, column);
+            });
+            let stretched_plan = Plan::<Magnitude>::new(&case.robot, &[], &[]);
+            let mut stretched = Workspace::default();
+            bounds.stretched_poses(&stretched_plan, &mut stretched);
+            let points: Vec<_> = bounds.stretched_points().collect();
+            let (loads, _, whole) =
+                case.accelerated(&stretched_plan, &points, stretched, (ends, laws, still), |column, _| {
+                    for (entry, &coordinate) in column.iter_mut().zip(plan.coordinates()) {
+                        *entry = Magnitude::from_f64(acceleration[coordinate]);
+                    }
+                });
+            let allowed = bounds.accelerations(&plan, &acceleration, &workspace, (&loads, 1), &whole);
+            for (index, allowed) in allowed.into_iter().enumerate() {
+                for axis in 0..2 {
+                    let off = (exact[index][axis] - Exact::from_f64(found[index][axis])).to_f64().abs();
+                    prop_assert!(off - exact[index][axis].error() <= allowed[axis], "{off:e} {allowed:?}");
+                    prop_assert!(allowed[axis] < 1e-3, "{allowed:?}");
+                }
             }
         }
     }

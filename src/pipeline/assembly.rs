@@ -11,31 +11,25 @@
 
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
-    Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Workspace, add_articulated_impulse, add_impulse,
-    articulated_delassus, articulated_inertias, bias, close, contact_jacobian, delassus, eliminate_loops, factorize,
-    kinematics, loop_impulse, mass_matrix, orthogonalize, point_velocity,
+    Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Spring, SpringLoad, SpringPoint, Workspace,
+    add_articulated_impulse, add_impulse, articulated_delassus, articulated_inertias, bias, close, contact_jacobian,
+    delassus, eliminate_loops, factorize, kinematics, loop_impulse, mass_matrix, orthogonalize, point_velocity,
 };
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
 use crate::scalar::Real;
-use crate::state::Scene;
+use crate::state::{LinkPoint, Scene, SpringEnd, VirtualSpring};
 
 /// What acts on a robot in sustained contact, apart from the contacts.
 #[derive(Debug, Clone, Copy)]
 pub struct Loads<'a> {
-    /// Along -z of the world \[m/s^2\].
-    pub gravity: f64,
-    /// By joint \[N m, N\]; empty for none.
-    pub torque: &'a [f64],
+    pub robot: &'a Robot,
+    /// Gravity, torques and virtual springs.
+    pub scene: &'a Scene,
+    /// q, with the base where it is placed.
+    pub position: &'a [f64],
     /// Contacts of a body that does not turn, because several of its points stay on the ground.
     pub still: &'a [bool],
-}
-
-impl<'a> Loads<'a> {
-    /// Those of a scene.
-    pub fn of(scene: &'a Scene, still: &'a [bool]) -> Self {
-        Self { gravity: scene.gravity.unwrap_or(Scene::GRAVITY), torque: &scene.torque, still }
-    }
 }
 
 /// How M^-1 is applied.
@@ -148,27 +142,49 @@ impl<T: Real> Assembly<T> {
         loop_impulse(self.loops.len(), &amplitudes, &self.workspace)
     }
 
+    /// h = tau - b by column \[N, N m\], after the kinematics.
+    pub fn load(&mut self, velocity: &[T], loads: Loads<'_>) -> &[T] {
+        let springs = self.springs(velocity, loads);
+        let Self { plan, workspace, column, .. } = self;
+        bias(plan, velocity, T::from_f64(loads.scene.gravity()), workspace);
+        column.clear();
+        column.extend(plan.coordinates.iter().zip(&workspace.bias).map(|(&coordinate, &bias)| {
+            let Some(joint) = coordinate.checked_sub(loads.robot.base_dofs()) else { return -bias };
+            let given = loads.scene.torque.get(joint).map_or(T::zero(), |&torque| T::from_f64(torque));
+            springs.iter().fold(given, |sum, own| sum + own.generalized[coordinate]) - bias
+        }));
+        column
+    }
+
     /// The acceleration by coordinate \[m/s^2, rad/s^2\] that the loads alone give, without contacts and constraints,
     /// and kappa of each loop.
     pub fn acceleration(&mut self, velocity: &[T], loads: Loads<'_>) -> (Vec<T>, Vec<Vector<T>>) {
         self.take_mass_matrix();
+        self.load(velocity, loads);
         let Self { plan, workspace, column, loops, .. } = self;
-        bias(plan, velocity, T::from_f64(loads.gravity), workspace);
-        let base = if plan.floating { 3 } else { 0 };
-        let torque = |coordinate: usize| coordinate.checked_sub(base).and_then(|joint| loads.torque.get(joint));
-        column.clear();
-        column.extend(plan.coordinates.iter().zip(&workspace.bias).map(|(&coordinate, &bias)| {
-            match torque(coordinate) {
-                Some(&torque) if torque != 0.0 => T::from_f64(torque) - bias,
-                _ => -bias,
-            }
-        }));
         workspace.factor.solve(plan, column);
         let mut acceleration = vec![T::zero(); velocity.len()];
         for (&coordinate, &own) in plan.coordinates.iter().zip(column.iter()) {
             acceleration[coordinate] = own;
         }
         (acceleration, loops.iter().map(|own| own.drift(workspace)).collect())
+    }
+
+    /// What each virtual spring asks for, after the kinematics.
+    pub fn springs(&self, velocity: &[T], loads: Loads<'_>) -> Vec<SpringLoad<T>> {
+        let point = |LinkPoint { link, offset }: LinkPoint| {
+            let link = &loads.robot.links[link];
+            SpringPoint::Body(link.body, link.point(offset))
+        };
+        let load = |own: &VirtualSpring| {
+            let b = match own.b {
+                SpringEnd::Link(end) => point(end),
+                SpringEnd::World(place) => SpringPoint::World(place.map(T::from_f64)),
+            };
+            let spring = Spring { ends: [point(own.a), b], laws: own.laws };
+            spring.load(&self.plan, loads.position, velocity, &self.workspace)
+        };
+        loads.scene.springs.iter().map(load).collect()
     }
 
     /// The contacts' accelerations J a + sigma for an acceleration by coordinate.

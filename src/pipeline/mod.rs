@@ -10,6 +10,7 @@ mod loops;
 mod resting;
 mod prepared;
 mod response;
+mod springs;
 mod forces;
 pub mod robust;
 
@@ -20,6 +21,7 @@ pub(crate) use self::prepared::Prepared;
 pub use self::prepared::{NearestFoot, Unsolved};
 use self::response::Unstruck;
 pub(crate) use self::resting::AT_REST;
+pub use self::springs::{Driven, SpringForce, Unrealized};
 use crate::budget::{Budget, is_spent, within};
 use crate::contact::{Contact, Feet, Merged, Placement};
 use crate::dynamics::plan::{Configuration, Plan};
@@ -32,6 +34,7 @@ use crate::law::{Friction, Law, Mode};
 use crate::planar::{Pair, Rotation};
 use crate::reductions::Reductions;
 use crate::robot::Robot;
+use crate::scalar::Magnitude;
 use crate::state::{NamedContact, Scene, State, check_length};
 use serde::Serialize;
 use std::sync::Arc;
@@ -245,6 +248,8 @@ pub struct Pipeline<'r> {
     braked: Vec<usize>,
     rotor_inertia: Vec<f64>,
     bounds: RoundingBounds,
+    /// The magnitudes of what the accelerations of a state are computed from.
+    stretched: Assembly<Magnitude>,
     scratch: Scratch,
 }
 
@@ -264,6 +269,7 @@ impl<'r> Pipeline<'r> {
             braked: Vec::new(),
             rotor_inertia: Vec::new(),
             bounds: RoundingBounds::default(),
+            stretched: Assembly::new(Plan::new(robot, &[], &[])),
             scratch: Scratch::default(),
         }
     }

@@ -243,6 +243,7 @@ impl Pipeline<'_> {
                 false => (&[][..], &scene.braked[..]),
             };
             self.assembly.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
+            self.stretched.plan = Plan::new(self.robot, without, &scene.rotor_inertia);
             self.assembly.kept.clear();
             self.assembly.kept.extend(kept.iter().map(|joint| self.robot.base_dofs() + joint));
             self.braked.clone_from(&scene.braked);

@@ -5,7 +5,8 @@ use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::Base;
 use crate::state::{
-    AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, State, Uncertainty,
+    AppliedImpulse, ByLink, Defaults, Ground, LinkPoint, NamedContact, NamedLoop, Profile, SpringEnd, SpringLaw, State,
+    Uncertainty, VirtualSpring,
 };
 use crate::{Reason, Result, Robot};
 use std::f64::consts::FRAC_PI_2;
@@ -61,6 +62,7 @@ pub(crate) fn read(root: Node, robot: &Robot, defaults: &Defaults) -> Result<Sta
             "impulse" => scene.impulses = impulses(field, robot)?,
             "gravity" => scene.gravity = Some(field.number()?),
             "torque" => scene.torque = torque(field, robot)?,
+            "virtual" => scene.springs = springs(field, robot)?,
             "loops" => own_loops = Some(loops(field, robot)?),
             "uncertainty" => state.uncertainty = Some(uncertainty(field, robot)?),
             _ => return Err(field.unknown_field("State")),
@@ -294,10 +296,64 @@ fn impulses(field: Node, robot: &Robot) -> Result<Vec<AppliedImpulse>> {
     let impulse = |entry: Node| {
         let [link, offset, vector] = entry.object("AppliedImpulse", ["link", "offset", "vector"])?;
         let LinkPoint { link, offset } = link_point(entry, link, offset, robot)?;
-        let vector = vector.ok_or_else(|| entry.missing("vector"))?.numbers("a list of 2 numbers, [x, z]")?;
+        let vector = axes(vector.ok_or_else(|| entry.missing("vector"))?)?;
         Ok(AppliedImpulse { link, offset, vector: vector.into() })
     };
     field.entries()?.map(impulse).collect()
+}
+
+/// A list of `{"a", "b", "stiffness", "damping", "target", "force", "pitch", "moment"}`.
+fn springs(field: Node, robot: &Robot) -> Result<Vec<VirtualSpring>> {
+    let of_axes = |entry: Option<Node>| entry.map_or(Ok([0.0; 2]), axes);
+    let number = |entry: Option<Node>| entry.map_or(Ok(0.0), |entry| entry.number());
+    let spring = |entry: Node| {
+        let names = ["a", "b", "stiffness", "damping", "target", "force", "pitch", "moment"];
+        let [a, b, along @ .., pitch, moment] = entry.object("Spring", names)?;
+        let lacks = |name| entry.missing(name).hint("a spring has two ends, a and b, and b may be a place");
+        let (a, b) = (a.ok_or_else(|| lacks("a"))?, b.ok_or_else(|| lacks("b"))?);
+        let [link, offset] = a.object("LinkPoint", ["link", "offset"])?;
+        let [stiffness, damping, target, constant] = along.map(of_axes);
+        let [stiffness, damping, target, constant] = [stiffness?, damping?, target?, constant?];
+        let along = |axis: usize| SpringLaw {
+            stiffness: stiffness[axis],
+            damping: damping[axis],
+            target: target[axis],
+            constant: constant[axis],
+        };
+        let [stiffness, damping, target] = match pitch {
+            Some(pitch) => pitch.object("PitchSpring", ["stiffness", "damping", "target"])?.map(number),
+            None => [Ok(0.0), Ok(0.0), Ok(0.0)],
+        };
+        let pitch = SpringLaw { stiffness: stiffness?, damping: damping?, target: target?, constant: number(moment)? };
+        Ok(VirtualSpring {
+            a: link_point(a, link, offset, robot)?,
+            b: spring_end(b, robot)?,
+            laws: [along(0), along(1), pitch],
+        })
+    };
+    field.entries()?.map(spring).collect()
+}
+
+/// One number along x and one along z of the world.
+fn axes(node: Node) -> Result<[f64; 2]> {
+    let read = node.numbers("a list of 2 numbers, [x, z]");
+    read.map_err(|error| match error.remedy() {
+        None => error.hint("give one number along x and one along z of the world, as in [0, 800]"),
+        Some(_) => error,
+    })
+}
+
+/// `{"link", "offset"}` or `{"world": [x, z]}`.
+fn spring_end(end: Node, robot: &Robot) -> Result<SpringEnd> {
+    match end.object("SpringEnd", ["link", "offset", "world"])? {
+        [None, None, Some(world)] => axes(world).map(|place| SpringEnd::World(place.into())),
+        [None, _, None] => Err(end.missing("link").hint("name a link, or give a place as {\"world\": [0, 0.5]}")),
+        [link, offset, None] => link_point(end, link, offset, robot).map(SpringEnd::Link),
+        [_, _, Some(world)] => {
+            let reason = Reason::Inconsistent("the end of a spring is either on a link or in the world".into());
+            Err(world.refuse(reason).hint("leave out either the link with its offset or \"world\""))
+        }
+    }
 }
 
 /// The point of `object` with these fields.

@@ -12,6 +12,7 @@
 //! | [`Interval`] | the same, with any number of bits | an allocation, some 100 |
 //! | [`Residue`] | nothing; knows whether the exact result is zero | about 20, a quotient some 500 |
 //! | [`Certified`] | an enclosure and a residue of the same number | both |
+//! | [`Magnitude`] | nothing; the size of all terms that an `f64` was added up from | 1 |
 //! | [`Affine`] | results for data that are known to an interval only, linear in N common causes | N |
 
 /// Implements the operators of a number by its methods `plus`, `minus`, `times`, `over` and `negated`.
@@ -47,12 +48,14 @@ mod interval;
 mod residue;
 mod certified;
 mod affine;
+mod magnitude;
 
 pub use affine::Affine;
 pub use ball::Ball;
 pub use certified::Certified;
 pub use double::DoubleDouble;
 pub use interval::Interval;
+pub use magnitude::{Magnitude, UNDERFLOW};
 pub use residue::Residue;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

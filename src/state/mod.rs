@@ -8,7 +8,9 @@ mod limits;
 pub use ground::{Ground, Profile};
 pub use limits::OutsideLimits;
 pub use named::Named;
-pub use scene::{AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene};
+pub use scene::{
+    AppliedImpulse, ByLink, LinkPoint, NamedContact, NamedLoop, Scene, SpringEnd, SpringLaw, VirtualSpring,
+};
 
 use crate::error::{Error, Reason, Result};
 use crate::law::Friction;

@@ -1,8 +1,9 @@
-//! What surrounds the robot: ground, friction, restitution, braked joints, loops, applied impulses.
+//! What surrounds the robot: ground, friction, restitution, braked joints, loops, applied impulses, gravity, torques.
 
 use super::ground::Ground;
 use crate::law::Friction;
 use crate::planar::Vector;
+use crate::scalar::Real;
 use std::collections::BTreeMap;
 
 /// Everything about a state that is not position or velocity; indices are those of the [`Robot`](crate::Robot).
@@ -46,11 +47,18 @@ pub struct Scene {
     pub gravity: Option<f64>,
     /// Torque, or of a slide force, of each joint, of forces alone \[N m, N\]; empty for none.
     pub torque: Vec<f64>,
+    /// Virtual springs and dampers, which further torques of the joints imitate; of forces alone.
+    pub springs: Vec<VirtualSpring>,
 }
 
 impl Scene {
     /// Standard gravity, rounded \[m/s^2\].
     pub const GRAVITY: f64 = 9.81;
+
+    /// Gravity along -z of the world \[m/s^2\].
+    pub fn gravity(&self) -> f64 {
+        self.gravity.unwrap_or(Self::GRAVITY)
+    }
 }
 
 /// A value per link, with a default for links that are not named.
@@ -89,6 +97,48 @@ pub struct LinkPoint {
     pub link: usize,
     /// The point in the link's frame \[m\].
     pub offset: [f64; 3],
+}
+
+/// A virtual spring and damper between two points: the joints give what it asks of them, as far as they can.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VirtualSpring {
+    /// The point on which the spring's force acts.
+    pub a: LinkPoint,
+    /// The point on which the opposite force acts.
+    pub b: SpringEnd,
+    /// Along x and along z of the world \[N, m\], and about the normal with the links' pitches \[N m, rad\].
+    pub laws: [SpringLaw; 3],
+}
+
+/// The other end of a virtual spring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SpringEnd {
+    /// A point of a link.
+    Link(LinkPoint),
+    /// A place in the world \[m\]; its pitch is 0.
+    World(Vector<f64>),
+}
+
+/// The force of a virtual spring along one axis: constant + stiffness (target - distance) - damping rate.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SpringLaw {
+    /// \[N/m\], \[N m/rad\] of a pitch.
+    pub stiffness: f64,
+    /// \[N s/m, N m s/rad\].
+    pub damping: f64,
+    /// The distance of a from b at which the spring is slack \[m, rad\].
+    pub target: f64,
+    /// What acts in addition \[N, N m\].
+    pub constant: f64,
+}
+
+impl SpringLaw {
+    /// The force on a whose `distance` from b changes at `rate`.
+    pub fn force<T: Real>(&self, distance: T, rate: T) -> T {
+        let [stiffness, damping, target, constant] =
+            [self.stiffness, self.damping, self.target, self.constant].map(T::from_f64);
+        constant + stiffness * (target - distance) - damping * rate
+    }
 }
 
 /// An impulse that acts on a point of a link, in its 3-D frame \[m\], while the robot strikes the ground.

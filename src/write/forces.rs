@@ -4,6 +4,7 @@ use super::result::{CarriedFields, ContactRecord, ErrorObject, LeftOutRecord, Ne
 use crate::Mode;
 use crate::impact::outcome::Range;
 use crate::impact::{Border, Family, OpenCombinations, Outcome, Verdict};
+use crate::pipeline::{SpringForce, Unrealized};
 use crate::planar::{Pair, Vector};
 use crate::state::Named;
 use serde::Serialize;
@@ -30,7 +31,9 @@ impl Report<'_> {
             families: &self.families,
             rejected,
             gravity: sustained.gravity,
-            torque: &sustained.torque,
+            torque: &sustained.driven.torque,
+            springs: &sustained.driven.springs,
+            unrealized: sustained.driven.unrealized,
             kinetic_energy: self.kinetic_energy,
             condition: self.condition,
             rank: self.rank,
@@ -88,8 +91,14 @@ pub struct ForcesRecord<'a> {
     pub rejected: Option<Vec<RejectedForces<'a>>>,
     /// Gravity along -z of the world \[m/s^2\].
     pub gravity: f64,
-    /// What acts at each joint \[N m, N\].
+    /// All that acts at each joint, virtual springs included \[N m, N\].
     pub torque: &'a Named,
+    /// What the virtual springs ask for, in the order of the state; only if it has some.
+    #[serde(rename = "virtual", skip_serializing_if = "<[SpringForce]>::is_empty")]
+    pub springs: &'a [SpringForce],
+    /// What the virtual springs ask of a floating base, which no joint can give: it is not applied. Only with springs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unrealized: Option<Unrealized>,
     /// Kinetic energy \[J\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinetic_energy: Option<f64>,

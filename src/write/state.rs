@@ -1,7 +1,7 @@
 //! A state in the format in which it is read, and whether a verdict holds on the box of its uncertainty.
 
 use crate::pipeline::robust::Robustness;
-use crate::state::{ByLink, Ground, LinkPoint, Named, State, Uncertainty};
+use crate::state::{ByLink, Ground, LinkPoint, Named, SpringEnd, State, Uncertainty, VirtualSpring};
 use crate::{Friction, Mode, Robot, Verdict};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
@@ -63,6 +63,23 @@ impl StateRecord<'_> {
         json!({"link": self.link(point.link), "offset": point.offset})
     }
 
+    fn spring(&self, VirtualSpring { a, b, laws: [x, z, pitch] }: &VirtualSpring) -> Value {
+        let b = match *b {
+            SpringEnd::Link(point) => self.point(point),
+            SpringEnd::World(place) => json!({"world": place}),
+        };
+        json!({
+            "a": self.point(*a),
+            "b": b,
+            "stiffness": [x.stiffness, z.stiffness],
+            "damping": [x.damping, z.damping],
+            "target": [x.target, z.target],
+            "force": [x.constant, z.constant],
+            "pitch": {"stiffness": pitch.stiffness, "damping": pitch.damping, "target": pitch.target},
+            "moment": pitch.constant,
+        })
+    }
+
     fn uncertainty(&self, uncertainty: &Uncertainty) -> Value {
         let Uncertainty { position, velocity, friction, rotor_inertia } = uncertainty;
         let half_widths = |values: &[f64], named: &dyn Fn(&[f64]) -> Value| match values {
@@ -117,6 +134,8 @@ impl Serialize for StateRecord<'_> {
         );
         entry(&mut map, "gravity", scene.gravity.is_some(), &scene.gravity)?;
         entry(&mut map, "torque", !scene.torque.is_empty(), &self.by_joint(&scene.torque))?;
+        let springs: Vec<_> = scene.springs.iter().map(|own| self.spring(own)).collect();
+        entry(&mut map, "virtual", !springs.is_empty(), &springs)?;
         entry(&mut map, "impulse", !scene.impulses.is_empty(), &impulses.collect::<Vec<_>>())?;
         map.end()
     }

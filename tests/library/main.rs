@@ -12,6 +12,7 @@ mod csv;
 mod families;
 mod forces;
 mod ground;
+mod lecture;
 mod limits;
 mod loader;
 mod maps;

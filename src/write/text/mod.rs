@@ -104,6 +104,7 @@ impl<'w> Writer<'w> {
         }
         self.families()?;
         self.velocities(outcomes);
+        self.torques();
         self.why_nothing_else(outcomes)?;
         self.rejected();
         self.regions();

@@ -3,6 +3,7 @@
 use super::Writer;
 use crate::error::visible;
 use crate::impact::{Family, Next, Verdict};
+use crate::pipeline::{Driven, Sustained, Unrealized};
 use crate::planar::Vector;
 use crate::write::Palette;
 use crate::write::table::{Table, number, scale};
@@ -108,6 +109,37 @@ impl Writer<'_> {
                 let share = energy.map(|energy| format!(", {:.1} % of the kinetic energy", 100.0 * loss / energy));
                 writeln!(self.out, "  the ground {verb} {} J{}", number(loss.abs()), share.unwrap_or_default())
             }
+        }
+    }
+
+    /// What the virtual springs ask for and what acts at the joints, of a state with such springs.
+    pub(super) fn torques(&mut self) {
+        let Some((Sustained { driven: Driven { torque, springs, unrealized }, .. }, _)) = self.report.sustained else {
+            return;
+        };
+        if springs.is_empty() {
+            return;
+        }
+        let force = scale(springs.iter().flat_map(|own| own.force));
+        let moment = scale(springs.iter().map(|own| own.moment));
+        self.out.push('\n');
+        Table::default()
+            .text("virtual spring", (0..springs.len()).map(|index| format!("virtual[{index}]")))
+            .pairs(["force on a: x [N]", "z [N]"], force, springs.iter().map(|own| own.force))
+            .numbers("moment [N m]", moment, springs.iter().map(|own| own.moment))
+            .write(&mut self.out);
+        let all = scale(torque.values().iter().copied());
+        let of_springs = |joint: usize| springs.iter().map(|own| own.torque.values()[joint]).sum::<f64>();
+        Table::default()
+            .text("torque [N m or N]", torque.iter().map(|(name, _)| name))
+            .numbers("all", all, torque.values().iter().copied())
+            .numbers("virtual", all, (0..torque.values().len()).map(of_springs))
+            .write(&mut self.out);
+        if let Some(Unrealized { fx, fz, moment: about }) = *unrealized {
+            Table::default()
+                .pairs(["unrealized: x [N]", "z [N]"], force, [[fx, fz]])
+                .numbers("moment [N m]", all.max(moment), [about])
+                .write(&mut self.out);
         }
     }
 

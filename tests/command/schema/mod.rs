@@ -175,6 +175,12 @@ fn the_schema_of_states_has_the_reader_s_fields() {
         (json!({"loops": [{"?": 0}]}), "/$defs/Loop/properties"),
         (json!({"loops": [{"a": {"?": 0}}]}), "/$defs/LinkPoint/properties"),
         (json!({"impulse": [{"?": 0}]}), "/$defs/AppliedImpulse/properties"),
+        (json!({"virtual": [{"?": 0}]}), "/$defs/Spring/properties"),
+        (json!({"virtual": [{"a": {"link": "torso"}, "b": {"?": 0}}]}), "/$defs/SpringEnd/properties"),
+        (
+            json!({"virtual": [{"a": {"link": "torso"}, "b": {"world": [0, 0]}, "pitch": {"?": 0}}]}),
+            "/$defs/PitchSpring/properties",
+        ),
         (json!({"uncertainty": {"?": 0}}), "/$defs/Uncertainty/properties"),
         (json!({"uncertainty": {"position": {"?": 0}}}), "/$defs/NamedHalfWidths/properties"),
         (json!({"uncertainty": {"velocity": {"base": {"?": 0}}}}), "/$defs/BaseHalfWidths/properties"),
@@ -250,12 +256,17 @@ fn every_form_of_forces_is_valid() {
         (&[&stands[..], &["--explain", "--matrices"]].concat(), ""),
         (&[&stands[..], &["--brief"]].concat(), ""),
         (&paradoxes, ""),
+        (
+            &["forces", "urdf/ramone.urdf", "-", "--friction", "1"],
+            r#"{"position": {"base": {"z": 2}}, "virtual": [{"a": {"link": "torso"}, "b": {"link": "left_foot"}, "stiffness": [0, 9], "pitch": {"damping": 1}},
+                {"a": {"link": "torso", "offset": [0, 0, 1]}, "b": {"world": [0, 1]}, "force": [3, 0], "moment": 2}]}"#,
+        ),
         (&["forces", "urdf/block.urdf", "-"], "{\"friction\": 1, \"velocity\": {\"base\": {\"z\": -1}}}"),
     ] {
         let found = assert_valid(&schema::forces(), arguments, input, "");
         verdicts.extend(found.iter().map(|own| own["verdict"].as_str().unwrap_or("refused").to_owned()));
     }
-    assert_eq!(verdicts, ["unique", "unique", "unique", "none", "ambiguous", "refused"]);
+    assert_eq!(verdicts, ["unique", "unique", "unique", "none", "ambiguous", "no_contact", "refused"]);
 }
 
 #[test]

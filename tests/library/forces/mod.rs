@@ -1,10 +1,12 @@
 //! Forces and accelerations in sustained contact: laws of mechanics that hold for every robot, and cases by hand.
 
+mod flight;
 mod motion;
 mod next;
 mod painleve;
 mod refusals;
 mod standing;
+mod springs;
 mod studies;
 
 use crate::support::impact::{modes, outcomes, robot};

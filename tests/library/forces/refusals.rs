@@ -29,12 +29,13 @@ fn wheel_on_a_corner_may_stand_but_not_roll() {
 
 #[test]
 fn circles_of_other_radii_at_one_place_are_told_apart() {
-    let circles = |radii: [f64; 2]| {
+    let circles = |radii: [f64; 2], spin: f64| {
         let shapes = radii.map(|radius| collision([0.0, radius], &format!("sphere radius=\"{radius}\"")));
-        try_forces(&robot(&body(0.1, &shapes.concat())), json!({"velocity": {"base": {"pitch": 2.0}}}))
+        try_forces(&robot(&body(0.1, &shapes.concat())), json!({"velocity": {"base": {"pitch": spin}}}))
     };
-    assert!(circles([0.3, 0.3]).is_ok());
-    let error = circles([0.3, 0.1]).unwrap_err();
+    assert!(circles([0.3, 0.3], 2.0).is_ok());
+    assert!(circles([0.3, 0.1], 0.0).is_ok());
+    let error = circles([0.3, 0.1], 2.0).unwrap_err();
     assert!(error.to_string().contains("circles of different radii touch the ground at one place"), "{error}");
 }
 
@@ -47,4 +48,40 @@ fn uncertainty_leaves_what_is_zero_to_rounding() {
     let without = format!("{:?}", try_forces(&wheel, &state).unwrap().sustained.unwrap().slips);
     state["uncertainty"] = json!({"friction": 0.01});
     assert_eq!(format!("{:?}", try_forces(&wheel, &state).unwrap().sustained.unwrap().slips), without);
+}
+
+/// Two points that rounding alone holds apart are one place, about which the body may turn.
+#[test]
+fn places_apart_by_rounding_do_not_stop_a_turn() {
+    let at = |x: f64| json!({"link": "rod", "offset": [x, 0, -0.3]});
+    let state = |contacts: serde_json::Value| {
+        json!({"position": {"base": {"z": 0.3}}, "velocity": {"base": {"x": 2.0 * -0.3 + 1.0, "z": 2.0 * 0.1, "pitch": 2.0}},
+            "contacts": contacts})
+    };
+    let free = |contacts| try_forces(&rod(1.0, 1.0), state(contacts)).unwrap().problem.velocity_free().to_vec();
+    let one = free(json!([at(0.1)]));
+    let two = free(json!([at(0.1), at(0.1_f64.next_up())]));
+    // omega^2 times the arm: upward by 1.2, backward by 0.4 m/s^2.
+    assert!((one[0][1] - (1.2 - 9.81)).abs() < 1e-14 && (one[0][0] + 0.4).abs() < 1e-14, "{one:?}");
+    assert!(two.iter().zip([one[0], one[0]]).all(|(two, one)| (two[1] - one[1]).abs() < 1e-14), "{two:?} {one:?}");
+}
+
+#[test]
+fn what_leaves_the_range_of_f64_has_a_remedy() {
+    let massless = robot(&crate::support::urdf::robot(&[
+        crate::support::urdf::link("base", 1.0, [0.0; 2], 1.0, ""),
+        crate::support::urdf::link("leaf", 1e-300, [0.0; 2], 1e-300, ""),
+        crate::support::urdf::joint("hinge", crate::support::urdf::HINGE, ["base", "leaf"], [0.0; 2], ""),
+    ]));
+    for (robot, state) in [
+        (&rod(1.0, 1.0), json!({"gravity": 1e308, "contacts": [], "velocity": {"base": {"x": 1.0}}})),
+        (&massless, json!({"torque": {"hinge": 1e30}, "contacts": []})),
+    ] {
+        match try_forces(robot, &state) {
+            Ok(found) => {
+                assert!(crate::support::impact::outcomes(&found)[0].velocity().all(f64::is_finite), "{found:?}")
+            }
+            Err(error) => assert!(error.remedy().is_some(), "{error}"),
+        }
+    }
 }

@@ -19,7 +19,7 @@ fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
     let Ok(analysis) = impact.and_then(Impact::into_analysis) else { return [0; 2] };
     let mut counts = [0; 2];
     for outcome in analysis.outcomes.iter().filter(|outcome| outcome.impulse_unique) {
-        let Some(truth) = oracle::truth(&model.robot, &state, &outcome.modes) else { continue };
+        let Some(truth) = oracle::truth(&model.robot, &state, None, &outcome.modes) else { continue };
         if outcome.proven {
             counts[0] += 1;
             let fail = |difference: String| panic!("{}: {difference}\n{}", model.name, state.to_json(&model.robot));
@@ -33,7 +33,7 @@ fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
     counts
 }
 
-fn frictions(state: &State) -> Vec<Friction> {
+pub fn frictions(state: &State) -> Vec<Friction> {
     let contacts = state.scene.contacts.as_deref().unwrap_or_default();
     contacts.iter().map(|contact| state.scene.friction.of(contact.link).expect("a friction")).collect()
 }
@@ -72,7 +72,7 @@ fn a_digit_that_is_off_is_found() {
         let impact = Pipeline::new(&model.robot, Options::default()).impact(&state);
         let Ok(analysis) = impact.and_then(Impact::into_analysis) else { continue };
         for outcome in analysis.outcomes.iter().filter(|outcome| outcome.impulse_unique && outcome.energy_loss != 0.0) {
-            let Some(truth) = oracle::truth(&model.robot, &state, &outcome.modes) else { continue };
+            let Some(truth) = oracle::truth(&model.robot, &state, None, &outcome.modes) else { continue };
             let mut off = truth.impulse.clone();
             off.iter_mut().flatten().for_each(|entry| *entry *= 1.0 + 3e-10);
             let impulses = Truth { impulse: off, ..truth };

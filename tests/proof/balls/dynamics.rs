@@ -7,11 +7,13 @@
 //! Angles are summed before their cosine is taken, every velocity is that of a point in the world, and nothing is
 //! recursive but the poses.
 
+use crate::balls::loads::loads;
 use crate::balls::number::Number;
+use crate::balls::poses::{Pair, Pose, add, dot, poses};
 use heelstrike::impact::{Friction, Mode};
 use heelstrike::planar::Vector;
-use heelstrike::robot::{Axis, ParentJoint, Robot};
-use heelstrike::state::{Ground, NamedContact, State};
+use heelstrike::robot::Robot;
+use heelstrike::state::{Ground, LinkPoint, NamedContact, State};
 use std::cmp::Ordering;
 
 /// What the contacts need to know; rows 2k (tangential) and 2k + 1 (normal) belong to contact k.
@@ -34,104 +36,6 @@ pub struct Problem<N> {
     pub ease: Vec<N>,
     /// The precision of all numbers.
     pub bits: usize,
-}
-
-/// A pair in the plane, [forward, up].
-type Pair<N> = [N; 2];
-
-/// A body's place in the world; velocities of its origin and rates of its angle are by coordinate, which moves at one.
-#[derive(Clone)]
-struct Pose<N> {
-    angle: N,
-    turn: Pair<N>,
-    origin: Pair<N>,
-    velocities: Vec<Pair<N>>,
-    rates: Vec<f64>,
-}
-
-impl<N: Number> Pose<N> {
-    /// A vector of the body's frame in the world's axes. A positive angle turns up toward forward.
-    fn axes(&self, [x, z]: &Pair<N>) -> Pair<N> {
-        let [cos, sin] = &self.turn;
-        [cos.times(x).plus(&sin.times(z)), cos.times(z).minus(&sin.times(x))]
-    }
-
-    fn point(&self, local: &Pair<N>) -> Pair<N> {
-        add(&self.origin, &self.axes(local))
-    }
-
-    /// Velocities of a point of the body.
-    fn velocities(&self, point: &Pair<N>, bits: usize) -> Vec<Pair<N>> {
-        let [x, z] = [0, 1].map(|k| point[k].minus(&self.origin[k]));
-        let velocity = |(origin, &rate): (&Pair<N>, &f64)| {
-            let rate = N::new(rate, bits);
-            [origin[0].plus(&z.times(&rate)), origin[1].minus(&x.times(&rate))]
-        };
-        self.velocities.iter().zip(&self.rates).map(velocity).collect()
-    }
-}
-
-fn add<N: Number>(a: &Pair<N>, b: &Pair<N>) -> Pair<N> {
-    [a[0].plus(&b[0]), a[1].plus(&b[1])]
-}
-
-/// Sum of products, where zeros cost nothing.
-fn dot<'a, N: Number + 'a>(pairs: impl IntoIterator<Item = (&'a N, &'a N)>, bits: usize) -> N {
-    let mut sum = N::new(0.0, bits);
-    for (a, b) in pairs {
-        if !a.is_zero() && !b.is_zero() {
-            sum = sum.plus(&a.times(b));
-        }
-    }
-    sum
-}
-
-/// Where every body is; the root's origin lies at zero, since only differences of points count.
-fn poses<N: Number>(robot: &Robot, position: &[N], bits: usize) -> Vec<Pose<N>> {
-    let number = |value: f64| N::new(value, bits);
-    let base = robot.base_dofs();
-    let mut poses: Vec<Pose<N>> = Vec::with_capacity(robot.bodies.len());
-    for body in &robot.bodies {
-        let pose = match body.joint {
-            None => {
-                let angle = if base == 3 { position[2].clone() } else { number(0.0) };
-                let origin = [number(0.0), number(0.0)];
-                let (mut velocities, mut rates) = (vec![origin.clone(); robot.dofs()], vec![0.0; robot.dofs()]);
-                if base == 3 {
-                    velocities[0] = [number(1.0), number(0.0)];
-                    velocities[1] = [number(0.0), number(1.0)];
-                    rates[2] = 1.0;
-                }
-                Pose { turn: angle.cos_sin(), angle, origin, velocities, rates }
-            }
-            Some(ParentJoint::Mimic(_) | ParentJoint::Fixed { .. }) => unreachable!("no robot here has them"),
-            Some(ParentJoint::Joint(index)) => {
-                let joint = &robot.joints[index];
-                let parent = &poses[joint.parent];
-                let coordinate = base + index;
-                let mut pose = Pose { origin: parent.point(&joint.origin.map(number).components()), ..parent.clone() };
-                let displacement = position[coordinate].clone();
-                let own = match joint.axis {
-                    Axis::Revolute { sign } => {
-                        pose.angle = parent.angle.plus(&displacement.times(&number(sign)));
-                        pose.turn = pose.angle.cos_sin();
-                        pose.rates[coordinate] = sign;
-                        [number(0.0), number(0.0)]
-                    }
-                    Axis::Prismatic { direction } => {
-                        let direction = parent.axes(&direction.map(number).components());
-                        pose.origin = add(&pose.origin, &direction.clone().map(|entry| entry.times(&displacement)));
-                        direction
-                    }
-                };
-                pose.velocities = parent.velocities(&pose.origin, bits);
-                pose.velocities[coordinate] = own;
-                pose
-            }
-        };
-        poses.push(pose);
-    }
-    poses
 }
 
 /// A dense factorization M = L D L^T.
@@ -199,6 +103,93 @@ impl<N: Number> Factor<N> {
     }
 }
 
+/// What the equations of a state are made of.
+pub struct Terms<N> {
+    pub poses: Vec<Pose<N>>,
+    /// The coordinates that move, those of braked joints left out.
+    pub free: Vec<usize>,
+    /// M of these.
+    pub mass_matrix: Vec<Vec<N>>,
+    /// The ground's tangent and normal.
+    pub axes: [Pair<N>; 2],
+    /// J by contact, tangential and normal, over all coordinates.
+    pub rows: Vec<[Vec<N>; 2]>,
+    /// K, x and z of each loop, over all coordinates.
+    pub loops: Vec<Vec<N>>,
+}
+
+/// A point of a link in its body's frame.
+pub fn in_body<N: Number>(robot: &Robot, link: usize, offset: [f64; 3], bits: usize) -> Pair<N> {
+    let number = |value: f64| N::new(value, bits);
+    robot.links[link].pose.map(|row| {
+        let [x, y, z] = [0, 1, 2].map(|k| number(row[k]).times(&number(offset[k])));
+        x.plus(&y).plus(&z).plus(&number(row[3]))
+    })
+}
+
+/// The terms of a state at `position`; `None` of a ground that is not straight.
+pub fn terms<N: Number>(robot: &Robot, state: &State, position: &[N], bits: usize) -> Option<Terms<N>> {
+    let number = |value: f64| N::new(value, bits);
+    let scene = &state.scene;
+    let poses = poses::<N>(robot, position, bits);
+    let free: Vec<usize> = (0..robot.dofs())
+        .filter(|coordinate| !scene.braked.iter().any(|held| robot.base_dofs() + held == *coordinate))
+        .collect();
+
+    let mut mass_matrix = vec![vec![number(0.0); free.len()]; free.len()];
+    for (body, pose) in robot.bodies.iter().zip(&poses) {
+        let velocities = pose.velocities(&pose.point(&body.com.map(number).components()));
+        let [mass, moment] = [body.mass, body.moment].map(number);
+        for (i, row) in mass_matrix.iter_mut().enumerate() {
+            let pushed = velocities[free[i]].clone().map(|entry| entry.times(&mass));
+            let spun = pose.rates[free[i]].times(&moment);
+            for (j, entry) in row[..=i].iter_mut().enumerate() {
+                let other = &velocities[free[j]];
+                *entry = entry.plus(&dot(pushed.iter().zip(other), bits));
+                *entry = entry.plus(&spun.times(&pose.rates[free[j]]));
+            }
+        }
+    }
+    for (own, rotor) in scene.rotor_inertia.iter().enumerate() {
+        let mimic = own.checked_sub(robot.joints.len()).map(|mimic| &robot.mimic_joints[mimic]);
+        let (joint, ratio) = mimic.map_or((own, 1.0), |mimic| (mimic.mimicked, mimic.multiplier));
+        let Some(at) = free.iter().position(|&coordinate| coordinate == robot.base_dofs() + joint) else { continue };
+        let [rotor, ratio] = [*rotor, ratio].map(number);
+        mass_matrix[at][at] = mass_matrix[at][at].plus(&rotor.times(&ratio).times(&ratio));
+    }
+
+    // The ground's tangent and normal; uphill toward +x is a turn against the pitch. Of a profile, here of one segment,
+    // they are the rounded numbers that the product works with.
+    let [cos, sin] = match &scene.ground {
+        Ground::Slope(slope) => number(*slope).cos_sin(),
+        Ground::Profile(profile) => {
+            let [Vector { x, z }, Vector { x: to_x, z: to_z }] = profile.points()[..] else { return None };
+            let length = f64::hypot(to_x - x, to_z - z);
+            [number((to_x - x) / length), number((to_z - z) / length)]
+        }
+    };
+    let axes = [[cos.clone(), sin.clone()], [sin.negative(), cos]];
+    let row = |contact: &NamedContact| {
+        let pose = &poses[robot.links[contact.link].body];
+        let radius = number(-contact.radius);
+        let reach = axes[1].clone().map(|entry| entry.times(&radius));
+        let point = add(&pose.point(&in_body(robot, contact.link, contact.offset, bits)), &reach);
+        let velocities = pose.velocities(&point);
+        axes.each_ref().map(|axis| velocities.iter().map(|v| dot(v.iter().zip(axis), bits)).collect())
+    };
+    let rows = scene.contacts.iter().flatten().map(row).collect();
+    let moving = |end: LinkPoint| {
+        let pose = &poses[robot.links[end.link].body];
+        pose.velocities(&pose.point(&in_body(robot, end.link, end.offset, bits)))
+    };
+    let ends = scene.loops.iter().map(|own| [own.a, own.b].map(moving));
+    let tie = |[a, b]: [Vec<Pair<N>>; 2]| {
+        [0, 1].map(|axis| a.iter().zip(&b).map(|(a, b)| a[axis].minus(&b[axis])).collect::<Vec<N>>())
+    };
+    let loops = ends.flat_map(tie).collect();
+    Some(Terms { poses, free, mass_matrix, axes, rows, loops })
+}
+
 /// The contact problem of a state whose contacts are named; `None` if the mass matrix is not positive for certain.
 ///
 /// A stance must name a link with one contact; those that are `resting` are exactly at rest, too.
@@ -227,61 +218,14 @@ pub fn problem_and_rates<N: Number>(
     let number = |value: f64| N::new(value, bits);
     let scene = &state.scene;
     let position: Vec<N> = state.position.iter().copied().map(number).collect();
-    let poses = poses::<N>(robot, &position, bits);
-    let free: Vec<usize> = (0..robot.dofs())
-        .filter(|coordinate| !scene.braked.iter().any(|held| robot.base_dofs() + held == *coordinate))
-        .collect();
-
-    let mut mass_matrix = vec![vec![number(0.0); free.len()]; free.len()];
-    for (body, pose) in robot.bodies.iter().zip(&poses) {
-        let velocities = pose.velocities(&pose.point(&body.com.map(number).components()), bits);
-        let [mass, moment] = [body.mass, body.moment].map(number);
-        for (i, row) in mass_matrix.iter_mut().enumerate() {
-            let pushed = velocities[free[i]].clone().map(|entry| entry.times(&mass));
-            let spun = number(pose.rates[free[i]]).times(&moment);
-            for (j, entry) in row[..=i].iter_mut().enumerate() {
-                let other = &velocities[free[j]];
-                *entry = entry.plus(&dot(pushed.iter().zip(other), bits));
-                *entry = entry.plus(&spun.times(&number(pose.rates[free[j]])));
-            }
-        }
-    }
-    for (i, coordinate) in free.iter().enumerate() {
-        let rotor = coordinate.checked_sub(robot.base_dofs()).and_then(|joint| scene.rotor_inertia.get(joint));
-        mass_matrix[i][i] = mass_matrix[i][i].plus(&number(rotor.copied().unwrap_or(0.0)));
-    }
+    let Terms { poses, free, mass_matrix, axes, rows, loops } = terms(robot, state, &position, bits)?;
     let factor = Factor::new(mass_matrix, bits)?;
-
-    // The ground's tangent and normal; uphill toward +x is a turn against the pitch. Of a profile, here of one segment,
-    // they are the rounded numbers that the product works with.
-    let [cos, sin] = match &scene.ground {
-        Ground::Slope(slope) => number(*slope).cos_sin(),
-        Ground::Profile(profile) => {
-            let [Vector { x, z }, Vector { x: to_x, z: to_z }] = profile.points()[..] else { return None };
-            let length = f64::hypot(to_x - x, to_z - z);
-            [number((to_x - x) / length), number((to_z - z) / length)]
-        }
-    };
-    let axes = [[cos.clone(), sin.clone()], [sin.negative(), cos]];
-    let in_body = |link: usize, offset: [f64; 3]| {
-        robot.links[link].pose.map(|row| {
-            let [x, y, z] = [0, 1, 2].map(|k| number(row[k]).times(&number(offset[k])));
-            x.plus(&y).plus(&z).plus(&number(row[3]))
-        })
-    };
     let contacts = scene.contacts.as_deref().unwrap_or_default();
-    let rows: Vec<[Vec<N>; 2]> = contacts
-        .iter()
-        .map(|contact| {
-            let pose = &poses[robot.links[contact.link].body];
-            let radius = number(-contact.radius);
-            let reach = axes[1].clone().map(|entry| entry.times(&radius));
-            let point = add(&pose.point(&in_body(contact.link, contact.offset)), &reach);
-            let velocities = pose.velocities(&point, bits);
-            let along = |axis: &Pair<N>| velocities.iter().map(|v| dot(v.iter().zip(axis), bits)).collect();
-            [along(&axes[0]), along(&axes[1])]
-        })
-        .collect();
+    let half =
+        |row: &Vec<N>| factor.forward(&free.iter().map(|&coordinate| row[coordinate].clone()).collect::<Vec<N>>());
+    let ties: Vec<Vec<N>> = loops.iter().map(half).collect();
+    let products = |a: &[N]| ties.iter().map(|tie| factor.product(a, tie)).collect::<Vec<N>>();
+    let tied = Factor::new(ties.iter().map(|tie| products(tie)).collect(), bits)?;
 
     let mut velocity: Vec<N> = state.velocity.iter().copied().map(number).collect();
     let stance = scene.stance.and_then(|link| contacts.iter().position(|contact| contact.link == link));
@@ -295,6 +239,13 @@ pub fn problem_and_rates<N: Number>(
             velocity[k] = axes[0][k].times(&t).plus(&axes[1][k].times(&n));
         }
     }
+    // The nearest velocity, by kinetic energy, that keeps the loops closed.
+    let openings: Vec<N> = loops.iter().map(|row| dot(row.iter().zip(&velocity), bits)).collect();
+    for (tie, part) in ties.iter().zip(tied.backward(&tied.forward(&openings))) {
+        for (&coordinate, entry) in free.iter().zip(factor.backward(tie)) {
+            velocity[coordinate] = velocity[coordinate].minus(&entry.times(&part));
+        }
+    }
     let before = |(at, row): (usize, &Vec<N>)| {
         let rests = stance == Some(at / 2) || resting.get(at / 2) == Some(&true);
         if rests { number(0.0) } else { dot(row.iter().zip(&velocity), bits) }
@@ -304,60 +255,33 @@ pub fn problem_and_rates<N: Number>(
     let mut applied = vec![number(0.0); free.len()];
     for impulse in &scene.impulses {
         let pose = &poses[robot.links[impulse.link].body];
-        let velocities = pose.velocities(&pose.point(&in_body(impulse.link, impulse.offset)), bits);
+        let velocities = pose.velocities(&pose.point(&in_body(robot, impulse.link, impulse.offset, bits)));
         let vector = impulse.vector.components().map(number);
         for (entry, coordinate) in applied.iter_mut().zip(&free) {
             *entry = entry.plus(&dot(velocities[*coordinate].iter().zip(&vector), bits));
         }
     }
+    let mut opening = vec![number(0.0); loops.len()];
     let before = match slips {
         None => before,
         Some(_) => {
-            // A third of the digits for the step: its square and what is left of the difference stay small.
-            let step = number(f64::exp2(-(bits as f64 / 3.0).floor()));
-            let moved = |way: f64| {
-                let shift = step.times(&number(way));
-                let at: Vec<N> = position.iter().zip(&velocity).map(|(q, v)| q.plus(&v.times(&shift))).collect();
-                self::poses(robot, &at, bits)
-            };
-            let ways = [moved(-1.0), moved(1.0)];
-            let accelerated = |body: usize, local: &Pair<N>| -> Pair<N> {
-                let [at, behind, ahead] = [&poses, &ways[0], &ways[1]].map(|poses| poses[body].point(local));
-                let second = |k: usize| behind[k].plus(&ahead[k]).minus(&at[k]).minus(&at[k]);
-                [second(0), second(1)].map(|entry| entry.over(&step).over(&step))
-            };
-            let gravity = number(scene.gravity.unwrap_or(9.81));
-            for (at, body) in robot.bodies.iter().enumerate() {
-                let com = body.com.map(number).components();
-                let [x, z] = accelerated(at, &com).map(|entry| entry.times(&number(-body.mass)));
-                let force = [x, z.minus(&gravity.times(&number(body.mass)))];
-                let velocities = poses[at].velocities(&poses[at].point(&com), bits);
-                for (entry, coordinate) in applied.iter_mut().zip(&free) {
-                    *entry = entry.plus(&dot(velocities[*coordinate].iter().zip(&force), bits));
-                }
-            }
-            for (entry, coordinate) in applied.iter_mut().zip(&free) {
-                let torque = coordinate.checked_sub(robot.base_dofs()).and_then(|joint| scene.torque.get(joint));
-                *entry = entry.plus(&number(torque.copied().unwrap_or(0.0)));
-            }
-            let drift = |contact: &NamedContact| {
-                let center = in_body(contact.link, contact.offset);
-                let drift = accelerated(robot.links[contact.link].body, &center);
-                axes.each_ref().map(|axis| dot(drift.iter().zip(axis), bits))
-            };
-            contacts.iter().flat_map(drift).collect()
+            let loads = loads(robot, state, &poses, &position, &velocity, bits);
+            applied = free.iter().map(|&coordinate| loads.forces[coordinate].clone()).collect();
+            opening = loads.openings;
+            let along = |drift: &Pair<N>| axes.each_ref().map(|axis| dot(drift.iter().zip(axis), bits));
+            loads.drifts.iter().flat_map(along).collect()
         }
     };
     let applied = factor.forward(&applied);
-    let half: Vec<Vec<N>> = rows
-        .iter()
-        .flatten()
-        .map(|row| factor.forward(&free.iter().map(|&coordinate| row[coordinate].clone()).collect::<Vec<N>>()))
-        .collect();
+    let half: Vec<Vec<N>> = rows.iter().flatten().map(half).collect();
+    // What the loops take from each row, and what of their own motion they have to take.
+    let held: Vec<Vec<N>> = half.iter().map(|row| tied.forward(&products(row))).collect();
+    let pulled = products(&applied).iter().zip(&opening).map(|(own, opening)| own.plus(opening)).collect::<Vec<N>>();
+    let pulled = tied.forward(&pulled);
     let mut delassus = vec![vec![number(0.0); half.len()]; half.len()];
     for i in 0..half.len() {
         for j in 0..=i {
-            delassus[i][j] = factor.product(&half[i], &half[j]);
+            delassus[i][j] = factor.product(&half[i], &half[j]).minus(&tied.product(&held[i], &held[j]));
             delassus[j][i] = delassus[i][j].clone();
         }
     }
@@ -376,7 +300,11 @@ pub fn problem_and_rates<N: Number>(
         ease,
         responses: half.iter().filter(|_| rates).map(response).collect(),
         velocity,
-        free: before.iter().zip(&half).map(|(before, row)| before.plus(&factor.product(row, &applied))).collect(),
+        free: (before.iter().zip(half.iter().zip(&held)))
+            .map(|(before, (row, held))| {
+                before.plus(&factor.product(row, &applied)).minus(&tied.product(held, &pulled))
+            })
+            .collect(),
         approach: before.into_iter().skip(1).step_by(2).collect(),
         delassus,
         friction: contacts.iter().map(|contact| scene.friction.of(contact.link).expect("a friction")).collect(),

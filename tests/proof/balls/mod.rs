@@ -1,7 +1,7 @@
 //! What the product calls proven, against an oracle in balls of 256 bits and more: what is checked with more digits
 //! than f64 has belongs here.
 //!
-//! The oracle (`dynamics`, `oracle`, `number`) shares no code with the product: absolute poses, a dense mass matrix,
+//! The oracle (`poses`, `dynamics`, `loads`, `oracle`, `number`) shares no code with the product: absolute poses, a dense mass matrix,
 //! one linear solve per list of modes. It takes from the library only the numbers of the reduced robot and of the
 //! state.
 //!
@@ -17,17 +17,19 @@ mod census;
 mod digits;
 mod dynamics;
 mod linear;
+mod loads;
 mod number;
 mod oracle;
+mod poses;
 mod references;
 mod states;
+mod sustained;
 
 use crate::support::random::Random;
 use census::{Finding, census, compare};
 use heelstrike::impact::{Mode, Verdict};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
 use heelstrike::state::{Defaults, State};
-use number::{Ball, Number};
 use oracle::Index;
 use std::time::Instant;
 
@@ -62,47 +64,6 @@ fn states_are_decided_rightly() {
 pub fn environment<T: std::str::FromStr>(name: &str, default: T) -> T {
     let value = std::env::var(name).ok();
     value.map_or(default, |value| value.parse().unwrap_or_else(|_| panic!("{name} is no number: {value}")))
-}
-
-/// States in sustained contact: at rest, or with the normal velocities taken out of random ones.
-#[test]
-fn forces_are_decided_rightly() {
-    let states = environment("HEELSTRIKE_STATES", 10_000) / 10;
-    let mut random = Random::new(11);
-    let models = states::models();
-    let (mut seen, mut proven, mut sliding, mut verdicts) = (0, 0, 0, [0; 3]);
-    for model in models.iter().cycle().take(states) {
-        let Some(state) = model.sustained(&mut random) else { continue };
-        let Ok(found) = Pipeline::new(&model.robot, Options::default()).forces(&state) else { continue };
-        let analysis = found.analysis.as_ref().expect("few contacts");
-        let slips = &found.sustained.as_ref().expect("of forces").slips;
-        if Some(slips.len()) != state.scene.contacts.as_ref().map(Vec::len) {
-            continue;
-        }
-        let Some(answer) = oracle::forces(&model.robot, &state, slips) else { continue };
-        let finding = compare(&answer, analysis);
-        assert!(
-            matches!(finding, Finding::Proven | Finding::Unknown),
-            "{} {finding:?}\n{}",
-            model.name,
-            state.to_json(&model.robot)
-        );
-        // In f64 it has lost the condition of M: straight legs leave eight digits.
-        let own = found.problem.velocity_free().as_flattened();
-        let exact = dynamics::problem::<Ball>(&model.robot, &state, &[], Some(slips), 256).expect("a regular M");
-        let size = own.iter().fold(1.0, |size: f64, entry| size.max(entry.abs()));
-        for (&own, exact) in own.iter().zip(&exact.free) {
-            let off = exact.minus(&Ball::new(own, 256)).size();
-            assert!(off < 1e-6 * size, "{}: {own} is off by {off:e}\n{}", model.name, state.to_json(&model.robot));
-        }
-        seen += 1;
-        proven += usize::from(finding == Finding::Proven);
-        sliding += usize::from(slips.iter().any(|slip| slip.is_ne()));
-        verdicts[answer.outcomes.len().min(2)] += 1;
-    }
-    println!("{seen} states, {proven} proven, {sliding} sliding; none, unique, ambiguous: {verdicts:?}");
-    assert!(seen * 2 > states && proven * 100 >= seen * 99, "{seen} of {states}, {proven} proven");
-    assert!(sliding * 3 > seen && verdicts.iter().all(|&count| count > 0), "{sliding} slide, {verdicts:?}");
 }
 
 /// A check that never fails checks nothing.

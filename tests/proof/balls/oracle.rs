@@ -101,11 +101,11 @@ pub fn guess(robot: &Robot, state: &State) -> Vec<Vec<Mode>> {
     lists
 }
 
-/// The numbers of an outcome with these modes, of a state without applied impulses; `None` if its equations depend on
-/// each other.
-pub fn truth(robot: &Robot, state: &State, modes: &[Mode]) -> Option<Truth> {
+/// The numbers of an outcome with these modes, of a state without applied impulses, or of forces with `slips` (base and
+/// joints are then those before); `None` if its equations depend on each other.
+pub fn truth(robot: &Robot, state: &State, slips: Option<&[Ordering]>, modes: &[Mode]) -> Option<Truth> {
     let bits = BITS[BITS.len() - 1];
-    let problem = problem_and_rates::<Ball>(robot, state, &[], None, bits, true)?;
+    let problem = problem_and_rates::<Ball>(robot, state, &[], slips, bits, true)?;
     let zero = Zero { last: true };
     let [speed, mobility] =
         [largest(problem.free.iter()), largest((0..problem.free.len()).map(|i| &problem.delassus[i][i]))];

@@ -8,9 +8,13 @@ use heelstrike::impact::{Friction, Mode};
 use heelstrike::pipeline::{Options, Pipeline};
 use heelstrike::planar::Vector;
 use heelstrike::robot::Robot;
-use heelstrike::state::{AppliedImpulse, ByLink, Ground, NamedContact, Profile, Scene, State};
+use heelstrike::state::{
+    AppliedImpulse, ByLink, Ground, LinkPoint, NamedContact, NamedLoop, Profile, Scene, SpringEnd, SpringLaw, State,
+    VirtualSpring,
+};
 
 /// A robot with the points that its states name as contacts.
+#[derive(Clone)]
 pub struct Model {
     pub name: &'static str,
     pub robot: Robot,
@@ -19,6 +23,9 @@ pub struct Model {
     touching: usize,
     /// The most that may touch, so that no contact depends on others.
     most: usize,
+    /// Points that stay together, and how a pose is changed so that they do.
+    loops: Vec<NamedLoop>,
+    closing: fn(&mut [f64]),
 }
 
 /// A robot with prismatic joints that lean, which none of the files has.
@@ -50,7 +57,101 @@ pub fn chain(length: usize, random: &mut Random) -> Model {
     let foot = |link: usize| NamedContact { link, offset: [0.1, 0.0, -1.0], radius: 0.0 };
     let feet =
         [length - 1, length - 3, 4].map(|link| foot(robot.link(&format!("link_{link}")).unwrap_or(link))).to_vec();
-    Model { name: "chain", robot, feet, touching: 2, most: 3 }
+    Model { name: "chain", robot, feet, touching: 2, most: 3, loops: Vec::new(), closing: |_| {} }
+}
+
+/// A body whose left knee follows its hip and whose right telescope follows its hip, and a toe that follows twice.
+fn follower() -> String {
+    let mimic = |joint: &str, multiplier: f64, offset: f64| {
+        format!("<mimic joint=\"{joint}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>")
+    };
+    let ends = |parent, child| [parent, child];
+    urdf::robot(&[
+        urdf::link("torso", 4.0, [0.05, 0.1], 0.08, ""),
+        urdf::link("left_thigh", 1.0, [0.0, -0.2], 0.01, ""),
+        urdf::link("left_shank", 0.7, [0.03, -0.2], 0.006, ""),
+        urdf::link("left_toe", 0.2, [0.05, 0.0], 0.001, ""),
+        urdf::link("right_thigh", 0.8, [0.0, -0.1], 0.009, ""),
+        urdf::link("right_foot", 0.4, [0.0, -0.1], 0.003, ""),
+        urdf::link("tail", 0.3, [-0.3, 0.0], 0.004, ""),
+        urdf::joint("left_hip", Axis::Revolute(1.0), ends("torso", "left_thigh"), [0.1, -0.1], ""),
+        urdf::joint(
+            "left_knee",
+            Axis::Revolute(-1.0),
+            ends("left_thigh", "left_shank"),
+            [0.0, -0.4],
+            &mimic("left_hip", 1.7, 0.3),
+        ),
+        urdf::joint(
+            "left_ankle",
+            Axis::Revolute(1.0),
+            ends("left_shank", "left_toe"),
+            [0.0, -0.4],
+            &mimic("left_hip", 0.3, -0.1),
+        ),
+        urdf::joint("right_hip", Axis::Revolute(-1.0), ends("torso", "right_thigh"), [-0.1, -0.1], ""),
+        urdf::joint(
+            "right_slide",
+            Axis::Prismatic([0.6, -0.8]),
+            ends("right_thigh", "right_foot"),
+            [0.0, -0.2],
+            &mimic("right_hip", 0.125, 0.2),
+        ),
+        urdf::joint("tail", Axis::Revolute(1.0), ends("torso", "tail"), [-0.2, 0.1], ""),
+    ])
+}
+
+/// Both knees of the leg of five bars such that the ends of its shanks are one point, ahead of the hips or behind.
+fn close_five_bars(q: &mut [f64]) {
+    let [hips, thigh, shank] = [0.2, 0.4, 0.5];
+    // Both hips so far apart that the shanks reach each other.
+    let [left, right] = [3, 5].map(|hip| 0.6 * q[hip]);
+    let knee = |hip: f64, x: f64| [x - thigh * hip.sin(), -thigh * hip.cos()];
+    let [a, b] = [knee(left, -0.5 * hips), knee(right, 0.5 * hips)];
+    let [x, z] = [b[0] - a[0], b[1] - a[1]];
+    let apart = f64::hypot(x, z);
+    let rise = (shank * shank - 0.25 * apart * apart).max(0.0).sqrt() / apart;
+    let end = [0.5 * (a[0] + b[0]) + rise * z, 0.5 * (a[1] + b[1]) - rise * x];
+    // A bar that hangs down at zero is turned by atan2(-x, -z).
+    let turned = |from: [f64; 2], hip: f64| f64::atan2(from[0] - end[0], from[1] - end[1]) - hip;
+    (q[3], q[5]) = (left, right);
+    (q[4], q[6]) = (turned(a, left), turned(b, right));
+}
+
+/// Robots with mimic joints, with a loop, and chains of random masses, for states in sustained contact.
+pub fn tied_models(random: &mut Random) -> Vec<Model> {
+    let model = |name, urdf: &str, feet: &[(&str, [f64; 3], f64)]| {
+        let robot = Robot::from_urdf(urdf).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let link = |name: &str| robot.link(name).unwrap_or_else(|| panic!("no link {name}"));
+        let foot = |&(name, offset, radius): &(&str, [f64; 3], f64)| NamedContact { link: link(name), offset, radius };
+        Model {
+            name,
+            feet: feet.iter().map(foot).collect(),
+            robot,
+            touching: 2,
+            most: 2,
+            loops: Vec::new(),
+            closing: |_| {},
+        }
+    };
+    let mut five_bar = model(
+        "five_bar",
+        &read("urdf/five_bar.urdf"),
+        &[("left_shank", [0.0, 0.0, -0.5], 0.0), ("torso", [-0.3, 0.0, 0.0], 0.05), ("torso", [0.2, 0.0, 0.3], 0.0)],
+    );
+    let end = |link: &str| LinkPoint { link: five_bar.robot.link(link).unwrap_or(0), offset: [0.0, 0.0, -0.5] };
+    five_bar.loops = vec![NamedLoop { a: end("left_shank"), b: end("right_shank") }];
+    five_bar.closing = close_five_bars;
+    let follower = model(
+        "follower",
+        &follower(),
+        &[
+            ("left_toe", [0.1, 0.0, -0.05], 0.0),
+            ("right_foot", [0.0, 0.0, -0.3], 0.03),
+            ("tail", [-0.5, 0.0, 0.0], 0.0),
+        ],
+    );
+    vec![five_bar, follower, chain(10, random), chain(10, random)]
 }
 
 /// The robots, each with up to four feet.
@@ -64,7 +165,8 @@ pub fn models() -> Vec<Model> {
         };
         // With more rows than coordinates contacts depend on each other; of that only what two flat feet bring.
         let most = if touching > 2 { touching } else { feet.len().min(robot.dofs() / 2).max(touching) };
-        Model { name, feet: feet.iter().map(foot).collect(), robot, touching, most }
+        let feet = feet.iter().map(foot).collect();
+        Model { name, feet, robot, touching, most, loops: Vec::new(), closing: |_| {} }
     };
     let end = |z: f64| [0.0, 0.0, z];
     let legs = [("left_leg", end(-1.0), 0.0), ("right_leg", end(-1.0), 0.0)];
@@ -160,6 +262,9 @@ impl Model {
         state.scene.stance = None;
         state.scene.gravity = random.once_in(4).then(|| random.between(0.0, 20.0));
         state.scene.torque = self.robot.joints.iter().map(|_| random.between(-20.0, 20.0)).collect();
+        state.scene.springs = (0..random.whole(-1, 2)).map(|_| self.spring(random)).collect();
+        state.scene.loops.clone_from(&self.loops);
+        (self.closing)(&mut state.position);
         let contacts = state.scene.contacts.as_deref().unwrap_or_default();
         let is_shared = |at: usize| (0..at).any(|other| contacts[other].link == contacts[at].link);
         if random.once_in(3) || (0..contacts.len()).any(is_shared) {
@@ -168,10 +273,28 @@ impl Model {
         }
         // Where every contact goes for a unit rate of each coordinate, those of braked joints, too.
         let options = Options { matrices: true, ..Options::default() };
-        let loose = State { scene: Scene { braked: Vec::new(), ..state.scene.clone() }, ..state.clone() };
-        let rows = Pipeline::new(&self.robot, options).impact(&loose).ok()?.matrices?.contact_jacobian;
+        let ends = self.loops.iter().flat_map(|own| [own.a, own.b]);
+        let ends = ends.map(|LinkPoint { link, offset }| NamedContact { link, offset, radius: 0.0 });
+        let rows_of = |contacts: Vec<NamedContact>, ground: Ground| {
+            let scene = Scene {
+                contacts: Some(contacts),
+                ground,
+                friction: ByLink::everywhere(Friction::ZERO),
+                ..Scene::default()
+            };
+            let loose = State { scene, ..state.clone() };
+            Some(Pipeline::new(&self.robot, options.clone()).impact(&loose).ok()?.matrices?.contact_jacobian)
+        };
+        let mut rows = rows_of(contacts.to_vec(), state.scene.ground.clone())?;
+        let ties = rows_of(ends.collect(), Ground::default())?;
         // All normal velocities are taken out, and some of those along the ground.
-        let wanted: Vec<usize> = (0..rows.len()).filter(|at| at % 2 == 1 || random.once_in(3)).collect();
+        let mut wanted: Vec<usize> = (0..rows.len()).filter(|at| at % 2 == 1 || random.once_in(3)).collect();
+        for ends in ties.chunks(4) {
+            for axis in 0..2 {
+                wanted.push(rows.len());
+                rows.push(ends[axis].iter().zip(&ends[2 + axis]).map(|(a, b)| a - b).collect());
+            }
+        }
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let subtract = |from: &mut Vec<f64>, own: &[f64]| {
@@ -192,6 +315,26 @@ impl Model {
             basis.iter().for_each(|own| subtract(&mut state.velocity, own));
         }
         Some(state)
+    }
+
+    /// A spring from one link to another or to the world.
+    fn spring(&self, random: &mut Random) -> VirtualSpring {
+        let point = |random: &mut Random| LinkPoint {
+            link: random.whole(0, self.robot.links.len() as i64 - 1) as usize,
+            offset: [random.between(-0.3, 0.3), 0.0, random.between(-0.3, 0.3)],
+        };
+        let a = point(random);
+        let b = match random.once_in(2) {
+            true => SpringEnd::Link(point(random)),
+            false => SpringEnd::World(Vector::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0))),
+        };
+        let laws = std::array::from_fn(|_| SpringLaw {
+            stiffness: random.pick(&[0.0, 300.0]) * random.uniform(),
+            damping: random.pick(&[0.0, 30.0]) * random.uniform(),
+            target: random.between(-0.5, 0.5),
+            constant: random.pick(&[0.0, 20.0]) * random.between(-1.0, 1.0),
+        });
+        VirtualSpring { a, b, laws }
     }
 
     fn scene(&self, random: &mut Random) -> Scene {

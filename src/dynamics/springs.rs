@@ -1,0 +1,123 @@
+//! Virtual model control: what a spring and damper between two points would do, by the torques of the joints between.
+//!
+//! ```text
+//!     F = force + stiffness (target - (p_a - p_b)) - damping (v_a - v_b)        tau = J_ab^T F,  J_ab = J_a - J_b
+//! ```
+//!
+//! along x and z of the world, and about the normal for the angles of both bodies. F acts on a and, reversed, on b. What
+//! J_ab^T F asks of a floating base no joint gives. Source: Pratt, Chew, Torres, Dilworth, Pratt, "Virtual model control:
+//! an intuitive approach for bipedal locomotion", IJRR 20, 2001. Cost: O(depth).
+
+use super::articulated_inertia::Wrench;
+use super::jacobian::{point_velocity, spin};
+use super::workspace::Workspace;
+use crate::dynamics::plan::{JointMotion, Plan};
+use crate::planar::Vector;
+use crate::scalar::Real;
+use crate::state::SpringLaw;
+
+/// A virtual spring between two points.
+#[derive(Debug, Clone, Copy)]
+pub struct Spring<T = f64> {
+    /// a and b.
+    pub ends: [SpringPoint<T>; 2],
+    /// Along x, along z, and about the normal.
+    pub laws: [SpringLaw; 3],
+}
+
+/// An end of a virtual spring.
+#[derive(Debug, Clone, Copy)]
+pub enum SpringPoint<T> {
+    /// A point in a body's frame \[m\].
+    Body(usize, Vector<T>),
+    /// A place in the world \[m\].
+    World(Vector<T>),
+}
+
+/// What a virtual spring asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpringLoad<T = f64> {
+    /// The force on a along x and z of the world, and the moment \[N, N m\].
+    pub force: [T; 3],
+    /// J_ab^T F by coordinate \[N, N m\]: of a joint its torque; of a floating base what no joint gives.
+    pub generalized: Vec<T>,
+}
+
+impl<T: Real> Spring<T> {
+    /// What the spring asks for in a `position` (q) and with a `velocity` (dq/dt), after the kinematics.
+    pub fn load(&self, plan: &Plan<T>, position: &[f64], velocity: &[T], workspace: &Workspace<T>) -> SpringLoad<T> {
+        let [(place_a, rate_a), (place_b, rate_b)] =
+            self.ends.map(|end| end.motion(plan, position, velocity, workspace));
+        let force: [T; 3] = std::array::from_fn(|axis| {
+            self.laws[axis].force(place_a[axis] - place_b[axis], rate_a[axis] - rate_b[axis])
+        });
+        let mut generalized = vec![T::zero(); velocity.len()];
+        for (end, [x, z, moment]) in self.ends.into_iter().zip([force, force.map(|entry| -entry)]) {
+            let SpringPoint::Body(body, point) = end else { continue };
+            let own = Wrench::at(workspace.rotation[body].apply(point), Vector { x, z });
+            let own = own.with(Wrench { moment, linear: Vector::zero() });
+            inward(plan, body, own, workspace, |coordinate, part| {
+                generalized[coordinate] = generalized[coordinate] + part;
+            });
+        }
+        SpringLoad { force, generalized }
+    }
+}
+
+impl<T: Real> SpringPoint<T> {
+    /// Where the end is and how it moves: x, z and pitch, and their rates.
+    fn motion(self, plan: &Plan<T>, position: &[f64], velocity: &[T], workspace: &Workspace<T>) -> ([T; 3], [T; 3]) {
+        let (body, point) = match self {
+            Self::World(Vector { x, z }) => return ([x, z, T::zero()], [T::zero(); 3]),
+            Self::Body(body, point) => (body, point),
+        };
+        let arm = workspace.rotation[body].apply(point);
+        let at = |coordinate: usize| T::from_f64(position[coordinate]);
+        let (mut place, mut pitch) = (arm, T::zero());
+        for (index, body) in plan.way_to_root(body) {
+            match body.motion {
+                JointMotion::Root if plan.floating => {
+                    (place, pitch) = (place + Vector { x: at(0), z: at(1) }, pitch + at(2));
+                }
+                JointMotion::Revolute { sign, .. } => {
+                    let own = at(body.coordinate);
+                    let turn =
+                        body.mimic.map_or(own, |mimic| T::from_f64(mimic.multiplier) * own + T::from_f64(mimic.offset));
+                    pitch = pitch + sign * turn;
+                }
+                _ => {}
+            }
+            // The root has none.
+            if body.parent.is_some() {
+                place += workspace.arm[index];
+            }
+        }
+        let moving = point_velocity(plan, body, arm, velocity, workspace);
+        ([place.x, place.z, pitch], [moving.x, moving.z, spin(plan, body, velocity)])
+    }
+}
+
+/// Passes a `wrench` on `body` inward, and reports its part along every coordinate on the way, those of braked joints
+/// included.
+fn inward<T: Real>(
+    plan: &Plan<T>,
+    body: usize,
+    mut wrench: Wrench<T>,
+    workspace: &Workspace<T>,
+    mut visit: impl FnMut(usize, T),
+) {
+    for (index, body) in plan.way_to_root(body) {
+        match body.motion {
+            JointMotion::Root if plan.floating => {
+                let parts = [wrench.linear.x, wrench.linear.z, wrench.moment];
+                parts.into_iter().enumerate().for_each(|(coordinate, part)| visit(coordinate, part));
+            }
+            JointMotion::Revolute { rate, .. } => visit(body.coordinate, rate * wrench.moment),
+            JointMotion::Prismatic { .. } => visit(body.coordinate, workspace.direction[index].dot(wrench.linear)),
+            JointMotion::Root | JointMotion::Fixed => {}
+        }
+        if body.parent.is_some() {
+            wrench = wrench.seen_from(workspace.arm[index]);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What virtual springs ask of the joints and of the base, as results list it.
+
+use super::Pipeline;
+use super::assembly::Loads;
+use crate::error::{Result, finite};
+use crate::planar::Pair;
+use crate::state::Named;
+use serde::Serialize;
+
+/// What a virtual spring asks for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SpringForce {
+    /// The force on a along [x, z] of the world, the opposite of that on b \[N\].
+    pub force: Pair<f64>,
+    /// The moment on the link of a, the opposite of that on the link of b \[N m\].
+    pub moment: f64,
+    /// Its part of the torque of each joint \[N m, N\].
+    pub torque: Named,
+}
+
+/// What virtual springs ask of a floating base, which no joint can give.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Unrealized {
+    /// The force along x of the world \[N\].
+    pub fx: f64,
+    /// The force along z of the world \[N\].
+    pub fz: f64,
+    /// The moment about the base's origin \[N m\].
+    pub moment: f64,
+}
+
+/// What acts at the joints.
+#[derive(Debug, Clone)]
+pub struct Driven {
+    /// At each joint, virtual springs included \[N m, N\].
+    pub torque: Named,
+    /// What each of the state's virtual springs asks for.
+    pub springs: Vec<SpringForce>,
+    /// What all of them ask of a floating base: it is not applied. `None` if there are no springs.
+    pub unrealized: Option<Unrealized>,
+}
+
+impl Pipeline<'_> {
+    /// What acts at the joints of bodies that are placed. A spring's force beyond the range of f64 is refused.
+    pub(super) fn driven(&self, velocity: &[f64], loads: Loads<'_>) -> Result<Driven> {
+        let [_, joints] = &self.names;
+        let mut torque = loads.scene.torque.clone();
+        torque.resize(joints.len(), 0.0);
+        let (mut springs, mut unrealized) = (Vec::new(), None);
+        for own in self.assembly.springs(velocity, loads) {
+            for &entry in own.force.iter().chain(&own.generalized) {
+                finite(entry, || "the force of a virtual spring".into()).map_err(|error| {
+                    error.at("virtual").hint("its numbers are too large for f64: are they in SI units?")
+                })?;
+            }
+            let [x, z, moment] = own.force;
+            let (base, asked) = own.generalized.split_at(self.robot.base_dofs());
+            torque.iter_mut().zip(asked).for_each(|(sum, asked)| *sum += asked);
+            if let &[x, z, about] = base {
+                let Unrealized { fx, fz, moment } = unrealized.unwrap_or_default();
+                unrealized = Some(Unrealized { fx: fx + x, fz: fz + z, moment: moment + about });
+            }
+            springs.push(SpringForce { force: [x, z], moment, torque: Named::new(joints.clone(), asked.to_vec()) });
+        }
+        Ok(Driven { torque: Named::new(joints.clone(), torque), springs, unrealized })
+    }
+}
