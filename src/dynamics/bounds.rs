@@ -102,9 +102,9 @@ impl RoundingBounds {
         self.velocity = bounds;
     }
 
-    /// Bounds c' = J a + sigma of contacts by their accelerations without forces, for an `acceleration` by coordinate,
-    /// after [`RoundingBounds::delassus`]; infinite without it. Of the loads h by column and of J a + sigma the magnitudes are given; h has
-    /// `more` terms than a robot alone.
+    /// Bounds an `acceleration` a by coordinate without contact forces, and c' = J a + sigma of the contacts, after
+    /// [`RoundingBounds::delassus`]; infinite without it. Of the loads h by column and of c' the magnitudes are given; h
+    /// has `more` terms than a robot alone.
     pub fn accelerations(
         &self,
         plan: &Plan,
@@ -112,7 +112,7 @@ impl RoundingBounds {
         workspace: &Workspace,
         (loads, more): (&[Magnitude], usize),
         whole: &[Pair<Magnitude>],
-    ) -> Vec<Pair<f64>> {
+    ) -> (Vec<f64>, Vec<Pair<f64>>) {
         let eta = (self.entry_roundings(plan) + 2.0 * more as f64) * UNIT_ROUNDOFF;
         let gamma = 2.0 * (plan.columns() + 2) as f64 * UNIT_ROUNDOFF;
         let columns = plan.coordinates.iter().zip(&self.roots);
@@ -122,13 +122,18 @@ impl RoundingBounds {
             sum + ease * (eta * load.0 + (eta + 3.0 * gamma) * root * pushed + UNDERFLOW)
         });
         let rows = 2 * whole.len();
-        let bound = |row: usize, Magnitude(terms): Magnitude| {
-            let bound = 2.0 * (workspace.delassus[row * rows + row].max(0.0).sqrt() * energy + eta * terms);
-            // What is not a number bounds nothing.
-            let is_known = self.delassus.is_finite() && self.ease.len() == plan.columns();
-            if is_known && bound.is_finite() { bound } else { f64::INFINITY }
+        let is_known = self.delassus.is_finite() && self.ease.len() == plan.columns();
+        // What is not a number bounds nothing.
+        let doubled = |bound: f64| if is_known && bound.is_finite() { 2.0 * bound } else { f64::INFINITY };
+        let of_row = |row: usize, Magnitude(terms): Magnitude| {
+            doubled(workspace.delassus[row * rows + row].max(0.0).sqrt() * energy + eta * terms)
         };
-        (0..whole.len()).map(|index| [0, 1].map(|axis| bound(2 * index + axis, whole[index][axis]))).collect()
+        let mut by_coordinate = vec![if is_known { 0.0 } else { f64::INFINITY }; acceleration.len()];
+        for (&coordinate, ease) in plan.coordinates.iter().zip(&self.ease) {
+            by_coordinate[coordinate] = doubled(ease * energy);
+        }
+        let of_contact = |index: usize| [0, 1].map(|axis| of_row(2 * index + axis, whole[index][axis]));
+        (by_coordinate, (0..whole.len()).map(of_contact).collect())
     }
 
     /// The poses of a plan with every arm stretched, for computations of magnitudes.

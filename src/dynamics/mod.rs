@@ -464,7 +464,7 @@ mod tests {
                         *entry = Magnitude::from_f64(acceleration[coordinate]);
                     }
                 });
-            let allowed = bounds.accelerations(&plan, &acceleration, &workspace, (&loads, 1), &whole);
+            let (_, allowed) = bounds.accelerations(&plan, &acceleration, &workspace, (&loads, 1), &whole);
             for (index, allowed) in allowed.into_iter().enumerate() {
                 for axis in 0..2 {
                     let off = (exact[index][axis] - Exact::from_f64(found[index][axis])).to_f64().abs();

@@ -62,6 +62,8 @@ struct Unforced {
     free: Vec<f64>,
     /// kappa of each loop.
     drifts: Vec<Vector>,
+    /// What the accelerations by coordinate are likely off by \[m/s^2, rad/s^2\].
+    likely: Vec<f64>,
     /// Bounds of the rounding in the contacts' accelerations.
     rounding: Vec<Pair<f64>>,
 }
@@ -111,15 +113,16 @@ impl Pipeline<'_> {
             outcome.energy_loss = 0.0 - dot(outcome.impulse.as_flattened(), velocity);
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !self.options.brief) {
-            let Unforced { unclosed, free, drifts, .. } = &unforced;
-            let unstruck = Unstruck { before: &rest, applied: unclosed, free, closed: Closed::Acceleration(drifts) };
+            let Unforced { unclosed, free, drifts, likely: errors, .. } = &unforced;
+            let closed = Closed::Acceleration(drifts);
+            let unstruck = Unstruck { before: &rest, applied: unclosed, free, errors, closed };
             let asked = Asked::Forces(unforced.loads(self.robot, scene));
             self.respond(&mut analysis.outcomes, (state, &prepared, asked), unstruck);
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
         if let Some(shock) = &mut shock {
             let before = &prepared.velocity;
-            let unstruck = Unstruck { before, applied: &rest, free: before, closed: Closed::Change };
+            let unstruck = Unstruck { before, applied: &rest, free: before, errors: &[], closed: Closed::Change };
             self.respond(shock, (state, &prepared, Asked::Shock(&slips)), unstruck);
         }
         let left_out = if self.options.brief { Vec::new() } else { self.left_out(scene, &prepared) };
@@ -229,21 +232,27 @@ impl Pipeline<'_> {
             })?;
         }
         let own = self.assembly.contact_accelerations(&free, loads);
-        let rounding = self.bound_accelerations(prepared, &free, loads);
+        let (mut likely, rounding) = self.bound_accelerations(prepared, &free, loads);
+        likely.iter_mut().for_each(|error| *error *= LIKELY * self.bounds.likely[0]);
         let laws = prepared.problem.laws().iter().zip(slips).map(|(law, slip)| match slip {
             Ordering::Equal => *law,
             slip => Law::Sliding(law.friction(), Mode::closed(*slip)),
         });
         let (laws, delassus) = (laws.collect(), self.assembly.workspace.delassus.clone());
         prepared.problem = ContactProblem::checked(delassus, own.clone(), own, laws, vec![0.0; slips.len()])?;
-        Ok(Unforced { still, position, driven, unclosed, free, drifts, rounding })
+        Ok(Unforced { still, position, driven, unclosed, free, drifts, likely, rounding })
     }
 
-    /// Bounds the rounding of the contacts' accelerations without forces, of which `acceleration` is that by coordinate.
-    fn bound_accelerations(&mut self, prepared: &Prepared, acceleration: &[f64], loads: Loads<'_>) -> Vec<Pair<f64>> {
+    /// Bounds the rounding of the accelerations without forces, by coordinate, which are given, and of the contacts.
+    fn bound_accelerations(
+        &mut self,
+        prepared: &Prepared,
+        acceleration: &[f64],
+        loads: Loads<'_>,
+    ) -> (Vec<f64>, Vec<Pair<f64>>) {
         if self.assembly.is_constrained() {
             // They go through what answers them, whose rounding no bound follows.
-            return vec![[f64::INFINITY; 2]; prepared.contacts.len()];
+            return (vec![f64::INFINITY; acceleration.len()], vec![[f64::INFINITY; 2]; prepared.contacts.len()]);
         }
         let Self { robot, assembly, stretched, bounds, .. } = self;
         bounds.stretched_poses(&stretched.plan, &mut stretched.workspace);

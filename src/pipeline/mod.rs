@@ -348,7 +348,7 @@ impl<'r> Pipeline<'r> {
             friction_needed = self.scratch.friction_without_slip(&rough, &source, asked);
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !brief || next) {
-            let unstruck = Unstruck { before: velocity, applied, free: &free, closed: Closed::Change };
+            let unstruck = Unstruck { before: velocity, applied, free: &free, errors: &[], closed: Closed::Change };
             self.respond(&mut analysis.outcomes, (state, &prepared, Asked::Impact), unstruck);
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }

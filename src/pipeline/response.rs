@@ -26,6 +26,8 @@ pub(super) struct Unstruck<'a> {
     pub applied: &'a [f64],
     /// With both, and what the loops answer.
     pub free: &'a [f64],
+    /// What `free` is likely off by beyond what the error of G tells; empty for nothing.
+    pub errors: &'a [f64],
     /// What the loops close.
     pub closed: Closed<'a, f64>,
 }
@@ -45,13 +47,13 @@ impl Pipeline<'_> {
         for outcome in &mut *outcomes {
             self.set_velocity(outcome, unstruck);
         }
-        // Of the loads' rounding that of G tells nothing.
-        let is_known = !matches!(asked, Asked::Forces(_)) && self.has_digits(prepared);
-        if self.options.no_proof || is_known {
+        if self.options.no_proof {
             return;
         }
+        let has_digits = self.has_digits(prepared);
+        let serves = |outcome: &Outcome| has_digits && self.loads_have_digits(outcome, unstruck);
         let source = ExactState { asked, ..prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN) };
-        for outcome in outcomes.iter_mut().filter(|outcome| outcome.proven) {
+        for outcome in outcomes.iter_mut().filter(|outcome| outcome.proven && !serves(outcome)) {
             let mut sought = Response { source: &source, impulse: &outcome.impulse, found: None };
             climb(Precision::Plain, &mut sought);
             match sought.found {
@@ -72,8 +74,16 @@ impl Pipeline<'_> {
         of_velocity * self.bounds.base <= DIGITS * base && of_delassus * self.bounds.delassus <= DIGITS
     }
 
+    /// Whether f64 likely has the digits of what is there without contact impulses.
+    fn loads_have_digits(&self, outcome: &Outcome, Unstruck { free, errors, .. }: Unstruck<'_>) -> bool {
+        let sizes = || free.iter().zip(outcome.velocity()).map(|(free, after)| free.abs().max(after.abs()));
+        let base = sizes().take(self.robot.base_dofs().min(2)).fold(0.0, f64::max);
+        let scale = |(coordinate, size)| if coordinate < 2 { f64::max(base, size) } else { size };
+        errors.iter().zip(sizes().enumerate().map(scale)).all(|(error, scale)| *error <= DIGITS * scale)
+    }
+
     fn set_velocity(&mut self, outcome: &mut Outcome, unstruck: Unstruck<'_>) {
-        let Unstruck { before, applied, free, closed } = unstruck;
+        let Unstruck { before, applied, free, closed, .. } = unstruck;
         let constrained = self.assembly.is_constrained();
         // Articulated bodies keep thirteen digits and more in chains where M = L^T D L leaves eight.
         let by = if self.assembly.plan.has_mimics { Elimination::Ltl } else { Elimination::ArticulatedBodies };
