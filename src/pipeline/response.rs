@@ -101,6 +101,8 @@ impl Pipeline<'_> {
 
     fn name(&self, outcome: &mut Outcome, mut rates: Vec<f64>, loops: Vec<Vector>) {
         let [base, joints] = &self.names;
+        // The sign of a zero means nothing.
+        rates.iter_mut().for_each(|rate| *rate += 0.0);
         let of_joints = rates.split_off(base.len());
         outcome.loop_impulse = (!loops.is_empty()).then_some(loops);
         outcome.base_velocity_after = (!base.is_empty()).then(|| Named::new(base.clone(), rates));

@@ -2,14 +2,15 @@
 //! sets the number of states.
 
 use super::environment;
+use super::loads::imbalance;
 use super::oracle;
-use super::states::{Model, chain, models};
+use super::states::{Model, chain, models, tied_models};
 use crate::support::digits::{PROMISED, Truth};
 use crate::support::parallel::total;
 use crate::support::random::Random;
-use heelstrike::impact::Friction;
+use heelstrike::impact::{Friction, Outcome};
 use heelstrike::pipeline::{Impact, Options, Pipeline};
-use heelstrike::state::State;
+use heelstrike::state::{Named, Scene, State};
 
 /// Compares the outcomes of a random state: how many were compared, and how many are not proven.
 fn compare(model: &Model, random: &mut Random) -> [u64; 2] {
@@ -58,6 +59,50 @@ fn digits_of_chains_of_unequal_links_are_right() {
     });
     println!("{compared} outcomes of chains, {marked} marked");
     assert!(compared > 150 && marked * 100 < compared, "{compared} compared, {marked} marked");
+}
+
+/// M (v+ - v-) = J^T L + K^T l, with the velocity before as the loops leave it.
+#[test]
+fn impulses_of_loops_balance_the_momentum() {
+    let tied = tied_models(&mut Random::new(5));
+    let model = tied.iter().find(|model| model.name == "five_bar").expect("a robot with a loop");
+    let mut balanced = 0;
+    for seed in 0..environment("HEELSTRIKE_DIGITS", 400) {
+        let mut random = Random::new(seed);
+        let Some(mut state) = model.sustained(&mut random) else { continue };
+        (state.scene.torque, state.scene.springs) = (Vec::new(), Vec::new());
+        // The base may move as it will without opening a loop.
+        state.velocity.iter_mut().take(2).for_each(|rate| *rate += random.between(-2.0, 0.5));
+        let mut pipeline = Pipeline::new(&model.robot, Options::default());
+        let mut outcomes = |state: &State| {
+            let impact = pipeline.impact(state).and_then(Impact::into_analysis);
+            impact.map_or_else(|_| Vec::new(), |analysis| analysis.outcomes)
+        };
+        let untouched = Scene { contacts: Some(Vec::new()), ..state.scene.clone() };
+        let before = outcomes(&State { scene: untouched, ..state.clone() });
+        let scene = Scene { gravity: Some(0.0), ..state.scene.clone() };
+        let still = State { velocity: vec![0.0; model.robot.dofs()], scene, ..state.clone() };
+        for outcome in outcomes(&state).into_iter().filter(|outcome| outcome.proven) {
+            let change = |after: &Option<Named>, before: &Option<Named>| -> Option<Named> {
+                let (after, before) = (after.as_ref()?, before.as_ref()?);
+                let entries = after.iter().zip(before.values());
+                Some(entries.map(|((name, after), before)| (name.to_owned(), after - before)).collect())
+            };
+            let jump = Outcome {
+                base_velocity_after: change(&outcome.base_velocity_after, &before[0].base_velocity_after),
+                joint_velocity_after: change(&outcome.joint_velocity_after, &before[0].joint_velocity_after),
+                ..outcome
+            };
+            // Of a jump that is only rounding no part is balanced.
+            if jump.loop_impulse.iter().flatten().all(|own| own.length() < 1e-3) {
+                continue;
+            }
+            let (off, _) = imbalance(&model.robot, &still, &jump, 0.0).expect("a straight ground");
+            assert!(off < PROMISED, "{off:e} is not balanced\n{}", state.to_json(&model.robot));
+            balanced += 1;
+        }
+    }
+    assert!(balanced > 50, "{balanced}");
 }
 
 /// A check that never fails checks nothing.
