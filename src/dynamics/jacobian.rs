@@ -167,7 +167,7 @@ fn motion<T: Real>(
 pub fn kinetic_energy<T: Real>(plan: &Plan<T>, velocity: &[T], workspace: &Workspace<T>) -> T {
     let (mut twice, mut motions) = (T::zero(), Vec::new());
     for (index, body) in plan.bodies.iter().enumerate() {
-        let (rate, origin) = if plan.is_long() {
+        let (rate, origin) = if plan.is_long {
             motions.push(motion(plan, index, velocity, &motions, workspace));
             motions[index]
         } else {

@@ -21,7 +21,7 @@ use crate::planar::{Inertia, Rotation, Vector};
 use crate::robot::{Axis, Base, MimicJoint, ParentJoint, Robot};
 use crate::scalar::{Real, Trigonometry};
 
-/// From how many columns on a plan is long.
+/// From how many columns on in one branch a plan is long.
 const LONG: usize = 12;
 
 /// A robot compiled in numbers of kind `T`.
@@ -37,6 +37,9 @@ pub struct Plan<T = f64> {
     pub(crate) floating: bool,
     /// Whether some column moves more than one joint.
     pub(crate) has_mimics: bool,
+    /// Whether a branch has so many columns that what grows faster than their number costs more than it saves: M and its
+    /// factor, walks from each body to the root.
+    pub(crate) is_long: bool,
 }
 
 /// A rigid body and the joint that moves it.
@@ -155,6 +158,7 @@ impl<T: Real> Plan<T> {
             places: robot.dofs() + robot.mimic_joints.len(),
             floating,
             has_mimics: false,
+            is_long: false,
         };
         // The column of each joint that has one, and of each body the greatest one on its way to the root.
         let mut columns = vec![None; robot.joints.len()];
@@ -222,6 +226,7 @@ impl<T: Real> Plan<T> {
                 rotor: if mimic.is_some() { number(multiplier) * number(multiplier) * rotor } else { rotor },
             });
         }
+        plan.is_long = (0..plan.columns()).any(|column| plan.ancestors(column).take(LONG).count() + 1 >= LONG);
         plan
     }
 
@@ -284,12 +289,6 @@ impl<T: Real> Plan<T> {
     /// A body and those between it and the root, with their indices.
     pub(crate) fn way_to_root(&self, body: usize) -> impl Iterator<Item = (usize, &PlanBody<T>)> {
         std::iter::successors(Some(body), |&body| self.bodies[body].parent).map(|body| (body, &self.bodies[body]))
-    }
-
-    /// Whether what grows faster than the number of joints costs more than it saves: M and its factor, walks from each
-    /// body to the root.
-    pub(crate) fn is_long(&self) -> bool {
-        self.columns() >= LONG
     }
 
     /// Number of columns: the coordinates whose joints are not braked.

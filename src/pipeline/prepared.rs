@@ -250,7 +250,7 @@ impl Pipeline<'_> {
             self.rotor_inertia.clone_from(&scene.rotor_inertia);
         }
         let Assembly { plan, kept, elimination, .. } = &mut self.assembly;
-        let by_bodies = plan.is_long() && kept.is_empty() && scene.loops.is_empty() && has_balance(plan);
+        let by_bodies = plan.is_long && kept.is_empty() && scene.loops.is_empty() && has_balance(plan);
         *elimination = if by_bodies { Elimination::ArticulatedBodies } else { Elimination::Ltl };
     }
 
