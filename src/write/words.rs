@@ -51,7 +51,6 @@ pub(crate) struct Wording {
     pub coordinates: &'static str,
     pub rates: &'static str,
     pub others: &'static str,
-    pub one_of_many: &'static str,
     pub drawn: DrawnNames,
 }
 
@@ -75,7 +74,6 @@ const IMPACT: Wording = Wording {
     coordinates: "velocity after",
     rates: "velocities",
     others: "other impulses give the same velocities",
-    one_of_many: "one of many impulses",
     drawn: DrawnNames {
         given: ("impulse", "N s"),
         taken: ("velocity after", "m/s"),
@@ -93,7 +91,6 @@ const FORCES: Wording = Wording {
     coordinates: "acceleration",
     rates: "accelerations",
     others: "other forces give the same accelerations",
-    one_of_many: "one of many forces",
     drawn: DrawnNames {
         given: ("force", "N"),
         taken: ("acceleration", "m/s\u{b2}"),

@@ -127,9 +127,13 @@ pub(in crate::draw) fn remarks(outcome: &Outcome, aspect: Aspect) -> Vec<String>
         let zeros: Vec<String> = border.at_zero.iter().map(|zero| zero.inequality.to_string()).collect();
         format!("on a border: {}", zeros.join(", "))
     });
+    let one_of_many = match aspect {
+        Aspect::Impact => "one of many impulses",
+        Aspect::Forces => "one of many forces",
+    };
     let remarks = [
         (outcome.family, "a corner of a family"),
-        (!outcome.impulse_unique, Wording::of(aspect).one_of_many),
+        (!outcome.impulse_unique, one_of_many),
         (!outcome.decided, "not excluded"),
         (outcome.decided && !outcome.proven, "not proven"),
     ];
