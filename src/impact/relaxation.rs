@@ -106,15 +106,13 @@ impl Ray {
 }
 
 /// Basic variables as affine functions of the others. Variables below 2n are velocities, the others multipliers of
-/// rays. What no decision can move any more is left out: columns of multipliers that stay zero, rows of free velocities.
+/// rays.
 #[derive(Debug, Clone, Default)]
 struct Dictionary {
     /// By rows: per basic variable its coefficients of the nonbasic ones, then its value.
     entries: Vec<f64>,
     basic: Vec<usize>,
     nonbasic: Vec<usize>,
-    /// Basic variables without a row.
-    idle: Vec<usize>,
     ranges: Vec<Range>,
 }
 
@@ -201,7 +199,6 @@ impl Relaxation {
             entries: self.response.clone(),
             basic: (0..rows).collect(),
             nonbasic: (rows..rows + self.rays.len()).collect(),
-            idle: Vec::new(),
             ranges: velocities.chain(multipliers).collect(),
         };
     }
@@ -245,33 +242,31 @@ impl Relaxation {
     /// Decides the mode of a contact after all before it; what lacks if that is impossible in f64.
     pub fn decide(&mut self, contact: usize, mode: Mode) -> Option<Lack> {
         let (before, after) = self.depths.split_at_mut(contact + 1);
-        let (before, dictionary) = (&before[contact], &mut after[0]);
-        dictionary.ranges.clone_from(&before.ranges);
-        let signs = self.laws[contact].velocity(mode);
-        for (row, sign) in signs.iter().enumerate() {
-            dictionary.ranges[2 * contact + row] = sign.map_or(dictionary.ranges[2 * contact + row], Range::of);
+        let dictionary = &mut after[0];
+        dictionary.copy(&before[contact]);
+        for (row, sign) in [2 * contact, 2 * contact + 1].into_iter().zip(self.laws[contact].velocity(mode)) {
+            if let Some(sign) = sign {
+                dictionary.ranges[row] = Range::of(sign);
+                if sign.is_ne() {
+                    dictionary.keep_from_zero(row, sign);
+                }
+            }
         }
         for (index, ray) in self.rays.iter().enumerate().filter(|(_, ray)| ray.contact == contact) {
             dictionary.ranges[self.rows + index] = ray.range(&self.laws[contact], Some(mode));
-        }
-        dictionary.copy(before, self.rows, 2 * (contact + 1));
-        for (row, sign) in signs.into_iter().enumerate() {
-            if let Some(sign) = sign.filter(|sign| sign.is_ne()) {
-                dictionary.keep_from_zero(2 * contact + row, sign);
-            }
         }
         dictionary.impossible()
     }
 
     /// What the last decision, the one of the last of these contacts, claims.
     pub fn claim(&self, modes: &[Mode], lack: Lack) -> Claim {
-        let Dictionary { basic, idle, ranges, .. } = &self.depths[modes.len()];
-        Claim { modes: modes.to_vec(), lack, basic: [&basic[..], idle].concat(), ranges: ranges.clone() }
+        let Dictionary { basic, ranges, .. } = &self.depths[modes.len()];
+        Claim { modes: modes.to_vec(), lack, basic: basic.clone(), ranges: ranges.clone() }
     }
 
     /// Whether error bounds show that the last decision, on `contact`, is impossible.
     pub fn shows(&mut self, contact: usize, Lack { variable, sign }: Lack) -> bool {
-        let Dictionary { entries, basic, nonbasic, ranges, .. } = &self.depths[contact + 1];
+        let Dictionary { entries, basic, nonbasic, ranges } = &self.depths[contact + 1];
         let width = self.rays.len() + 1;
         let Some(row) = basic.iter().position(|&other| other == variable).filter(|_| self.is_known) else {
             return false;
@@ -280,7 +275,7 @@ impl Relaxation {
         y.clear();
         y.resize(ranges.len(), 0.0);
         y[variable] = sign;
-        for (&variable, &coefficient) in nonbasic.iter().zip(&entries[row * (nonbasic.len() + 1)..]) {
+        for (&variable, &coefficient) in nonbasic.iter().zip(&entries[row * width..]) {
             y[variable] = -sign * coefficient;
         }
         let mut size = 0.0;
@@ -313,32 +308,11 @@ impl Relaxation {
 }
 
 impl Dictionary {
-    /// Takes over what is left of another one under its own ranges: all but the multipliers that stay zero, which are the
-    /// variables from `rays` on, and the free ones of the first `decided` velocities.
-    fn copy(&mut self, other: &Self, rays: usize, decided: usize) {
-        let Self { entries, basic, nonbasic, idle, ranges } = self;
-        let moves = |&variable: &usize| variable < rays || ranges[variable] != Range::ZERO;
-        let rests = |&variable: &usize| variable < decided && ranges[variable] == Range::FREE;
-        nonbasic.clear();
-        nonbasic.extend(other.nonbasic.iter().copied().filter(moves));
-        idle.clone_from(&other.idle);
-        entries.clear();
-        basic.clear();
-        let width = other.nonbasic.len() + 1;
-        for (&variable, row) in other.basic.iter().zip(other.entries.chunks_exact(width)) {
-            if rests(&variable) {
-                idle.push(variable);
-                continue;
-            }
-            basic.push(variable);
-            if nonbasic.len() + 1 == width {
-                entries.extend_from_slice(row);
-            } else {
-                let kept = other.nonbasic.iter().zip(row).filter(|(variable, _)| moves(variable));
-                entries.extend(kept.map(|(_, entry)| entry));
-                entries.push(row[width - 1]);
-            }
-        }
+    fn copy(&mut self, other: &Self) {
+        self.entries.clone_from(&other.entries);
+        self.basic.clone_from(&other.basic);
+        self.nonbasic.clone_from(&other.nonbasic);
+        self.ranges.clone_from(&other.ranges);
     }
 
     /// Counts a velocity from where it is strictly positive or negative.
