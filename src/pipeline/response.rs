@@ -26,7 +26,7 @@ pub(super) struct Unstruck<'a> {
     pub applied: &'a [f64],
     /// With both, and what the loops answer.
     pub free: &'a [f64],
-    /// What `free` is likely off by beyond what the error of G tells; empty for nothing.
+    /// Likely errors of `free` by coordinate that do not come from those of G; empty if there are none.
     pub errors: &'a [f64],
     /// What the loops close.
     pub closed: Closed<'a, f64>,
