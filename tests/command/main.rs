@@ -10,6 +10,7 @@ use support::command::{Run, command, file, finished, heelstrike, heelstrike_read
 mod accuracy;
 mod batch;
 mod budget;
+mod documentation;
 mod inspect;
 mod manners;
 mod meshes;
