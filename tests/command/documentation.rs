@@ -19,14 +19,19 @@ fn blocks(page: &str, fenced: bool) -> impl Iterator<Item = (&str, &str)> {
     page.split("\n```").skip(usize::from(fenced)).step_by(2).map(|block| block.split_once('\n').unwrap_or((block, "")))
 }
 
+/// A page without its fenced blocks.
+fn prose(page: &str) -> String {
+    blocks(page, false).flat_map(|(first, rest)| [first, "\n", rest]).collect()
+}
+
 /// What links to the headings of a page on a code host.
 fn anchors(page: &str) -> BTreeSet<String> {
-    let headings = blocks(page, false).flat_map(|(first, rest)| first.lines().chain(rest.lines()));
-    let headings = headings.filter_map(|line| line.strip_prefix('#'));
     let letters = |heading: &str| {
         let kept = heading.chars().filter(|letter| letter.is_alphanumeric() || " -_".contains(*letter));
         kept.collect::<String>().to_lowercase().replace(' ', "-")
     };
+    let text = prose(page);
+    let headings = text.lines().filter(|line| line.starts_with('#'));
     headings.map(|heading| letters(heading.trim_start_matches('#').trim())).collect()
 }
 
@@ -34,8 +39,7 @@ fn anchors(page: &str) -> BTreeSet<String> {
 fn links_of_pages_lead_somewhere() {
     let all = pages(&["", "docs", "tests", "examples/gait", "examples/lecture", "examples/paper"]);
     for (path, page) in &all {
-        let text: String = blocks(page, false).flat_map(|(first, rest)| [first, "\n", rest]).collect();
-        for link in text.split("](").skip(1).filter_map(|link| link.split(')').next()) {
+        for link in prose(page).split("](").skip(1).filter_map(|link| link.split(')').next()) {
             if link.starts_with("https://") {
                 continue;
             }
@@ -68,8 +72,8 @@ fn are_shown(shown: &[&str], printed: &[&str]) -> bool {
     }
 }
 
-/// Runs the blocks `sh` and `console` of README and docs, each page in a folder of its own; what builds or installs is
-/// left to `.ci/run`.
+/// Runs the blocks `sh` and `console` of README and docs and the commands in their text, each page in a folder of its
+/// own; what builds or installs is left to `.ci/run`.
 #[test]
 #[cfg(unix)]
 fn commands_of_pages_print_what_is_shown() {
@@ -92,6 +96,11 @@ fn commands_of_pages_print_what_is_shown() {
                     assert!(same, "{}\n$ {command}\n{printed}\nis shown as\n{shown}", path.display());
                 }
             }
+        }
+        let prose = prose(&page).replace('\n', " ");
+        let code = prose.split('`').skip(1).step_by(2);
+        for command in code.filter(|code| code.starts_with("heelstrike ") && code.contains(" urdf/")) {
+            shell(command, &folder).well();
         }
     }
 }
