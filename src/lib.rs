@@ -78,7 +78,7 @@
 #[doc = include_str!("../docs/guarantees.md")]
 pub mod guarantees {}
 
-#[doc = include_str!("../docs/left_out.md")]
+#[doc = include_str!("../docs/reductions.md")]
 pub mod left_out {}
 
 #[doc(hidden)]
