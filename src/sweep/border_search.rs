@@ -8,9 +8,12 @@
 //! A combination that one clearly violated inequality excludes, on the whole interval or near a zero, is not followed
 //! there. Nothing here decides anything: at every place where a zero may be, the regime itself is asked for. What N
 //! does between the five points beyond its fourth differences is not seen; that is the part that is not guaranteed.
+//!
+//! Where the regimes of two points differ, [`decisive_zero`] says where the border between them is likely.
 
 use super::model::Watched;
 use crate::budget::is_spent;
+use std::sync::Arc;
 
 /// Points at which quantities are computed in an interval: its ends and three between them.
 const NODES: usize = 5;
@@ -36,6 +39,8 @@ const MOST: usize = 200;
 enum Tracked {
     Determinant(usize),
     Numerator(usize),
+    /// The least inequality of a combination: positive where it is an outcome.
+    Combination(usize),
     Clearance(usize),
 }
 
@@ -45,7 +50,7 @@ impl Tracked {
     fn is_in(self, watched: &Watched, node: &Watched) -> bool {
         match self {
             Self::Clearance(at) => at < watched.clearance.len(),
-            Self::Determinant(_) | Self::Numerator(_) => same_combinations(watched, node),
+            Self::Determinant(_) | Self::Numerator(_) | Self::Combination(_) => same_combinations(watched, node),
         }
     }
 
@@ -54,23 +59,28 @@ impl Tracked {
         matches!(self, Self::Numerator(at) if negligible.get(at).is_some_and(|&negligible| negligible))
     }
 
-    fn values(self, nodes: &[Watched]) -> [f64; NODES] {
+    fn values(self, nodes: &[Arc<Watched>]) -> [f64; NODES] {
         std::array::from_fn(|k| self.value(&nodes[k]))
     }
 
     fn value(self, watched: &Watched) -> f64 {
+        let inequalities = &watched.inequalities;
         match self {
-            Self::Determinant(at) => watched.inequalities.determinants[at],
-            Self::Numerator(at) => watched.inequalities.numerators[at],
+            Self::Determinant(at) => inequalities.determinants[at],
+            Self::Numerator(at) => inequalities.numerators[at],
+            Self::Combination(at) => {
+                let numerators = &inequalities.numerators[inequalities.of_combination(at)];
+                numerators.iter().map(|number| number * inequalities.determinants[at]).fold(f64::INFINITY, f64::min)
+            }
             Self::Clearance(at) => watched.clearance[at],
         }
     }
 
     /// Whether other inequalities clearly exclude its combination at both of two places, given between 0 and 4.
-    fn is_excluded(self, nodes: &[Watched], places: [f64; 2]) -> bool {
+    fn is_excluded(self, nodes: &[Arc<Watched>], places: [f64; 2]) -> bool {
         let inequalities = &nodes[0].inequalities;
         let combination = match self {
-            Self::Determinant(at) => at,
+            Self::Determinant(at) | Self::Combination(at) => at,
             Self::Numerator(at) => inequalities.ends.partition_point(|&end| end <= at),
             Self::Clearance(_) => return false,
         };
@@ -98,7 +108,7 @@ fn same_combinations(one: &Watched, other: &Watched) -> bool {
 
 /// Places between `a` and `b`, in ascending order, at which the regime may differ from that at both ends; zeros nearer
 /// to each other than `resolution` count as one.
-pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Watched>, a: f64, b: f64, resolution: f64) -> Vec<f64> {
+pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>, a: f64, b: f64, resolution: f64) -> Vec<f64> {
     let mut search = Search { watch, resolution, found: Vec::new() };
     search.interval(a, b, HALVINGS);
     let mut found = search.found;
@@ -106,6 +116,27 @@ pub fn suspects(watch: &mut impl FnMut(f64) -> Option<Watched>, a: f64, b: f64, 
     found.dedup();
     found.retain(|&x| a < x && x < b);
     found
+}
+
+/// Where the quantity is zero that decides between `a` and `b`: whether a foot is down, or a combination an outcome;
+/// `None` if no such quantity differs in sign.
+pub fn decisive_zero(
+    watch: &mut impl FnMut(f64) -> Option<Arc<Watched>>,
+    a: f64,
+    b: f64,
+    resolution: f64,
+) -> Option<f64> {
+    let ends = [watch(a)?, watch(b)?];
+    let [first, last] = &ends;
+    let feet = (0..first.clearance.len()).map(Tracked::Clearance);
+    let combinations = (0..first.inequalities.ends.len()).map(Tracked::Combination);
+    let mut turning = feet.chain(combinations).filter(|quantity| quantity.is_in(last, first));
+    let decisive = turning.find(|quantity| (quantity.value(first) > 0.0) != (quantity.value(last) > 0.0))?;
+    let mut real = |x: f64| {
+        let watched = watch(x).filter(|watched| decisive.is_in(watched, first));
+        watched.map_or(f64::NAN, |watched| decisive.value(&watched))
+    };
+    Some(zero(&mut real, a, b, resolution))
 }
 
 struct Search<'w, W> {
@@ -121,18 +152,21 @@ struct Zeros {
     touched: Vec<f64>,
 }
 
-impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
+impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
     fn interval(&mut self, a: f64, b: f64, halvings: usize) {
         if is_spent() {
             return;
         }
         let place = |k: f64| a + (b - a) * (k / (NODES - 1) as f64);
-        let nodes: Option<Vec<Watched>> = (0..NODES).map(|k| (self.watch)(place(k as f64))).collect();
+        // The same numbers as those of its halves.
+        let middle = 0.5 * (a + b);
+        let places: [f64; NODES] = [a, 0.5 * (a + middle), middle, 0.5 * (middle + b), b];
+        let nodes: Option<Vec<Arc<Watched>>> = places.iter().map(|&at| (self.watch)(at)).collect();
         let alike = |one: &Watched, other: &Watched| {
             same_combinations(one, other) && one.clearance.len() == other.clearance.len()
         };
         let Some(nodes) = nodes.filter(|nodes| nodes.iter().all(|node| alike(node, &nodes[0]))) else {
-            self.found.extend((1..NODES - 1).map(|k| place(k as f64)));
+            self.found.extend(&places[1..NODES - 1]);
             return;
         };
         let mut followed = followed(&nodes);
@@ -142,7 +176,6 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
         });
         let rough = followed.iter().any(|(_, values)| fourth_difference(values).abs() > SMOOTH * largest(values));
         if rough && halvings > 0 && b - a > self.resolution {
-            let middle = place(2.0);
             self.interval(a, middle, halvings - 1);
             self.found.push(middle);
             self.interval(middle, b, halvings - 1);
@@ -172,7 +205,7 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
         &mut self,
         quantity: Tracked,
         values: &[f64; NODES],
-        nodes: &[Watched],
+        nodes: &[Arc<Watched>],
         place: impl Fn(f64) -> f64,
         Zeros { crossed, touched }: &mut Zeros,
     ) {
@@ -199,7 +232,8 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
             let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
             if least && same && !quantity.is_excluded(nodes, [node(last), node(next)]) {
                 let sign = if here < 0.0 { -1.0 } else { 1.0 };
-                let bottom = least_place(&mut |x| sign * real(x), at(last), at(next), resolution);
+                let ends = [(at(last), sign * before), (at(next), sign * after)];
+                let Some(bottom) = least_place(&mut |x| sign * real(x), ends, resolution) else { continue };
                 touched.push(bottom);
                 if sign * real(bottom) < 0.0 {
                     crossed.push(zero(&mut real, at(last), bottom, resolution));
@@ -211,7 +245,7 @@ impl<W: FnMut(f64) -> Option<Watched>> Search<'_, W> {
 }
 
 /// The quantities of all combinations that no inequality clearly excludes, and their values at the nodes.
-fn followed(nodes: &[Watched]) -> Vec<(Tracked, [f64; NODES])> {
+fn followed(nodes: &[Arc<Watched>]) -> Vec<(Tracked, [f64; NODES])> {
     let inequalities = &nodes[0].inequalities;
     let mut all: Vec<Tracked> = (0..nodes[0].clearance.len()).map(Tracked::Clearance).collect();
     for combination in 0..inequalities.ends.len() {
@@ -296,33 +330,41 @@ fn zero(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64)
     0.5 * (a + b)
 }
 
-/// The place of the least `f` between `a` and `b` (golden section), or any place where it is negative or not a number:
-/// there the scene is another one.
-fn least_place(f: &mut impl FnMut(f64) -> f64, mut a: f64, mut b: f64, resolution: f64) -> f64 {
+/// The place of the least `f` between two places with its values there (golden section), or any place where it is
+/// negative or not a number: there the scene is another one. `None` once it clearly stays above zero: where it is at
+/// least half of what it is at the ends, no bend of its own brings it there.
+fn least_place(
+    f: &mut impl FnMut(f64) -> f64,
+    [(mut a, mut at_a), (mut b, mut at_b)]: [(f64, f64); 2],
+    resolution: f64,
+) -> Option<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let (mut left, mut right) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));
     let (mut at_left, mut at_right) = (f(left), f(right));
     for _ in 0..60 {
         if at_left < 0.0 || at_left.is_nan() {
-            return left;
+            return Some(left);
         }
         if at_right < 0.0 || at_right.is_nan() {
-            return right;
+            return Some(right);
+        }
+        if 2.0 * at_left.min(at_right) > at_a.max(at_b) {
+            return None;
         }
         if b - a <= resolution {
             break;
         }
         if at_left < at_right {
-            (b, right, at_right) = (right, left, at_left);
+            (b, at_b, right, at_right) = (right, at_right, left, at_left);
             left = b - GOLDEN * (b - a);
             at_left = f(left);
         } else {
-            (a, left, at_left) = (left, right, at_right);
+            (a, at_a, left, at_left) = (left, at_left, right, at_right);
             right = a + GOLDEN * (b - a);
             at_right = f(right);
         }
     }
-    0.5 * (a + b)
+    Some(0.5 * (a + b))
 }
 
 #[cfg(test)]
@@ -347,7 +389,7 @@ mod tests {
             let numerators = vec![-1.0 - 0.1 * x, libm::sin(40.0 * x)];
             let inequalities =
                 Inequalities { determinants: vec![1.0], ends: vec![2], numerators, ..Inequalities::default() };
-            Some(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() })
+            Some(Arc::new(Watched { contacts: Vec::new(), inequalities, clearance: Vec::new() }))
         };
         let places = suspects(&mut watch, 0.0, 1.0, 1e-12);
         assert_eq!((places, asked), (Vec::new(), NODES));

@@ -1,7 +1,7 @@
 //! Traces borders through one cell of the plane of two parameters.
 
 use super::edge::{Crossing, Edge, GridLine, Segment, Sides};
-use super::line::{Probe, RESOLUTION};
+use super::line::{Along, Landscape, Probe, RESOLUTION, bisect};
 use super::model::Solver;
 use std::sync::Arc;
 
@@ -129,26 +129,23 @@ impl<'s, 'm> Trace<'s, 'm> {
             let left = [-along[1] / length, along[0] / length];
             [0, 1].map(|axis| 0.5 * (chord.from[axis] + chord.to[axis]) + off * left[axis] * ranges[axis])
         };
-        let solver = &mut *self.solver;
-        let mut regime = |off: f64| solver.regime(&off_middle(off));
+        let Sides { left, right, .. } = &chord.sides;
+        let mut line = Along { solver: &mut *self.solver, place: |off: f64| off_middle(off).to_vec() };
+        let mut is_between = |reach: f64| line.regime(reach) == *left && line.regime(-reach) == *right;
         let mut reach = STRAIGHT;
-        if regime(reach) == chord.sides.left && regime(-reach) == chord.sides.right {
+        if is_between(reach) {
             return None;
         }
         while reach < 0.5 * length {
             reach = (4.0 * reach).min(0.5 * length);
-            let (mut left, mut right) = (reach, -reach);
-            if regime(left) == chord.sides.left && regime(right) == chord.sides.right {
-                while left - right > FOUND {
-                    let middle = 0.5 * (left + right);
-                    match regime(middle) {
-                        found if found == chord.sides.left => left = middle,
-                        found if found == chord.sides.right => right = middle,
-                        // Something else lies between: these two do not meet here.
-                        _ => return None,
-                    }
-                }
-                return Some(off_middle(0.5 * (left + right)));
+            if is_between(reach) {
+                let [below, above] =
+                    [(-reach, right), (reach, left)].map(|(at, regime)| Probe { at, regime: Arc::clone(regime) });
+                let mut found = Vec::new();
+                bisect(&mut line, &below, &above, FOUND, &mut found);
+                // If something else lies between, these two do not meet here.
+                let [border] = found.as_slice() else { return None };
+                return Some(off_middle(border.at()));
             }
         }
         None

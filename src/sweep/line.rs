@@ -4,7 +4,7 @@
 //!     samples --regimes differ: bisect; the same: search--> brackets of width 1e-12 --> regions, borders
 //! ```
 
-use super::border_search::suspects;
+use super::border_search::{decisive_zero, suspects};
 use super::model::{Solver, Watched};
 use super::regime::Regime;
 use crate::budget::is_spent;
@@ -16,11 +16,14 @@ pub const RESOLUTION: f64 = 1e-12;
 /// How often a stretch is searched, each time between the borders that were found the time before.
 const SEARCHES: usize = 3;
 
+/// How far from a zero the regimes are asked for, as part of the resolution: less than half of it.
+const BESIDE: f64 = 0.499;
+
 /// What is asked along a line of parameters.
 pub trait Landscape {
     fn regime(&mut self, at: f64) -> Arc<Regime>;
     /// The quantities that are followed from place to place; `None` if the place is refused.
-    fn watched(&mut self, at: f64) -> Option<Watched>;
+    fn watched(&mut self, at: f64) -> Option<Arc<Watched>>;
 }
 
 /// Places of a line in the space of all parameters, answered by a solver.
@@ -35,7 +38,7 @@ impl<P: Fn(f64) -> Vec<f64>> Landscape for Along<'_, '_, P> {
         self.solver.regime(&(self.place)(at))
     }
 
-    fn watched(&mut self, at: f64) -> Option<Watched> {
+    fn watched(&mut self, at: f64) -> Option<Arc<Watched>> {
         self.solver.watched(&(self.place)(at))
     }
 }
@@ -104,18 +107,30 @@ fn search_between(
     all
 }
 
-/// Bisects where the regimes of two places differ.
-fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64, found: &mut Vec<Bracket>) {
+/// Bisects where the regimes of two places differ, first right beside the zero of what decides between them.
+pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution: f64, found: &mut Vec<Bracket>) {
     let (mut below, mut above) = (a.clone(), b.clone());
     if below.regime == above.regime || is_spent() {
         return;
     }
+    let zero = decisive_zero(&mut |x| line.watched(x), a.at, b.at, resolution).unwrap_or(f64::NAN);
+    let mut reach = BESIDE * resolution;
     while above.at - below.at > resolution {
-        let at = 0.5 * (below.at + above.at);
+        let at = if below.at < zero - reach {
+            zero - reach
+        } else if zero + reach < above.at {
+            zero + reach
+        } else {
+            0.5 * (below.at + above.at)
+        };
         if at <= below.at || at >= above.at {
             break;
         }
         let middle = Probe { at, regime: line.regime(at) };
+        // f64 leaves the zero of a small slope far from the border.
+        if middle.regime == if at < zero { &above } else { &below }.regime {
+            reach *= 16.0;
+        }
         if middle.regime == below.regime {
             below = middle;
         } else if middle.regime == above.regime {
@@ -186,12 +201,12 @@ mod tests {
         }
 
         /// One combination, det A = 1.
-        fn watched(&mut self, at: f64) -> Option<Watched> {
+        fn watched(&mut self, at: f64) -> Option<Arc<Watched>> {
             let (closed, numerators, clearance) = (self.1)(at);
             let (determinants, ends) = (vec![1.0], vec![numerators.len()]);
             let inequalities = Inequalities { determinants, ends, numerators, ..Inequalities::default() };
             let contacts = if closed { vec!["foot".to_owned()] } else { Vec::new() };
-            Some(Watched { contacts, inequalities, clearance })
+            Some(Arc::new(Watched { contacts, inequalities, clearance }))
         }
     }
 

@@ -107,9 +107,10 @@ struct Grid<'p> {
     xs: Vec<f64>,
     ys: Vec<f64>,
     resolution: [f64; 2],
-    /// Row by row, like everything else.
+    /// Row by row.
     nodes: Vec<Arc<Regime>>,
     rows: Vec<Edge>,
+    /// Column by column.
     columns: Vec<Edge>,
 }
 
@@ -119,7 +120,8 @@ impl<'p> Grid<'p> {
         let (nx, ny) = (xs.len(), ys.len());
         let resolution = parameters.map(|parameter| RESOLUTION * parameter.range());
         let begin = || Solver::new(model);
-        let nodes = workers.map(nx * ny, begin, |solver, k| solver.regime(&[xs[k % nx], ys[k / nx]]));
+        let row = |solver: &mut Solver, y: f64| xs.iter().map(|&x| solver.regime(&[x, y])).collect::<Vec<_>>();
+        let nodes = workers.map(ny, begin, |solver, k| row(solver, ys[k])).concat();
         let edge = |solver: &mut Solver, axis: usize, column: usize, row: usize| {
             let (along, fixed, at) = if axis == 0 { (&xs, ys[row], column) } else { (&ys, xs[column], row) };
             let other = if axis == 0 { row * nx + column + 1 } else { (row + 1) * nx + column };
@@ -127,19 +129,21 @@ impl<'p> Grid<'p> {
             let ends = ends.map(|(at, regime)| Probe { at, regime: Arc::clone(regime) });
             Edge::search(solver, GridLine { axis, fixed }, ends, resolution[axis])
         };
-        let rows = workers.map((nx - 1) * ny, begin, |solver, k| edge(solver, 0, k % (nx - 1), k / (nx - 1)));
-        let columns = workers.map(nx * (ny - 1), begin, |solver, k| edge(solver, 1, k % nx, k / nx));
+        // Line by line: the edges of one share their ends.
+        let row = |solver: &mut Solver, row| (0..nx - 1).map(|k| edge(solver, 0, k, row)).collect::<Vec<_>>();
+        let column = |solver: &mut Solver, column| (0..ny - 1).map(|k| edge(solver, 1, column, k)).collect::<Vec<_>>();
+        let (rows, columns) = (workers.map(ny, begin, row).concat(), workers.map(nx, begin, column).concat());
         Self { parameters, xs, ys, resolution, nodes, rows, columns }
     }
 
     fn cell(&self, k: usize) -> GridCell {
-        let nx = self.xs.len();
+        let (nx, ny) = (self.xs.len(), self.ys.len());
         let (column, row) = (k % (nx - 1), k / (nx - 1));
         let edges = [
             &self.rows[row * (nx - 1) + column],
-            &self.columns[row * nx + column + 1],
+            &self.columns[(column + 1) * (ny - 1) + row],
             &self.rows[(row + 1) * (nx - 1) + column],
-            &self.columns[row * nx + column],
+            &self.columns[column * (ny - 1) + row],
         ];
         GridCell {
             corners: [[self.xs[column], self.ys[row]], [self.xs[column + 1], self.ys[row + 1]]],
@@ -159,7 +163,7 @@ impl<'p> Grid<'p> {
             add(&self.rows[column], &self.rows[(ny - 1) * (nx - 1) + column]);
         }
         for row in 0..ny - 1 {
-            add(&self.columns[row * nx + nx - 1], &self.columns[row * nx]);
+            add(&self.columns[(nx - 1) * (ny - 1) + row], &self.columns[row]);
         }
         frame
     }
@@ -268,6 +272,6 @@ impl Map {
     pub fn work(model: &RobotStudy) -> usize {
         let [first, second] = model.study.parameters() else { return 0 };
         let [nx, ny] = [first, second].map(lines);
-        nx * ny + (nx - 1) * ny + nx * (ny - 1) + (nx - 1) * (ny - 1)
+        2 * ny + nx + (nx - 1) * (ny - 1)
     }
 }

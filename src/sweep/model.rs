@@ -11,6 +11,7 @@ use crate::robot::Reduction;
 use crate::state::{Defaults, State};
 use crate::{Error, Reason, Result, Robot};
 use std::borrow::Cow;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// A study of one robot.
@@ -38,6 +39,8 @@ pub struct Solver<'a> {
     pipeline: Option<Pipeline<'a>>,
     /// All regimes so far.
     known: Vec<Arc<Regime>>,
+    /// What is followed at the points that were asked last: neighboring stretches share their ends.
+    recent: VecDeque<(Vec<f64>, Option<Arc<Watched>>)>,
 }
 
 /// The quantities that are followed from point to point.
@@ -61,6 +64,9 @@ pub(super) struct Inner {
 
 /// The inequalities of up to this many contacts are followed: 4^n combinations.
 pub const WATCHED_CONTACTS: usize = 4;
+
+/// So many points are remembered: the nodes of an interval, of its halves and of theirs.
+const RECENT: usize = 16;
 
 impl RobotStudy<'_> {
     /// The options for what the study asks.
@@ -86,7 +92,7 @@ impl RobotStudy<'_> {
 impl<'a> Solver<'a> {
     pub fn new(model: &'a RobotStudy<'a>) -> Self {
         let pipeline = (!model.study.varies_the_robot()).then(|| Pipeline::new(model.robot, model.asked()));
-        Self { model, pipeline, known: Vec::new() }
+        Self { model, pipeline, known: Vec::new(), recent: VecDeque::new() }
     }
 
     /// Asks about the state at a point; robot or state may be refused there, and every state is once a budget is spent.
@@ -145,7 +151,17 @@ impl<'a> Solver<'a> {
     }
 
     /// The quantities that are followed; `None` if the point is refused.
-    pub fn watched(&mut self, point: &[f64]) -> Option<Watched> {
+    pub fn watched(&mut self, point: &[f64]) -> Option<Arc<Watched>> {
+        if let Some((_, known)) = self.recent.iter().find(|(known, _)| known == point) {
+            return known.clone();
+        }
+        let found = self.find_watched(point).map(Arc::new);
+        self.recent.truncate(RECENT - 1);
+        self.recent.push_front((point.to_vec(), found.clone()));
+        found
+    }
+
+    fn find_watched(&mut self, point: &[f64]) -> Option<Watched> {
         let unsolved = self.at(point, |_, state, pipeline| Ok((pipeline.unsolved(&state)?, pipeline.tolerance())));
         let (Unsolved { contacts, problem, clearance }, tolerance) = unsolved.ok()?;
         Some(Watched {
