@@ -20,15 +20,16 @@ pub fn mass_matrix_condition(plan: &Plan, workspace: &Workspace) -> f64 {
     let size: Vec<f64> = (0..nv).map(|i| mass[i * nv + i].sqrt()).collect();
     let ancestors = |i: usize| std::iter::successors(plan.parents[i], |&column| plan.parents[column]);
     let multiplied = |x: &[f64]| -> Vec<f64> {
-        let mut y = x.to_vec();
+        let x: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x / size).collect();
+        let mut y: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x * size * size).collect();
         for i in 0..nv {
             for j in ancestors(i) {
-                let entry = mass[i * nv + j] / (size[i] * size[j]);
+                let entry = mass[i * nv + j];
                 y[i] += entry * x[j];
                 y[j] += entry * x[i];
             }
         }
-        y
+        y.iter().zip(&size).map(|(y, size)| y / size).collect()
     };
     let solved = |x: &[f64]| -> Vec<f64> {
         let mut y: Vec<f64> = x.iter().zip(&size).map(|(x, size)| x * size).collect();

@@ -156,14 +156,13 @@ pub fn of_state(name: &str, robot: &Robot, state: &State, options: &Options, bud
         }
     };
     with_precision(robot, || {
-        let (problem, reference) = (&impact.problem, Reference::new(&exact));
-        let mut bench = Bench { state: &exact, problem, reference, analysis, budget, methods: Vec::new() };
-        let mut computation = Computation::<f64>::new(&exact);
-        computation.place();
-        computation.delassus(Elimination::Ltl);
-        let Assembly { plan, workspace, .. } = &computation.assembly;
-        study.condition.mass_matrix = Some(mass_matrix_condition(plan, workspace));
-        bench.every_method();
+        let (problem, mut reference) = (&impact.problem, None);
+        let time = time(Budget { samples: 5, ..budget }, || reference = Some(Reference::new(&exact)));
+        let Some(reference) = reference else { return };
+        let (condition, methods) = (None, Vec::new());
+        let mut bench = Bench { state: &exact, problem, reference, analysis, budget, condition, methods };
+        bench.every_method(time);
+        study.condition.mass_matrix = bench.condition;
         study.methods = bench.methods;
     });
     for (number, proves) in answers(!options.no_proof) {
@@ -261,15 +260,21 @@ struct Bench<'a> {
     reference: Reference<'a>,
     analysis: Option<&'a Analysis>,
     budget: Budget,
+    /// Of M.
+    condition: Option<f64>,
     methods: Vec<Method>,
 }
 
-impl Bench<'_> {
-    fn every_method(&mut self) {
+impl<'a> Bench<'a> {
+    /// Runs all; the reference's `time` is known.
+    fn every_method(&mut self, time: Spread) {
         use Factorization::{ArticulatedBodies, SparseLtl};
         self.method::<f32>("f32", SparseLtl);
         self.method::<f32>("f32", ArticulatedBodies);
-        self.method::<f64>("f64", SparseLtl);
+        let factorized = self.method::<f64>("f64", SparseLtl);
+        self.condition = factorized.map(|Computation { assembly: Assembly { plan, workspace, .. }, .. }| {
+            mass_matrix_condition(&plan, &workspace)
+        });
         self.dense_cholesky();
         self.method::<f64>("f64", ArticulatedBodies);
         if self.state.position.len() <= LONGEST_FACTORIZED {
@@ -278,13 +283,8 @@ impl Bench<'_> {
             self.leave_out("double-double", SparseLtl, TOO_LONG);
         }
         self.method::<DoubleDouble>("double-double", ArticulatedBodies);
-        let reference = time(Budget { samples: 5, ..self.budget }, || {
-            with_precision(self.state.robot, || {
-                std::hint::black_box(&Reference::new(self.state).contacts.delassus);
-            })
-        });
         let error = MethodErrors { mass_matrix: None, delassus: Some(self.reference.own_error()), outcome: None };
-        let method = Method::delassus("reference", self.reference.factorization(), Some(reference));
+        let method = Method::delassus("reference", self.reference.factorization(), Some(time));
         self.methods.push(Method { error: Some(error), ..method });
     }
 
@@ -293,21 +293,24 @@ impl Bench<'_> {
         self.methods.push(Method { left_out: Some(why), ..method });
     }
 
-    fn method<T: Number>(&mut self, number: &'static str, factorization: Factorization) {
+    /// What was computed, unless the method was left out.
+    fn method<T: Number>(&mut self, number: &'static str, factorization: Factorization) -> Option<Computation<'a, T>> {
         let mut computation = Computation::<T>::new(self.state);
         let by = match factorization {
             Factorization::ArticulatedBodies => Elimination::ArticulatedBodies,
             Factorization::SparseLtl | Factorization::DenseCholesky => Elimination::Ltl,
         };
         if by == Elimination::ArticulatedBodies && !computation.assembly.has_articulated_bodies() {
-            return self.leave_out(number, factorization, NOT_ARTICULATED);
+            self.leave_out(number, factorization, NOT_ARTICULATED);
+            return None;
         }
         let spread = time(self.budget, || {
             computation.place();
             computation.delassus(by);
             std::hint::black_box(&computation.assembly.workspace);
         });
-        self.take(number, factorization, spread, computation);
+        self.take(number, factorization, spread, &mut computation);
+        Some(computation)
     }
 
     fn dense_cholesky(&mut self) {
@@ -321,7 +324,7 @@ impl Bench<'_> {
             succeeds &= computation.delassus_by_cholesky();
         });
         if succeeds {
-            return self.take("f64", Factorization::DenseCholesky, spread, computation);
+            return self.take("f64", Factorization::DenseCholesky, spread, &mut computation);
         }
         self.methods.push(Method::delassus("f64", Factorization::DenseCholesky, Some(spread)));
     }
@@ -331,7 +334,7 @@ impl Bench<'_> {
         number: &'static str,
         factorization: Factorization,
         time: Spread,
-        mut computation: Computation<T>,
+        computation: &mut Computation<T>,
     ) {
         let delassus = self.reference.delassus_error(&computation.assembly.workspace.delassus);
         let mass_matrix = match factorization {

@@ -11,6 +11,8 @@ use crate::scalar::Real;
 pub struct LtlFactor<T = f64> {
     entries: Vec<T>,
     columns: usize,
+    /// The ancestors of one column.
+    branch: Vec<usize>,
 }
 
 impl<T: Real> LtlFactor<T> {
@@ -18,16 +20,20 @@ impl<T: Real> LtlFactor<T> {
     pub fn factorize(&mut self, plan: &Plan<T>, mass_matrix: &[T]) {
         let nv = plan.columns();
         self.columns = nv;
-        let h = &mut self.entries;
-        mass_matrix.clone_into(h);
+        mass_matrix.clone_into(&mut self.entries);
         for k in (0..nv).rev() {
-            for i in plan.ancestors(k) {
+            let (above, own) = self.entries.split_at_mut(k * nv);
+            let own = &mut own[..nv];
+            self.branch.clear();
+            self.branch.extend(plan.ancestors(k));
+            for (at, &i) in self.branch.iter().enumerate() {
+                let row = &mut above[i * nv..][..nv];
                 // u (u / D), never u u (1 / D): the latter underflows for small masses.
-                let a = h[k * nv + i] / h[k * nv + k];
-                for j in std::iter::once(i).chain(plan.ancestors(i)) {
-                    h[i * nv + j] = h[i * nv + j] - a * h[k * nv + j];
+                let a = own[i] / own[k];
+                for &j in &self.branch[at..] {
+                    row[j] = row[j] - a * own[j];
                 }
-                h[k * nv + i] = a;
+                own[i] = a;
             }
         }
     }

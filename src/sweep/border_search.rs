@@ -224,13 +224,22 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             }
         }
         let near_zero = NEAR * largest(values) + 2.0 * fourth_difference(values).abs();
+        let room = ROUNDING * largest(values);
         for k in 0..=FINE {
             // Also at an end, near which rounding may hide that a zero has just been passed.
             let [last, next] = [k.saturating_sub(1), (k + 1).min(FINE)];
             let [before, here, after] = [fine[last], fine[k], fine[next]];
             let least = here.abs() <= before.abs() && here.abs() <= after.abs() && here.abs() <= near_zero;
             let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
-            if least && same && !quantity.is_excluded(nodes, [node(last), node(next)]) {
+            // An end on a border is a zero itself, and hides none.
+            let rise = match k {
+                0 => slope(*values),
+                FINE => slope([values[4], values[3], values[2], values[1], values[0]]),
+                _ => 0.0,
+            };
+            let rises = (rise < 0.0) == (here < 0.0) && rise.abs() > room;
+            let on_border = rises && here.abs() * (place(1.0) - place(0.0)) <= 2.0 * resolution * rise.abs();
+            if least && same && !on_border && !quantity.is_excluded(nodes, [node(last), node(next)]) {
                 let sign = if here < 0.0 { -1.0 } else { 1.0 };
                 let ends = [(at(last), sign * before), (at(next), sign * after)];
                 let Some(bottom) = least_place(&mut |x| sign * real(x), ends, resolution) else { continue };
@@ -294,6 +303,11 @@ fn quartic(values: &[f64; NODES], x: f64) -> f64 {
         factor *= (x - k as f64) / (k + 1) as f64;
     }
     sum
+}
+
+/// The slope of that polynomial at 0.
+fn slope([a, b, c, d, e]: [f64; NODES]) -> f64 {
+    (48.0 * b - 25.0 * a - 36.0 * c + 16.0 * d - 3.0 * e) / 12.0
 }
 
 /// A zero of `f` between `a` and `b`, if its signs there differ, else the middle; or a place where it is not a number.
@@ -379,6 +393,7 @@ mod tests {
         for x in [0.3, 1.0, 2.7, 3.9] {
             assert!((quartic(&values, x) - polynomial(x)).abs() < 1e-12);
         }
+        assert!((slope(values) + 1.0).abs() < 1e-12);
     }
 
     #[test]
