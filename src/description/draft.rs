@@ -116,7 +116,10 @@ fn require_urdf(root: Node<'_, '_>) -> Result<()> {
 /// Refuses macros that are still to be expanded, by their namespace or as they were written before there was one; a
 /// file that only declares the namespace is plain URDF.
 fn refuse_xacro(robot: Node<'_, '_>) -> Result<()> {
-    let is_macro = |element: &Node| element.tag_name().namespace().is_some_and(|namespace| namespace.contains("xacro"));
+    let is_macro = |element: &Node| {
+        let of_xacro = |uri: &str| uri.contains("xacro") || element.lookup_prefix(uri) == Some("xacro");
+        element.tag_name().namespace().is_some_and(of_xacro)
+    };
     let refused = |element: Node, what: String| {
         xml::refuse(element, Reason::Unsupported(format!("{what} is not URDF"))).hint(EXPAND)
     };

@@ -424,10 +424,14 @@ impl Pipeline<'_> {
                 "nothing touches the ground: the lowest foot, {name}, is {height:?} m above it and {moving}; \
                  `place: lowest` puts it there"
             ),
-            (false, _) => format!(
-                "{name} nearly touches, {height:?} m above the ground: to let it touch, give `contact_tolerance: \
-                 {enough:.1e}`, or correct the pose"
-            ),
+            (false, _) => {
+                let touches = contacts.iter().any(|contact| contact.link == link);
+                let which = if touches { "another point of " } else { "" };
+                format!(
+                    "{which}{name} nearly touches, {height:?} m above the ground: to let it touch, give \
+                     `contact_tolerance: {enough:.1e}`, or correct the pose"
+                )
+            }
         });
     }
 

@@ -51,6 +51,8 @@ pub(crate) struct Wording {
     pub coordinates: &'static str,
     pub rates: &'static str,
     pub others: &'static str,
+    /// Of a region without an outcome.
+    pub nothing: &'static str,
     pub drawn: DrawnNames,
 }
 
@@ -74,6 +76,7 @@ const IMPACT: Wording = Wording {
     coordinates: "velocity after",
     rates: "velocities",
     others: "other impulses give the same velocities",
+    nothing: "no outcome",
     drawn: DrawnNames {
         given: ("impulse", "N s"),
         taken: ("velocity after", "m/s"),
@@ -91,6 +94,7 @@ const FORCES: Wording = Wording {
     coordinates: "acceleration",
     rates: "accelerations",
     others: "other forces give the same accelerations",
+    nothing: "no forces are consistent: velocities jump",
     drawn: DrawnNames {
         given: ("force", "N"),
         taken: ("acceleration", "m/s\u{b2}"),

@@ -34,7 +34,7 @@ pub fn picture<'s>(x: PlotAxis, aspect: Aspect, survey: &'s Survey, courses: &[R
     let look = |(region, color): (&'s Region, Color)| KindLook {
         letter: letter(region.kind),
         color,
-        happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
+        happening: Happening::of(aspect, &region.regime, region.verdict, region.refused.as_ref()),
     };
     let kinds: Vec<KindLook> = firsts(survey).into_iter().zip(fills_along(survey)).map(look).collect();
     let styles = OutcomeStyles::of(survey, &kinds);

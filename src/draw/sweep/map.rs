@@ -5,6 +5,7 @@ use super::place::{around, clear_of, freest};
 use crate::draw::plot::{
     Color, LegendEntry, LegendKey, Panel, Picture, Pixel, PlotAxis, PlotPoint, PlotShape, Stroke, TextBox,
 };
+use crate::pipeline::Aspect;
 use crate::sweep::{Area, Map, letter};
 use crate::write::sweep::Happening;
 
@@ -21,11 +22,11 @@ const CLEAR: f64 = 1.0;
 const AWAY: [f64; 4] = [26.0, 38.0, 52.0, 70.0];
 const DIRECTIONS: usize = 24;
 
-pub fn picture([x, y]: [PlotAxis; 2], map: &Map) -> Picture {
+pub fn picture([x, y]: [PlotAxis; 2], question: Aspect, map: &Map) -> Picture {
     let points = |points: &Vec<[f64; 2]>| points.iter().map(|&[x, y]| (x, y)).collect();
     let (mut shapes, mut legend) = (Vec::new(), Vec::new());
     for ((index, area), color) in map.areas.iter().enumerate().zip(fills_of_map(map)) {
-        let happening = Happening::of(&area.regime, area.verdict, area.refused.as_ref());
+        let happening = Happening::of(question, &area.regime, area.verdict, area.refused.as_ref());
         let name = format!("{}: {}", letter(index), happening.lines().join("\n"));
         // The seam between two fills lies under the border's line.
         let loops = area.loops.iter().map(points).collect();

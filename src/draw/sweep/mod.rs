@@ -26,7 +26,7 @@ pub fn of(model: &RobotStudy, findings: &Findings, workers: Workers) -> Picture 
             let curves = RegionCurves::of(model, survey, workers);
             along::picture(axis(model, 0), model.study.question(), survey, &curves)
         }
-        Findings::Map(map) => map::picture([axis(model, 0), axis(model, 1)], map),
+        Findings::Map(map) => map::picture([axis(model, 0), axis(model, 1)], model.study.question(), map),
     }
 }
 

@@ -72,6 +72,9 @@ pub struct RegionRecord<'a> {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Happening<'a> {
+    /// What is asked.
+    #[serde(skip)]
+    pub question: Aspect,
     /// Names of the closed contacts; absent if states are refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<&'a [String]>,
@@ -107,7 +110,7 @@ impl<'a> Sweep<'a> {
             letter: letter(region.kind),
             from: region.from,
             to: region.to,
-            happening: Happening::of(&region.regime, region.verdict, region.refused.as_ref()),
+            happening: Happening::of(study.question(), &region.regime, region.verdict, region.refused.as_ref()),
         };
         let contacts = survey.regions.iter().map(|region| region.regime.contacts().len()).max().unwrap_or(0);
         Self {
@@ -165,7 +168,7 @@ impl<'a> MapSweep<'a> {
         let whole: f64 = parameters.iter().map(Parameter::range).product();
         let region = |(kind, area): (usize, &'a Area)| MapRegion {
             letter: letter(kind),
-            happening: Happening::of(&area.regime, area.verdict, area.refused.as_ref()),
+            happening: Happening::of(study.question(), &area.regime, area.verdict, area.refused.as_ref()),
             share: area.loops.iter().map(|points| surface(points)).sum::<f64>() / whole,
             loops: &area.loops,
         };
@@ -196,13 +199,18 @@ fn surface(points: &[[f64; 2]]) -> f64 {
 
 impl<'a> Happening<'a> {
     /// That of a regime, with the verdict in it, or why it is refused.
-    pub(crate) fn of(regime: &'a Regime, verdict: Option<Verdict>, refused: Option<&'a Error>) -> Self {
+    pub(crate) fn of(
+        question: Aspect,
+        regime: &'a Regime,
+        verdict: Option<Verdict>,
+        refused: Option<&'a Error>,
+    ) -> Self {
         let undecided = match regime {
             Regime::Answered { undecided, .. } if !undecided.is_empty() => Some(&undecided[..]),
             _ => None,
         };
         let (contacts, outcomes) = (regime.outcomes().map(|_| regime.contacts()), regime.outcomes());
-        Self { contacts, verdict, outcomes, undecided, error: refused.map(ErrorObject::new) }
+        Self { question, contacts, verdict, outcomes, undecided, error: refused.map(ErrorObject::new) }
     }
 }
 

@@ -81,7 +81,7 @@ impl Happening<'_> {
         }
         let Some(outcomes) = self.outcomes else { return vec!["refused".to_owned()] };
         let mut lines: Vec<String> = match outcomes {
-            [] => vec!["no outcome".to_owned()],
+            [] => vec![words::Wording::of(self.question).nothing.to_owned()],
             [only] if only.is_empty() => vec!["nothing touches the ground".to_owned()],
             outcomes => outcomes.iter().map(|modes| self.in_words(modes)).collect(),
         };
