@@ -121,6 +121,9 @@ pub mod write;
 pub mod draw;
 #[doc(hidden)]
 pub mod batch;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 
 pub use budget::Budget;
 pub use contact::Contact;

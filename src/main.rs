@@ -1,13 +1,7 @@
-//! The command-line tool: parse, run, exit status.
+//! The command-line tool.
 
-mod cli;
-
-use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match cli::Cli::try_parse() {
-        Ok(cli) => cli::run(cli),
-        Err(message) => cli::usage(&message),
-    }
+    heelstrike::cli::main(std::env::args_os()).into()
 }

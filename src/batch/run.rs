@@ -53,12 +53,12 @@ pub struct RefusedRecord {
 }
 
 /// Takes the answers in the order of the input.
-pub trait Sink {
+pub trait Sink<B = Block> {
     /// Takes the next answers.
     ///
     /// # Errors
     /// Those of writing; this is not called again then.
-    fn block(&mut self, block: Block) -> Result<()>;
+    fn block(&mut self, block: B) -> Result<()>;
 
     /// Writes what is buffered: everything read so far is answered, and the input pauses or has ended.
     ///
@@ -72,11 +72,11 @@ pub trait Sink {
 ///
 /// # Errors
 /// Those of the source, with all before it answered, and of the sink, once the source's current call of `next` returns.
-pub fn run<S: TaskSource, F: FnMut(S::Task) -> Block>(
+pub fn run<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
     source: S,
     threads: usize,
     answerer: impl Fn() -> F + Sync,
-    sink: &mut impl Sink,
+    sink: &mut impl Sink<B>,
 ) -> Result<()> {
     if threads > 1 {
         in_threads(source, threads, answerer, sink, |_| Builder::new())
@@ -85,7 +85,7 @@ pub fn run<S: TaskSource, F: FnMut(S::Task) -> Block>(
     }
 }
 
-fn alone<S: TaskSource>(mut source: S, mut answer: impl FnMut(S::Task) -> Block, sink: &mut impl Sink) -> Result<()> {
+fn alone<S: TaskSource, B>(mut source: S, mut answer: impl FnMut(S::Task) -> B, sink: &mut impl Sink<B>) -> Result<()> {
     while let Some(task) = source.next()? {
         sink.block(answer(task))?;
         if source.keeps_waiting() {
@@ -96,11 +96,11 @@ fn alone<S: TaskSource>(mut source: S, mut answer: impl FnMut(S::Task) -> Block,
 }
 
 /// Starts thread `k` by `builder(k)`, of which 0 reads.
-fn in_threads<S: TaskSource, F: FnMut(S::Task) -> Block>(
+fn in_threads<S: TaskSource, B: Send, F: FnMut(S::Task) -> B>(
     source: S,
     threads: usize,
     answerer: impl Fn() -> F + Sync,
-    sink: &mut impl Sink,
+    sink: &mut impl Sink<B>,
     builder: impl Fn(usize) -> Builder,
 ) -> Result<()> {
     // A job is a task and the channel for its answer.
@@ -146,7 +146,7 @@ fn in_threads<S: TaskSource, F: FnMut(S::Task) -> Block>(
 }
 
 /// Gives the sink the blocks in the order of their places.
-fn hand_on(ordered: Receiver<Result<Receiver<Block>>>, sink: &mut impl Sink) -> Result<()> {
+fn hand_on<B>(ordered: Receiver<Result<Receiver<B>>>, sink: &mut impl Sink<B>) -> Result<()> {
     loop {
         let place = match ordered.try_recv() {
             Err(TryRecvError::Empty) => {

@@ -9,12 +9,12 @@ use super::progress::Stopwatch;
 use super::robot::RobotOptions;
 use super::stream::only_document;
 use super::{Completion, Failure, input};
-use heelstrike::accuracy::compliant::compare;
-use heelstrike::accuracy::{Budget, Case, CaseStudy, CaseSubject, cases, of_state, study};
-use heelstrike::pipeline::Options;
-use heelstrike::state::{Defaults, State};
-use heelstrike::write::{Accuracy, Compliant, titled};
-use heelstrike::{Error, Reason, Robot};
+use crate::accuracy::compliant::compare;
+use crate::accuracy::{Budget, Case, CaseStudy, CaseSubject, cases, of_state, study};
+use crate::pipeline::Options;
+use crate::state::{Defaults, State};
+use crate::write::{Accuracy, Compliant, titled};
+use crate::{Error, Reason, Robot};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

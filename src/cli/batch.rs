@@ -13,17 +13,17 @@ use super::resume::BatchOutput;
 use super::robot::RobotOptions;
 use super::sink::{OutputSink, note_part};
 use super::{Answered, Completion, Failure, input, progress};
+use crate::batch::{self, Batch, Chunks, Question, Recording, Summary};
+use crate::budget::TotalBudget;
+use crate::error::Location;
+use crate::error::excerpt::Excerpt;
+use crate::gait::{Dropped, Thresholds};
+use crate::pipeline::{Aspect, Options};
+use crate::read::table::Header;
+use crate::state::NamedContact;
+use crate::write::{self, Columns, RowKind};
+use crate::{Detail, Error, Reason, Robot};
 use clap::ValueEnum;
-use heelstrike::batch::{self, Batch, Chunks, Question, Recording, Summary};
-use heelstrike::budget::TotalBudget;
-use heelstrike::error::Location;
-use heelstrike::error::excerpt::Excerpt;
-use heelstrike::gait::{Dropped, Thresholds};
-use heelstrike::pipeline::{Aspect, Options};
-use heelstrike::read::table::Header;
-use heelstrike::state::NamedContact;
-use heelstrike::write::{self, Columns, RowKind};
-use heelstrike::{Detail, Error, Reason, Robot};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -279,7 +279,7 @@ impl Args {
         answered: usize,
         (thresholds, dropped): (Thresholds, &Mutex<Dropped>),
         sink: &mut OutputSink<'_>,
-    ) -> heelstrike::Result<()> {
+    ) -> crate::Result<()> {
         let threads = self.threads.count();
         let Some(header) = question.header.filter(|_| self.recording.is_in_order()) else {
             chunks.skip(answered)?;

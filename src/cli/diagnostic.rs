@@ -1,9 +1,9 @@
 //! Errors and notes on standard error, colored on a terminal, with hints in terms of the command line.
 
+use crate::Error;
+use crate::error::excerpt::Excerpt;
+use crate::error::{Location, visible};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet, normalize_untrusted_str};
-use heelstrike::Error;
-use heelstrike::error::excerpt::Excerpt;
-use heelstrike::error::{Location, visible};
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 

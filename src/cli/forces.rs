@@ -2,7 +2,7 @@
 
 use super::Completion;
 use super::impact::StateArgs;
-use heelstrike::pipeline::Aspect;
+use crate::pipeline::Aspect;
 
 /// Find every consistent set of contact forces and accelerations of a state in sustained contact
 #[derive(Debug, clap::Args)]

@@ -9,11 +9,11 @@ use super::picture::PlotOptions;
 use super::robot::RobotOptions;
 use super::stream::{SUMMED_UP, answer_all, append};
 use super::{Completion, Failure, input};
-use heelstrike::draw::robot::picture;
-use heelstrike::pipeline::{Aspect, Pipeline};
-use heelstrike::state::State;
-use heelstrike::write::{Report, Subject};
-use heelstrike::{Error, Reason};
+use crate::draw::robot::picture;
+use crate::pipeline::{Aspect, Pipeline};
+use crate::state::State;
+use crate::write::{Report, Subject};
+use crate::{Error, Reason};
 use std::path::PathBuf;
 
 /// Find every outcome of one state

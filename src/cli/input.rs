@@ -1,9 +1,9 @@
 //! Files and standard input.
 
 use super::Failure;
-use heelstrike::error::excerpt::Excerpt;
-use heelstrike::read::documents::utf8;
-use heelstrike::{Error, Reason, Result};
+use crate::error::excerpt::Excerpt;
+use crate::read::documents::utf8;
+use crate::{Error, Reason, Result};
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;

@@ -5,8 +5,8 @@ use super::diagnostic::with_flags;
 use super::output::OutputOptions;
 use super::picture::PlotOptions;
 use super::robot::RobotOptions;
-use heelstrike::draw::robot as drawing;
-use heelstrike::write::Inspection;
+use crate::draw::robot as drawing;
+use crate::write::Inspection;
 
 /// Show the model: plane, links, joints, masses, feet, and what was left out
 #[derive(Debug, clap::Args)]

@@ -16,12 +16,12 @@
 //! Only regular files are opened, and none outside its package.
 
 use super::input::InputFile;
-use heelstrike::description::Fetched;
+use crate::description::Fetched;
 use percent_encoding::percent_decode_str;
 use std::path::{Component, Path, PathBuf};
 
 /// Where meshes are looked for.
-pub(super) struct Meshes {
+pub struct Meshes {
     /// The URDF file's folder.
     folder: PathBuf,
     /// Folders that are packages or hold them, in the order of the search.

@@ -26,15 +26,18 @@ mod sweep;
 mod accuracy;
 mod reference;
 
+pub use clock::work_time;
+pub use meshes::Meshes;
+
+use crate::error::excerpt::Excerpt;
+use crate::error::visible;
 use anstream::ColorChoice;
 use clap::{Parser, Subcommand};
 use diagnostic::{report, report_with};
-use heelstrike::error::excerpt::Excerpt;
-use heelstrike::error::visible;
 use options::{Choices, choice};
 use std::borrow::Cow;
+use std::ffi::OsString;
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 /// The crate's version, and the commit if it is known.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("HEELSTRIKE_COMMIT"));
@@ -44,7 +47,7 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("HEELSTRIKE_COMMIT
 #[derive(Debug, Parser)]
 #[command(name = "heelstrike", version = VERSION, propagate_version = true, arg_required_else_help = true)]
 #[command(after_help = "Example:\n  heelstrike impact urdf/ramone.urdf examples/ramone.json")]
-pub struct Cli {
+struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Write no notes, no summary and no progress to standard error, only errors
@@ -79,15 +82,15 @@ enum Command {
 /// Why a command ended early.
 enum Failure {
     /// An input that the command cannot do without was refused, such as the robot's file; with the line in question.
-    Refused(heelstrike::Error, Option<Excerpt>),
+    Refused(crate::Error, Option<Excerpt>),
     /// An option's value is wrong or does not fit the robot.
-    Usage(heelstrike::Error),
+    Usage(crate::Error),
     /// The output could not be written.
     Output(io::Error),
 }
 
-impl From<heelstrike::Error> for Failure {
-    fn from(error: heelstrike::Error) -> Self {
+impl From<crate::Error> for Failure {
+    fn from(error: crate::Error) -> Self {
         Self::Refused(error, None)
     }
 }
@@ -108,8 +111,21 @@ enum Answered {
     NotAll,
 }
 
+/// Runs the tool with these arguments, of which the first is its name, and returns the exit status. What it wrote has
+/// left its buffers.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let exit = match Cli::try_parse_from(arguments) {
+        Ok(cli) => run(cli),
+        Err(message) => usage(&message),
+    };
+    match io::stdout().flush() {
+        Err(error) if exit == 0 => status(Failure::Output(error)),
+        _ => exit,
+    }
+}
+
 /// Runs the command and returns the exit status.
-pub fn run(cli: Cli) -> ExitCode {
+fn run(cli: Cli) -> u8 {
     cli.color.write_global();
     diagnostic::set_quiet(cli.quiet);
     let completion = match cli.command {
@@ -125,14 +141,14 @@ pub fn run(cli: Cli) -> ExitCode {
         Command::Man(args) => reference::man(&args),
     };
     match completion {
-        Ok(Answered::All) => ExitCode::SUCCESS,
-        Ok(Answered::NotAll) => ExitCode::from(1),
-        Err(failure) => ExitCode::from(status(failure)),
+        Ok(Answered::All) => 0,
+        Ok(Answered::NotAll) => 1,
+        Err(failure) => status(failure),
     }
 }
 
 /// Writes clap's message, such as the version or an error about an option, and returns the exit status.
-pub fn usage(message: &clap::Error) -> ExitCode {
+fn usage(message: &clap::Error) -> u8 {
     let text = message.render().to_string();
     let shown: Vec<_> = text.split('\n').map(visible).collect();
     let written = match shown.iter().any(|line| matches!(line, Cow::Owned(_))) {
@@ -140,10 +156,9 @@ pub fn usage(message: &clap::Error) -> ExitCode {
         true => write!(anstream::stderr(), "{}", shown.join("\n")),
         false => message.print(),
     };
-    let written = written.and_then(|()| io::stdout().flush());
     match written {
-        Err(error) if !message.use_stderr() => ExitCode::from(status(Failure::Output(error))),
-        _ => ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(2)),
+        Err(error) if !message.use_stderr() => status(Failure::Output(error)),
+        _ => u8::try_from(message.exit_code()).unwrap_or(2),
     }
 }
 
@@ -153,7 +168,7 @@ fn status(failure: Failure) -> u8 {
         // The reader has seen enough, as with `| head`.
         Failure::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => return 0,
         Failure::Output(error) => {
-            report(&heelstrike::Reason::Io(format!("the output cannot be written: {error}")).into());
+            report(&crate::Reason::Io(format!("the output cannot be written: {error}")).into());
         }
         Failure::Refused(error, excerpt) => report_with(&error, excerpt.as_ref()),
         Failure::Usage(error) => {

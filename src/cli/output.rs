@@ -2,9 +2,9 @@
 
 use super::diagnostic::note;
 use super::{Answered, Completion, Failure};
+use crate::write::{self, Palette};
+use crate::{Error, Reason};
 use anstream::{AutoStream, ColorChoice};
-use heelstrike::write::{self, Palette};
-use heelstrike::{Error, Reason};
 use serde::Serialize;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -90,7 +90,7 @@ pub(super) fn check_ending(
 
 /// Refuses an `output` that is one of the `inputs`, even under another name; `-` and `None` are standard input and
 /// output.
-pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> heelstrike::Result<()> {
+pub(super) fn spare(output: Option<&Path>, inputs: &[Option<&PathBuf>]) -> crate::Result<()> {
     let output = output.unwrap_or(Path::new("-"));
     let Some(written) = file_of(output, io::stdout()) else { return Ok(()) };
     if inputs.iter().flatten().all(|input| file_of(input, io::stdin()).as_ref() != Some(&written)) {

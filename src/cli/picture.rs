@@ -2,10 +2,10 @@
 
 use super::Failure;
 use super::output::{NewFile, apart, spare, writable};
-use heelstrike::draw::Picture;
-use heelstrike::draw::page::Page;
-use heelstrike::draw::plot::Rendered;
-use heelstrike::{Error, Reason};
+use crate::draw::Picture;
+use crate::draw::page::Page;
+use crate::draw::plot::Rendered;
+use crate::{Error, Reason};
 use std::path::{Path, PathBuf};
 
 /// Where a picture goes, or with `PAGES` also an interactive page.

@@ -1,12 +1,12 @@
 //! Options for rows that follow each other in time.
 
 use super::options::{Choices, choice, from_zero};
-use heelstrike::batch::RowOrigin;
-use heelstrike::gait::{self, At, Difference, Dropped, Heights, Sampled, Thresholds, Touching};
-use heelstrike::read::table::{Header, Rates};
-use heelstrike::state::NamedContact;
-use heelstrike::write::RowKind;
-use heelstrike::{Result, Robot};
+use crate::batch::RowOrigin;
+use crate::gait::{self, At, Difference, Dropped, Heights, Sampled, Thresholds, Touching};
+use crate::read::table::{Header, Rates};
+use crate::state::NamedContact;
+use crate::write::RowKind;
+use crate::{Result, Robot};
 use std::sync::Mutex;
 
 /// Options for rows that follow each other in time.

@@ -3,11 +3,11 @@
 use super::options::{Choices, choice};
 use super::output::Output;
 use super::{Cli, Completion, Failure};
+use crate::write::schema;
+use crate::{Error, Reason};
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use heelstrike::write::schema;
-use heelstrike::{Error, Reason};
 use serde_json::Value;
 
 /// Write the JSON Schema of a state, a result, forces, a problem, a study, its sweep or a report on accuracy

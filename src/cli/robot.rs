@@ -5,10 +5,10 @@ use super::diagnostic::note;
 use super::input::InputFile;
 use super::meshes::Meshes;
 use super::options::{Choices, ReductionOptions, choice, from_zero};
-use heelstrike::description::Description;
-use heelstrike::robot::{Base, Plane, Reduction};
-use heelstrike::state::NamedContact;
-use heelstrike::{Error, Reason, Robot};
+use crate::description::Description;
+use crate::robot::{Base, Plane, Reduction};
+use crate::state::NamedContact;
+use crate::{Error, Reason, Robot};
 use std::path::PathBuf;
 
 /// The robot's file and what is added to it.

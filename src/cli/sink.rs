@@ -3,8 +3,8 @@
 use super::diagnostic::{note, report_with};
 use super::resume::BatchOutput;
 use super::{Failure, status};
-use heelstrike::batch::{Block, RefusedRecord, Sink, Summary};
-use heelstrike::draw::page::Gait;
+use crate::batch::{Block, RefusedRecord, Sink, Summary};
+use crate::draw::page::Gait;
 use indicatif::ProgressBar;
 use std::io::{self, ErrorKind, Write};
 
@@ -85,7 +85,7 @@ pub(super) fn note_part(output: &BatchOutput) {
 }
 
 impl Sink for OutputSink<'_> {
-    fn block(&mut self, block: Block) -> heelstrike::Result<()> {
+    fn block(&mut self, block: Block) -> crate::Result<()> {
         self.write(&block.out).unwrap_or_else(|error| self.end(error));
         // On a terminal the answers come before the errors.
         block.refused.into_iter().for_each(|refused| self.report(refused));
@@ -94,7 +94,7 @@ impl Sink for OutputSink<'_> {
         Ok(())
     }
 
-    fn idle(&mut self) -> heelstrike::Result<()> {
+    fn idle(&mut self) -> crate::Result<()> {
         self.output.flush().unwrap_or_else(|error| self.end(error));
         Ok(())
     }

@@ -5,10 +5,10 @@ use super::options::{BudgetOptions, DetailOptions, ReductionOptions, SceneOption
 use super::output::{Format, OutputOptions, spare};
 use super::stream::{SUMMED_UP, answer_all, append};
 use super::{Completion, input};
-use heelstrike::budget::within;
-use heelstrike::impact::{AnalysisOptions, Scratch};
-use heelstrike::read::Problem;
-use heelstrike::write::{Report, Subject};
+use crate::budget::within;
+use crate::impact::{AnalysisOptions, Scratch};
+use crate::read::Problem;
+use crate::write::{Report, Subject};
 use std::path::PathBuf;
 
 /// Find every outcome of a contact problem given as matrices, without a robot

@@ -5,11 +5,11 @@ use super::input::InputFile;
 use super::output::{Format, Output, OutputOptions};
 use super::progress::Stopwatch;
 use super::{Answered, Completion, Failure};
-use heelstrike::error::excerpt::Excerpt;
-use heelstrike::read::documents::{Document, documents};
-use heelstrike::state::State;
-use heelstrike::write::{self, Detail, Palette, Refused, Report, Subject, text};
-use heelstrike::{Error, Reason};
+use crate::error::excerpt::Excerpt;
+use crate::read::documents::{Document, documents};
+use crate::state::State;
+use crate::write::{self, Detail, Palette, Refused, Report, Subject, text};
+use crate::{Error, Reason};
 use std::io::Write;
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub(super) fn append(report: &Report, subject: &Subject, detail: Detail, palette
 }
 
 /// The one object of a file.
-pub(super) fn only_document(input: &InputFile) -> heelstrike::Result<Document<'_>> {
+pub(super) fn only_document(input: &InputFile) -> crate::Result<Document<'_>> {
     let name = &input.name;
     let text = input.text().map_err(|error| error.in_file(name))?;
     let mut found = documents(text);
@@ -54,7 +54,7 @@ pub(super) fn answer_all(
     format: Format,
     output: &OutputOptions,
     several: Result<(), Failure>,
-    mut answer: impl FnMut(&str, Option<&Palette>, &mut Vec<u8>) -> heelstrike::Result<Option<Error>>,
+    mut answer: impl FnMut(&str, Option<&Palette>, &mut Vec<u8>) -> crate::Result<Option<Error>>,
 ) -> Completion {
     let input = InputFile::read(path, InputFile::MANY)?;
     let name = &input.name;

@@ -151,6 +151,17 @@ impl Columns {
         Self { guarded: true, ..self }
     }
 
+    /// The names of all columns.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The contacts that have columns, in their order.
+    pub fn contacts(&self) -> impl Iterator<Item = &str> {
+        let modes = self.names[self.contacts_start()..self.velocities()].iter().step_by(3);
+        modes.filter_map(|name| name.strip_prefix("mode_"))
+    }
+
     pub fn append_header(&self, out: &mut Vec<u8>) {
         self.append(&self.names, out);
     }
@@ -173,7 +184,7 @@ impl Columns {
             coordinates.for_each(|(at, &number)| cells.number(at, number));
         }
         cells.text(self.last() + 3, report.error.as_ref().map_or(String::new(), ToString::to_string));
-        cells.text(self.last() + 4, report.notes.iter().map(|note| short(note)).collect::<Vec<_>>().join("; "));
+        cells.text(self.last() + 4, notes(&report.notes));
         let places = report.contacts.iter().map(|contact| self.place(&contact.name));
         let places: Vec<usize> = places.collect::<Result<_>>()?;
         let outcomes = report.outcomes.as_deref().unwrap_or_default();
@@ -183,9 +194,7 @@ impl Columns {
         for (at, outcome) in outcomes.iter().enumerate() {
             // Every outcome sets the same cells.
             self.outcome(at + 1, outcome, &places, &mut cells);
-            let families = report.families.iter().filter(|family| family.corners.contains(&at));
-            let modes = |family: &Family| family.modes.iter().map(Mode::to_string).collect::<Vec<_>>().join("/");
-            cells.text(self.last() + 2, families.map(modes).collect::<Vec<_>>().join("; "));
+            cells.text(self.last() + 2, families(&report.families, at));
             self.append(&cells.0, out);
         }
         Ok(())
@@ -235,9 +244,7 @@ impl Columns {
         }
         let velocities = outcome.velocity().take(self.coordinates);
         velocities.zip(self.velocities()..).for_each(|(velocity, at)| cells.number(at, velocity));
-        let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
-        let at_zero: Vec<String> = at_zero.map(|zero| format!("{}: {}", zero.contact, zero.inequality)).collect();
-        cells.text(self.last(), at_zero.join("; "));
+        cells.text(self.last(), border(outcome));
         cells.text(self.last() + 1, outcome.family.to_string());
     }
 
@@ -272,10 +279,7 @@ impl Columns {
 
     /// The first of a contact's columns.
     fn place(&self, contact: &str) -> Result<usize> {
-        self.contacts.get(contact).map(|at| self.contacts_start() + 3 * at).ok_or_else(|| {
-            let reason = Reason::Unsupported(format!("the table of results has no columns for contact \"{contact}\""));
-            Error::new(reason).hint("write NDJSON instead, or add the foot by `feet`")
-        })
+        self.contacts.get(contact).map(|at| self.contacts_start() + 3 * at).ok_or_else(|| no_column(contact))
     }
 }
 
@@ -301,6 +305,30 @@ fn contacts(robot: &Robot, feet: &[NamedContact], kind: RowKind) -> Vec<String> 
 fn is_formula(text: &[u8]) -> bool {
     let is_number = || std::str::from_utf8(text).is_ok_and(|text| text.parse::<f64>().is_ok());
     matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r')) && !is_number()
+}
+
+/// The refusal of a state with a contact that the robot's feet cannot make.
+pub(super) fn no_column(contact: &str) -> Error {
+    let reason = Reason::Unsupported(format!("the table of results has no columns for contact \"{contact}\""));
+    Error::new(reason).hint("write NDJSON instead, or add the foot by `feet`")
+}
+
+/// What is zero on the border that an outcome is, as one cell.
+pub(super) fn border(outcome: &Outcome) -> String {
+    let at_zero = outcome.border.iter().flat_map(|border| &border.at_zero);
+    at_zero.map(|zero| format!("{}: {}", zero.contact, zero.inequality)).collect::<Vec<_>>().join("; ")
+}
+
+/// The modes of the families that have outcome `at` as a corner, as one cell.
+pub(super) fn families(families: &[Family], at: usize) -> String {
+    let modes = |family: &Family| family.modes.iter().map(Mode::to_string).collect::<Vec<_>>().join("/");
+    let of_outcome = families.iter().filter(|family| family.corners.contains(&at));
+    of_outcome.map(modes).collect::<Vec<_>>().join("; ")
+}
+
+/// Notes as one cell.
+pub(super) fn notes(notes: &[String]) -> String {
+    notes.iter().map(|note| short(note)).collect::<Vec<_>>().join("; ")
 }
 
 /// A note without the speeds of a resting contact: in a walk every row has such a contact.

@@ -4,6 +4,7 @@
 //!     Impact (a robot's state)  ──┐
 //!     Analysis (matrices alone) ──┴──> Report ──> one line of JSON      result
 //!                                         └────> text for people        text
+//!     Impact ───────────────────────> Arrays                            arrays.rs
 //!     Impact (sustained contact) ───> Report ──> the same under other names   forces.rs
 //!     Robot ──> Inspection ──> JSON, text                               inspection.rs
 //!     Survey, Map ──> Regions, samples ──> JSON, CSV, text              sweep
@@ -17,6 +18,7 @@ mod result;
 mod forces;
 mod text;
 mod csv;
+mod arrays;
 mod inspection;
 pub mod sweep;
 #[cfg(feature = "accuracy")]
@@ -26,6 +28,7 @@ pub mod schema;
 
 #[cfg(feature = "accuracy")]
 pub use accuracy::{Accuracy, Compliant};
+pub use arrays::{Arrays, Texts};
 pub use csv::{Columns, RowKind};
 pub use forces::{ForceOutcome, ForcesRecord, RejectedForces, SustainedContact};
 pub use inspection::Inspection;

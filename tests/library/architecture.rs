@@ -56,7 +56,7 @@ fn order_broken_by_path_or_reexport_is_found() {
     }
 }
 
-/// Reads every module below `folder`; the command line belongs to the binary.
+/// Reads every module below `folder`.
 fn collect(folder: &Path, path: &mut ModulePath, sources: &mut BTreeMap<ModulePath, String>) {
     for entry in fs::read_dir(folder).expect("sources can be listed") {
         let file = entry.expect("sources can be listed").path();

@@ -1,0 +1,204 @@
+"""Coordinates of other packages as a planar robot's, by the names of the joints.
+
++-----------+------------------------+---------------------------------------------+--------------------+
+|           | base in q              | base in v                                   | continuous joints  |
++===========+========================+=============================================+====================+
+| Pinocchio | x y z, quaternion xyzw | linear, angular, both in the body's frame   | cosine and sine    |
+| MuJoCo    | x y z, quaternion wxyz | linear in the world's, angular in the body's| angle              |
+| Drake     | quaternion wxyz, x y z | angular, linear, both in the world's frame  | angle              |
++-----------+------------------------+---------------------------------------------+--------------------+
+
+The world's axes forward and up are those of the robot's plane: x and z of a robot in its x-z plane.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._core import Robot
+
+Array = NDArray[np.float64]
+
+_AXES = np.eye(3)
+_PLANES = {"xz": (0, 2), "yz": (1, 2), "xy": (0, 1)}
+
+
+@dataclass
+class Joint:
+    """Where a joint of one degree of freedom stands in q and in v."""
+
+    q: int
+    v: int
+    unit_circle: bool = False
+    """Whether q holds the cosine and the sine of its angle."""
+
+
+@dataclass
+class Base:
+    """Where a free base stands in q and in v, and in which frame its velocities are."""
+
+    position: slice
+    """x, y, z."""
+    quaternion: list[int]
+    """w, x, y, z."""
+    linear: slice
+    angular: slice
+    linear_in_body: bool
+    angular_in_body: bool
+
+
+@dataclass
+class Layout:
+    """The vectors q and v of another package's model."""
+
+    nq: int
+    nv: int
+    joints: dict[str, Joint] = field(default_factory=dict)
+    base: Base | None = None
+
+    def __call__(self, robot: Robot, q: ArrayLike, v: ArrayLike, *, tolerance: float = 1e-6) -> tuple[Array, Array]:
+        """The same states as `Robot.impacts` takes them.
+
+        `q` is (n, nq) or (nq,), `v` (n, nv) or (nv,), both as the other package has them. Returns q and v, each
+        (n, len(robot.coordinates)), x z pitch first [m, rad, m/s, rad/s].
+
+        Raises ValueError if the motion leaves the robot's plane by more than `tolerance` [rad, m/s, rad/s], or a joint
+        that the planar robot does not have moves; the message says by how much.
+        """
+        given_q, given_v = self._rows("q", q, self.nq), self._rows("v", v, self.nv)
+        if len(given_q) != len(given_v):
+            raise ValueError(f"q has {len(given_q)} rows and v {len(given_v)}")
+        names = robot.coordinates
+        joints = names[3:] if names[:3] == ["x", "z", "pitch"] and self._is_floating(robot) else names
+        missing = [name for name in joints if name not in self.joints]
+        if missing:
+            raise ValueError(f"the model has no joint of one degree of freedom named {', '.join(missing)}")
+        positions, velocities = [], []
+        if len(joints) < len(names):
+            positions, velocities = self._planar(robot, given_q, given_v, tolerance)
+        for name in joints:
+            positions.append(self._angle(given_q, self.joints[name]))
+            velocities.append(given_v[:, self.joints[name].v])
+        self._refuse_others(robot, given_q, given_v, tolerance)
+        return np.stack(positions, axis=1), np.stack(velocities, axis=1)
+
+    @staticmethod
+    def _rows(what: str, values: ArrayLike, columns: int) -> Array:
+        rows = np.atleast_2d(np.asarray(values, dtype=float))
+        if rows.ndim != 2 or rows.shape[1] != columns:
+            raise ValueError(f"{what} has the shape {np.shape(values)}, and the model needs (n, {columns})")
+        return rows
+
+    def _is_floating(self, robot: Robot) -> bool:
+        floating = robot.inspect()["base"] == "floating"
+        if floating and self.base is None:
+            raise ValueError("the robot has a floating base and the model has none: add a free joint to the model")
+        return floating
+
+    @staticmethod
+    def _angle(q: Array, joint: Joint) -> Array:
+        return np.arctan2(q[:, joint.q + 1], q[:, joint.q]) if joint.unit_circle else q[:, joint.q]
+
+    def _planar(self, robot: Robot, q: Array, v: Array, tolerance: float) -> tuple[list[Array], list[Array]]:
+        """x, z, pitch of the base and their rates."""
+        assert self.base is not None
+        base = self.base
+        forward, up = (_AXES[axis] for axis in _PLANES[robot.plane])
+        normal = np.cross(up, forward)
+        quaternion = q[:, base.quaternion]
+        length = np.linalg.norm(quaternion, axis=1)
+        if np.any(np.abs(length - 1) > 1e-3):
+            raise ValueError(f"a quaternion of the base has the length {length[np.argmax(np.abs(length - 1))]}, not 1")
+        w, vector = quaternion[:, 0], quaternion[:, 1:]
+        across = np.linalg.norm(vector - np.outer(vector @ normal, normal), axis=1)
+        _refuse("the base is turned out of the plane", 2 * across, "rad", tolerance)
+        pitch = np.arctan2(2 * w * (vector @ normal), w**2 - (vector @ normal) ** 2)
+        cos, sin = np.cos(pitch)[:, None], np.sin(pitch)[:, None]
+
+        def to_world(vectors: Array, in_body: bool) -> Array:
+            if not in_body:
+                return vectors
+            along, upward = (vectors @ forward)[:, None], (vectors @ up)[:, None]
+            turned = (cos * along + sin * upward) * forward + (cos * upward - sin * along) * up
+            return turned + np.outer(vectors @ normal, normal)
+
+        linear = to_world(v[:, base.linear], base.linear_in_body)
+        angular = to_world(v[:, base.angular], base.angular_in_body)
+        _refuse("the base moves out of the plane", np.abs(linear @ normal), "m/s", tolerance)
+        tilt = np.linalg.norm(angular - np.outer(angular @ normal, normal), axis=1)
+        _refuse("the base turns out of the plane", tilt, "rad/s", tolerance)
+        origin = q[:, base.position]
+        return [origin @ forward, origin @ up, pitch], [linear @ forward, linear @ up, angular @ normal]
+
+    def _refuse_others(self, robot: Robot, q: Array, v: Array, tolerance: float) -> None:
+        inspection = robot.inspect()
+        kept = {*robot.coordinates, *(joint["name"] for joint in inspection["followers"])}
+        held = robot.held
+        for name in sorted(self.joints.keys() - kept):
+            joint = self.joints[name]
+            off, rate = self._angle(q, joint) - held.get(name, 0.0), v[:, joint.v]
+            _refuse(f"joint {name}, which is held in the planar robot, is off", np.abs(off), "rad or m", tolerance)
+            _refuse(f"joint {name}, which is held in the planar robot, moves", np.abs(rate), "rad/s or m/s", tolerance)
+
+
+def _refuse(what: str, sizes: Array, unit: str, tolerance: float) -> None:
+    worst = int(np.argmax(sizes)) if len(sizes) else 0
+    if len(sizes) and not sizes[worst] <= tolerance:
+        raise ValueError(f"{what} by {sizes[worst]:.3e} {unit} in row {worst}, more than the tolerance of {tolerance:.3e}")
+
+
+def from_pinocchio(model: Any) -> Layout:
+    """The layout of a `pinocchio.Model`; its base is a JointModelFreeFlyer."""
+    layout = Layout(model.nq, model.nv)
+    for at in range(1, model.njoints):
+        q, v = model.idx_qs[at], model.idx_vs[at]
+        match model.nqs[at], model.nvs[at]:
+            case 7, 6 if layout.base is None:
+                quaternion = [q + 6, q + 3, q + 4, q + 5]
+                layout.base = Base(slice(q, q + 3), quaternion, slice(v, v + 3), slice(v + 3, v + 6), True, True)
+            case 1 | 2 as size, 1:
+                layout.joints[model.names[at]] = Joint(q, v, size == 2)
+            case 0, _:
+                pass
+            case size:
+                raise ValueError(f"joint {model.names[at]} has {size} numbers in q and v, which no planar joint has")
+    return layout
+
+
+def from_mujoco(model: Any) -> Layout:
+    """The layout of a `mujoco.MjModel`; its base is a free joint, which a URDF's root needs to be given."""
+    layout = Layout(model.nq, model.nv)
+    for at in range(model.njnt):
+        joint = model.joint(at)
+        q, v, kind = int(joint.qposadr[0]), int(joint.dofadr[0]), int(joint.type[0])
+        if kind == 0 and layout.base is None:
+            quaternion = list(range(q + 3, q + 7))
+            layout.base = Base(slice(q, q + 3), quaternion, slice(v, v + 3), slice(v + 3, v + 6), False, True)
+        elif kind in (2, 3):
+            layout.joints[joint.name] = Joint(q, v)
+        else:
+            raise ValueError(f"joint {joint.name} is a ball joint or a second free one, which no planar robot has")
+    return layout
+
+
+def from_drake(plant: Any) -> Layout:
+    """The layout of a finalized `pydrake.multibody.plant.MultibodyPlant` of one robot with a free base."""
+    layout = Layout(plant.num_positions(), plant.num_velocities())
+    for index in plant.GetJointIndices():
+        joint = plant.get_joint(index)
+        q, v = joint.position_start(), joint.velocity_start()
+        match joint.num_positions(), joint.num_velocities():
+            case 7, 6 if layout.base is None:
+                quaternion = list(range(q, q + 4))
+                layout.base = Base(slice(q + 4, q + 7), quaternion, slice(v + 3, v + 6), slice(v, v + 3), False, False)
+            case 1, 1:
+                layout.joints[joint.name()] = Joint(q, v)
+            case 0, _:
+                pass
+            case size:
+                raise ValueError(f"joint {joint.name()} has {size} numbers in q and v, which no planar joint has")
+    return layout

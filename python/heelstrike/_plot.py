@@ -1,0 +1,40 @@
+"""Pictures of robots and results."""
+
+from __future__ import annotations
+
+import os
+
+from ._core import Robot
+from ._values import Result
+
+
+class Plot:
+    """A picture as SVG, which a notebook shows, and the same as text, which a terminal shows."""
+
+    def __init__(self, svg: str | None, text: str) -> None:
+        self.svg = svg
+        self.text = text
+
+    def _repr_svg_(self) -> str | None:
+        return self.svg
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the SVG to a file."""
+        if self.svg is None:
+            raise ValueError("there is nothing to draw, or not to scale")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.svg)
+
+
+def plot(result: Result | Robot) -> Plot:
+    """Draw a robot, or what `Robot.impact`, `Robot.forces` of one state or `Robot.sweep` gave; its question is answered
+    again for this."""
+    if isinstance(result, Robot):
+        return Plot(*result._drawn())
+    if isinstance(result, Result):
+        robot, kind, question, friction = result._drawn
+        return Plot(*robot._picture(kind, question, friction))
+    raise TypeError(f"a {type(result).__name__} has no picture: give a Robot, or the result of one state or of a sweep")

@@ -1,0 +1,240 @@
+//! The arrays of a batch, made for Python when they are first asked for.
+
+use heelstrike::pipeline::Aspect;
+use heelstrike::write::{Arrays, Columns, Texts};
+use numpy::{Element, PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyAttributeError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyList;
+use std::sync::{Mutex, PoisonError};
+
+/// A list that becomes an array.
+struct Column<T> {
+    list: Mutex<Vec<T>>,
+    array: PyOnceLock<Py<PyAny>>,
+}
+
+impl<T: Element> Column<T> {
+    fn new(list: Vec<T>) -> Self {
+        Self { list: list.into(), array: PyOnceLock::new() }
+    }
+
+    fn array(&self, py: Python<'_>, shape: &[usize]) -> PyResult<Py<PyAny>> {
+        let made = || {
+            let list = std::mem::take(&mut *self.list.lock().unwrap_or_else(PoisonError::into_inner));
+            let array = PyArray1::from_vec(py, list);
+            Ok::<_, PyErr>(
+                if shape.len() == 1 { array.into_any() } else { array.reshape(shape.to_vec())?.into_any() }.unbind(),
+            )
+        };
+        self.array.get_or_try_init(py, made).map(|array| array.clone_ref(py))
+    }
+}
+
+/// The answers to many states: arrays with an entry per state or per outcome.
+#[pyclass(frozen, module = "heelstrike")]
+pub struct Answers {
+    aspect: Aspect,
+    coordinates: Vec<String>,
+    contacts: Vec<String>,
+    columns: Vec<String>,
+    states: usize,
+    outcomes: usize,
+    verdict: Column<u8>,
+    all_proven: Column<bool>,
+    offsets: Column<i64>,
+    modes: Column<i8>,
+    impulse: Column<f64>,
+    velocity_after: Column<f64>,
+    margin: Column<f64>,
+    index: Column<i8>,
+    proven: Column<bool>,
+    family: Column<bool>,
+    texts: [Texts; 4],
+}
+
+impl Answers {
+    pub fn new(aspect: Aspect, robot: &heelstrike::Robot, columns: &Columns, arrays: Arrays) -> Self {
+        Self {
+            aspect,
+            coordinates: robot.coordinates().map(str::to_owned).collect(),
+            contacts: columns.contacts().map(str::to_owned).collect(),
+            columns: columns.names().to_vec(),
+            states: arrays.verdict.len(),
+            outcomes: arrays.margin.len(),
+            verdict: Column::new(arrays.verdict),
+            all_proven: Column::new(arrays.all_proven),
+            offsets: Column::new(arrays.offsets),
+            modes: Column::new(arrays.modes),
+            impulse: Column::new(arrays.impulse),
+            velocity_after: Column::new(arrays.velocity_after),
+            margin: Column::new(arrays.margin),
+            index: Column::new(arrays.index),
+            proven: Column::new(arrays.proven),
+            family: Column::new(arrays.family),
+            texts: [arrays.error, arrays.notes, arrays.border, arrays.families],
+        }
+    }
+
+    /// Refuses a name that belongs to the other question.
+    fn of(&self, aspect: Aspect, name: &str) -> PyResult<()> {
+        let other = if aspect == Aspect::Impact { "forces" } else { "impacts" };
+        let wrong = || PyAttributeError::new_err(format!("the answers of {other} have no '{name}'"));
+        if self.aspect == aspect { Ok(()) } else { Err(wrong()) }
+    }
+
+    /// A list with a text or `None` for each of `count` entries.
+    fn texts<'py>(&self, py: Python<'py>, which: usize, count: usize) -> PyResult<Bound<'py, PyAny>> {
+        let Texts { at, known, .. } = &self.texts[which];
+        let known: Vec<_> = known.iter().map(|text| text.into_pyobject(py)).collect::<Result<_, _>>()?;
+        let list = PyList::new(py, std::iter::repeat_n(None::<&str>, count))?;
+        for &(entry, text) in at {
+            list.set_item(entry, &known[text])?;
+        }
+        Ok(list.into_any())
+    }
+}
+
+#[pymethods]
+impl Answers {
+    /// Names of q's entries: columns of `velocity_after`.
+    #[getter]
+    fn coordinates(&self) -> &[String] {
+        &self.coordinates
+    }
+
+    /// Names of the contacts that the robot's feet can make: columns of `modes` and `impulse`.
+    #[getter]
+    fn contacts(&self) -> &[String] {
+        &self.contacts
+    }
+
+    /// Names of the columns of `to_arrow` and `to_pandas`.
+    #[getter]
+    fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Of each state the `Verdict`, (n,) of uint8.
+    #[getter]
+    fn verdict(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.verdict.array(py, &[self.states])
+    }
+
+    /// Of each state whether every combination is decided by an error bound, (n,).
+    #[getter]
+    fn all_proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.all_proven.array(py, &[self.states])
+    }
+
+    /// State k has the outcomes from offsets[k] to offsets[k + 1], (n + 1,).
+    #[getter]
+    fn offsets(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.offsets.array(py, &[self.states + 1])
+    }
+
+    /// Of each outcome and contact the `Mode`, (m, contacts) of int8; OPEN if the contact is not closed.
+    #[getter]
+    fn modes(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.modes.array(py, &[self.outcomes, self.contacts.len()])
+    }
+
+    /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed.
+    #[getter]
+    fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.of(Aspect::Impact, "impulse")?;
+        self.impulse.array(py, &[self.outcomes, self.contacts.len(), 2])
+    }
+
+    /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed.
+    #[getter]
+    fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.of(Aspect::Forces, "force")?;
+        self.impulse.array(py, &[self.outcomes, self.contacts.len(), 2])
+    }
+
+    /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s].
+    #[getter]
+    fn velocity_after(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.of(Aspect::Impact, "velocity_after")?;
+        self.velocity_after.array(py, &[self.outcomes, self.coordinates.len()])
+    }
+
+    /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2].
+    #[getter]
+    fn acceleration(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.of(Aspect::Forces, "acceleration")?;
+        self.velocity_after.array(py, &[self.outcomes, self.coordinates.len()])
+    }
+
+    /// Of each outcome the smallest slack, free of units, (m,); NaN if it has no inequality.
+    #[getter]
+    fn margin(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.margin.array(py, &[self.outcomes])
+    }
+
+    /// Of each outcome the sign of det A, (m,) of int8; 0 if it is not defined, as on a border.
+    #[getter]
+    fn index(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.index.array(py, &[self.outcomes])
+    }
+
+    /// Of each outcome whether an error bound shows every sign, (m,).
+    #[getter]
+    fn proven(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.proven.array(py, &[self.outcomes])
+    }
+
+    /// Of each outcome whether it is a corner of a family of outcomes, (m,).
+    #[getter]
+    fn family(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.family.array(py, &[self.outcomes])
+    }
+
+    /// Of each state why it was refused, or None.
+    #[getter]
+    fn error<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.texts(py, 0, self.states)
+    }
+
+    /// Of each state what a reader should know, or None.
+    #[getter]
+    fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.texts(py, 1, self.states)
+    }
+
+    /// Of each outcome what is exactly zero, if it is on a border, or None.
+    #[getter]
+    fn border<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.texts(py, 2, self.outcomes)
+    }
+
+    /// Of each outcome the modes of the families that it is a corner of, or None.
+    #[getter]
+    fn families<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.texts(py, 3, self.outcomes)
+    }
+
+    /// How many states there are.
+    fn __len__(&self) -> usize {
+        self.states
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        slf.py().import("heelstrike._tables")?.call_method1("summary", (slf,))?.extract()
+    }
+
+    /// A pyarrow.Table with a row per outcome, and one for a state without outcome: the columns that `heelstrike batch`
+    /// writes as CSV, without `line`. `id` has an entry per state, by default its number from 0.
+    #[pyo3(signature = (id = None))]
+    fn to_arrow<'py>(slf: &Bound<'py, Self>, id: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("heelstrike._tables")?.call_method1("to_arrow", (slf, id))
+    }
+
+    /// The same as a pandas.DataFrame.
+    #[pyo3(signature = (id = None))]
+    fn to_pandas<'py>(slf: &Bound<'py, Self>, id: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("heelstrike._tables")?.call_method1("to_pandas", (slf, id))
+    }
+}

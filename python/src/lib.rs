@@ -1,0 +1,41 @@
+//! The Rust half of the Python package: what it answers, as dictionaries and arrays.
+//!
+//! ```text
+//!     robot      URDF -> Robot; one state -> dictionary; inspection
+//!     rows       arrays q, v -> rows on all cores -> Answers, by pipelines that are kept
+//!     answers    the arrays of a batch, made when they are asked for
+//!     study      sweeps, touchdowns, contact problems -> dictionaries
+//!     picture    the same questions -> SVG and text
+//!     watch      Ctrl-C and the budget of work
+//! ```
+
+mod answers;
+mod picture;
+mod robot;
+mod rows;
+mod study;
+mod values;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// The functions and classes behind the package `heelstrike`.
+#[pymodule(name = "_core")]
+mod core {
+    #[pymodule_export]
+    use super::answers::Answers;
+    #[pymodule_export]
+    use super::main;
+    #[pymodule_export]
+    use super::robot::Robot;
+    #[pymodule_export]
+    use super::study::solve;
+    #[pymodule_export]
+    use super::values::Refused;
+}
+
+/// Run the command `heelstrike` with these arguments, of which the first is its name.
+#[pyfunction]
+fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
+    py.detach(|| heelstrike::cli::main(arguments))
+}

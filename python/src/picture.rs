@@ -1,0 +1,46 @@
+//! Pictures of answers as SVG, and the answers as text for people.
+
+use crate::robot::{Asked, Model};
+use crate::study::{Work, studied, threads};
+use crate::values::refused;
+use crate::watch::without_python;
+use heelstrike::draw::robot::picture;
+use heelstrike::draw::sweep;
+use heelstrike::pipeline::Aspect;
+use heelstrike::write::sweep::Regions;
+use heelstrike::write::{Palette, Subject, text};
+use heelstrike::{Detail, Inspection};
+use pyo3::prelude::*;
+
+/// A picture, if there is something to draw, and text.
+type Shown = (Option<String>, String);
+
+pub fn robot(model: &Model) -> Shown {
+    let Model { robot, options, .. } = model;
+    let text = Inspection::new(robot, &options.feet).text(&Palette::default(), false);
+    (picture::robot(robot, &options.feet).svg(), text)
+}
+
+/// Answers a question again, which was a state or a study, and shows it.
+pub fn answer(py: Python<'_>, model: &Model, kind: &str, question: &str, friction: Option<&str>) -> PyResult<Shown> {
+    let friction = friction.and_then(|friction| friction.parse().ok());
+    let Model { robot, options, .. } = model;
+    let made = || {
+        if kind == "sweep" {
+            let work = Work { friction, threads: threads(None), budget: None };
+            return studied(model, question, work, |study, findings, workers| {
+                let text = Regions::new(study.study, findings).text(&robot.name, &Palette::default());
+                (sweep::of(study, findings, workers).svg(), text)
+            });
+        }
+        let aspect = if kind == "forces" { Aspect::Forces } else { Aspect::Impact };
+        let asked = Asked { aspect, friction, detail: Detail::default(), next: false };
+        let shown = model.answer(question, asked, |state, impact, report| {
+            let subject = Subject::of_state(robot, state, impact);
+            let text = text(report, &subject, Detail::default(), &Palette::default());
+            (picture::impact(robot, &options.feet, state, impact).and_then(|picture| picture.svg()), text)
+        });
+        Ok(shown?.1)
+    };
+    without_python(py, made)?.map_err(refused)
+}

@@ -1,0 +1,347 @@
+//! Robots, and the answer to one state.
+
+use crate::answers::Answers;
+use crate::rows::{Kept, Rows};
+use crate::values::{from_json, refused, to_json};
+use crate::watch::{budget, without_python};
+use crate::{picture, study};
+use heelstrike::cli::Meshes;
+use heelstrike::pipeline::{Aspect, Options};
+use heelstrike::reductions::Reductions;
+use heelstrike::robot::{Base, Plane, Reduction};
+use heelstrike::state::NamedContact;
+use heelstrike::write::append_line;
+use heelstrike::{Defaults, Description, Detail, Error, Friction, Inspection, Pipeline, Reason, Report, State};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+/// A robot as its URDF file has it, and reduced to its plane.
+pub struct Model {
+    pub description: Description,
+    pub reduction: Reduction,
+    pub robot: heelstrike::Robot,
+    /// How contacts are found.
+    pub options: Options,
+    /// How many seconds an answer may take.
+    pub budget: Option<f64>,
+}
+
+/// A planar robot, read from a URDF file.
+///
+/// Options: `plane` ("xz", "yz", "xy"), `hold` (values of joints to fix, by name [rad, m]), `base` ("fixed",
+/// "floating"), `axis_tolerance` [rad], `package_path` (folders of meshes), `feet` (contacts to add, as a state lists
+/// them), `contact_tolerance` [m], `resting_speed` [m/s], `strict_limits`, `budget` (seconds of processor time that an
+/// answer may take, None for no end). Raises Refused with `file`, `place` and `hint`.
+#[pyclass(frozen, module = "heelstrike")]
+pub struct Robot {
+    pub model: Arc<Model>,
+    /// Pipelines of impacts and of forces that no call is using.
+    pub kept: [Mutex<Vec<Kept>>; 2],
+}
+
+impl Model {
+    /// Reads the robot; meshes are looked for as of the file `path`.
+    fn read(text: &str, path: &Path, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let mut description = Description::from_urdf(text).map_err(refused)?;
+        let mut reduction = Reduction { reductions: Reductions::ALL, ..Reduction::default() };
+        let (mut own, mut budget, mut package_path, mut feet) = (Options::default(), Some(10.0), Vec::new(), None);
+        for (name, value) in options.into_iter().flatten() {
+            match name.extract::<String>()?.as_str() {
+                "plane" => reduction.plane = plane(value.extract()?)?,
+                "hold" => reduction.hold = held(&description, value.cast()?)?,
+                "base" => reduction.base = base(value.extract()?)?,
+                "axis_tolerance" => reduction.axis_tolerance = value.extract()?,
+                "package_path" => package_path = value.extract::<Vec<PathBuf>>()?,
+                "feet" => feet = Some(value),
+                "contact_tolerance" => own.contact_tolerance = value.extract()?,
+                "resting_speed" => own.resting_speed = value.extract()?,
+                "strict_limits" => own.strict_limits = value.extract()?,
+                "budget" => budget = value.extract()?,
+                other => return Err(PyTypeError::new_err(format!("Robot has no option \"{other}\""))),
+            }
+        }
+        let meshes = Meshes::of(path, &package_path);
+        description.read_meshes(|name| meshes.fetch(name));
+        let robot = heelstrike::Robot::reduce(&description, &reduction).map_err(refused)?;
+        let feet = feet.map(|feet| contacts(&robot, &feet)).transpose()?;
+        let options = Options { feet: feet.unwrap_or_default(), ..own };
+        Ok(Self { description, reduction, robot, options, budget })
+    }
+
+    /// The answer to a state as JSON, and what else `then` makes of it.
+    pub fn answer<T>(
+        &self,
+        state: &str,
+        asked: Asked,
+        then: impl FnOnce(&State, &heelstrike::Impact, &Report) -> T,
+    ) -> heelstrike::Result<(Vec<u8>, T)> {
+        let Asked { aspect, friction, detail, next } = asked;
+        let state = State::from_json(state, &self.robot, &Defaults { friction, ..Defaults::default() })?;
+        let explain_up_to = if detail.explain { usize::MAX } else { 0 };
+        let options = Options { aspect, next, explain_up_to, matrices: detail.matrices, ..self.options.clone() };
+        let mut pipeline = Pipeline::new(&self.robot, options);
+        let impact = budget(self.budget).within(|| pipeline.answer(&state))?;
+        let report = Report::of_state(&self.robot, &state, &impact, detail)?;
+        let mut out = Vec::new();
+        report.append_json(detail, &mut out);
+        Ok((out, then(&state, &impact, &report)))
+    }
+}
+
+/// What is asked of one state.
+#[derive(Clone, Copy)]
+pub struct Asked {
+    pub aspect: Aspect,
+    /// Of links to which the state gives none.
+    pub friction: Option<Friction>,
+    pub detail: Detail,
+    pub next: bool,
+}
+
+fn choice<T>(what: &str, name: &str, choices: &[(&str, T)]) -> PyResult<T>
+where
+    T: Copy,
+{
+    choices.iter().find(|(own, _)| *own == name).map(|&(_, value)| value).ok_or_else(|| {
+        let names: Vec<&str> = choices.iter().map(|(own, _)| *own).collect();
+        PyValueError::new_err(format!("{what} is one of {}, not \"{name}\"", names.join(", ")))
+    })
+}
+
+fn plane(name: Option<String>) -> PyResult<Option<Plane>> {
+    let all = Plane::ALL.map(|plane| (plane.name(), plane));
+    name.map(|name| choice("plane", &name, &all)).transpose()
+}
+
+fn base(name: Option<String>) -> PyResult<Option<Base>> {
+    let all = [("fixed", Base::Fixed), ("floating", Base::Floating)];
+    name.map(|name| choice("base", &name, &all)).transpose()
+}
+
+fn held(description: &Description, by_name: &Bound<'_, PyDict>) -> PyResult<Vec<(usize, f64)>> {
+    let held = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let name: String = name.extract()?;
+        let known = description.joints.iter().map(|joint| joint.name.as_str());
+        let found = description.joint(&name).ok_or_else(|| {
+            let reason = Reason::UnknownName { what: "joint", name: name.clone() };
+            refused(Error::new(reason).at("hold").did_you_mean(&name, known))
+        })?;
+        Ok((found, value.extract()?))
+    };
+    by_name.iter().map(held).collect()
+}
+
+/// Contacts as a state lists them.
+fn contacts(robot: &heelstrike::Robot, list: &Bound<'_, PyAny>) -> PyResult<Vec<NamedContact>> {
+    let state = PyDict::new(list.py());
+    state.set_item("contacts", list)?;
+    let state = State::from_json(&to_json(state.as_any())?, robot, &Defaults::default()).map_err(refused)?;
+    Ok(state.scene.contacts.unwrap_or_default())
+}
+
+/// Friction as an argument: a number, `inf` and "infinite" included.
+pub fn friction(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
+    let text = match value.extract::<f64>() {
+        Ok(f64::INFINITY) => "infinite".to_owned(),
+        Ok(number) => number.to_string(),
+        Err(_) => value.extract::<String>()?,
+    };
+    text.parse().map_err(|expected| PyValueError::new_err(format!("friction: {expected}, not {text}")))
+}
+
+#[pymethods]
+impl Robot {
+    #[new]
+    #[pyo3(signature = (path, **options))]
+    fn new(py: Python<'_>, path: PathBuf, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let text = py.import("heelstrike._values")?.call_method1("read", (&path,))?;
+        let model = Model::read(text.extract()?, &path, options).map_err(|error| {
+            // As a message of the command has it.
+            let named = error.value(py).setattr("file", &path);
+            named.err().unwrap_or(error)
+        })?;
+        Ok(Self::of(model))
+    }
+
+    /// A robot from the text of a URDF file; meshes are looked for in the current folder.
+    #[staticmethod]
+    #[pyo3(signature = (text, **options))]
+    fn from_string(text: &str, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Ok(Self::of(Model::read(text, Path::new(""), options)?))
+    }
+
+    /// The robot's name in its file.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.model.robot.name
+    }
+
+    /// Names of q's entries: x, z, pitch of the root link unless it is fixed to the world, then the joints.
+    #[getter]
+    fn coordinates(&self) -> Vec<&str> {
+        self.model.robot.coordinates().collect()
+    }
+
+    /// The plane's axes in the root link's, forward before up: xz, yz or xy.
+    #[getter]
+    fn plane(&self) -> &'static str {
+        self.model.robot.reading.plane.name()
+    }
+
+    /// Values of joints that `hold` fixed; all others without a coordinate are at zero.
+    #[getter]
+    fn held(&self) -> HashMap<&str, f64> {
+        let Model { description, reduction, .. } = &*self.model;
+        reduction.hold.iter().map(|&(joint, value)| (&*description.joints[joint].name, value)).collect()
+    }
+
+    /// What was read: plane, masses [kg], links, joints, feet, what was left out; as `heelstrike inspect --format json`.
+    fn inspect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let mut out = Vec::new();
+        append_line(&mut out, &Inspection::new(&self.model.robot, &self.model.options.feet));
+        from_json(py, &out, None)
+    }
+
+    /// Every outcome of the impact of one state.
+    ///
+    /// `state` is a dictionary, a JSON text or a path of a JSON file, as the command `heelstrike impact` reads it; lengths in
+    /// m, angles in rad. `friction` is for links to which it gives none: a number from 0 on, or "infinite". Returns the
+    /// result as the command writes it; with `explain` also why every other combination fails, with `matrices` M, J and G,
+    /// with `next` the forces just after each outcome. Raises Refused.
+    #[pyo3(signature = (state, *, friction = None, explain = false, matrices = false, next = false))]
+    fn impact<'py>(
+        slf: &Bound<'py, Self>,
+        state: &Bound<'py, PyAny>,
+        friction: Option<&Bound<'py, PyAny>>,
+        explain: bool,
+        matrices: bool,
+        next: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        Self::one(slf, state, Aspect::Impact, friction, Detail { explain, matrices, brief: false }, next)
+    }
+
+    /// Every outcome of the impacts of many states.
+    ///
+    /// `q` and `v` are (n, nq) arrays of float64 in C order, in the order of `coordinates` [m, rad; m/s, rad/s], v = dq/dt in
+    /// the world's frame; other real numbers and other orders are converted. `friction` (0 to inf) and `restitution` (0 to 1)
+    /// are one number for all, an (n,) array, or a dictionary by link. `contacts` lists contacts as a state does, else they
+    /// are detected. Further fields of a state hold for all rows, as `place="lowest"` or `ground={"slope": 0.1}`. `threads`
+    /// is 0 or None for all cores. A row that is refused has the verdict REFUSED and its reason in `error`; nothing raises
+    /// for it.
+    #[pyo3(signature = (q, v, *, friction = None, restitution = None, contacts = None, threads = None, **scene))]
+    fn impacts<'py>(
+        slf: &Bound<'py, Self>,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        friction: Option<&Bound<'py, PyAny>>,
+        restitution: Option<&Bound<'py, PyAny>>,
+        contacts: Option<&Bound<'py, PyAny>>,
+        threads: Option<usize>,
+        scene: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Answers> {
+        Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?.answer(slf, Aspect::Impact, threads)
+    }
+
+    /// The contact forces and accelerations in sustained contact: of one state as `impact`, of rows as `impacts`.
+    #[pyo3(signature = (q, v = None, *, friction = None, restitution = None, contacts = None, threads = None, **scene))]
+    fn forces<'py>(
+        slf: &Bound<'py, Self>,
+        q: &Bound<'py, PyAny>,
+        v: Option<&Bound<'py, PyAny>>,
+        friction: Option<&Bound<'py, PyAny>>,
+        restitution: Option<&Bound<'py, PyAny>>,
+        contacts: Option<&Bound<'py, PyAny>>,
+        threads: Option<usize>,
+        scene: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Some(v) = v else {
+            return Self::one(slf, q, Aspect::Forces, friction, Detail::default(), false);
+        };
+        let rows = Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?;
+        Ok(Bound::new(slf.py(), rows.answer(slf, Aspect::Forces, threads)?)?.into_any())
+    }
+
+    /// Outcomes against one or two parameters: regions, borders and samples.
+    ///
+    /// `study` is a dictionary, a JSON text or a path of a JSON file, as `heelstrike sweep` reads it. Returns the result as
+    /// the command writes it. The work may take `budget` seconds of processor time; None for no end. Raises Refused.
+    #[pyo3(signature = (study, *, friction = None, threads = None, budget = Some(60.0)))]
+    fn sweep<'py>(
+        slf: &Bound<'py, Self>,
+        study: &Bound<'py, PyAny>,
+        friction: Option<&Bound<'py, PyAny>>,
+        threads: Option<usize>,
+        budget: Option<f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        study::sweep(slf, study, friction, threads, budget)
+    }
+
+    /// The impacts at the touchdowns of a recording, as `heelstrike batch --touchdowns` writes them.
+    ///
+    /// `table` is a path of a CSV file, a data frame, an Arrow table or a dictionary of columns: `time` [s], `q_base_x`,
+    /// `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity` is "central" or
+    /// "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT; `simulated` takes z = 0
+    /// as the ground. Raises Refused for the table; a refused touchdown has an `error`.
+    #[pyo3(signature = (table, *, friction = None, velocity = None, at = "crossing", touching = None, simulated = false))]
+    fn touchdowns<'py>(
+        slf: &Bound<'py, Self>,
+        table: &Bound<'py, PyAny>,
+        friction: Option<&Bound<'py, PyAny>>,
+        velocity: Option<&str>,
+        at: &str,
+        touching: Option<&str>,
+        simulated: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let recording = study::Recorded::new(velocity, at, touching, simulated)?;
+        study::touchdowns(slf, table, friction, recording)
+    }
+
+    /// A picture of the robot, as SVG, and its description.
+    fn _drawn(&self) -> (Option<String>, String) {
+        picture::robot(&self.model)
+    }
+
+    /// A picture of a question that was answered, as SVG, and the answer as text.
+    fn _picture(
+        &self,
+        py: Python<'_>,
+        kind: &str,
+        question: &str,
+        friction: Option<&str>,
+    ) -> PyResult<(Option<String>, String)> {
+        picture::answer(py, &self.model, kind, question, friction)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Robot({:?}, coordinates={:?})", self.model.robot.name, self.coordinates())
+    }
+}
+
+impl Robot {
+    fn of(model: Model) -> Self {
+        Self { model: Arc::new(model), kept: Default::default() }
+    }
+
+    fn one<'py>(
+        slf: &Bound<'py, Self>,
+        state: &Bound<'py, PyAny>,
+        aspect: Aspect,
+        mu: Option<&Bound<'py, PyAny>>,
+        detail: Detail,
+        next: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let text = to_json(state)?;
+        let friction = mu.map(friction).transpose()?;
+        let asked = Asked { aspect, friction, detail, next };
+        let model = &slf.get().model;
+        let (out, ()) = without_python(py, || model.answer(&text, asked, |_, _, _| ()))?.map_err(refused)?;
+        let kind = if aspect == Aspect::Impact { "impact" } else { "forces" };
+        let mu = friction.map(|own| own.to_string());
+        from_json(py, &out, Some((slf, kind, text, mu).into_pyobject(py)?.into_any()))
+    }
+}

@@ -1,0 +1,304 @@
+//! Arrays of states: rows of q and v, answered by pipelines that are kept from call to call.
+
+use crate::answers::Answers;
+use crate::robot::{Model, Robot, friction};
+use crate::values::{refused, to_json};
+use crate::watch::{budget, look, without_python};
+use heelstrike::batch::{Sink, TaskSource, run};
+use heelstrike::budget::TotalBudget;
+use heelstrike::pipeline::{Aspect, Options};
+use heelstrike::write::{Arrays, Columns, RowKind};
+use heelstrike::{Defaults, Error, Friction, Pipeline, Reason, State};
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use self_cell::self_cell;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How many rows a thread takes at once.
+const TOGETHER: usize = 256;
+
+self_cell!(
+    /// A pipeline and the robot that it is of.
+    pub struct Kept {
+        owner: Arc<Model>,
+        #[covariant]
+        dependent: Pipeline,
+    }
+);
+
+/// States as rows of arrays.
+pub struct Rows<'py> {
+    q: PyReadonlyArrayDyn<'py, f64>,
+    v: PyReadonlyArrayDyn<'py, f64>,
+    /// What all rows have in common.
+    common: State,
+    friction: Option<PyReadonlyArrayDyn<'py, f64>>,
+    restitution: Option<PyReadonlyArrayDyn<'py, f64>>,
+}
+
+/// The same without the interpreter.
+struct Numbers<'a> {
+    coordinates: Vec<&'a str>,
+    q: &'a [f64],
+    v: &'a [f64],
+    friction: Option<&'a [f64]>,
+    restitution: Option<&'a [f64]>,
+}
+
+/// The array as f64 in C order, with this many numbers in each of its rows; it is copied only if it is something else.
+fn array<'py>(what: &str, value: &Bound<'py, PyAny>, columns: Option<usize>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let py = value.py();
+    let own = value.cast::<PyArrayDyn<f64>>().ok().filter(|own| own.is_c_contiguous()).cloned();
+    let own = match own {
+        Some(own) => own,
+        None => {
+            let numpy = py.import("numpy")?;
+            let keywords = PyDict::new(py);
+            keywords.set_item("dtype", "float64")?;
+            keywords.set_item("order", "C")?;
+            let kind: String = numpy.call_method1("asarray", (value,))?.getattr("dtype")?.getattr("kind")?.extract()?;
+            if !["f", "i", "u"].contains(&&*kind) {
+                let hint = "numbers are needed: give float64, as by numpy.ascontiguousarray(..., dtype=float)";
+                return Err(PyTypeError::new_err(format!("{what} has the dtype kind '{kind}'; {hint}")));
+            }
+            numpy.call_method("asarray", (value,), Some(&keywords))?.cast_into::<PyArrayDyn<f64>>()?
+        }
+    };
+    let fits = match columns {
+        Some(columns) => own.ndim() == 2 && own.shape()[1] == columns,
+        None => own.ndim() == 1,
+    };
+    if !fits {
+        let wanted = columns.map_or("(n,), a number per state".to_owned(), |nq| {
+            format!("(n, {nq}): a row per state, in the order of robot.coordinates")
+        });
+        let hint = if own.ndim() == 1 && columns == Some(own.len()) { "; one state is q[None, :]" } else { "" };
+        return Err(PyValueError::new_err(format!("{what} has the shape {:?}, not {wanted}{hint}", own.shape())));
+    }
+    Ok(own.readonly())
+}
+
+/// An argument that is a number for all rows, a number per row, or something else that a state may have.
+enum Argument<'py> {
+    Rows(PyReadonlyArrayDyn<'py, f64>),
+    Value(Bound<'py, PyAny>),
+}
+
+impl<'py> Argument<'py> {
+    fn read(what: &str, value: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let is_array = || Ok::<_, PyErr>(value.hasattr("shape")? && !value.getattr("shape")?.is_empty()?);
+        let number = value.extract::<f64>().is_ok();
+        if !number && is_array()? { Ok(Self::Rows(array(what, value, None)?)) } else { Ok(Self::Value(value.clone())) }
+    }
+}
+
+impl<'py> Rows<'py> {
+    pub fn read(
+        robot: &Robot,
+        [q, v]: [&Bound<'py, PyAny>; 2],
+        mu: Option<&Bound<'py, PyAny>>,
+        restitution: Option<&Bound<'py, PyAny>>,
+        contacts: Option<&Bound<'py, PyAny>>,
+        scene: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Self> {
+        let model = &robot.model;
+        let nq = model.robot.dofs();
+        let (q, v) = (array("q", q, Some(nq))?, array("v", v, Some(nq))?);
+        if q.shape() != v.shape() {
+            return Err(PyValueError::new_err(format!("q has {} rows and v {}", q.shape()[0], v.shape()[0])));
+        }
+        let mut fields = None;
+        let fields_of =
+            |fields: &mut Option<Bound<'py, PyDict>>| fields.get_or_insert_with(|| PyDict::new(q.py())).clone();
+        if let Some(scene) = scene {
+            fields_of(&mut fields).update(scene.as_mapping())?;
+        }
+        if let Some(contacts) = contacts {
+            fields_of(&mut fields).set_item("contacts", contacts)?;
+        }
+        let mut common = State::zero(&model.robot);
+        let (mut friction_of_all, mut restitution_of_all) = (None, None);
+        let (mut friction_rows, mut restitution_rows) = (None, None);
+        match mu.map(|mu| Argument::read("friction", mu)).transpose()? {
+            Some(Argument::Rows(rows)) => friction_rows = Some(rows),
+            Some(Argument::Value(by_link)) if by_link.is_instance_of::<PyDict>() => {
+                fields_of(&mut fields).set_item("friction", by_link)?;
+            }
+            Some(Argument::Value(value)) => friction_of_all = Some(friction(&value)?),
+            None => {}
+        }
+        match restitution.map(|own| Argument::read("restitution", own)).transpose()? {
+            Some(Argument::Rows(rows)) => restitution_rows = Some(rows),
+            Some(Argument::Value(value)) if value.is_instance_of::<PyDict>() => {
+                fields_of(&mut fields).set_item("restitution", value)?;
+            }
+            Some(Argument::Value(value)) => restitution_of_all = Some(restituted(value.extract()?).map_err(refused)?),
+            None => {}
+        }
+        if let Some(fields) = &fields {
+            for name in ["position", "velocity", "id", "uncertainty"] {
+                if fields.contains(name)? {
+                    return Err(PyTypeError::new_err(format!("rows have no common \"{name}\"")));
+                }
+            }
+            common = State::from_json(&to_json(fields)?, &model.robot, &Defaults::default()).map_err(refused)?;
+        }
+        common.scene.friction.default = friction_of_all.or(common.scene.friction.default);
+        common.scene.restitution.default = restitution_of_all.or(common.scene.restitution.default);
+        let rows = q.shape()[0];
+        for (what, given) in [("friction", &friction_rows), ("restitution", &restitution_rows)] {
+            if let Some(given) = given.as_ref().filter(|given| given.len() != rows) {
+                return Err(PyValueError::new_err(format!("{what} has {} entries for {rows} states", given.len())));
+            }
+        }
+        Ok(Self { q, v, common, friction: friction_rows, restitution: restitution_rows })
+    }
+
+    /// Answers all rows.
+    pub fn answer(self, robot: &Bound<'py, Robot>, aspect: Aspect, threads: Option<usize>) -> PyResult<Answers> {
+        let Robot { model, kept } = robot.get();
+        let Self { q, v, common, friction, restitution } = self;
+        let rows = q.shape()[0];
+        let named = common.scene.contacts.as_deref().map_or_else(Vec::new, |contacts| names(&model.robot, contacts));
+        let named: Vec<&str> = named.iter().map(String::as_str).collect();
+        let kind = RowKind::of(aspect);
+        let columns = Columns::without_lines(&model.robot, &model.options.feet, &named, &[], kind);
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = threads.filter(|&threads| threads > 0).unwrap_or_else(cores).min(rows.div_ceil(TOGETHER));
+        let numbers = Numbers {
+            coordinates: model.robot.coordinates().collect(),
+            q: q.as_slice()?,
+            v: v.as_slice()?,
+            friction: friction.as_ref().map(|own| own.as_slice()).transpose()?,
+            restitution: restitution.as_ref().map(|own| own.as_slice()).transpose()?,
+        };
+        let pool = &kept[usize::from(aspect == Aspect::Forces)];
+        let total = model.budget.map(|each| TotalBudget::new(budget(Some(each)), None));
+        let empty = Arrays::new(&columns);
+        let arrays = without_python(robot.py(), || {
+            let answerer = || {
+                let mut worker = Worker::new(model, aspect, pool, common.clone());
+                let (numbers, total, empty) = (&numbers, &total, &empty);
+                move |rows: Range<usize>| {
+                    let mut block = empty.none();
+                    rows.for_each(|row| worker.row(numbers, row, total.as_ref(), &mut block));
+                    block
+                }
+            };
+            let mut all = All(empty.none());
+            // Only signals end it early, which are raised then.
+            let _ = run(Ranges(0..rows), threads, answerer, &mut all);
+            all.0
+        })?;
+        Ok(Answers::new(aspect, &model.robot, &columns, arrays))
+    }
+}
+
+/// A pipeline at work; it is given back at the end.
+struct Worker<'p> {
+    kept: Option<Kept>,
+    pool: &'p Mutex<Vec<Kept>>,
+    state: State,
+}
+
+impl<'p> Worker<'p> {
+    fn new(model: &Arc<Model>, aspect: Aspect, pool: &'p Mutex<Vec<Kept>>, state: State) -> Self {
+        let known = pool.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let new = || {
+            let made = |model: &Arc<Model>| Options { aspect, ..model.options.clone() };
+            Kept::new(Arc::clone(model), |model| Pipeline::new(&model.robot, made(model)))
+        };
+        Self { kept: Some(known.unwrap_or_else(new)), pool, state }
+    }
+
+    /// Answers a row.
+    fn row(&mut self, numbers: &Numbers, row: usize, total: Option<&TotalBudget>, out: &mut Arrays) {
+        let Self { kept: Some(kept), state, .. } = self else { return };
+        let answer = set(state, numbers, row).and_then(|()| {
+            kept.with_dependent_mut(|_, pipeline| match total {
+                Some(total) => total.within(|| pipeline.answer(state)),
+                None => budget(None).within(|| pipeline.answer(state)),
+            })
+        });
+        out.push(answer.as_ref().map_err(Error::clone));
+    }
+}
+
+impl Drop for Worker<'_> {
+    fn drop(&mut self) {
+        self.pool.lock().unwrap_or_else(PoisonError::into_inner).extend(self.kept.take());
+    }
+}
+
+/// Sets the numbers of a row.
+fn set(state: &mut State, numbers: &Numbers, row: usize) -> heelstrike::Result<()> {
+    let nq = numbers.coordinates.len();
+    let range = row * nq..(row + 1) * nq;
+    for (what, entries, own) in
+        [("q", &numbers.q[range.clone()], &mut state.position), ("v", &numbers.v[range], &mut state.velocity)]
+    {
+        if let Some(at) = entries.iter().position(|entry| !entry.is_finite()) {
+            let what = format!("{what} of {}", numbers.coordinates[at]);
+            return Err(Reason::NotFinite { what, value: entries[at] }.into());
+        }
+        own.copy_from_slice(entries);
+    }
+    if let Some(friction) = numbers.friction {
+        state.scene.friction.default = Some(rough(friction[row])?);
+    }
+    if let Some(restitution) = numbers.restitution {
+        state.scene.restitution.default = Some(restituted(restitution[row])?);
+    }
+    Ok(())
+}
+
+fn rough(mu: f64) -> heelstrike::Result<Friction> {
+    let refused = || Reason::OutOfRange { what: "friction".into(), allowed: "0 or more", value: mu };
+    if mu >= 0.0 { Ok(mu.into()) } else { Err(refused().into()) }
+}
+
+fn restituted(value: f64) -> heelstrike::Result<f64> {
+    let refused = || Reason::OutOfRange { what: "restitution".into(), allowed: "between 0 and 1", value };
+    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err(refused().into()) }
+}
+
+/// The names of contacts that a state lists.
+fn names(robot: &heelstrike::Robot, contacts: &[heelstrike::state::NamedContact]) -> Vec<String> {
+    let of = |link: usize| contacts.iter().filter(move |contact| contact.link == link).count();
+    let all = contacts.iter().enumerate().map(|(at, contact)| {
+        let name = &robot.links[contact.link].name;
+        let before = contacts[..at].iter().filter(|other| other.link == contact.link).count();
+        if of(contact.link) == 1 { name.clone() } else { format!("{name}/{before}") }
+    });
+    all.collect()
+}
+
+/// Rows as tasks.
+struct Ranges(Range<usize>);
+
+impl TaskSource for Ranges {
+    type Task = Range<usize>;
+
+    fn next(&mut self) -> heelstrike::Result<Option<Range<usize>>> {
+        let Range { start, end } = self.0;
+        self.0.start = end.min(start + TOGETHER);
+        Ok((start < end).then_some(start..self.0.start))
+    }
+}
+
+/// All answers so far.
+struct All(Arrays);
+
+impl Sink<Arrays> for All {
+    fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {
+        self.0.append(block);
+        if look() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
+    }
+
+    fn idle(&mut self) -> heelstrike::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,208 @@
+//! Sweeps, touchdowns and contact problems, as the command answers them.
+
+use crate::robot::{Robot, friction};
+use crate::values::{from_json, refused, to_json};
+use crate::watch::{budget, shared, without_python};
+use heelstrike::batch::{Batch, Chunks, Question, Recording, RowOrigin, TaskSource, samples};
+use heelstrike::budget::TotalBudget;
+use heelstrike::error::Location;
+use heelstrike::gait::{self, At, Difference, Heights, Sampled, Touching};
+use heelstrike::impact::{AnalysisOptions, Scratch};
+use heelstrike::read::Problem;
+use heelstrike::read::table::{Header, Rates};
+use heelstrike::sweep::{Findings, RobotStudy, Solver, Workers};
+use heelstrike::write::append_line;
+use heelstrike::write::sweep::{Regions, SampleRecord};
+use heelstrike::{Defaults, Detail, Error, Friction, Reason, Report, Study};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::Mutex;
+
+/// How a study is worked on.
+#[derive(Clone, Copy)]
+pub struct Work {
+    pub friction: Option<Friction>,
+    pub threads: usize,
+    /// In seconds.
+    pub budget: Option<f64>,
+}
+
+/// Does the work on a study.
+pub fn studied<T>(
+    robot: &crate::robot::Model,
+    text: &str,
+    work: Work,
+    then: impl FnOnce(&RobotStudy, &Findings, Workers) -> T,
+) -> heelstrike::Result<T> {
+    let study = Study::from_json(text)?;
+    Findings::check_memory(&study)?;
+    let model = RobotStudy {
+        study: &study,
+        description: &robot.description,
+        reduction: &robot.reduction,
+        robot: &robot.robot,
+        options: robot.options.clone(),
+        defaults: Defaults { friction: work.friction, ..Defaults::default() },
+    };
+    model.has_own_friction()?;
+    let workers = Workers { threads: work.threads, done: &|| {} };
+    let done = || then(&model, &Findings::of(&model, workers), workers);
+    shared(work.budget).within(done).map_err(|spent| study.beyond(spent))
+}
+
+pub fn threads(threads: Option<usize>) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    threads.filter(|&threads| threads > 0).unwrap_or_else(cores)
+}
+
+pub fn sweep<'py>(
+    robot: &Bound<'py, Robot>,
+    study: &Bound<'py, PyAny>,
+    mu: Option<&Bound<'py, PyAny>>,
+    count: Option<usize>,
+    seconds: Option<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = robot.py();
+    let text = to_json(study)?;
+    let work = Work { friction: mu.map(friction).transpose()?, threads: threads(count), budget: seconds };
+    let made = |model: &RobotStudy, findings: &Findings, workers: Workers| {
+        let mut out = Vec::new();
+        append_line(&mut out, &Regions::new(model.study, findings));
+        out.truncate(out.len() - b"}\n".len());
+        out.extend(b",\"samples\":[");
+        let answer = |solver: &mut Solver, index: usize| {
+            let mut sample = Vec::new();
+            SampleRecord::new(model, index).append_json(solver, Detail::default(), &mut sample);
+            sample
+        };
+        let samples = workers.map(SampleRecord::count(model), || Solver::new(model), answer);
+        out.extend(samples.join(&b','));
+        out.extend(b"]}");
+        out
+    };
+    let model = &robot.get().model;
+    let out = without_python(py, || studied(model, &text, work, made))?.map_err(refused)?;
+    let mu = work.friction.map(|own| own.to_string());
+    from_json(py, &out, Some((robot, "sweep", text, mu).into_pyobject(py)?.into_any()))
+}
+
+/// How a recording is read.
+pub struct Recorded {
+    velocity: Option<Difference>,
+    at: At,
+    touching: Touching,
+    heights: Heights,
+}
+
+impl Recorded {
+    pub fn new(velocity: Option<&str>, at: &str, touching: Option<&str>, simulated: bool) -> PyResult<Self> {
+        let unknown =
+            |what: &str, all: &str, name: &str| Err(PyValueError::new_err(format!("{what} is {all}, not \"{name}\"")));
+        let velocity = match velocity {
+            None => None,
+            Some("central") => Some(Difference::Central),
+            Some("backward") => Some(Difference::Backward),
+            Some(other) => return unknown("velocity", "central or backward", other),
+        };
+        let at = match at {
+            "crossing" => At::Crossing,
+            "row" => At::Row,
+            other => return unknown("at", "crossing or row", other),
+        };
+        let touching = touching.map_or_else(|| Ok(Touching::default()), str::parse).map_err(refused)?;
+        Ok(Self { velocity, at, touching, heights: if simulated { Heights::True } else { Heights::Recorded } })
+    }
+}
+
+pub fn touchdowns<'py>(
+    robot: &Bound<'py, Robot>,
+    table: &Bound<'py, PyAny>,
+    mu: Option<&Bound<'py, PyAny>>,
+    recorded: Recorded,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = robot.py();
+    let text: Vec<u8> = py.import("heelstrike._values")?.call_method1("to_csv", (table,))?.extract()?;
+    let defaults = Defaults { friction: mu.map(friction).transpose()?, ..Defaults::default() };
+    let model = &robot.get().model;
+    let out = without_python(py, || found(model, &text, defaults, &recorded))?.map_err(refused)?;
+    from_json(py, &out, None)
+}
+
+/// The answers to the touchdowns of a table, as a JSON list.
+fn found(
+    model: &crate::robot::Model,
+    text: &[u8],
+    defaults: Defaults,
+    recorded: &Recorded,
+) -> heelstrike::Result<Vec<u8>> {
+    let Recorded { velocity, at, touching, heights } = recorded;
+    let robot = &model.robot;
+    let mut chunks = Chunks::of_table(text);
+    let (line, record) = chunks.first()?.ok_or_else(|| Error::new(Reason::Missing("a header".into())))?;
+    let rates = if velocity.is_some() { Rates::Time } else { Rates::Columns };
+    let header = Header::read(&record, robot, rates, &[]).map_err(|error| match error.location() {
+        Some(Location { line: own, column }) => error.on(line + own - 1, column),
+        None => error,
+    })?;
+    chunks.expect_columns(header.count());
+    if !header.has_time() {
+        let missing = Error::new(Reason::Missing("a column \"time\"".into()));
+        return Err(missing.hint("touchdowns need the time of each row"));
+    }
+    let question = Question {
+        robot,
+        options: model.options.clone(),
+        defaults: defaults.clone(),
+        detail: Detail::default(),
+        total: model.budget.map(|each| TotalBudget::new(budget(Some(each)), None)),
+        header: Some(&header),
+        columns: None,
+        keyframes: false,
+    };
+    let dropped = Mutex::default();
+    let mut rows: Box<dyn Iterator<Item = Sampled<RowOrigin>> + Send> =
+        Box::new(samples(chunks, &header, robot, &defaults));
+    if header.is_spatial() {
+        rows = Box::new(gait::sagittal(rows, &dropped));
+    }
+    if let Some(difference) = velocity {
+        rows = Box::new(gait::rates(rows, *difference));
+    }
+    let rows = gait::find(rows, robot, &model.options.feet, *at, *touching)?.meaning(*heights);
+    let (mut source, mut batch, mut lines) = (Recording::new(rows), Batch::new(&question), Vec::new());
+    while let Some(states) = source.next()? {
+        lines.extend(batch.samples(states).out);
+    }
+    let lines: Vec<&[u8]> = lines.trim_ascii_end().split(|&byte| byte == b'\n').collect();
+    Ok([b"[", &*lines.join(&b','), b"]"].concat())
+}
+
+/// Every outcome of a contact problem that is given as matrices, as `heelstrike solve` writes it.
+///
+/// `G` is the Delassus matrix, (2 n, 2 n) with rows tangential, normal per contact [1/kg]; `c` the contact velocities
+/// before, (n, 2) or (2 n,) [m/s]; `friction` one number from 0 to inf or one per contact; `restitution` likewise, 0 to
+/// 1. Raises Refused.
+#[pyfunction]
+#[pyo3(signature = (G, c, friction, restitution = None, *, explain = false))]
+#[expect(non_snake_case, reason = "the name of the Delassus matrix")]
+pub fn solve<'py>(
+    py: Python<'py>,
+    G: &Bound<'py, PyAny>,
+    c: &Bound<'py, PyAny>,
+    friction: &Bound<'py, PyAny>,
+    restitution: Option<&Bound<'py, PyAny>>,
+    explain: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let text = py.import("heelstrike._values")?.call_method1("problem", (G, c, friction, restitution))?;
+    let text: String = text.extract()?;
+    let detail = Detail { explain, ..Detail::default() };
+    let solved = || {
+        let problem = Problem::from_json(&text, &Defaults::default())?;
+        let asked = AnalysisOptions { rejections: explain.into(), ..AnalysisOptions::default() };
+        let analysis = budget(Some(10.0)).within(|| Scratch::default().analyze(&problem.contact, &problem, asked))?;
+        let mut out = Vec::new();
+        Report::of_problem(&problem, &analysis, detail).append_json(detail, &mut out);
+        Ok(out)
+    };
+    from_json(py, &without_python(py, solved)?.map_err(refused)?, None)
+}

@@ -1,0 +1,39 @@
+//! Python values as JSON and back, and refusals as exceptions.
+
+use heelstrike::Error;
+use heelstrike::write::ErrorObject;
+use pyo3::create_exception;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+create_exception!(
+    heelstrike,
+    Refused,
+    PyValueError,
+    "An input was refused; `place` names where and `hint` the remedy."
+);
+
+/// The exception of a refusal.
+pub fn refused(error: Error) -> PyErr {
+    let short = ErrorObject::new(&error);
+    let shown = match error.remedy() {
+        Some(remedy) => format!("{error}; {remedy}"),
+        None => error.to_string(),
+    };
+    let refused = Refused::new_err(shown);
+    Python::attach(|py| {
+        let value = refused.value(py);
+        let _ = value.setattr("place", short.place).and_then(|()| value.setattr("hint", short.hint));
+    });
+    refused
+}
+
+/// A JSON text of a value, in which NumPy's numbers and arrays count as Python's.
+pub fn to_json(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    value.py().import("heelstrike._values")?.call_method1("to_json", (value,))?.extract()
+}
+
+/// The value of a JSON text, with what `heelstrike.plot` needs to draw it.
+pub fn from_json<'py>(py: Python<'py>, text: &[u8], drawn: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+    py.import("heelstrike._values")?.call_method1("from_json", (text, drawn))
+}

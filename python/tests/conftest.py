@@ -1,0 +1,30 @@
+"""What the tests have in common."""
+
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+
+import heelstrike
+
+ROOT = pathlib.Path(__file__).parents[2]
+COMMAND = [sys.executable, "-c", "import sys; from heelstrike._command import main; sys.exit(main())"]
+
+
+@pytest.fixture(scope="session")
+def ramone():
+    return heelstrike.Robot(ROOT / "urdf/ramone.urdf")
+
+
+@pytest.fixture(scope="session")
+def walk():
+    """q and v of RAMone in many poses, in the order of its coordinates."""
+
+    def rows(count):
+        random = np.random.default_rng(7)
+        q, v = random.uniform(-1.2, 1.2, (2, count, 7))
+        v[:, 1] -= 1.5
+        return q, v
+
+    return rows

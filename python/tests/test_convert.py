@@ -1,0 +1,202 @@
+"""States of Pinocchio, MuJoCo and Drake, against the packages themselves."""
+
+import numpy as np
+import pytest
+
+import heelstrike
+
+# Right before left, continuous knees, and a roll joint that leaves the plane.
+LEG = """
+  <link name="{side}_thigh"><inertial><origin xyz="0.01 0 -0.1"/><mass value="1"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+  <joint name="{side}_hip" type="revolute"><parent link="torso"/><child link="{side}_thigh"/>
+    <origin xyz="0.02 {y} -0.1"/><axis xyz="0 {sign} 0"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+  <link name="{side}_shank"><inertial><origin xyz="0 0 -0.1"/><mass value="0.5"/>
+    <inertia ixx="0.005" ixy="0" ixz="0" iyy="0.005" iyz="0" izz="0.005"/></inertial></link>
+  <joint name="{side}_knee" type="continuous"><parent link="{side}_thigh"/><child link="{side}_shank"/>
+    <origin xyz="0 0 -0.3"/><axis xyz="0 1 0"/></joint>
+"""
+URDF = (
+    """<robot name="biped"><link name="torso"><inertial><mass value="5"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>"""
+    + LEG.format(side="right", y=-0.1, sign=1)
+    + LEG.format(side="left", y=0.1, sign=-1)
+    + """<link name="head"><inertial><mass value="0.2"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+  <joint name="neck_roll" type="revolute"><parent link="torso"/><child link="head"/><origin xyz="0 0 0.2"/>
+    <axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+)
+FOOT = [0.03, 0.0, -0.25]
+CONTACTS = [{"link": "right_shank", "offset": FOOT}, {"link": "left_shank", "offset": FOOT}]
+
+
+class Pinocchio:
+    def __init__(self):
+        self.pin = pytest.importorskip("pinocchio")
+        self.model = self.pin.buildModelFromXML(URDF, self.pin.JointModelFreeFlyer())
+        self.layout = heelstrike.from_pinocchio(self.model)
+
+    def state(self, position, quaternion, linear, angular, joints, rates):
+        """q and v; base velocities are the world's, the quaternion w x y z."""
+        q, v = self.pin.neutral(self.model), np.zeros(self.model.nv)
+        turn = self.pin.Quaternion(*quaternion).toRotationMatrix()
+        q[:7] = [*position, *quaternion[1:], quaternion[0]]
+        v[:6] = [*(turn.T @ linear), *(turn.T @ angular)]
+        for name, angle in joints.items():
+            at = self.model.getJointId(name)
+            start, size = self.model.idx_qs[at], self.model.nqs[at]
+            q[start : start + size] = angle if size == 1 else [np.cos(angle), np.sin(angle)]
+            v[self.model.idx_vs[at]] = rates[name]
+        return q, v
+
+    def velocities(self, q, v):
+        pin, data = self.pin, self.model.createData()
+        pin.forwardKinematics(self.model, data, q, v)
+        for side in ("right", "left"):
+            at = self.model.getJointId(f"{side}_knee")
+            motion = pin.getVelocity(self.model, data, at, pin.LOCAL_WORLD_ALIGNED)
+            yield motion.linear + np.cross(motion.angular, data.oMi[at].rotation @ FOOT)
+
+
+class MuJoCo:
+    def __init__(self):
+        self.mujoco = pytest.importorskip("mujoco")
+        spec = self.mujoco.MjSpec.from_string(URDF)
+        spec.compiler.fusestatic = False
+        root = spec.body("torso")
+        root.add_freejoint()
+        self.model = spec.compile()
+        self.layout = heelstrike.from_mujoco(self.model)
+
+    def state(self, position, quaternion, linear, angular, joints, rates):
+        q, v = np.zeros(self.model.nq), np.zeros(self.model.nv)
+        w, *vector = quaternion
+        vector = np.array(vector)
+        # The world's angular velocity in the body's frame, by the conjugate quaternion.
+        cross = np.cross(-vector, angular)
+        local = angular + 2 * (w * cross + np.cross(-vector, cross))
+        q[:7], v[:6] = [*position, *quaternion], [*linear, *local]
+        for name, angle in joints.items():
+            joint = self.model.joint(name)
+            q[joint.qposadr[0]], v[joint.dofadr[0]] = angle, rates[name]
+        return q, v
+
+    def velocities(self, q, v):
+        data = self.mujoco.MjData(self.model)
+        data.qpos, data.qvel = q, v
+        self.mujoco.mj_forward(self.model, data)
+        for side in ("right", "left"):
+            body = self.model.body(f"{side}_shank").id
+            point = data.xpos[body] + data.xmat[body].reshape(3, 3) @ FOOT
+            jacobian = np.zeros((3, self.model.nv))
+            self.mujoco.mj_jac(self.model, data, jacobian, None, point, body)
+            yield jacobian @ v
+
+
+class Drake:
+    def __init__(self):
+        plant_module = pytest.importorskip("pydrake.multibody.plant")
+        parsing = pytest.importorskip("pydrake.multibody.parsing")
+        self.plant = plant_module.MultibodyPlant(0.0)
+        parsing.Parser(self.plant).AddModelsFromString(URDF, "urdf")
+        self.plant.Finalize()
+        self.context = self.plant.CreateDefaultContext()
+        self.layout = heelstrike.from_drake(self.plant)
+
+    def state(self, position, quaternion, linear, angular, joints, rates):
+        plant = self.plant
+        q, v = np.zeros(plant.num_positions()), np.zeros(plant.num_velocities())
+        base = plant.GetBodyByName("torso")
+        at, rate = base.floating_positions_start(), base.floating_velocities_start_in_v()
+        q[at : at + 7] = [*quaternion, *position]
+        v[rate : rate + 6] = [*angular, *linear]
+        for name, angle in joints.items():
+            joint = plant.GetJointByName(name)
+            q[joint.position_start()], v[joint.velocity_start()] = angle, rates[name]
+        return q, v
+
+    def velocities(self, q, v):
+        self.plant.SetPositions(self.context, q)
+        self.plant.SetVelocities(self.context, v)
+        for side in ("right", "left"):
+            body = self.plant.GetBodyByName(f"{side}_shank")
+            motion = body.EvalSpatialVelocityInWorld(self.context)
+            arm = body.EvalPoseInWorld(self.context).rotation().matrix() @ FOOT
+            yield motion.translational() + np.cross(motion.rotational(), arm)
+
+
+NAMES = ["right_hip", "right_knee", "left_hip", "left_knee"]
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return heelstrike.Robot.from_string(URDF)
+
+
+@pytest.fixture(scope="module", params=[Pinocchio, MuJoCo, Drake], ids=lambda package: package.__name__)
+def package(request):
+    return request.param()
+
+
+def planar(package, random, **change):
+    """A state in the plane, changed; also x, z, pitch, joints and their rates."""
+    pitch, turning = random.uniform(-1.5, 1.5), random.normal()
+    angles, rates = random.uniform(-1.5, 1.5, 4), random.normal(size=4)
+    x, z, along, up = random.normal(size=4)
+    given = {
+        "position": [x, 0.3, z],
+        "quaternion": [np.cos(pitch / 2), 0.0, np.sin(pitch / 2), 0.0],
+        "linear": np.array([along, 0.0, up]),
+        "angular": np.array([0.0, turning, 0.0]),
+        "joints": dict(zip(NAMES, angles)),
+        "rates": dict(zip(NAMES, rates)),
+    }
+    own = np.array([x, z, pitch, *angles]), np.array([along, up, turning, *rates])
+    return package.state(**{**given, **change}), own
+
+
+def test_contact_velocities_are_those_of_the_package(package, robot):
+    assert robot.coordinates == ["x", "z", "pitch", *NAMES]
+    random = np.random.default_rng(3)
+    states = [planar(package, random) for _ in range(50)]
+    q, v = package.layout(robot, *(np.array(part) for part in zip(*(own for own, _ in states))))
+    for row, ((own_q, own_v), (expected_q, expected_v)) in enumerate(states):
+        np.testing.assert_allclose(q[row], expected_q, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(v[row], expected_v, rtol=0, atol=1e-14)
+        parts = [
+            {"base": dict(zip(("x", "z", "pitch"), numbers)), "joints": dict(zip(NAMES, numbers[3:]))}
+            for numbers in (q[row], v[row])
+        ]
+        state = {"position": parts[0], "velocity": parts[1], "contacts": CONTACTS, "friction": 0.5}
+        found = [contact["velocity_before"] for contact in robot.impact(state)["contacts"]]
+        expected = [velocity[[0, 2]] for velocity in package.velocities(own_q, own_v)]
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+    answers = robot.impacts(q, v, friction=0.5, contacts=CONTACTS)
+    assert len(answers) == 50 and (answers.verdict != heelstrike.Verdict.REFUSED).all()
+    one, _ = package.layout(robot, *states[0][0])
+    assert one.tolist() == q[:1].tolist()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"quaternion": [np.cos(0.05), np.sin(0.05), 0.0, 0.0]}, "turned out of the plane by 9.98.e-02 rad in row 0"),
+        ({"linear": np.array([0.0, 0.25, 0.0])}, "moves out of the plane by 2.500e-01 m/s"),
+        ({"angular": np.array([0.0, 0.0, 0.5])}, "turns out of the plane by 5.000e-01 rad/s"),
+        ({"joints": {"neck_roll": 0.1}, "rates": {"neck_roll": 0.0}}, "neck_roll.* is off by 1.000e-01"),
+        ({"joints": {"neck_roll": 0.0}, "rates": {"neck_roll": 0.2}}, "neck_roll.* moves by 2.000e-01"),
+    ],
+)
+def test_motion_out_of_the_plane_is_refused_with_its_size(package, robot, change, message):
+    state, _ = planar(package, np.random.default_rng(4), **change)
+    with pytest.raises(ValueError, match=message):
+        package.layout(robot, *state)
+
+
+def test_other_models_are_refused_by_name(package, robot):
+    other = heelstrike.Robot.from_string(URDF.replace("left_knee", "left_kneee"))
+    state, _ = planar(package, np.random.default_rng(5))
+    with pytest.raises(ValueError, match="left_kneee"):
+        package.layout(other, *state)
+    with pytest.raises(ValueError, match="the model needs"):
+        package.layout(robot, state[0][1:], state[1])

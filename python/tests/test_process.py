@@ -1,0 +1,110 @@
+"""The package in a process: the command, Ctrl-C, threads, a light import, typed stubs."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+from conftest import COMMAND, ROOT
+
+SLOW = """
+import heelstrike, numpy, sys, time
+robot = heelstrike.Robot({urdf!r})
+q, v = numpy.random.default_rng(7).uniform(-1, 1, (2, 2_000_000, 7))
+print("ready", flush=True)
+try:
+    {call}
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+CALLS = {
+    "rows": 'robot.impacts(q, v, friction=0.5, place="lowest", threads=1)',
+    "threads": 'robot.impacts(q, v, friction=0.5, place="lowest", threads=2)',
+    "sweep": """robot.sweep({"parameters": {"a": {"from": -1, "to": 1, "steps": 1000000}}, "state": {
+        "position": {"joints": {"left_hip": "a"}}, "velocity": {"base": {"z": -1}}, "friction": 0.5, "place": "lowest"}},
+        budget=None)""",
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_ctrl_c_ends_a_long_call(name):
+    script = SLOW.format(urdf=str(ROOT / "urdf/ramone.urdf"), call=CALLS[name])
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    start = time.monotonic()
+    out, _ = process.communicate(timeout=30)
+    assert out == "interrupted\n" and process.returncode == 0
+    assert time.monotonic() - start < 2
+
+
+def test_other_threads_run_during_a_call(ramone, walk):
+    q, v = walk(60_000)
+    done, counted = threading.Event(), 0
+
+    def work():
+        ramone.impacts(q, v, friction=0.5, place="lowest", threads=1)
+        done.set()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    while not done.is_set():
+        counted += 1
+        time.sleep(0.001)
+    thread.join()
+    assert counted > 20
+
+
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one core")
+def test_two_threads_answer_at_once(ramone, walk):
+    q, v = walk(40_000)
+
+    def seconds(count):
+        def work():
+            ramone.impacts(q, v, friction=0.5, place="lowest", threads=1)
+
+        threads = [threading.Thread(target=work) for _ in range(count)]
+        before = time.process_time(), time.monotonic()
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        # Cores at work: other processes on this machine do not matter for it much.
+        return (time.process_time() - before[0]) / (time.monotonic() - before[1])
+
+    assert max(seconds(2) for _ in range(3)) > 1.2 * min(1.0, seconds(1))
+
+
+def test_command_is_the_tool():
+    def run(*arguments):
+        return subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, cwd=ROOT)
+
+    assert run("--version").stdout.startswith("heelstrike 0.")
+    assert run("impact", "urdf/ramone.urdf", "examples/ramone.json").returncode == 0
+    refused = run("impact", "urdf/ramone.urdf", "no.json")
+    assert (refused.returncode, refused.stdout) == (1, "") and "no.json" in refused.stderr
+    assert run("impact").returncode == 2
+    installed = subprocess.run(
+        f"'{sys.executable[: sys.executable.rindex('/')]}/heelstrike' inspect urdf/ramone.urdf --format json | head -c 10",
+        shell=True, capture_output=True, text=True, cwd=ROOT,
+    )
+    assert (installed.stdout, installed.stderr) == ('{"name":"r', "")
+
+
+def test_command_and_import_take_no_numpy():
+    script = "import sys, heelstrike._command; assert 'pandas' not in sys.modules and 'pyarrow' not in sys.modules"
+    assert subprocess.run([sys.executable, "-c", script]).returncode == 0
+
+
+def test_stubs_are_those_of_the_package():
+    done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "heelstrike"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+    files = ["-p", "heelstrike"]
+    done = subprocess.run([sys.executable, "-m", "mypy", "--strict", *files], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout

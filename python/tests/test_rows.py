@@ -1,0 +1,169 @@
+"""Arrays of states: the same answers as the command, bad rows as values, bad arrays with a remedy."""
+
+import csv
+import io
+import json
+import subprocess
+
+import numpy as np
+import pytest
+from conftest import COMMAND, ROOT
+
+import heelstrike
+from heelstrike import Mode, Verdict
+
+
+def state(robot, q, v, **scene):
+    """A row as a state."""
+
+    def part(entries):
+        named = dict(zip(robot.coordinates, entries.tolist()))
+        return {"base": {name: named.pop(name) for name in ("x", "z", "pitch")}, "joints": named}
+
+    return {"position": part(q), "velocity": part(v), **scene}
+
+
+def command(*arguments, states=None):
+    lines = None if states is None else "".join(json.dumps(state) + "\n" for state in states)
+    done = subprocess.run([*COMMAND, *map(str, arguments)], input=lines, capture_output=True, text=True)
+    assert done.returncode in (0, 1), done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("aspect", ["impacts", "forces"])
+def test_numbers_are_those_of_the_command(ramone, walk, aspect):
+    q, v = walk(300)
+    v[::7] = 0.0
+    v[1, 3] = 1e308
+    states = [state(ramone, *row, friction=0.4, place="lowest", id=at) for at, row in enumerate(zip(q, v))]
+    forces = ["--forces"] if aspect == "forces" else []
+    lines = command("batch", ROOT / "urdf/ramone.urdf", "-", "--quiet", *forces, states=states).splitlines()
+    answers = getattr(ramone, aspect)(q, v, friction=0.4, place="lowest", threads=2)
+    after = ("base_acceleration", "joint_acceleration") if forces else ("base_velocity_after", "joint_velocity_after")
+    numbers = (answers.force, answers.acceleration) if forces else (answers.impulse, answers.velocity_after)
+    assert len(lines) == len(answers)
+    for at, line in enumerate(map(json.loads, lines)):
+        assert heelstrike.Verdict[line.get("verdict", "refused").upper()] == answers.verdict[at]
+        if "error" in line:
+            assert answers.error[at].startswith(line["error"]["message"])
+            continue
+        assert answers.error[at] is None
+        assert answers.all_proven[at] == line["proven"]
+        own = range(answers.offsets[at], answers.offsets[at + 1])
+        assert len(own) == len(line["outcomes"])
+        for row, outcome in zip(own, line["outcomes"]):
+            places = [answers.contacts.index(contact["name"]) for contact in line["contacts"]]
+            modes = [mode.upper().replace("+", "_PLUS").replace("-", "_MINUS") for mode in outcome["modes"]]
+            assert [Mode(mode).name for mode in answers.modes[row, places]] == modes
+            assert (answers.modes[row] == Mode.OPEN).sum() == len(answers.contacts) - len(places)
+            assert numbers[0][row, places].tolist() == outcome["force" if forces else "impulse"]
+            assert numbers[1][row].tolist() == [entry for part in after for entry in outcome[part].values()]
+            assert answers.margin[row] == outcome["margin"] or (outcome["margin"] is None and np.isnan(answers.margin[row]))
+            assert answers.index[row] == (outcome["index"] or 0)
+            assert answers.proven[row] == outcome["proven"]
+            assert answers.family[row] == outcome.get("family", False)
+
+
+def test_table_is_that_of_the_command(ramone, walk, tmp_path):
+    q, v = walk(200)
+    q[3, 1] = np.nan
+    ids = [f"k{at}" for at in range(len(q))]
+    rows = [state(ramone, *row, friction=0.4, place="lowest", id=id) for id, *row in zip(ids, q, v)]
+    rows[3]["position"]["base"]["z"] = None
+    output = tmp_path / "out.csv"
+    command("batch", ROOT / "urdf/ramone.urdf", "-", "-o", output, "--quiet", states=rows)
+    written = list(csv.DictReader(io.StringIO(output.read_text())))
+    table = ramone.impacts(q, v, friction=0.4, place="lowest").to_arrow(ids)
+    names = list(written[0])
+    names.remove("line")
+    assert table.column_names == names
+    assert table.num_rows == len(written)
+    for own, row in zip(table.to_pylist(), written):
+        for name in names:
+            text = {None: "", True: "true", False: "false"}.get(own[name], own[name]) if not isinstance(own[name], (int, float)) or isinstance(own[name], bool) else own[name]
+            if name == "error" and text:
+                assert row[name], own
+            elif isinstance(text, (int, float)):
+                assert float(row[name]) == text, (name, own)
+            else:
+                assert row[name] == text, (name, own)
+    frame = ramone.impacts(q, v, friction=0.4, place="lowest").to_pandas()
+    assert list(frame.columns) == names and len(frame) == table.num_rows
+
+
+def test_refused_row_is_a_value(ramone, walk):
+    q, v = walk(6)
+    q[1, 4] = np.nan
+    v[2, 0] = np.inf
+    friction = np.array([0.5, 0.5, 0.5, -1.0, np.nan, np.inf])
+    answers = ramone.impacts(q, v, friction=friction, place="lowest")
+    assert (answers.verdict == Verdict.REFUSED).tolist() == [False, True, True, True, True, False]
+    assert answers.error[1] == "q of left_knee must be a finite number, not NaN"
+    assert answers.error[3] == "friction must be 0 or more, not -1"
+    assert answers.error[0] is None
+    assert np.diff(answers.offsets)[[1, 2, 3, 4]].tolist() == [0, 0, 0, 0]
+    deep = ramone.impacts(np.zeros((1, 7)), np.zeros((1, 7)), friction=1)
+    assert "deep in the ground" in deep.error[0]
+    assert "friction" in ramone.impacts(q[:1], v[:1], place="lowest").error[0]
+
+
+def test_other_arrays_are_converted(ramone, walk):
+    q, v = walk(20)
+    expected = ramone.impacts(q, v, friction=0.5, place="lowest")
+    single = ramone.impacts(q.astype(np.float32).astype(float), v, friction=0.5, place="lowest")
+    for own, other in [
+        (np.asfortranarray(q), np.asfortranarray(v)),
+        (q[::-1][::-1], v[::-1].copy()[::-1]),
+        (q.tolist(), v.tolist()),
+        (np.repeat(q, 2, axis=1)[:, ::2], v),
+        (q.astype(">f8"), v),
+    ]:
+        assert ramone.impacts(own, other, friction=0.5, place="lowest").impulse.tobytes() == expected.impulse.tobytes()
+    converted = ramone.impacts(q.astype(np.float32), v, friction=0.5, place="lowest")
+    assert converted.impulse.tobytes() == single.impulse.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("q", "v", "message"),
+    [
+        (np.zeros(7), np.zeros(7), r"q has the shape \[7\], not \(n, 7\).*q\[None, :\]"),
+        (np.zeros((3, 6)), np.zeros((3, 6)), r"q has the shape \[3, 6\], not \(n, 7\).*robot.coordinates"),
+        (np.zeros((3, 7)), np.zeros((2, 7)), "q has 3 rows and v 2"),
+        (np.zeros((3, 7), complex), np.zeros((3, 7)), "numpy.ascontiguousarray"),
+        (np.zeros((3, 7), object), np.zeros((3, 7)), "numpy.ascontiguousarray"),
+        (np.full((3, 7), "0"), np.zeros((3, 7)), "numpy.ascontiguousarray"),
+    ],
+)
+def test_wrong_array_is_refused_with_a_remedy(ramone, q, v, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        ramone.impacts(q, v, friction=0.5)
+
+
+def test_contacts_and_scene_are_those_of_a_state(ramone, walk):
+    q, v = walk(5)
+    contacts = [{"link": "left_foot"}, {"link": "torso", "offset": [0, 0, 0.1]}]
+    scene = {"contacts": contacts, "friction": {"left_foot": 0.2, "torso": "infinite"}, "ground": {"slope": 0.1}}
+    answers = ramone.impacts(q, v, **scene)
+    for at, row in enumerate(zip(q, v)):
+        one = ramone.impact(state(ramone, *row, **scene))
+        places = [answers.contacts.index(contact["name"]) for contact in one["contacts"]]
+        own = slice(*answers.offsets[at : at + 2])
+        assert answers.impulse[own][:, places].tolist() == [outcome["impulse"] for outcome in one["outcomes"]]
+    with pytest.raises(heelstrike.Refused, match="did you mean") as error:
+        ramone.impacts(q, v, friction=0.5, grond={"slope": 0.1})
+    assert error.value.hint and "ground" in error.value.hint
+    with pytest.raises(TypeError, match="position"):
+        ramone.impacts(q, v, friction=0.5, position={})
+
+
+def test_any_number_of_threads_and_rows_gives_the_same(ramone, walk):
+    q, v = walk(1000)
+    one = ramone.impacts(q, v, friction=0.3, place="lowest", threads=1)
+    for threads in (2, 5, 0, None):
+        other = ramone.impacts(q, v, friction=0.3, place="lowest", threads=threads)
+        for name in ("verdict", "offsets", "modes", "impulse", "velocity_after", "margin", "index", "proven"):
+            assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
+        assert one.error == other.error and one.notes == other.notes
+    none = ramone.impacts(q[:0], v[:0], friction=0.3)
+    assert len(none) == 0 and none.offsets.tolist() == [0] and none.impulse.shape == (0, 2, 2)
+    assert none.to_arrow().num_rows == 0

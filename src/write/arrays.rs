@@ -1,0 +1,175 @@
+//! Results as arrays: what a table of results has in its cells, as numbers of many states one after the other.
+
+use super::csv::{border, families, no_column, notes};
+use super::{Columns, ErrorObject};
+use crate::impact::CONTACT_LIMIT;
+use crate::{Impact, Result};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The answers to many states. Lists per state have one entry for each; lists per outcome one for each outcome of each
+/// state, and state `k` has those from `offsets[k]` to `offsets[k + 1]`. Matrices are row by row.
+#[derive(Debug, Clone)]
+pub struct Arrays {
+    /// The contacts of a matrix's columns.
+    contacts: Arc<[String]>,
+    /// Per state: the verdict as a number, in the order of [`Verdict`](crate::Verdict); [`Arrays::REFUSED`] of a refused state.
+    pub verdict: Vec<u8>,
+    /// Per state: whether every combination is decided by an error bound.
+    pub all_proven: Vec<bool>,
+    /// Where the outcomes of each state begin, and where those of the last one end.
+    pub offsets: Vec<i64>,
+    /// Per outcome and contact: the mode as a number, in the order of [`Mode`](crate::Mode); [`Arrays::OPEN`] without contact.
+    pub modes: Vec<i8>,
+    /// Per outcome and contact: [tangential, normal] \[N s, of forces N\]; NaN without contact.
+    pub impulse: Vec<f64>,
+    /// Per outcome and coordinate: v after the impact \[m/s, rad/s\], of forces its rate \[m/s^2, rad/s^2\].
+    pub velocity_after: Vec<f64>,
+    /// Per outcome: the smallest slack; NaN if there is no inequality.
+    pub margin: Vec<f64>,
+    /// Per outcome: the sign of det A; 0 if it is not defined.
+    pub index: Vec<i8>,
+    /// Per outcome: whether an error bound shows every sign.
+    pub proven: Vec<bool>,
+    /// Per outcome: whether it is a corner of a family.
+    pub family: Vec<bool>,
+    /// Of states: why each was refused.
+    pub error: Texts,
+    /// Of states: what a reader should know.
+    pub notes: Texts,
+    /// Of outcomes on a border: what is zero.
+    pub border: Texts,
+    /// Of outcomes that are corners: the modes of their families.
+    pub families: Texts,
+}
+
+/// Texts of a few entries of a list, of which many are the same.
+#[derive(Debug, Clone, Default)]
+pub struct Texts {
+    /// Entries of the list with a text, and which text.
+    pub at: Vec<(usize, usize)>,
+    /// Each text once.
+    pub known: Vec<String>,
+    places: HashMap<String, usize>,
+}
+
+impl Texts {
+    fn push(&mut self, at: usize, text: String) {
+        if text.is_empty() {
+            return;
+        }
+        let place = self.places.get(&text).copied().unwrap_or_else(|| {
+            self.known.push(text.clone());
+            self.places.insert(text, self.known.len() - 1);
+            self.known.len() - 1
+        });
+        self.at.push((at, place));
+    }
+
+    /// Adds those of a list that follows behind `before` entries.
+    fn append(&mut self, before: usize, other: Self) {
+        for (at, place) in other.at {
+            self.push(before + at, other.known[place].clone());
+        }
+    }
+}
+
+impl Arrays {
+    /// The verdict of a refused state.
+    pub const REFUSED: u8 = 6;
+    /// The mode of a contact that is not closed.
+    pub const OPEN: i8 = -1;
+
+    /// No answer yet; those to come are of contacts and coordinates that have these `columns`.
+    pub fn new(columns: &Columns) -> Self {
+        Self::of(columns.contacts().map(str::to_owned).collect())
+    }
+
+    /// No answer yet, of the same contacts.
+    pub fn none(&self) -> Self {
+        Self::of(Arc::clone(&self.contacts))
+    }
+
+    fn of(contacts: Arc<[String]>) -> Self {
+        Self {
+            contacts,
+            verdict: Vec::new(),
+            all_proven: Vec::new(),
+            offsets: vec![0],
+            modes: Vec::new(),
+            impulse: Vec::new(),
+            velocity_after: Vec::new(),
+            margin: Vec::new(),
+            index: Vec::new(),
+            proven: Vec::new(),
+            family: Vec::new(),
+            error: Texts::default(),
+            notes: Texts::default(),
+            border: Texts::default(),
+            families: Texts::default(),
+        }
+    }
+
+    /// Adds the answer to the next state; one whose contacts have no columns is refused.
+    pub fn push(&mut self, answer: Result<&Impact>) {
+        if let Err(error) = answer.and_then(|impact| self.answered(impact)) {
+            self.error.push(self.verdict.len(), ErrorObject::new(&error).to_string());
+            self.verdict.push(Self::REFUSED);
+            self.all_proven.push(false);
+        }
+        self.offsets.push(self.margin.len() as i64);
+    }
+
+    fn answered(&mut self, impact: &Impact) -> Result<()> {
+        let analysis = impact.analyzed()?;
+        let columns = self.contacts.len();
+        let place = |name: &String| self.contacts.iter().position(|known| known == name).ok_or_else(|| no_column(name));
+        let mut places = [0; CONTACT_LIMIT];
+        for (place_of, contact) in places.iter_mut().zip(&impact.contacts) {
+            *place_of = place(&contact.name)?;
+        }
+        self.notes.push(self.verdict.len(), notes(&impact.notes));
+        for (at, outcome) in analysis.outcomes.iter().enumerate() {
+            let (row, start) = (self.margin.len(), self.modes.len());
+            self.modes.resize(start + columns, Self::OPEN);
+            self.impulse.resize(2 * (start + columns), f64::NAN);
+            for ((&place, mode), impulse) in places.iter().zip(&outcome.modes).zip(&outcome.impulse) {
+                self.modes[start + place] = *mode as i8;
+                self.impulse[2 * (start + place)..][..2].copy_from_slice(impulse);
+            }
+            self.velocity_after.extend(outcome.velocity());
+            self.margin.push(outcome.margin.unwrap_or(f64::NAN));
+            self.index.push(outcome.index.unwrap_or(0));
+            self.proven.push(outcome.proven);
+            self.family.push(outcome.family);
+            if outcome.border.is_some() {
+                self.border.push(row, border(outcome));
+            }
+            if !analysis.families.is_empty() {
+                self.families.push(row, families(&analysis.families, at));
+            }
+        }
+        self.verdict.push(analysis.verdict as u8);
+        self.all_proven.push(analysis.proven);
+        Ok(())
+    }
+
+    /// Adds the answers to the states that follow, of the same contacts.
+    pub fn append(&mut self, mut next: Self) {
+        let (states, outcomes) = (self.verdict.len(), self.margin.len());
+        self.offsets.extend(next.offsets.iter().skip(1).map(|offset| offset + outcomes as i64));
+        self.verdict.append(&mut next.verdict);
+        self.all_proven.append(&mut next.all_proven);
+        self.modes.append(&mut next.modes);
+        self.impulse.append(&mut next.impulse);
+        self.velocity_after.append(&mut next.velocity_after);
+        self.margin.append(&mut next.margin);
+        self.index.append(&mut next.index);
+        self.proven.append(&mut next.proven);
+        self.family.append(&mut next.family);
+        self.error.append(states, next.error);
+        self.notes.append(states, next.notes);
+        self.border.append(outcomes, next.border);
+        self.families.append(outcomes, next.families);
+    }
+}
