@@ -77,7 +77,8 @@ class Layout:
         missing = [name for name in joints if name not in self.joints]
         if missing:
             raise ValueError(f"the model has no joint of one degree of freedom named {', '.join(missing)}")
-        positions, velocities = [], []
+        positions: list[Array] = []
+        velocities: list[Array] = []
         if len(joints) < len(names):
             positions, velocities = self._planar(robot, given_q, given_v, tolerance)
         for name in joints:
@@ -94,7 +95,7 @@ class Layout:
         return rows
 
     def _is_floating(self, robot: Robot) -> bool:
-        floating = robot.inspect()["base"] == "floating"
+        floating = bool(robot.inspect()["base"] == "floating")
         if floating and self.base is None:
             raise ValueError("the robot has a floating base and the model has none: add a free joint to the model")
         return floating
@@ -123,7 +124,7 @@ class Layout:
             if not in_body:
                 return vectors
             along, upward = (vectors @ forward)[:, None], (vectors @ up)[:, None]
-            turned = (cos * along + sin * upward) * forward + (cos * upward - sin * along) * up
+            turned: Array = (cos * along + sin * upward) * forward + (cos * upward - sin * along) * up
             return turned + np.outer(vectors @ normal, normal)
 
         linear = to_world(v[:, base.linear], base.linear_in_body)

@@ -7,6 +7,8 @@ from typing_extensions import Unpack
 
 from ._values import Result
 
+__all__ = ["Answers", "Refused", "Robot", "main", "solve"]
+
 _Friction: TypeAlias = float | Literal["infinite"]
 
 @type_check_only
@@ -76,7 +78,9 @@ class Robot:
         **scene: Unpack[_Scene],
     ) -> Answers: ...
     @overload
-    def forces(self, q: dict[str, Any] | str | PathLike[str], *, friction: _Friction | None = None) -> Result: ...
+    def forces(
+        self, q: dict[str, Any] | str | PathLike[str], v: None = None, *, friction: _Friction | None = None
+    ) -> Result: ...
     @overload
     def forces(
         self,
@@ -95,7 +99,7 @@ class Robot:
         *,
         friction: _Friction | None = None,
         threads: int | None = None,
-        budget: float | None = 60.0,
+        budget: float | None = ...,
     ) -> Result: ...
     def touchdowns(
         self,

@@ -19,7 +19,7 @@ def summary(answers: Answers) -> str:
 
 
 def to_arrow(answers: Answers, id: Any = None) -> Any:
-    import pyarrow as pa
+    import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
 
     counts = np.diff(answers.offsets)
     rows = np.maximum(counts, 1)

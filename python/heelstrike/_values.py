@@ -13,7 +13,7 @@ from typing import Any
 class Result(dict[str, Any]):
     """A result, as the JSON of the command has it, that ``heelstrike.plot`` can draw."""
 
-    __slots__ = ("_drawn",)
+    _drawn: Any
 
 
 def read(path: str | os.PathLike[str]) -> str:
@@ -24,14 +24,14 @@ def read(path: str | os.PathLike[str]) -> str:
 def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return value.tolist()
-    if isinstance(value, os.PathLike):
-        return json.loads(read(value))
     raise TypeError(f"a {type(value).__name__} is no part of JSON")
 
 
 def to_json(value: Any) -> str:
-    """JSON of a dictionary; text is taken as JSON, and a path as a file of it."""
-    return value if isinstance(value, str) else json.dumps(value, default=_plain)
+    """JSON of a dictionary, or of the file of a path; text that begins with a brace is JSON already."""
+    if isinstance(value, str):
+        return value if value.lstrip().startswith("{") else read(value)
+    return read(value) if isinstance(value, os.PathLike) else json.dumps(value, default=_plain)
 
 
 def from_json(text: bytes, drawn: Any) -> Any:

@@ -1,13 +1,14 @@
 //! The arrays of a batch, made for Python when they are first asked for.
 
 use heelstrike::pipeline::Aspect;
-use heelstrike::write::{Arrays, Columns, Texts};
+use heelstrike::state::NamedContact;
+use heelstrike::write::{Arrays, Columns, RowKind, Texts};
 use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyList;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A list that becomes an array.
 struct Column<T> {
@@ -35,10 +36,7 @@ impl<T: Element> Column<T> {
 /// The answers to many states: arrays with an entry per state or per outcome.
 #[pyclass(frozen, module = "heelstrike")]
 pub struct Answers {
-    aspect: Aspect,
-    coordinates: Vec<String>,
-    contacts: Vec<String>,
-    columns: Vec<String>,
+    table: Arc<Table>,
     states: usize,
     outcomes: usize,
     verdict: Column<u8>,
@@ -54,13 +52,34 @@ pub struct Answers {
     texts: [Texts; 4],
 }
 
-impl Answers {
-    pub fn new(aspect: Aspect, robot: &heelstrike::Robot, columns: &Columns, arrays: Arrays) -> Self {
+/// What the answers to all states have in common.
+pub struct Table {
+    pub aspect: Aspect,
+    pub coordinates: Vec<String>,
+    contacts: Vec<String>,
+    columns: Vec<String>,
+    /// No answer yet.
+    pub empty: Arrays,
+}
+
+impl Table {
+    /// That of a robot's feet and contacts that states name.
+    pub fn new(aspect: Aspect, robot: &heelstrike::Robot, feet: &[NamedContact], named: &[&str]) -> Self {
+        let columns = Columns::without_lines(robot, feet, named, &[], RowKind::of(aspect));
         Self {
             aspect,
             coordinates: robot.coordinates().map(str::to_owned).collect(),
             contacts: columns.contacts().map(str::to_owned).collect(),
             columns: columns.names().to_vec(),
+            empty: Arrays::new(&columns),
+        }
+    }
+}
+
+impl Answers {
+    pub fn new(table: Arc<Table>, arrays: Arrays) -> Self {
+        Self {
+            table,
             states: arrays.verdict.len(),
             outcomes: arrays.margin.len(),
             verdict: Column::new(arrays.verdict),
@@ -81,7 +100,7 @@ impl Answers {
     fn of(&self, aspect: Aspect, name: &str) -> PyResult<()> {
         let other = if aspect == Aspect::Impact { "forces" } else { "impacts" };
         let wrong = || PyAttributeError::new_err(format!("the answers of {other} have no '{name}'"));
-        if self.aspect == aspect { Ok(()) } else { Err(wrong()) }
+        if self.table.aspect == aspect { Ok(()) } else { Err(wrong()) }
     }
 
     /// A list with a text or `None` for each of `count` entries.
@@ -101,19 +120,19 @@ impl Answers {
     /// Names of q's entries: columns of `velocity_after`.
     #[getter]
     fn coordinates(&self) -> &[String] {
-        &self.coordinates
+        &self.table.coordinates
     }
 
     /// Names of the contacts that the robot's feet can make: columns of `modes` and `impulse`.
     #[getter]
     fn contacts(&self) -> &[String] {
-        &self.contacts
+        &self.table.contacts
     }
 
     /// Names of the columns of `to_arrow` and `to_pandas`.
     #[getter]
     fn columns(&self) -> &[String] {
-        &self.columns
+        &self.table.columns
     }
 
     /// Of each state the `Verdict`, (n,) of uint8.
@@ -137,35 +156,35 @@ impl Answers {
     /// Of each outcome and contact the `Mode`, (m, contacts) of int8; OPEN if the contact is not closed.
     #[getter]
     fn modes(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.modes.array(py, &[self.outcomes, self.contacts.len()])
+        self.modes.array(py, &[self.outcomes, self.table.contacts.len()])
     }
 
     /// Of each outcome and contact [tangential, normal] [N s], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn impulse(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "impulse")?;
-        self.impulse.array(py, &[self.outcomes, self.contacts.len(), 2])
+        self.impulse.array(py, &[self.outcomes, self.table.contacts.len(), 2])
     }
 
     /// Of each outcome and contact [tangential, normal] [N], (m, contacts, 2); NaN if the contact is not closed.
     #[getter]
     fn force(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "force")?;
-        self.impulse.array(py, &[self.outcomes, self.contacts.len(), 2])
+        self.impulse.array(py, &[self.outcomes, self.table.contacts.len(), 2])
     }
 
     /// Of each outcome v after the impact, (m, nq) in the order of `coordinates` [m/s, rad/s].
     #[getter]
     fn velocity_after(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Impact, "velocity_after")?;
-        self.velocity_after.array(py, &[self.outcomes, self.coordinates.len()])
+        self.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
     }
 
     /// Of each outcome the rate of v, (m, nq) in the order of `coordinates` [m/s^2, rad/s^2].
     #[getter]
     fn acceleration(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.of(Aspect::Forces, "acceleration")?;
-        self.velocity_after.array(py, &[self.outcomes, self.coordinates.len()])
+        self.velocity_after.array(py, &[self.outcomes, self.table.coordinates.len()])
     }
 
     /// Of each outcome the smallest slack, free of units, (m,); NaN if it has no inequality.

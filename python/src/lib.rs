@@ -11,6 +11,7 @@
 
 mod answers;
 mod picture;
+#[expect(clippy::too_many_arguments, reason = "Python has them as keywords")]
 mod robot;
 mod rows;
 mod study;

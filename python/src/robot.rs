@@ -1,7 +1,7 @@
 //! Robots, and the answer to one state.
 
-use crate::answers::Answers;
-use crate::rows::{Kept, Rows};
+use crate::answers::{Answers, Table};
+use crate::rows::{Asker, Rows, rough};
 use crate::values::{from_json, refused, to_json};
 use crate::watch::{budget, without_python};
 use crate::{picture, study};
@@ -39,8 +39,8 @@ pub struct Model {
 #[pyclass(frozen, module = "heelstrike")]
 pub struct Robot {
     pub model: Arc<Model>,
-    /// Pipelines of impacts and of forces that no call is using.
-    pub kept: [Mutex<Vec<Kept>>; 2],
+    impacts: Asker,
+    forces: Asker,
 }
 
 impl Model {
@@ -145,12 +145,13 @@ fn contacts(robot: &heelstrike::Robot, list: &Bound<'_, PyAny>) -> PyResult<Vec<
 
 /// Friction as an argument: a number, `inf` and "infinite" included.
 pub fn friction(value: &Bound<'_, PyAny>) -> PyResult<Friction> {
-    let text = match value.extract::<f64>() {
-        Ok(f64::INFINITY) => "infinite".to_owned(),
-        Ok(number) => number.to_string(),
-        Err(_) => value.extract::<String>()?,
-    };
-    text.parse().map_err(|expected| PyValueError::new_err(format!("friction: {expected}, not {text}")))
+    match value.extract::<f64>() {
+        Ok(number) => rough(number).map_err(refused),
+        Err(_) => {
+            let text = value.extract::<String>()?;
+            text.parse().map_err(|expected| PyValueError::new_err(format!("friction: {expected}, not {text}")))
+        }
+    }
 }
 
 #[pymethods]
@@ -243,7 +244,11 @@ impl Robot {
         threads: Option<usize>,
         scene: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Answers> {
-        Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?.answer(slf, Aspect::Impact, threads)
+        Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?.answer(
+            slf.py(),
+            &slf.get().impacts,
+            threads,
+        )
     }
 
     /// The contact forces and accelerations in sustained contact: of one state as `impact`, of rows as `impacts`.
@@ -262,7 +267,7 @@ impl Robot {
             return Self::one(slf, q, Aspect::Forces, friction, Detail::default(), false);
         };
         let rows = Rows::read(slf.get(), [q, v], friction, restitution, contacts, scene)?;
-        Ok(Bound::new(slf.py(), rows.answer(slf, Aspect::Forces, threads)?)?.into_any())
+        Ok(Bound::new(slf.py(), rows.answer(slf.py(), &slf.get().forces, threads)?)?.into_any())
     }
 
     /// Outcomes against one or two parameters: regions, borders and samples.
@@ -323,7 +328,11 @@ impl Robot {
 
 impl Robot {
     fn of(model: Model) -> Self {
-        Self { model: Arc::new(model), kept: Default::default() }
+        let asker = |aspect| {
+            let table = Arc::new(Table::new(aspect, &model.robot, &model.options.feet, &[]));
+            Asker { table, kept: Mutex::default() }
+        };
+        Self { impacts: asker(Aspect::Impact), forces: asker(Aspect::Forces), model: Arc::new(model) }
     }
 
     fn one<'py>(

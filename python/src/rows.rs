@@ -1,13 +1,15 @@
 //! Arrays of states: rows of q and v, answered by pipelines that are kept from call to call.
 
-use crate::answers::Answers;
+use crate::answers::{Answers, Table};
 use crate::robot::{Model, Robot, friction};
+use crate::study::threads;
 use crate::values::{refused, to_json};
 use crate::watch::{budget, look, without_python};
 use heelstrike::batch::{Sink, TaskSource, run};
 use heelstrike::budget::TotalBudget;
-use heelstrike::pipeline::{Aspect, Options};
-use heelstrike::write::{Arrays, Columns, RowKind};
+use heelstrike::pipeline::Options;
+use heelstrike::state::NamedContact;
+use heelstrike::write::Arrays;
 use heelstrike::{Defaults, Error, Friction, Pipeline, Reason, State};
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -29,8 +31,16 @@ self_cell!(
     }
 );
 
+/// Who answers one kind of question about a robot.
+pub struct Asker {
+    pub table: Arc<Table>,
+    /// Pipelines that no call is using.
+    pub kept: Mutex<Vec<Kept>>,
+}
+
 /// States as rows of arrays.
 pub struct Rows<'py> {
+    model: Arc<Model>,
     q: PyReadonlyArrayDyn<'py, f64>,
     v: PyReadonlyArrayDyn<'py, f64>,
     /// What all rows have in common.
@@ -41,7 +51,7 @@ pub struct Rows<'py> {
 
 /// The same without the interpreter.
 struct Numbers<'a> {
-    coordinates: Vec<&'a str>,
+    coordinates: &'a [String],
     q: &'a [f64],
     v: &'a [f64],
     friction: Option<&'a [f64]>,
@@ -154,46 +164,44 @@ impl<'py> Rows<'py> {
                 return Err(PyValueError::new_err(format!("{what} has {} entries for {rows} states", given.len())));
             }
         }
-        Ok(Self { q, v, common, friction: friction_rows, restitution: restitution_rows })
+        Ok(Self { model: Arc::clone(model), q, v, common, friction: friction_rows, restitution: restitution_rows })
     }
 
     /// Answers all rows.
-    pub fn answer(self, robot: &Bound<'py, Robot>, aspect: Aspect, threads: Option<usize>) -> PyResult<Answers> {
-        let Robot { model, kept } = robot.get();
-        let Self { q, v, common, friction, restitution } = self;
+    pub fn answer(self, py: Python<'py>, asker: &Asker, count: Option<usize>) -> PyResult<Answers> {
+        let Self { model, q, v, common, friction, restitution } = self;
         let rows = q.shape()[0];
-        let named = common.scene.contacts.as_deref().map_or_else(Vec::new, |contacts| names(&model.robot, contacts));
-        let named: Vec<&str> = named.iter().map(String::as_str).collect();
-        let kind = RowKind::of(aspect);
-        let columns = Columns::without_lines(&model.robot, &model.options.feet, &named, &[], kind);
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = threads.filter(|&threads| threads > 0).unwrap_or_else(cores).min(rows.div_ceil(TOGETHER));
+        let of_contacts = |contacts: &[NamedContact]| {
+            let named = names(&model.robot, contacts);
+            let named: Vec<&str> = named.iter().map(String::as_str).collect();
+            Arc::new(Table::new(asker.table.aspect, &model.robot, &model.options.feet, &named))
+        };
+        let table = common.scene.contacts.as_deref().map_or_else(|| Arc::clone(&asker.table), of_contacts);
+        let threads = if rows <= TOGETHER { 1 } else { threads(count).min(rows.div_ceil(TOGETHER)) };
         let numbers = Numbers {
-            coordinates: model.robot.coordinates().collect(),
+            coordinates: &table.coordinates,
             q: q.as_slice()?,
             v: v.as_slice()?,
             friction: friction.as_ref().map(|own| own.as_slice()).transpose()?,
             restitution: restitution.as_ref().map(|own| own.as_slice()).transpose()?,
         };
-        let pool = &kept[usize::from(aspect == Aspect::Forces)];
         let total = model.budget.map(|each| TotalBudget::new(budget(Some(each)), None));
-        let empty = Arrays::new(&columns);
-        let arrays = without_python(robot.py(), || {
+        let arrays = without_python(py, || {
             let answerer = || {
-                let mut worker = Worker::new(model, aspect, pool, common.clone());
-                let (numbers, total, empty) = (&numbers, &total, &empty);
+                let mut worker = Worker::new(&model, asker, common.clone());
+                let (numbers, total, table) = (&numbers, &total, &table);
                 move |rows: Range<usize>| {
-                    let mut block = empty.none();
+                    let mut block = table.empty.none();
                     rows.for_each(|row| worker.row(numbers, row, total.as_ref(), &mut block));
                     block
                 }
             };
-            let mut all = All(empty.none());
+            let mut all = All(table.empty.none());
             // Only signals end it early, which are raised then.
             let _ = run(Ranges(0..rows), threads, answerer, &mut all);
             all.0
         })?;
-        Ok(Answers::new(aspect, &model.robot, &columns, arrays))
+        Ok(Answers::new(table, arrays))
     }
 }
 
@@ -205,13 +213,13 @@ struct Worker<'p> {
 }
 
 impl<'p> Worker<'p> {
-    fn new(model: &Arc<Model>, aspect: Aspect, pool: &'p Mutex<Vec<Kept>>, state: State) -> Self {
-        let known = pool.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    fn new(model: &Arc<Model>, Asker { table, kept }: &'p Asker, state: State) -> Self {
+        let known = kept.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let new = || {
-            let made = |model: &Arc<Model>| Options { aspect, ..model.options.clone() };
-            Kept::new(Arc::clone(model), |model| Pipeline::new(&model.robot, made(model)))
+            let asked = |model: &Arc<Model>| Options { aspect: table.aspect, ..model.options.clone() };
+            Kept::new(Arc::clone(model), |model| Pipeline::new(&model.robot, asked(model)))
         };
-        Self { kept: Some(known.unwrap_or_else(new)), pool, state }
+        Self { kept: Some(known.unwrap_or_else(new)), pool: kept, state }
     }
 
     /// Answers a row.
@@ -255,7 +263,8 @@ fn set(state: &mut State, numbers: &Numbers, row: usize) -> heelstrike::Result<(
     Ok(())
 }
 
-fn rough(mu: f64) -> heelstrike::Result<Friction> {
+/// Friction with the coefficient `mu`.
+pub fn rough(mu: f64) -> heelstrike::Result<Friction> {
     let refused = || Reason::OutOfRange { what: "friction".into(), allowed: "0 or more", value: mu };
     if mu >= 0.0 { Ok(mu.into()) } else { Err(refused().into()) }
 }
@@ -266,7 +275,7 @@ fn restituted(value: f64) -> heelstrike::Result<f64> {
 }
 
 /// The names of contacts that a state lists.
-fn names(robot: &heelstrike::Robot, contacts: &[heelstrike::state::NamedContact]) -> Vec<String> {
+fn names(robot: &heelstrike::Robot, contacts: &[NamedContact]) -> Vec<String> {
     let of = |link: usize| contacts.iter().filter(move |contact| contact.link == link).count();
     let all = contacts.iter().enumerate().map(|(at, contact)| {
         let name = &robot.links[contact.link].name;
@@ -294,7 +303,10 @@ struct All(Arrays);
 
 impl Sink<Arrays> for All {
     fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {
-        self.0.append(block);
+        match self.0.verdict.is_empty() {
+            true => self.0 = block,
+            false => self.0.append(block),
+        }
         if look() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
     }
 

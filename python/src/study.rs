@@ -2,7 +2,7 @@
 
 use crate::robot::{Robot, friction};
 use crate::values::{from_json, refused, to_json};
-use crate::watch::{budget, shared, without_python};
+use crate::watch::{budget, raised, shared, without_python};
 use heelstrike::batch::{Batch, Chunks, Question, Recording, RowOrigin, TaskSource, samples};
 use heelstrike::budget::TotalBudget;
 use heelstrike::error::Location;
@@ -67,6 +67,9 @@ pub fn sweep<'py>(
     let work = Work { friction: mu.map(friction).transpose()?, threads: threads(count), budget: seconds };
     let made = |model: &RobotStudy, findings: &Findings, workers: Workers| {
         let mut out = Vec::new();
+        if raised() {
+            return out;
+        }
         append_line(&mut out, &Regions::new(model.study, findings));
         out.truncate(out.len() - b"}\n".len());
         out.extend(b",\"samples\":[");

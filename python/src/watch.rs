@@ -38,10 +38,15 @@ fn clock() -> Duration {
         LAST.set(Some(Instant::now()));
         look();
     }
-    match RAISED.with_borrow(Option::is_some) {
+    match raised() {
         true => AGE.saturating_mul(AGES.replace(AGES.get().saturating_add(1))),
         false => work_time(),
     }
+}
+
+/// Whether a signal handler raised during the work of this thread.
+pub fn raised() -> bool {
+    RAISED.with_borrow(Option::is_some)
 }
 
 /// Runs Python's signal handlers; whether one of them raised.

@@ -1,6 +1,5 @@
 """The package in a process: the command, Ctrl-C, threads, a light import, typed stubs."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -41,12 +40,12 @@ def test_ctrl_c_ends_a_long_call(name):
     start = time.monotonic()
     out, _ = process.communicate(timeout=30)
     assert out == "interrupted\n" and process.returncode == 0
-    assert time.monotonic() - start < 2
+    assert time.monotonic() - start < 5
 
 
-def test_other_threads_run_during_a_call(ramone, walk):
+def test_calls_of_two_threads_run_at_once(ramone, walk):
     q, v = walk(60_000)
-    done, counted = threading.Event(), 0
+    done, answered = threading.Event(), 0
 
     def work():
         ramone.impacts(q, v, friction=0.5, place="lowest", threads=1)
@@ -55,30 +54,10 @@ def test_other_threads_run_during_a_call(ramone, walk):
     thread = threading.Thread(target=work)
     thread.start()
     while not done.is_set():
-        counted += 1
-        time.sleep(0.001)
+        ramone.impacts(q[:100], v[:100], friction=0.5, place="lowest", threads=1)
+        answered += 1
     thread.join()
-    assert counted > 20
-
-
-@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one core")
-def test_two_threads_answer_at_once(ramone, walk):
-    q, v = walk(40_000)
-
-    def seconds(count):
-        def work():
-            ramone.impacts(q, v, friction=0.5, place="lowest", threads=1)
-
-        threads = [threading.Thread(target=work) for _ in range(count)]
-        before = time.process_time(), time.monotonic()
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        # Cores at work: other processes on this machine do not matter for it much.
-        return (time.process_time() - before[0]) / (time.monotonic() - before[1])
-
-    assert max(seconds(2) for _ in range(3)) > 1.2 * min(1.0, seconds(1))
+    assert answered > 20
 
 
 def test_command_is_the_tool():

@@ -45,7 +45,7 @@ def test_numbers_are_those_of_the_command(ramone, walk, aspect):
     for at, line in enumerate(map(json.loads, lines)):
         assert heelstrike.Verdict[line.get("verdict", "refused").upper()] == answers.verdict[at]
         if "error" in line:
-            assert answers.error[at].startswith(line["error"]["message"])
+            assert line["error"]["message"] in answers.error[at]
             continue
         assert answers.error[at] is None
         assert answers.all_proven[at] == line["proven"]
@@ -80,13 +80,13 @@ def test_table_is_that_of_the_command(ramone, walk, tmp_path):
     assert table.num_rows == len(written)
     for own, row in zip(table.to_pylist(), written):
         for name in names:
-            text = {None: "", True: "true", False: "false"}.get(own[name], own[name]) if not isinstance(own[name], (int, float)) or isinstance(own[name], bool) else own[name]
-            if name == "error" and text:
-                assert row[name], own
-            elif isinstance(text, (int, float)):
-                assert float(row[name]) == text, (name, own)
+            value = own[name]
+            if name == "error" and value:
+                assert row[name]
+            elif value is None or isinstance(value, (bool, str)):
+                assert row[name] == {None: "", True: "true", False: "false"}.get(value, value), (name, own)
             else:
-                assert row[name] == text, (name, own)
+                assert float(row[name]) == value, (name, own)
     frame = ramone.impacts(q, v, friction=0.4, place="lowest").to_pandas()
     assert list(frame.columns) == names and len(frame) == table.num_rows
 

@@ -132,7 +132,8 @@ pub(super) fn run(args: &Args) -> Completion {
     };
     chunks.check_format().map_err(in_input)?;
     let header = args.header(&robot, &mut chunks)?;
-    if chunks.is_empty().map_err(in_input)? {
+    // An engine may have an empty part.
+    if args.refused == Answered::NotAll && chunks.is_empty().map_err(in_input)? {
         let hint = if header.is_some() { "the table has a header and no rows" } else { "the input is empty" };
         return Err(in_input(Error::new(Reason::Missing("a state".into()))).hint(hint).into());
     }

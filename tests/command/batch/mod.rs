@@ -116,6 +116,8 @@ fn an_input_without_states_is_refused() {
         let run = batch(&["-", "--input-format", format, "-o", &kept], input);
         assert_eq!((run.refusal(1).as_str(), read(&kept).as_str()), (expected, "an old result"), "{input:?}");
     }
+    let part = batch(&["-", "--refused", "ok"], "");
+    assert_eq!((part.status, &*part.stdout, &*part.stderr), (0, "", ""));
 }
 
 #[test]
