@@ -90,24 +90,26 @@ impl<'a> Reference<'a> {
     /// holds no number.
     pub fn mass_matrix_error<T: Number>(&self, mass: &[T]) -> f64 {
         let nv = self.columns.len();
-        let parents = &self.computation.assembly.plan.parents;
-        let size: Vec<f64> =
-            (0..nv).map(|i| Interval::scope(PRECISION, || self.inertia(i, i).to_f64().sqrt())).collect();
-        worst((0..nv).flat_map(|i| {
-            let below = std::iter::successors(Some(i), |&column| parents[column]);
-            let size = &size;
-            below.map(move |j| {
-                let error = Interval::scope(PRECISION, || distance(mass[i * nv + j], self.inertia(i, j)));
-                relative(error, size[i] * size[j])
-            })
-        }))
+        let plan = &self.computation.assembly.plan;
+        Interval::scope(PRECISION, || {
+            let columns: Vec<Vec<UnitMotion>> =
+                self.columns.iter().map(|motions| motions.iter().map(UnitMotion::rounded).collect()).collect();
+            let inertia = |i: usize, j: usize| self.inertia(&columns[i], &columns[j]);
+            let size: Vec<f64> = (0..nv).map(|i| Interval::freeing(|| inertia(i, i).to_f64().sqrt())).collect();
+            worst((0..nv).flat_map(|i| {
+                let (size, inertia) = (&size, &inertia);
+                std::iter::once(i).chain(plan.ancestors(i)).map(move |j| {
+                    let error = Interval::freeing(|| distance(mass[i * nv + j], inertia(i, j)));
+                    relative(error, size[i] * size[j])
+                })
+            }))
+        })
     }
 
     /// Entry of M for two columns, the second one below the first or the same.
-    fn inertia(&self, upper: usize, lower: usize) -> Interval {
+    fn inertia(&self, upper: &[UnitMotion], lower: &[UnitMotion]) -> Interval {
         let plan = &self.computation.assembly.plan;
-        let pairs =
-            self.columns[upper].iter().flat_map(|one| self.columns[lower].iter().map(move |other| (one, other)));
+        let pairs = upper.iter().flat_map(|one| lower.iter().map(move |other| (one, other)));
         let parts = pairs.filter_map(|(one, other)| {
             if !plan.has_mimics || carries(plan, other.body, one.body) {
                 Some(one.inertia(other))
@@ -125,6 +127,22 @@ fn carries(plan: &Plan<Interval>, body: usize, outer: usize) -> bool {
 }
 
 impl UnitMotion {
+    /// The same to the bits of the scope: those of the whole chain are not needed for one entry.
+    fn rounded(&self) -> Self {
+        let round = |number: Interval| number * Interval::one();
+        let Inertia { mass, first, second } = self.moved;
+        Self {
+            axis: match self.axis {
+                MotionAxis::Revolute(rate) => MotionAxis::Revolute(round(rate)),
+                MotionAxis::Prismatic(rate) => MotionAxis::Prismatic(rate.map(round)),
+            },
+            origin: self.origin.map(round),
+            moved: Inertia { mass: round(mass), first: first.map(round), second: round(second) },
+            rotor: round(self.rotor),
+            ..*self
+        }
+    }
+
     /// What this motion and one `below` it, or itself, bring to M.
     ///
     /// Not by a walk to the root as [`mass_matrix`](crate::dynamics::mass_matrix) does it, but by the places of both.

@@ -74,6 +74,23 @@ impl Inequality {
         }
     }
 
+    /// What happens on its border, as a clause about the contact of this name.
+    pub fn reached_by(self, name: &str) -> String {
+        let zero = |what: &str| format!("the {what} of {name} reaches zero");
+        match self {
+            Self::NormalVelocity => zero("normal velocity"),
+            Self::NormalImpulse => zero("normal impulse"),
+            Self::FrictionCone => format!("{name} needs all the friction that there is"),
+            Self::TangentialVelocity => zero("tangential velocity"),
+            Self::TangentialImpulse => zero("tangential impulse"),
+            Self::NormalAcceleration => zero("normal acceleration"),
+            Self::NormalForce => zero("normal force"),
+            Self::TangentialAcceleration => zero("tangential acceleration"),
+            Self::TangentialForce => zero("tangential force"),
+            Self::UnboundedForce => format!("the force on {name} grows without bound"),
+        }
+    }
+
     /// What its violation means, of no contact in particular.
     pub fn violation(self) -> &'static str {
         match self {

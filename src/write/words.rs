@@ -168,6 +168,16 @@ fn verb(mode: Mode) -> &'static str {
     }
 }
 
+/// `lifting off`.
+pub(crate) fn gerund(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Separate => "lifting off",
+        Mode::Stick => "sticking",
+        Mode::SlidePlus => "sliding forward",
+        Mode::SlideMinus => "sliding backward",
+    }
+}
+
 /// The names that there is `room` for, at least the first, and how many more there are.
 pub(crate) fn list(names: &[impl AsRef<str>], room: usize) -> String {
     let mut end = 0;

@@ -9,7 +9,7 @@ use crate::draw::Keyframe;
 use crate::draw::plot::{Color, Rendered};
 use crate::draw::sweep::{fills_along, fills_of_map};
 use crate::state::State;
-use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers, letter};
+use crate::sweep::{Findings, Map, Parameter, RESOLUTION, Regime, Region, RobotStudy, Solver, Survey, Workers};
 use crate::write::sweep::{MapRegion, MapSweep, RegionRecord, Sweep};
 
 /// How far the sides of a region lie from its borders, as part of the parameter's range.
@@ -126,7 +126,7 @@ fn look(model: &RobotStudy, solver: &mut Solver, point: &[f64]) -> (Keyframe, Re
 fn along(sweep: Sweep, survey: &Survey) -> (Vec<PageRegion>, Vec<String>) {
     let border = |at: Option<usize>, side: &str| {
         let border = sweep.borders.get(at?)?;
-        let sides = [&sweep.regions[at?].letter, &sweep.regions[at? + 1].letter];
+        let sides = [at?, at? + 1].map(|at| sweep.regions[at].side());
         Some([format!("{side}, at {:?}", border.at), border.transition.in_words(sides)])
     };
     let fills = fills_along(survey);
@@ -142,13 +142,13 @@ fn areas(sweep: MapSweep, map: &Map) -> (Vec<PageRegion>, Vec<String>) {
     let region = |(region, fill): (&MapRegion, Color)| {
         let mut borders: Vec<[String; 2]> = Vec::new();
         for border in sweep.borders {
-            let [left, right] = &border.sides.map(letter);
-            let beyond = match (*left == region.letter, *right == region.letter) {
+            let [left, right] = border.sides.map(|at| sweep.regions[at].side());
+            let beyond = match (left.letter == region.letter, right.letter == region.letter) {
                 (true, _) => right,
                 (_, true) => left,
                 _ => continue,
             };
-            let entry = [format!("toward {beyond}"), border.transition.in_words([left, right])];
+            let entry = [format!("toward {}", beyond.letter), border.transition.in_words([left, right])];
             if !borders.contains(&entry) {
                 borders.push(entry);
             }

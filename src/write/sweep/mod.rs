@@ -92,6 +92,25 @@ pub struct Happening<'a> {
     pub error: Option<ErrorObject>,
 }
 
+/// A region as it lies beside a border.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RegionSide<'r> {
+    pub letter: &'r str,
+    pub happening: &'r Happening<'r>,
+}
+
+impl RegionRecord<'_> {
+    pub(crate) fn side(&self) -> RegionSide<'_> {
+        RegionSide { letter: &self.letter, happening: &self.happening }
+    }
+}
+
+impl MapRegion<'_> {
+    pub(crate) fn side(&self) -> RegionSide<'_> {
+        RegionSide { letter: &self.letter, happening: &self.happening }
+    }
+}
+
 impl<'a> Regions<'a> {
     /// The record of a `study`.
     pub fn new(study: &'a Study, findings: &'a Findings) -> Self {

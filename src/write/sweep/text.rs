@@ -1,8 +1,8 @@
 //! The regions of a study for people.
 
-use super::{Happening, MapSweep, Regions, Sweep};
+use super::{Happening, MapSweep, RegionSide, Regions, Sweep};
 use crate::error::visible;
-use crate::sweep::{BorderCurve, EndedOutcome, Side, Transition, letter};
+use crate::sweep::{BorderCurve, EndedOutcome, Side, Transition};
 use crate::write::{Palette, words, written};
 use crate::{Mode, Verdict};
 use std::fmt::Write;
@@ -42,7 +42,8 @@ impl Sweep<'_> {
                 writeln!(out, "{strong}{letter:letters$}{plain}  {place:width$}  {words}")?;
             }
             if let Some(border) = self.borders.get(index) {
-                let transition = border.transition.in_words([&region.letter, &self.regions[index + 1].letter]);
+                let sides = [index, index + 1].map(|at| self.regions[at].side());
+                let transition = border.transition.in_words(sides);
                 writeln!(out, "{:letters$}  {faint}at {:?}: {transition}{plain}", "", border.at)?;
             }
         }
@@ -62,8 +63,8 @@ impl MapSweep<'_> {
         writeln!(out)?;
         let mut written: Vec<String> = Vec::new();
         for BorderCurve { sides, transition, .. } in self.borders {
-            let [left, right] = sides.map(letter);
-            let line = format!("between {left} and {right}: {}", transition.in_words([&left, &right]));
+            let [left, right] = sides.map(|at| self.regions[at].side());
+            let line = format!("between {} and {}: {}", left.letter, right.letter, transition.in_words([left, right]));
             if !written.contains(&line) {
                 writeln!(out, "{faint}{line}{plain}")?;
                 written.push(line);
@@ -105,20 +106,32 @@ impl Happening<'_> {
 }
 
 impl Transition {
-    /// What changes between regions of these letters, as a sentence without its end.
-    pub fn in_words(&self, [below, above]: [&String; 2]) -> String {
+    /// What changes between these regions, as a sentence without its end.
+    pub(crate) fn in_words(&self, [below, above]: [RegionSide<'_>; 2]) -> String {
         match (&self.refused_below, &self.refused_above) {
-            (Some(_), None) => return format!("from {above} on states are answered"),
-            (None, Some(_)) => return format!("from {above} on states are refused"),
+            (Some(_), None) => return format!("from {} on states are answered", above.letter),
+            (None, Some(_)) => return format!("from {} on states are refused", above.letter),
             (Some(_), Some(_)) => return "states are refused for another reason".to_owned(),
             (None, None) => {}
         }
         let ends = |EndedOutcome { contact, inequality, modes, side }: &EndedOutcome| {
-            let modes: Vec<String> = modes.iter().map(ToString::to_string).collect();
-            let side = if *side == Side::Below { below } else { above };
-            format!("{contact} has {inequality} where {} of {side} ends", modes.join("/"))
+            let RegionSide { letter, happening } = if *side == Side::Below { below } else { above };
+            let names = happening.contacts.unwrap_or_default();
+            let own = names.iter().position(|name| name == contact).and_then(|at| modes.get(at));
+            let ended = own.map_or("an outcome", |&mode| words::gerund(mode));
+            let mut sentence = format!("{}, which ends {ended} in {letter}", inequality.reached_by(contact));
+            if happening.outcomes.is_some_and(|outcomes| outcomes.len() > 1) {
+                let others = names.iter().zip(modes).filter(|(name, _)| *name != contact);
+                let (names, modes): (Vec<&String>, Vec<Mode>) = others.unzip();
+                sentence.push_str(&match words::modes(names, &modes) {
+                    others if others.is_empty() => others,
+                    others => format!(" ({others})"),
+                });
+            }
+            sentence
         };
-        let alone = |contact: &String, side: &str| format!("{contact} touches the ground in {side} only");
+        let alone =
+            |contact: &String, side: RegionSide<'_>| format!("{contact} touches the ground in {} only", side.letter);
         let opening = self.opening.iter().map(|contact| alone(contact, below));
         let closing = self.closing.iter().map(|contact| alone(contact, above));
         let all: Vec<String> = self.ended.iter().map(ends).chain(opening).chain(closing).collect();
