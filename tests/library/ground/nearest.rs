@@ -59,9 +59,12 @@ fn raised_end_of_a_flat_sole_is_an_open_foot() {
     // The rear end of the sole is 0.4 m behind the front end, which touches.
     let tilted = |pitch: f64| {
         let z = 0.2 * pitch.sin() + 0.1 * pitch.cos();
-        impact(&sole(), json!({"position": {"base": {"z": z, "pitch": pitch}}}))
+        let velocity = json!({"base": {"z": -1.0}});
+        impact(&sole(), json!({"position": {"base": {"z": z, "pitch": pitch}}, "velocity": velocity}))
     };
-    assert_close(&[nearest(&tilted(1e-3)).height], &[0.4 * 1e-3_f64.sin()]);
+    let heel = tilted(1e-3);
+    assert_close(&[nearest(&heel).height], &[0.4 * 1e-3_f64.sin()]);
+    assert!(heel.notes[0].starts_with("another point of "), "{:?}", heel.notes);
     assert_eq!(tilted(0.3).nearest, None, "a block on its edge");
 }
 
