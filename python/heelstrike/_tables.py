@@ -39,8 +39,10 @@ def to_arrow(answers: Answers, id: Any = None) -> Any:
     impact = hasattr(answers, "impulse")
     given, after = (answers.impulse, answers.velocity_after) if impact else (answers.force, answers.acceleration)
     proven = of_outcome(answers.proven).fill_null(False).to_numpy(zero_copy_only=False)
+    if not isinstance(id, (pa.Array, pa.ChunkedArray)):
+        id = pa.array(np.arange(len(answers)) if id is None else id)
     columns = [
-        pa.array(np.arange(len(answers)) if id is None else id).take(pa.array(state)),
+        id.take(pa.array(state)),
         pa.array(VERDICTS).take(pa.array(answers.verdict)).take(pa.array(state)),
         pa.array(number + 1, mask=empty),
         of_outcome(answers.margin),

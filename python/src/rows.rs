@@ -185,18 +185,29 @@ impl<'py> Rows<'py> {
             friction: friction.as_ref().map(|own| own.as_slice()).transpose()?,
             restitution: restitution.as_ref().map(|own| own.as_slice()).transpose()?,
         };
-        let total = model.budget.map(|each| TotalBudget::new(budget(Some(each)), None));
+        // One row has no others to share with.
+        let total = model.budget.filter(|_| rows > 1).map(|each| TotalBudget::new(budget(Some(each)), None));
         let arrays = without_python(py, || {
+            let (numbers, total, table, mut all) = (&numbers, total.as_ref(), &table, All(table.empty.none()));
+            if threads <= 1 {
+                // What it computes is written once.
+                let mut worker = Worker::new(&model, asker, common);
+                for row in 0..rows {
+                    worker.row(numbers, row, total, &mut all.0);
+                    if row % TOGETHER == TOGETHER - 1 && look() {
+                        break;
+                    }
+                }
+                return all.0;
+            }
             let answerer = || {
                 let mut worker = Worker::new(&model, asker, common.clone());
-                let (numbers, total, table) = (&numbers, &total, &table);
                 move |rows: Range<usize>| {
                     let mut block = table.empty.none();
-                    rows.for_each(|row| worker.row(numbers, row, total.as_ref(), &mut block));
+                    rows.for_each(|row| worker.row(numbers, row, total, &mut block));
                     block
                 }
             };
-            let mut all = All(table.empty.none());
             // Only signals end it early, which are raised then.
             let _ = run(Ranges(0..rows), threads, answerer, &mut all);
             all.0
@@ -226,9 +237,9 @@ impl<'p> Worker<'p> {
     fn row(&mut self, numbers: &Numbers, row: usize, total: Option<&TotalBudget>, out: &mut Arrays) {
         let Self { kept: Some(kept), state, .. } = self else { return };
         let answer = set(state, numbers, row).and_then(|()| {
-            kept.with_dependent_mut(|_, pipeline| match total {
+            kept.with_dependent_mut(|model, pipeline| match total {
                 Some(total) => total.within(|| pipeline.answer(state)),
-                None => budget(None).within(|| pipeline.answer(state)),
+                None => budget(model.budget).within(|| pipeline.answer(state)),
             })
         });
         out.push(answer.as_ref().map_err(Error::clone));
@@ -303,10 +314,7 @@ struct All(Arrays);
 
 impl Sink<Arrays> for All {
     fn block(&mut self, block: Arrays) -> heelstrike::Result<()> {
-        match self.0.verdict.is_empty() {
-            true => self.0 = block,
-            false => self.0.append(block),
-        }
+        self.0.append(block);
         if look() { Err(Reason::BeyondBudget.into()) } else { Ok(()) }
     }
 
