@@ -4,7 +4,7 @@ use super::run::TaskSource;
 use crate::read::documents::refuse_foreign;
 use crate::read::table::{Quotes, Quoting, swallows_rows};
 use crate::{Error, Reason, Result};
-use memchr::memchr;
+use memchr::{memchr, memchr_iter};
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 
 /// How many bytes are requested from the input at once.
@@ -98,7 +98,7 @@ impl<R: Read + Send> Chunks<R> {
             if blank < ready.len() || ready.is_empty() {
                 return Ok(ready.is_empty());
             }
-            self.line += ready.iter().filter(|&&byte| byte == b'\n').count();
+            self.line += memchr_iter(b'\n', ready).count();
             self.consume(blank);
         }
     }
@@ -118,9 +118,28 @@ impl<R: Read + Send> Chunks<R> {
         Ok(())
     }
 
+    /// Takes up to `most` lines of those that are whole in the buffer, in one piece.
+    fn take_lines(&mut self, most: usize, chunk: &mut Chunk) -> Result<()> {
+        let line = self.line;
+        let ready = self.fill()?;
+        let ends = memchr_iter(b'\n', ready).take(most).map(|newline| newline + 1);
+        chunk.ends.extend((line..).zip(ends));
+        let taken = chunk.ends.last().map_or(0, |&(_, end)| end);
+        chunk.bytes.extend_from_slice(&ready[..taken]);
+        self.consume(taken);
+        self.line += chunk.ends.len();
+        Ok(())
+    }
+
     /// Up to `most` records, fewer if the input would have to be waited for.
     fn records(&mut self, most: usize) -> Result<Option<Chunk>> {
         let mut chunk = Chunk::default();
+        if self.quotes.is_none() {
+            self.take_lines(most, &mut chunk)?;
+            if !chunk.ends.is_empty() {
+                return Ok(Some(chunk));
+            }
+        }
         // Where the current record and its last line begin, the record's first line and its length so far.
         let (mut start, mut line_start, mut first, mut length) = (0, 0, self.line, 0);
         loop {

@@ -148,8 +148,7 @@ impl Answerer<'_> {
         if record.is_empty() {
             return;
         }
-        let state = utf8(record).and_then(|text| lines.read(text));
-        let state = state.map_err(|error| {
+        let state = lines.read(record).map_err(|error| {
             let error = with_remedy(error, record);
             // Its place is that in the line alone.
             match error.location() {

@@ -159,9 +159,9 @@ impl Origin {
         self.reading.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The input, whose bytes are recorded as they are read.
+    /// The input, whose bytes are recorded as they are read, if the output has a record.
     pub fn watch<R: Read>(&self, input: R) -> Watched<R> {
-        Watched { input, reading: Arc::clone(&self.reading) }
+        Watched { input, reading: self.path.is_some().then(|| Arc::clone(&self.reading)) }
     }
 
     /// Whether the answers, which are in a `part` or not, are known to be to what is `asked` now; without a record that
@@ -206,15 +206,17 @@ impl Origin {
 /// An input whose bytes are recorded.
 pub(super) struct Watched<R> {
     input: R,
-    reading: Arc<Mutex<Reading>>,
+    reading: Option<Arc<Mutex<Reading>>>,
 }
 
 impl<R: Read> Read for Watched<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let count = self.input.read(into)?;
-        let mut reading = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
-        reading.add(&into[..count]);
-        reading.keep();
+        if let Some(reading) = &self.reading {
+            let mut reading = reading.lock().unwrap_or_else(PoisonError::into_inner);
+            reading.add(&into[..count]);
+            reading.keep();
+        }
         Ok(count)
     }
 }

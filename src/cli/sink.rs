@@ -6,6 +6,7 @@ use super::{Failure, status};
 use crate::batch::{Block, RefusedRecord, Sink, Summary};
 use crate::draw::page::Gait;
 use indicatif::ProgressBar;
+use memchr::memchr_iter;
 use std::io::{self, ErrorKind, Write};
 
 /// How many refusals are reported on standard error; the output has all of them.
@@ -38,7 +39,7 @@ impl<'a> OutputSink<'a> {
             match self.output.write(bytes) {
                 Ok(0) => return Err(self.ended(ErrorKind::WriteZero.into())),
                 Ok(written) => {
-                    self.lines += bytes[..written].iter().filter(|&&byte| byte == b'\n').count();
+                    self.lines += memchr_iter(b'\n', &bytes[..written]).count();
                     bytes = &bytes[written..];
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}

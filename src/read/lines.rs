@@ -8,6 +8,7 @@
 //! A line whose other bytes are those of the line that was last read as a whole means the same but for its values: only
 //! these are read. Every other line is read as a whole, and so is one with a value in an unusual form.
 
+use super::documents::utf8;
 use super::json::{Node, Value, offset_in};
 use super::state::{BASE, read};
 use crate::law::Friction;
@@ -47,9 +48,10 @@ impl<'r> StateLines<'r> {
     /// The state of a line.
     ///
     /// # Errors
-    /// As [`State::from_json`].
-    pub fn read(&mut self, line: &str) -> Result<&State> {
+    /// As [`State::from_json`], and bytes that are not UTF-8.
+    pub fn read(&mut self, line: &[u8]) -> Result<&State> {
         if self.repeat(line).is_none() {
+            let line = utf8(line)?;
             let tree = Value::parse(line)?;
             self.state = read(Node::root(&tree, line, None), self.robot, self.defaults)?;
             line.clone_into(self.text.get_or_insert_default());
@@ -64,33 +66,28 @@ impl<'r> StateLines<'r> {
     /// Reads the values of a line that is otherwise the last one; `None` if it is not, or if a value is unusual.
     ///
     /// Values that were read until then remain, and those of the next line replace them.
-    fn repeat(&mut self, line: &str) -> Option<()> {
+    fn repeat(&mut self, line: &[u8]) -> Option<()> {
         let Self { text, values, state, .. } = self;
-        let text = text.as_deref()?;
+        let text = text.as_deref()?.as_bytes();
         let (mut rest, mut behind) = (line, 0);
         for (range, entry) in &*values {
             rest = rest.strip_prefix(text.get(behind..range.start)?)?;
-            let (value, more) = match entry {
-                Entry::Id => split_id(rest)?,
-                Entry::Position(_) | Entry::Velocity(_) | Entry::Friction => {
-                    rest.split_at(number_length(rest.as_bytes())?)
-                }
-            };
-            match *entry {
-                Entry::Id => {
-                    state.id = Some(match value.strip_prefix('"') {
-                        Some(text) => text.strip_suffix('"')?.into(),
-                        None => value.parse::<u64>().ok()?.into(),
-                    });
-                }
-                Entry::Position(coordinate) => state.position[coordinate] = finite(value)?,
-                Entry::Velocity(coordinate) => state.velocity[coordinate] = finite(value)?,
-                Entry::Friction => {
-                    let friction = finite(value).filter(|&friction| friction >= 0.0)?;
-                    state.scene.friction.default = Some(Friction::Finite(friction));
-                }
+            behind = range.end;
+            if let Entry::Id = entry {
+                let (id, more) = rest.split_at(id_length(rest)?);
+                take_id(str::from_utf8(id).ok()?, &mut state.id)?;
+                rest = more;
+                continue;
             }
-            (rest, behind) = (more, range.end);
+            let (value, length) = number(rest)?;
+            rest = &rest[length..];
+            match *entry {
+                Entry::Id => {}
+                Entry::Position(coordinate) => state.position[coordinate] = value,
+                Entry::Velocity(coordinate) => state.velocity[coordinate] = value,
+                Entry::Friction if value < 0.0 => return None,
+                Entry::Friction => state.scene.friction.default = Some(Friction::Finite(value)),
+            }
         }
         (rest == text.get(behind..)?).then_some(())
     }
@@ -103,8 +100,7 @@ impl<'r> StateLines<'r> {
                 "velocity" => Entry::Velocity,
                 "id" => {
                     let start = value_of(line, key)?;
-                    let (id, _) = split_id(&line[start..])?;
-                    self.values.push((start..start + id.len(), Entry::Id));
+                    self.values.push((start..start + id_length(&line.as_bytes()[start..])?, Entry::Id));
                     continue;
                 }
                 "friction" if matches!(value, Value::Number(_)) => {
@@ -135,52 +131,44 @@ fn value_of(line: &str, key: &str) -> Option<usize> {
     Some(line.len() - value.len())
 }
 
-/// An id of plain characters or digits, and what follows it.
-fn split_id(text: &str) -> Option<(&str, &str)> {
-    let length = match text.strip_prefix('"') {
-        Some(inner) => {
-            let end = inner.bytes().position(|byte| matches!(byte, b'"' | b'\\' | ..b' '))?;
-            (inner.as_bytes()[end] == b'"').then_some(end + 2)?
-        }
-        None => {
-            let digits = text.bytes().take_while(u8::is_ascii_digit).count();
-            // Nothing that the digits may go on with as a number, and no zero before others.
-            let is_plain = !matches!(text.as_bytes().get(digits), Some(b'.' | b'e' | b'E'));
-            (is_plain && digits > 0 && (digits == 1 || !text.starts_with('0'))).then_some(digits)?
-        }
-    };
-    Some(text.split_at(length))
+/// The length of an id of plain characters or digits.
+fn id_length(text: &[u8]) -> Option<usize> {
+    if let Some(inner) = text.strip_prefix(b"\"") {
+        let end = inner.iter().position(|byte| matches!(byte, b'"' | b'\\' | ..b' '))?;
+        return (inner[end] == b'"').then_some(end + 2);
+    }
+    let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    // Nothing that the digits may go on with as a number, and no zero before others.
+    let is_plain = !matches!(text.get(digits), Some(b'.' | b'e' | b'E'));
+    (is_plain && digits > 0 && (digits == 1 || text[0] != b'0')).then_some(digits)
+}
+
+/// Takes an id, in the memory of the one before; `None` for digits beyond those of 64 bits.
+fn take_id(id: &str, into: &mut Option<serde_json::Value>) -> Option<()> {
+    match (id.strip_prefix('"').and_then(|text| text.strip_suffix('"')), into) {
+        (Some(text), Some(serde_json::Value::String(known))) => text.clone_into(known),
+        (Some(text), into) => *into = Some(text.into()),
+        (None, into) => *into = Some(id.parse::<u64>().ok()?.into()),
+    }
+    Some(())
 }
 
 /// Where the number that begins at `start` is.
 fn number_at(line: &str, start: usize) -> Option<Range<usize>> {
-    Some(start..start + number_length(&line.as_bytes()[start..])?)
+    let (_, length) = number(&line.as_bytes()[start..])?;
+    Some(start..start + length)
 }
 
-/// How long the number at the beginning of a text is, by the grammar of JSON (RFC 8259, section 6).
-fn number_length(text: &[u8]) -> Option<usize> {
-    let digits = |from: usize| text[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
-    let mut end = usize::from(text.first() == Some(&b'-'));
-    let whole = digits(end);
-    if whole == 0 || whole > 1 && text[end] == b'0' {
-        return None;
-    }
-    end += whole;
-    if text.get(end) == Some(&b'.') {
-        let parts = digits(end + 1);
-        end += 1 + (parts > 0).then_some(parts)?;
-    }
-    if matches!(text.get(end), Some(b'e' | b'E')) {
-        end += 1 + usize::from(matches!(text.get(end + 1), Some(b'+' | b'-')));
-        let exponent = digits(end.min(text.len()));
-        end += (exponent > 0).then_some(exponent)?;
-    }
-    Some(end)
-}
-
-/// The nearest f64 of a number; `None` beyond the range of f64.
-fn finite(number: &str) -> Option<f64> {
-    number.parse().ok().filter(|value: &f64| value.is_finite())
+/// The nearest f64 of the number at the beginning of a text, and its length; `None` beyond the range of f64, and for what
+/// is no number of JSON (RFC 8259, section 6) although others write so: `.5`, `5.`, `05`, `+5`, `inf`.
+fn number(text: &[u8]) -> Option<(f64, usize)> {
+    let (value, length): (f64, usize) = fast_float2::parse_partial(text).ok()?;
+    let digits = text[..length].strip_prefix(b"-").unwrap_or(&text[..length]);
+    let is_digit = |at: usize| digits.get(at).is_some_and(u8::is_ascii_digit);
+    let fraction = digits.iter().position(|&byte| byte == b'.');
+    let is_json =
+        is_digit(0) && (digits[0] != b'0' || !is_digit(1)) && fraction.is_none_or(|point| is_digit(point + 1));
+    (is_json && value.is_finite()).then_some((value, length))
 }
 
 #[cfg(test)]
@@ -216,7 +204,7 @@ mod tests {
         }
         for text in pairs.as_flattened() {
             let whole = State::from_json(text, &robot, &defaults);
-            assert_eq!(format!("{:?}", lines.read(text)), format!("{:?}", whole.as_ref()), "{text}");
+            assert_eq!(format!("{:?}", lines.read(text.as_bytes())), format!("{:?}", whole.as_ref()), "{text}");
         }
     }
 }
