@@ -138,7 +138,7 @@ impl Summary {
             self.more_friction.add(MoreFriction { states: 1, greatest: Some(Needed { state: state(), friction }) });
         }
         for outcome in analysis.outcomes.iter().filter(|outcome| outcome.decided) {
-            let names = impact.contacts.iter().map(|contact| contact.name.as_str());
+            let names = impact.contacts.iter().map(|contact| &*contact.name);
             let known = |list: &&mut ModeCount| {
                 list.modes == outcome.modes && names.clone().eq(list.contacts.iter().map(String::as_str))
             };

@@ -6,30 +6,12 @@ use super::merge::{Merged, merge};
 use super::placement::Placement;
 use super::point::{Point, Touch};
 use super::profile::Closeness;
-use super::surface::{Surface, Touching};
+use super::surface::{Sunk, Surface};
 use crate::error::{Error, Reason, Result};
 use crate::law::Friction;
 use crate::planar::Vector;
 use crate::robot::Robot;
 use crate::state::{NamedContact, Scene};
-
-impl Contact {
-    pub(super) fn of_touch(link: usize, placement: &Placement, Touch { circle, ground, gap }: Touch) -> Self {
-        let mut contact = Self {
-            link,
-            name: String::new(),
-            body: circle.body,
-            center: circle.center,
-            offset: circle.offset,
-            radius: circle.radius,
-            point: placement.world(circle.body, circle.center),
-            ground,
-            gap,
-        };
-        contact.point = contact.point - contact.normal() * circle.radius;
-        contact
-    }
-}
 
 /// A foot that stands, and where.
 pub(crate) struct Stance {
@@ -51,6 +33,23 @@ pub(crate) struct Footing<'a> {
 impl Footing<'_> {
     fn name(&self, link: usize) -> &str {
         &self.robot.links[link].name
+    }
+
+    /// The contact that a link makes, under the link's name.
+    pub(super) fn contact(&self, link: usize, Touch { circle, ground, gap }: Touch) -> Contact {
+        let mut contact = Contact {
+            link,
+            name: self.feet.name(link),
+            body: circle.body,
+            center: circle.center,
+            offset: circle.offset,
+            radius: circle.radius,
+            point: self.placement.world(circle.body, circle.center),
+            ground,
+            gap,
+        };
+        contact.point = contact.point - contact.normal() * circle.radius;
+        contact
     }
 
     /// The points that may touch in place of the feet.
@@ -87,7 +86,7 @@ impl Footing<'_> {
                 .at("stance")
                 .hint("name a link with a foot, or give its point in `contacts`")
         })?;
-        let foot = Contact::of_touch(link, placement, plane.touch(placement, standing));
+        let foot = self.contact(link, plane.touch(placement, standing));
         let above = height(standing) - lowest;
         let lift = if self.named().is_none() && above > rounding { foot.normal() * above } else { Vector::zero() };
         Ok(Stance { base: place - foot.point + lift, foot })
@@ -110,7 +109,7 @@ impl Footing<'_> {
         let mut contacts = match self.named() {
             Some(named) => {
                 let touch = |contact| self.surface.touch(self.placement, Point::named(self.robot, contact), tolerance);
-                named.iter().map(|contact| Contact::of_touch(contact.link, self.placement, touch(contact))).collect()
+                named.iter().map(|contact| self.contact(contact.link, touch(contact))).collect()
             }
             None => self.detected(tolerance)?,
         };
@@ -120,12 +119,17 @@ impl Footing<'_> {
             let together = |a: &Contact, b: &Contact| self.acts_as(a, b, rounding);
             merged = merge(&mut contacts, together, stays, |contact| self.lean(contact), rounding);
         }
-        let mut counts = vec![(0, 0); self.robot.links.len()];
-        contacts.iter().for_each(|contact: &Contact| counts[contact.link].0 += 1);
-        for contact in &mut contacts {
-            let (name, (all, next)) = (self.name(contact.link), &mut counts[contact.link]);
-            contact.name = if *all == 1 { name.to_owned() } else { format!("{name}/{next}") };
-            *next += 1;
+        let has_twin = |at: usize| contacts[..at].iter().any(|other: &Contact| other.link == contacts[at].link);
+        if (0..contacts.len()).any(has_twin) {
+            let mut counts = vec![(0, 0); self.robot.links.len()];
+            contacts.iter().for_each(|contact| counts[contact.link].0 += 1);
+            for contact in &mut contacts {
+                let (all, next) = &mut counts[contact.link];
+                if *all > 1 {
+                    contact.name = format!("{}/{next}", contact.name).into();
+                }
+                *next += 1;
+            }
         }
         Ok((contacts, merged))
     }
@@ -165,20 +169,18 @@ impl Footing<'_> {
         let mut contacts: Vec<Contact> = Vec::new();
         let mut deepest: Option<(usize, f64, String)> = None;
         for foot in feet.iter() {
-            match surface.touching(foot, placement, Closeness { tolerance, rounding }) {
-                Touching::At(touches) => {
-                    for touch in touches {
-                        let contact = Contact::of_touch(foot.link, placement, touch);
-                        // Shapes of a link may share a corner; it is one point all the same.
-                        if !contacts.iter().any(|other| surface.is_same(other, &contact, rounding)) {
-                            contacts.push(contact);
-                        }
-                    }
+            let found = |touch| {
+                let contact = self.contact(foot.link, touch);
+                // Shapes of a link may share a corner; it is one point all the same.
+                if !contacts.iter().any(|other| surface.is_same(other, &contact, rounding)) {
+                    contacts.push(contact);
                 }
-                Touching::Sunk { depth, remedy } if deepest.as_ref().is_none_or(|(_, other, _)| depth > *other) => {
+            };
+            match surface.touching(foot, placement, Closeness { tolerance, rounding }, found) {
+                Err(Sunk { depth, remedy }) if deepest.as_ref().is_none_or(|(_, other, _)| depth > *other) => {
                     deepest = Some((foot.link, depth, remedy));
                 }
-                Touching::Sunk { .. } => {}
+                _ => {}
             }
         }
         if let Some((link, depth, remedy)) = deepest {

@@ -3,6 +3,7 @@
 use crate::planar::Vector;
 use crate::robot::{FootShape, Robot};
 use crate::state::NamedContact;
+use std::sync::Arc;
 
 /// One shape that may touch the ground.
 #[derive(Debug, Clone)]
@@ -28,6 +29,8 @@ const BUMPS: f64 = 1e-4;
 #[derive(Debug, Clone)]
 pub struct Feet {
     feet: Vec<Foot>,
+    /// Of the robot's links.
+    names: Vec<Arc<str>>,
     size: f64,
 }
 
@@ -47,7 +50,12 @@ impl Feet {
             }));
         }
         let size = size(robot, &feet);
-        Self { feet, size }
+        Self { feet, names: robot.links.iter().map(|link| link.name.as_str().into()).collect(), size }
+    }
+
+    /// The name of a link.
+    pub(super) fn name(&self, link: usize) -> Arc<str> {
+        Arc::clone(&self.names[link])
     }
 
     /// The same feet with soles of meshes that may be a little uneven, because their vertices are rounded.

@@ -24,16 +24,21 @@ pub struct Level {
     pub along: f64,
 }
 
-/// Which contacts are level with which, up to rounding. The foot of a `stance` keeps its place.
+/// Which contacts are level with which, up to rounding; none of those behind the last entry. The foot of a `stance` keeps
+/// its place.
 pub fn level(contacts: &[Contact], placement: &Placement, stance: Option<usize>) -> Vec<Option<Level>> {
-    let mut levels: Vec<Option<Level>> = Vec::with_capacity(contacts.len());
+    let mut levels: Vec<Option<Level>> = Vec::new();
     for (index, contact) in contacts.iter().enumerate() {
-        let others = stance.into_iter().chain((0..index).filter(|&other| levels[other].is_none()));
+        let is_own = |&other: &usize| levels.get(other).is_none_or(Option::is_none);
+        let others = stance.into_iter().chain((0..index).filter(is_own));
         let found = others.filter(|_| stance != Some(index)).find_map(|with| {
             let along = along(contact, &contacts[with], placement)?;
             Some(Level { with, along })
         });
-        levels.push(found);
+        if found.is_some() {
+            levels.resize(index, None);
+            levels.push(found);
+        }
     }
     levels
 }

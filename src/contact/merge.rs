@@ -36,10 +36,10 @@ pub(super) fn merge(
     rounding: f64,
 ) -> Vec<Merged> {
     let mut merged = Vec::new();
-    let mut remains = vec![true; contacts.len()];
+    let mut remains = Vec::new();
     for first in 0..contacts.len() {
         let is_together = |&at: &usize| together(&contacts[first], &contacts[at]);
-        if (0..first).any(|at| is_together(&at)) {
+        if !(first + 1..contacts.len()).any(|at| is_together(&at)) || (0..first).any(|at| is_together(&at)) {
             continue;
         }
         let members = || (first..contacts.len()).filter(is_together);
@@ -77,7 +77,11 @@ pub(super) fn merge(
         let off = inner.iter().map(|&at| off(at).abs()).filter(|&off| off > rounding).fold(0.0, f64::max);
         let is_uneven = coincide && inner.iter().any(|&at| contacts[at].radius != contacts[rear].radius);
         merged.push(Merged { inner: inner.len(), outer, off, is_uneven });
+        remains.resize(contacts.len(), true);
         inner.into_iter().for_each(|at| remains[at] = false);
+    }
+    if merged.is_empty() {
+        return merged;
     }
     for own in merged.iter_mut().flat_map(|merged| &mut merged.outer) {
         *own = remains[..*own].iter().filter(|&&remains| remains).count();

@@ -29,6 +29,7 @@ pub(crate) use point::{Circle, Point, points};
 pub(crate) use surface::Surface;
 
 use crate::planar::{Rotation, Vector};
+use std::sync::Arc;
 
 /// A closed contact of one state; [`Pipeline`](crate::Pipeline) has an example.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +37,7 @@ pub struct Contact {
     /// The URDF link that carries the shape, merged or not (an index into [`Robot::links`](crate::Robot)).
     pub link: usize,
     /// The link's name, or link/0, link/1 ... where a link has several contacts.
-    pub name: String,
+    pub name: Arc<str>,
     /// The body that it is rigid on.
     pub body: usize,
     /// The point, or the center of the circle, in the body's frame \[m\].

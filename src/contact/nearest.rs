@@ -31,7 +31,7 @@ impl Footing<'_> {
                 _ => None,
             };
             if let Some(touch) = touch.filter(|touch| touch.gap < gap) {
-                nearest = Some(Contact::of_touch(foot.link, placement, touch));
+                nearest = Some(self.contact(foot.link, touch));
             }
         }
         nearest

@@ -8,7 +8,7 @@
 
 use super::feet::Foot;
 use super::placement::Placement;
-use super::point::{Circle, Point, Touch, points};
+use super::point::{Circle, Point, Touch, point, points};
 use super::sole::{Reach, sole};
 use crate::planar::{Rotation, Vector};
 
@@ -79,30 +79,34 @@ impl HalfPlane {
 
     /// The rearmost and the foremost corner on which a foot stands, if what is at most `highest` \[m\] above the plane
     /// is on it.
-    pub(super) fn sole(&self, foot: &Foot, placement: &Placement, highest: f64) -> Vec<Point> {
-        let corners: Vec<Point> = points(foot).collect();
-        let place = |&point: &Point| {
-            let lowest = self.lowest(placement, point);
+    pub(super) fn sole(&self, foot: &Foot, placement: &Placement, highest: f64) -> impl Iterator<Item = Point> {
+        let place = |at: usize| {
+            let lowest = self.lowest(placement, point(foot, at));
             Vector::new(self.along(lowest), self.normal().dot(lowest))
         };
-        let standing = sole(&corners.iter().map(place).collect::<Vec<_>>(), Reach { highest, bumps: foot.bumps });
-        match standing[..] {
-            [rear, .., front] => vec![corners[rear], corners[front]],
-            _ => standing.into_iter().map(|at| corners[at]).collect(),
-        }
+        let ends = sole(foot.outline.corners().len(), place, Reach { highest, bumps: foot.bumps });
+        let both = ends.map(|[rear, front]| [Some(rear), (front != rear).then_some(front)]);
+        both.into_iter().flatten().flatten().map(|at| point(foot, at))
     }
 
-    /// The contacts of a foot within `tolerance` \[m\] of the ground, at most two, or the depth of a foot that is
+    /// Finds the contacts of a foot within `tolerance` \[m\] of the ground, at most two, or the depth of a foot that is
     /// deeper.
-    pub(super) fn touching(&self, foot: &Foot, placement: &Placement, tolerance: f64) -> Result<Vec<Touch>, f64> {
+    pub(super) fn touching(
+        &self,
+        foot: &Foot,
+        placement: &Placement,
+        tolerance: f64,
+        found: impl FnMut(Touch),
+    ) -> Result<(), f64> {
         if self.is_out_of_reach(foot, placement, tolerance) {
-            return Ok(Vec::new());
+            return Ok(());
         }
         let depth = -self.clearance(foot, placement);
         if depth > tolerance {
             return Err(depth);
         }
-        Ok(self.sole(foot, placement, tolerance).into_iter().map(|point| self.touch(placement, point)).collect())
+        self.sole(foot, placement, tolerance).map(|point| self.touch(placement, point)).for_each(found);
+        Ok(())
     }
 
     /// How far a foot is above the ground \[m\].

@@ -47,8 +47,13 @@ impl Point {
 }
 
 pub(crate) fn points(foot: &Foot) -> impl Iterator<Item = Point> {
-    let corners = foot.outline.corners().iter();
-    corners.map(|&center| Point { body: foot.body, center, offset: foot.offset, rim: foot.outline.rim })
+    (0..foot.outline.corners().len()).map(|at| point(foot, at))
+}
+
+/// A corner of a foot with its rim.
+pub(super) fn point(foot: &Foot, corner: usize) -> Point {
+    let center = foot.outline.corners()[corner];
+    Point { body: foot.body, center, offset: foot.offset, rim: foot.outline.rim }
 }
 
 impl Contact {

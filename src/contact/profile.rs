@@ -51,9 +51,13 @@ pub(super) fn touching(
             Vector::new(face.past_begin(lowest), face.height(lowest))
         };
         let places: Vec<Vector<f64>> = (0..outline.corners.len()).map(place_of).collect();
-        let standing = sole(&places, Reach { highest: tolerance, bumps: foot.bumps });
-        let found = (0..places.len()).filter_map(|corner| {
-            let height = if standing.contains(&corner) { places[corner].z } else { tolerance };
+        let count = places.len();
+        let ends = sole(count, |at| places[at], Reach { highest: tolerance, bumps: foot.bumps });
+        let stands = |corner| {
+            ends.is_some_and(|[rear, front]| (corner + count - rear) % count <= (front + count - rear) % count)
+        };
+        let found = (0..count).filter_map(|corner| {
+            let height = if stands(corner) { places[corner].z } else { tolerance };
             on_segment(terrain, segment, &outline, corner, Closeness { tolerance: tolerance.max(height), rounding })
         });
         touches.extend(outer(found.collect(), |touch| face.tangent.dot(place(placement, touch))));

@@ -22,27 +22,29 @@ pub(super) struct Reach {
     pub bumps: f64,
 }
 
-/// The corners that stand, from the rearmost to the foremost, of an outline whose corners are at (t, n) `places` \[m\],
-/// counter-clockwise. Sides of 45 degrees and more are no sole.
-pub(super) fn sole(places: &[Vector<f64>], Reach { highest, bumps }: Reach) -> Vec<usize> {
-    let count = places.len();
-    let low = (0..count).filter(|&at| places[at].z <= highest);
-    let Some(lowest) = low.min_by(|&a, &b| places[a].z.total_cmp(&places[b].z)) else { return Vec::new() };
-    let joins = |at: usize, next: usize, forward: f64| {
-        let Vector { x: along, z: rise } = places[next] - places[at];
-        let (run, rise) = (forward * along, rise.abs());
-        run > rise && places[next].z <= highest
-            || run > 0.0 && rise <= LEVEL * run && places[next].z - places[lowest].z <= bumps
-    };
-    let mut standing = vec![lowest];
+/// The rearmost and the foremost corner that stands, of an outline whose `count` corners are at the (t, n) `place` \[m\],
+/// counter-clockwise: those from one to the other stand. Sides of 45 degrees and more are no sole.
+pub(super) fn sole(
+    count: usize,
+    place: impl Fn(usize) -> Vector<f64>,
+    Reach { highest, bumps }: Reach,
+) -> Option<[usize; 2]> {
+    let low = (0..count).map(|at| (at, place(at))).filter(|(_, place)| place.z <= highest);
+    let (lowest, least) = low.min_by(|(_, a), (_, b)| a.z.total_cmp(&b.z))?;
     // Counter-clockwise from the lowest is forward.
-    for (step, forward) in [(count - 1, -1.0), (1, 1.0)] {
-        standing.reverse();
-        let mut at = lowest;
-        while joins(at, (at + step) % count, forward) {
-            at = (at + step) % count;
-            standing.push(at);
+    let end = |(step, forward): (usize, f64)| {
+        let (mut at, mut from) = (lowest, least);
+        loop {
+            let next = (at + step) % count;
+            let to = place(next);
+            let Vector { x: along, z: rise } = to - from;
+            let (run, rise) = (forward * along, rise.abs());
+            let joins = run > rise && to.z <= highest || run > 0.0 && rise <= LEVEL * run && to.z - least.z <= bumps;
+            if !joins {
+                return at;
+            }
+            (at, from) = (next, to);
         }
-    }
-    standing
+    };
+    Some([(count - 1, -1.0), (1, 1.0)].map(end))
 }

@@ -9,7 +9,7 @@ use super::plane::HalfPlane;
 use super::point::{Point, Touch};
 use super::profile::{self, Closeness};
 use super::terrain::Terrain;
-use crate::error::{Error, Reason, Result};
+use crate::error::{Error, Reason};
 use crate::planar::Vector;
 use crate::state::Ground;
 
@@ -19,12 +19,10 @@ pub(crate) enum Surface {
     Profile(Terrain),
 }
 
-/// How a foot meets the ground.
-pub(super) enum Touching {
-    /// Where it is within the tolerance.
-    At(Vec<Touch>),
-    /// It is too deep: by how much \[m\], and what to do.
-    Sunk { depth: f64, remedy: String },
+/// A foot that is too deep: by how much \[m\], and what to do.
+pub(super) struct Sunk {
+    pub depth: f64,
+    pub remedy: String,
 }
 
 impl Surface {
@@ -36,7 +34,7 @@ impl Surface {
     }
 
     /// The plane on which the foot of a stance is placed, and the point of the ground that it is placed at \[m\].
-    pub(super) fn stance(&self) -> Result<(HalfPlane, Vector<f64>)> {
+    pub(super) fn stance(&self) -> crate::Result<(HalfPlane, Vector<f64>)> {
         match self {
             Self::HalfPlane(plane) => Ok((*plane, Vector::zero())),
             Self::Profile(terrain) => {
@@ -73,22 +71,26 @@ impl Surface {
         }
     }
 
-    /// Where a foot is `close` to the ground.
-    pub(super) fn touching(&self, foot: &Foot, placement: &Placement, close: Closeness) -> Touching {
-        let (found, how) = match self {
-            Self::HalfPlane(plane) => (plane.touching(foot, placement, close.tolerance), "raise the base"),
+    /// Finds where a foot is `close` to the ground.
+    pub(super) fn touching(
+        &self,
+        foot: &Foot,
+        placement: &Placement,
+        close: Closeness,
+        found: impl FnMut(Touch),
+    ) -> Result<(), Sunk> {
+        let (touching, how) = match self {
+            Self::HalfPlane(plane) => (plane.touching(foot, placement, close.tolerance, found), "raise the base"),
             Self::Profile(terrain) => {
-                (profile::touching(terrain, foot, placement, close), "move the base or the profile")
+                let touches = profile::touching(terrain, foot, placement, close);
+                (touches.map(|touches| touches.into_iter().for_each(found)), "move the base or the profile")
             }
         };
-        found.map_or_else(
-            |depth| {
-                let remedy =
-                    format!("{how} by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
-                Touching::Sunk { depth, remedy }
-            },
-            Touching::At,
-        )
+        touching.map_err(|depth| {
+            let remedy =
+                format!("{how} by {depth:?} m, correct the pose, or accept it by a greater `contact_tolerance`");
+            Sunk { depth, remedy }
+        })
     }
 
     /// Whether a foot is so far away that no point of it can be within `tolerance` \[m\] of the ground.

@@ -48,7 +48,7 @@ pub struct AnalysisOptions<'a> {
     pub rejections: ListedRejections<'a>,
     /// Whether the errors of the source are bounds, so that what is decided is proven.
     pub prove: bool,
-    /// Without the rank and the condition of G.
+    /// Without the rank and the condition of G, and the borders of outcomes.
     pub brief: bool,
     /// What of the enumeration is left out if a problem does not need it.
     pub reductions: Reductions,
@@ -278,7 +278,10 @@ impl<'a> Collected<'a> {
     /// A decided outcome with a unique impulse; the caller sets index and margin.
     fn outcome(&self, modes: Vec<Mode>, numbers: Numbers, at_zero: &[(usize, Inequality)]) -> Outcome {
         let Numbers { motion, energy_loss, friction_needed, are_sharp } = numbers;
-        let border = border(&modes, self.problem.laws(), at_zero, &motion, self.name);
+        let border = match self.options.brief {
+            true => None,
+            false => border(&modes, self.problem.laws(), at_zero, &motion, self.name),
+        };
         // Adding zero turns a negative zero into the one that people expect to read.
         let unsigned = |list: Vec<Pair<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
         Outcome {

@@ -53,7 +53,10 @@ impl<'a> F64Reader<'a> {
             law.conditions(mode, |condition| {
                 wrong = wrong || {
                     let number = condition.function.at(|which| numbers[which], std::convert::identity);
-                    self.sign(&Slack { contact, condition, number }).0 == Sign::Negative
+                    match self.sign(&Slack { contact, condition, number }).0 {
+                        Sign::Zero => condition.inequality.is_strict(),
+                        sign => sign == Sign::Negative,
+                    }
                 };
             });
             wrong

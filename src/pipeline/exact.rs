@@ -229,6 +229,6 @@ impl Source for ExactState<'_> {
     }
 
     fn contact_name(&self, contact: usize) -> String {
-        self.contacts[contact].name.clone()
+        self.contacts[contact].name.to_string()
     }
 }

@@ -78,8 +78,8 @@ pub struct Options {
     pub explain_up_to: usize,
     /// Keep the matrices.
     pub matrices: bool,
-    /// Only what a result in brief shows: without velocities of base and joints, rank and condition of G, the nearest
-    /// foot, notes on it and what is left out.
+    /// Only what a result in brief shows: without velocities of base and joints, rank and condition of G, borders, the
+    /// nearest foot, notes on it and on contacts at rest, and what is left out.
     pub brief: bool,
     /// Compute the forces just after each outcome of an impact.
     pub next: bool,

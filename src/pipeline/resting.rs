@@ -44,7 +44,7 @@ enum Because {
 }
 
 impl Pipeline<'_> {
-    /// Takes contacts that rest as exactly at rest, and notes them; gives which. `velocity` is dq/dt; the contacts'
+    /// Takes contacts that rest as exactly at rest, and notes them unless in brief; gives which. `velocity` is dq/dt; the contacts'
     /// velocities and their bounds must be known.
     pub(super) fn take_as_resting(
         &mut self,
@@ -70,10 +70,10 @@ impl Pipeline<'_> {
                 resting[index] = true;
                 self.assembly.workspace.contact_velocity[index] = [0.0; 2];
                 self.bounds.velocity[index] = [0.0; 2];
-                if slow > 0.0 || self.options.resting_speed.is_none() {
+                if !self.options.brief && (slow > 0.0 || self.options.resting_speed.is_none()) {
                     notes.push(format!("{name}{AT_REST} although it moves at {slow:.1e} m/s ({because})"));
                 }
-            } else if bound > 0.0 && slow <= bound {
+            } else if !self.options.brief && bound > 0.0 && slow <= bound {
                 notes.push(format!(
                     "{name} moves at {slow:.1e} m/s, which is within the rounding of its velocity: if it is at rest, \
                      say so by `stance` or `resting_speed`"

@@ -123,7 +123,7 @@ impl<'a> Solver<'a> {
     /// Names of the contacts and the analysis at a point, with the rejected combinations of these modes.
     pub fn explained(&mut self, point: &[f64], modes: &[Vec<Mode>]) -> Result<(Vec<String>, Analysis)> {
         let impact = self.at(point, |_, state, pipeline| pipeline.answer_explaining(&state, modes))?;
-        let names = impact.contacts.iter().map(|contact| contact.name.clone()).collect();
+        let names = impact.contacts.iter().map(|contact| contact.name.to_string()).collect();
         Ok((names, impact.into_analysis()?))
     }
 
@@ -169,7 +169,7 @@ impl<'a> Solver<'a> {
                 true => Inequalities::of(&problem),
                 false => Inequalities::default(),
             },
-            contacts: contacts.into_iter().map(|contact| contact.name).collect(),
+            contacts: contacts.into_iter().map(|contact| contact.name.to_string()).collect(),
             clearance: clearance.into_iter().map(|height| height - tolerance).collect(),
         })
     }

@@ -38,7 +38,7 @@ impl Regime {
         let mut undecided: Vec<Vec<Mode>> = open.map(|outcome| outcome.modes.clone()).collect();
         undecided.sort();
         Self::Answered {
-            contacts: impact.contacts.iter().map(|contact| contact.name.clone()).collect(),
+            contacts: impact.contacts.iter().map(|contact| contact.name.to_string()).collect(),
             outcomes: analysis.modes(),
             undecided,
         }

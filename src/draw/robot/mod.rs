@@ -128,7 +128,7 @@ impl Drawing {
             impact.contacts.iter().zip(pairs).map(|(contact, &pair)| contact.ground.apply(pair.into())).collect()
         };
         let contact = |(contact, velocity_before): (&Contact, _)| {
-            let (name, point, normal) = (contact.name.clone(), contact.point, contact.normal());
+            let (name, point, normal) = (contact.name.to_string(), contact.point, contact.normal());
             DrawnContact { name, point, normal, velocity_before }
         };
         drawing.contacts = impact.contacts.iter().zip(turned(&impact.velocity_before)).map(contact).collect();

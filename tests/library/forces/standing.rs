@@ -122,7 +122,7 @@ fn heel_leaves_while_the_foot_turns() {
         &block(),
         json!({"position": {"base": {"x": 0.0, "z": 0.2}}, "velocity": {"base": {"x": 0.2, "z": 0.1, "pitch": 1.0}}}),
     );
-    let names: Vec<&str> = found.contacts.iter().map(|own| own.name.as_str()).collect();
+    let names: Vec<&str> = found.contacts.iter().map(|own| &*own.name).collect();
     assert_eq!((names, modes(&found).len()), (vec!["body/1"], 1));
     let notes = found.notes.join("\n");
     assert!(notes.contains("body/0 leaves the ground"), "{notes}");

@@ -52,7 +52,7 @@ fn a_disc_or_a_point_in_a_notch_touches_both_sides() {
     let r = 0.5 * FRAC_1_SQRT_2;
     let s = FRAC_1_SQRT_2;
     assert_touches(&found, &[[[-r, r], [s, s]], [[r, r], [-s, s]]]);
-    assert_eq!([&found.contacts[0].name, &found.contacts[1].name], ["body/0", "body/1"]);
+    assert_eq!([&*found.contacts[0].name, &*found.contacts[1].name], ["body/0", "body/1"]);
     // Both push up by L / sqrt 2 and take 2 kg m/s.
     let (impulse, after) = only_outcome(&found);
     assert_close(impulse.as_flattened(), &[0.0, SQRT_2, 0.0, SQRT_2]);

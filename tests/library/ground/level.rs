@@ -7,7 +7,7 @@ use heelstrike::robot::{FootShape, Rim};
 use heelstrike::state::{Defaults, NamedContact, State};
 
 fn names(impact: &Impact) -> Vec<&str> {
-    impact.contacts.iter().map(|contact| contact.name.as_str()).collect()
+    impact.contacts.iter().map(|contact| &*contact.name).collect()
 }
 
 /// A body at rest, or falling, at a height above level ground.

@@ -96,7 +96,7 @@ fn lowest_foot_is_put_on_the_ground() {
         let placed = impact(&robot, striking(7.0, json!({"ground": ground, "place": "lowest"})));
         let by_hand = impact(&robot, striking(rise, json!({"ground": ground})));
         assert_same_outcomes(&placed, &by_hand);
-        assert_eq!(placed.contacts[0].name, "other");
+        assert_eq!(&*placed.contacts[0].name, "other");
         assert_close(&[placed.contacts[0].gap], &[0.0]);
         let buried = impact(&robot, striking(-7.0, json!({"ground": ground, "place": "lowest"})));
         assert_same_outcomes(&buried, &by_hand);

@@ -50,7 +50,7 @@ fn a_symmetric_fall_on_uneven_soles_is_symmetric() {
             state["ground"] = json!({"profile": [[-1.0, 0.0], [1.0, 0.0]]});
         }
         let found = impact(&biped(uneven, &EVEN), &state);
-        let names: Vec<&str> = found.contacts.iter().map(|contact| contact.name.as_str()).collect();
+        let names: Vec<&str> = found.contacts.iter().map(|contact| &*contact.name).collect();
         assert_eq!(names, ["left_foot/0", "left_foot/1", "right_foot/0", "right_foot/1"]);
         for (contact, x) in found.contacts.iter().zip([-0.071, 0.131, -0.071, 0.131]) {
             assert_eq!(contact.point.x, x, "{}", contact.name);

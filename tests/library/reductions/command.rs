@@ -73,7 +73,7 @@ fn inner_points_are_reported_and_listed_ones_kept() {
     let mut state = json!({"position": {"base": {"z": 0.1}}, "velocity": {"base": {"z": -1.0}},
         "friction": {"default": 0.5, "rubber": 0.7}});
     let found = impact(&robot, &state);
-    let names = |impact: &Impact| impact.contacts.iter().map(|contact| contact.name.clone()).collect::<Vec<_>>();
+    let names = |impact: &Impact| impact.contacts.iter().map(|contact| contact.name.to_string()).collect::<Vec<_>>();
     assert_eq!(names(&found), ["foot/0", "foot/1", "rubber/0", "rubber/1"]);
     let merged = [
         "2 contact points next to foot/0, foot/1",

@@ -76,7 +76,7 @@ fn the_rabbits_touchdowns_are_those_of_the_reference() {
             let mut state = touchdown.state.clone();
             state.scene.friction.default = Some(friction.parse().map_or(Friction::Infinite, Friction::Finite));
             let impact = Pipeline::new(&robot, Options::default()).impact(&state).unwrap();
-            let names: Vec<&str> = impact.contacts.iter().map(|contact| contact.name.as_str()).collect();
+            let names: Vec<&str> = impact.contacts.iter().map(|contact| &*contact.name).collect();
             assert_eq!(json!(names), expected["touching"]);
             assert_close(&impact.contacts.iter().map(|own| own.gap).collect::<Vec<_>>(), &expected["gap"], 1e-14);
             // Contact velocities of order one through a Delassus matrix of condition ten.
