@@ -53,10 +53,15 @@ pub struct Question<'r> {
     pub keyframes: bool,
 }
 
+/// At most so much memory is taken for the answers to a chunk before they are known \[bytes\].
+const ROOM: usize = 1 << 20;
+
 /// Answers records, with memory that it reuses.
 pub struct Batch<'q> {
     reader: Reader<'q>,
     answerer: Answerer<'q>,
+    /// The most that a chunk of records has led to so far \[bytes\].
+    most: usize,
 }
 
 /// Answers states.
@@ -103,13 +108,13 @@ impl<'q> Batch<'q> {
         let pipeline = Pipeline::new(question.robot, options);
         let lines = || Reader::Lines(Box::new(StateLines::new(question.robot, &question.defaults)));
         let reader = question.header.map_or_else(lines, |header| Reader::Rows(header.rows()));
-        Self { reader, answerer: Answerer { question, pipeline } }
+        Self { reader, answerer: Answerer { question, pipeline }, most: 0 }
     }
 
     /// Answers records that do not depend on each other.
     pub fn records(&mut self, chunk: &Chunk) -> Block {
-        let mut block = Block::default();
-        let Self { reader, answerer } = self;
+        let Self { reader, answerer, most } = self;
+        let mut block = Block { out: Vec::with_capacity(*most), ..Block::default() };
         for (line, record) in chunk.records() {
             let around = Around { line, record, ..Around::default() };
             match reader {
@@ -120,6 +125,7 @@ impl<'q> Batch<'q> {
         if let Some(line) = chunk.too_long {
             answerer.refuse(too_long(), None, Around { line, ..Around::default() }, &mut block);
         }
+        *most = block.out.len().max(*most).min(ROOM);
         block
     }
 
@@ -230,6 +236,7 @@ impl Answerer<'_> {
             // The result contains it next to the matrices.
             Err(error) => block.refuse(error, around),
         }
+        self.pipeline.recycle(impact);
         Ok(())
     }
 

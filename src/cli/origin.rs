@@ -16,12 +16,17 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The FNV-1a hash of 64 bits: the same however the bytes arrive, on every machine.
+/// The FNV-1a hash of 64 bits, by words of eight bytes: the same however the bytes arrive, on every machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Digest(u64);
+pub(super) struct Digest {
+    hash: u64,
+    /// The bytes that are not a whole word yet, and how many they are.
+    word: u64,
+    bytes: u32,
+}
 
 impl Digest {
-    const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
+    const EMPTY: Self = Self { hash: 0xcbf2_9ce4_8422_2325, word: 0, bytes: 0 };
 
     /// Of all that a value holds; numbers enter with every digit.
     pub fn of(value: &impl Debug) -> Self {
@@ -32,7 +37,25 @@ impl Digest {
     }
 
     fn add(&mut self, bytes: &[u8]) {
-        self.0 = bytes.iter().fold(self.0, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+        let (first, rest) = bytes.split_at(bytes.len().min((8 - self.bytes as usize) % 8));
+        let (words, last) = rest.as_chunks();
+        first.iter().for_each(|&byte| self.add_byte(byte));
+        words.iter().for_each(|&word| self.add_word(u64::from_le_bytes(word)));
+        last.iter().for_each(|&byte| self.add_byte(byte));
+    }
+
+    fn add_byte(&mut self, byte: u8) {
+        self.word |= u64::from(byte) << (8 * self.bytes);
+        self.bytes += 1;
+        if self.bytes == 8 {
+            self.add_word(self.word);
+            (self.word, self.bytes) = (0, 0);
+        }
+    }
+
+    fn add_word(&mut self, word: u64) {
+        // Turned, so that the highest byte of a word reaches the lowest of the hash.
+        self.hash = (self.hash ^ word).wrapping_mul(0x0100_0000_01b3).rotate_left(29);
     }
 }
 

@@ -95,7 +95,7 @@ impl Footing<'_> {
     /// All closed contacts: the named ones whatever their height, else the outer two of every foot within `tolerance`
     /// \[m\] of the ground, in the order of the links and within a link along t of a plane, along x of a profile. A
     /// contact is named after its link, and numbered where the link has several. With `merges`, those between the outer
-    /// two of a body are left out, but not the `standing` one.
+    /// two of a body are left out, but not the `standing` one. `contacts` is memory.
     ///
     /// # Errors
     /// [`Reason::Penetration`] for the deepest of the feet that are deeper than the tolerance.
@@ -104,15 +104,17 @@ impl Footing<'_> {
         tolerance: f64,
         merges: bool,
         standing: Option<&Contact>,
+        mut contacts: Vec<Contact>,
     ) -> Result<(Vec<Contact>, Vec<Merged>)> {
         let mut merged = Vec::new();
-        let mut contacts = match self.named() {
+        contacts.clear();
+        match self.named() {
             Some(named) => {
                 let touch = |contact| self.surface.touch(self.placement, Point::named(self.robot, contact), tolerance);
-                named.iter().map(|contact| self.contact(contact.link, touch(contact))).collect()
+                contacts.extend(named.iter().map(|contact| self.contact(contact.link, touch(contact))));
             }
-            None => self.detected(tolerance)?,
-        };
+            None => self.detect(tolerance, &mut contacts)?,
+        }
         if merges && self.named().is_none() {
             let stays = |contact: &Contact| standing.is_some_and(|foot| foot.has_circle_of(contact));
             let rounding = self.surface.rounding(self.placement, self.feet.size());
@@ -157,7 +159,7 @@ impl Footing<'_> {
         }
     }
 
-    fn detected(&self, tolerance: f64) -> Result<Vec<Contact>> {
+    fn detect(&self, tolerance: f64, contacts: &mut Vec<Contact>) -> Result<()> {
         let Self { feet, placement, surface, .. } = self;
         let rounding = surface.rounding(placement, feet.size());
         if rounding > feet.size() {
@@ -166,7 +168,6 @@ impl Footing<'_> {
             return Err(Error::new(Reason::Inconsistent(reason)).hint("move the scene to the world's origin"));
         }
         let tolerance = tolerance + rounding;
-        let mut contacts: Vec<Contact> = Vec::new();
         let mut deepest: Option<(usize, f64, String)> = None;
         for foot in feet.iter() {
             let found = |touch| {
@@ -188,7 +189,7 @@ impl Footing<'_> {
             return Err(Error::new(Reason::Penetration { link, depth, tolerance, velocity: None }).hint(remedy));
         }
         contacts.sort_by(|a, b| a.link.cmp(&b.link).then(surface.along(a.point).total_cmp(&surface.along(b.point))));
-        Ok(contacts)
+        Ok(())
     }
 
     /// How many feet are too far from the ground to be looked at with this `tolerance` \[m\].

@@ -6,7 +6,7 @@ use crate::dynamics::{Workspace, kinematics};
 use crate::planar::{Rotation, Vector};
 use crate::robot::{Base, Rim, Robot};
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Placement {
     /// Origin of each body in the world \[m\].
     origins: Vec<Vector<f64>>,
@@ -17,11 +17,17 @@ pub struct Placement {
 impl Placement {
     /// The bodies after `kinematics`, with the root's origin at `base` \[m\].
     pub fn new(plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>) -> Self {
-        let mut origins: Vec<Vector<f64>> = Vec::with_capacity(plan.bodies.len());
+        Self::default().moved(plan, workspace, base)
+    }
+
+    /// As [`Placement::new`], in the memory of another one.
+    pub fn moved(mut self, plan: &Plan<f64>, workspace: &Workspace<f64>, base: Vector<f64>) -> Self {
+        self.origins.clear();
         for (body, &arm) in plan.bodies.iter().zip(&workspace.arm) {
-            origins.push(body.parent.map_or(base, |parent| origins[parent] + arm));
+            self.origins.push(body.parent.map_or(base, |parent| self.origins[parent] + arm));
         }
-        Self { origins, turns: workspace.rotation.clone() }
+        self.turns.clone_from(&workspace.rotation);
+        self
     }
 
     /// The bodies of `robot` at `position` (q).

@@ -36,6 +36,9 @@ pub(super) fn sole(
         let (mut at, mut from) = (lowest, least);
         loop {
             let next = (at + step) % count;
+            if next == lowest {
+                return at;
+            }
             let to = place(next);
             let Vector { x: along, z: rise } = to - from;
             let (run, rise) = (forward * along, rise.abs());

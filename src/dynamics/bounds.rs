@@ -283,10 +283,11 @@ fn squared_ease(plan: &Plan, workspace: &Workspace, column: usize, y: &mut Vec<f
     let mut sum = 0.0;
     for i in std::iter::once(column).chain(plan.ancestors(column)) {
         // Entries off the branch of the column stay zero.
+        let (own, row) = (y[i], factor.row(i));
         for j in plan.ancestors(i) {
-            y[j] -= factor.entry(i, j) * y[i];
+            y[j] -= row[j] * own;
         }
-        sum += y[i] * y[i] / factor.pivot(i);
+        sum += own * own / factor.pivot(i);
     }
     sum
 }

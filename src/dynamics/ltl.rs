@@ -38,9 +38,9 @@ impl<T: Real> LtlFactor<T> {
         }
     }
 
-    /// The entry of L below its diagonal.
-    pub fn entry(&self, row: usize, column: usize) -> T {
-        self.entries[row * self.columns + column]
+    /// The entries of a row of L below its diagonal.
+    pub fn row(&self, row: usize) -> &[T] {
+        &self.entries[row * self.columns..][..row]
     }
 
     pub fn pivot(&self, column: usize) -> T {
@@ -55,8 +55,9 @@ impl<T: Real> LtlFactor<T> {
     /// y := L^-T y.
     pub fn half_solve(&self, plan: &Plan<T>, y: &mut [T]) {
         for i in (0..self.columns).rev() {
+            let (above, rest) = y.split_at_mut(i);
             for j in plan.ancestors(i) {
-                y[j] = y[j] - self.entry(i, j) * y[i];
+                above[j] = above[j] - self.row(i)[j] * rest[0];
             }
         }
     }
@@ -65,7 +66,7 @@ impl<T: Real> LtlFactor<T> {
     pub fn other_half_solve(&self, plan: &Plan<T>, x: &mut [T]) {
         for i in 0..self.columns {
             for j in plan.ancestors(i) {
-                x[i] = x[i] - self.entry(i, j) * x[j];
+                x[i] = x[i] - self.row(i)[j] * x[j];
             }
         }
     }

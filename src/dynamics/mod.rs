@@ -265,7 +265,7 @@ mod tests {
             let by_bodies = kinetic_energy(&plan, &case.velocity, &workspace);
             let factor = &workspace.factor;
             let lower = DMatrix::from_fn(plan.columns(), plan.columns(), |row, column| match row.cmp(&column) {
-                Ordering::Greater => factor.entry(row, column),
+                Ordering::Greater => factor.row(row)[column],
                 Ordering::Equal => 1.0,
                 Ordering::Less => 0.0,
             });

@@ -9,7 +9,9 @@
 //! every sign in an answer was shown, and nothing is guessed.
 
 use super::bound::LeafBounds;
-use super::collected::{AnalysisOptions, Collected, EXPLAINED, Findings, FoundFamilies, ListedRejections};
+use super::collected::{
+    AnalysisOptions, Collected, EXPLAINED, Findings, FoundFamilies, ListedRejections, OutcomeMemory,
+};
 use super::enumerate::{Labels, Tableau};
 use super::explanation::explanation;
 use super::families::FamiliesPass;
@@ -41,6 +43,7 @@ pub struct Scratch {
     bounds: LeafBounds,
     labels: Labels,
     relaxation: Relaxation,
+    memory: OutcomeMemory,
 }
 
 /// Every outcome of a `problem` given as matrices, whose digits are taken exactly; with the `rejections`
@@ -54,6 +57,11 @@ pub fn analyze(problem: &ContactProblem, rejections: ListedRejections<'_>) -> Re
 }
 
 impl Scratch {
+    /// Takes the memory of outcomes that are no longer needed.
+    pub fn recycle(&mut self, outcomes: Vec<Outcome>) {
+        self.memory.recycle(outcomes);
+    }
+
     /// As [`analyze`], with memory that is kept, of a `problem` that was rounded from a `source`.
     pub fn analyze<S: Source>(
         &mut self,
@@ -112,7 +120,9 @@ impl Scratch {
         if is_spent() {
             return None;
         }
-        outcomes.iter().map(steepest).min_by(f64::total_cmp)
+        let least = outcomes.iter().map(steepest).min_by(f64::total_cmp);
+        self.recycle(outcomes);
+        least
     }
 
     /// All outcomes of the modes that are visited, and whether G was shown to be regular.
@@ -136,7 +146,7 @@ impl Scratch {
                 && problem.laws().iter().any(|law| law.modes().iter().any(|group| group.len() > 1)),
             regular: contacts == 0,
             undecided: Vec::new(),
-            collected: Collected::new(problem, &self.scale, options, &name),
+            collected: Collected::new(problem, &self.scale, options, &name, &mut self.memory),
         };
         let lists_all = options.rejections == ListedRejections::Everything;
         let is_searched = contacts >= SEARCHED && !(lists_all && contacts <= EXPLAINED);

@@ -10,7 +10,8 @@
 //! ```
 //!
 //! (Higham 2002, chapter 3). Rounding is relative, so the scale may be applied after the fact. A pivot that may be zero
-//! makes every bound infinite. The bounds' own rounding is covered by [`SLACK`].
+//! makes every bound infinite. The bounds' own rounding is covered by [`SLACK`]. Constants that are sums of products with
+//! numbers that are exactly zero are so themselves: those of contacts that rest, next to others that move.
 
 use super::enumerate::Tableau;
 use super::slack::Scale;
@@ -69,6 +70,8 @@ pub struct Bound {
     pub impulse: Class,
     /// Constants of impulse rows.
     pub impulse_constant: Class,
+    /// Bits of the rows whose constants are exactly zero, whatever the rest is.
+    pub still: u32,
     /// The error that the problem came with.
     given: f64,
 }
@@ -171,6 +174,7 @@ impl LeafBounds {
         let start = Bound {
             velocity: Class { size: 0.0, error: delassus },
             velocity_constant: Class { size: 0.0, error: noise },
+            still: scale.still,
             given: delassus + noise,
             ..Bound::default()
         };
@@ -186,11 +190,15 @@ impl LeafBounds {
         let (impulse, pivot) = tableau.decided(contact);
         let [t, n] = [self.inverse[2 * contact], self.inverse[2 * contact + 1]];
         let last = contact + 2 == self.depths.len();
-        let next = match impulse {
+        let mut next = match impulse {
             Impulse::Zero => self.depths[source],
             Impulse::Along(ray) => self.depths[source].slide((pivot * n / self.size(contact, ray)).abs(), last),
             Impulse::Free => self.depths[source].stick((pivot * (t * n) * (t * n)).abs(), last),
         };
+        // No impulse is added to any row if the contact's own constants are zero and its pivot is not.
+        let read = impulse.unknowns() << (2 * contact);
+        let is_none = self.depths[source].still & read == read && next.impulse_constant.error.is_finite();
+        next.still = if is_none { self.depths[source].still } else { 0 };
         // No later step asks how large the constants of the last are.
         self.depths[contact + 1] = if last { next } else { next.measured(self.sizes(tableau, contact + 1)) };
     }
@@ -257,6 +265,12 @@ mod tests {
                     let far = |own: f64, exact: Interval| (exact - Interval::from_f64(own)).to_f64().abs();
                     let velocity = far(leaf.velocity(row / 2)[row % 2], exact.velocity(row / 2)[row % 2]);
                     let impulse = far(leaf.impulse(row / 2)[row % 2], exact.impulse(row / 2)[row % 2]);
+                    if bound.still >> row & 1 == 1 {
+                        assert!(
+                            [velocity, impulse] == [0.0; 2] && leaf.numbers(row / 2)[row % 2] == 0.0,
+                            "row {row} moves"
+                        );
+                    }
                     for (error, allowed) in [
                         (velocity / (mobility * self.scale.speed), bound.velocity_error()),
                         (impulse * mobility / self.scale.speed, bound.impulse_error()),
@@ -272,7 +286,10 @@ mod tests {
         #[test]
         fn numbers_keep_within_their_bounds(
             mut rows in prop::collection::vec(prop::collection::vec(-1.0..1.0f64, 7), 6),
-            before in prop::collection::vec(prop::array::uniform2(-1.0..1.0f64), 3),
+            before in prop::collection::vec(
+                prop_oneof![2 => prop::array::uniform2(-1.0..1.0f64), 1 => Just([0.0; 2])],
+                3,
+            ),
             friction in prop::collection::vec(
                 prop_oneof![Just(Friction::ZERO), Just(Friction::Infinite), (0.01..10.0f64).prop_map(Friction::Finite)],
                 3,

@@ -8,7 +8,6 @@ use super::reading::CombinationReading;
 use super::singular::{SingularCase, SingularOutcome};
 use super::slack::Scale;
 use crate::law::{Inequality, Law, Mode};
-use crate::planar::Pair;
 use crate::reductions::Reductions;
 use std::cmp::Ordering;
 
@@ -71,9 +70,42 @@ pub struct Pending {
 }
 
 /// An outcome and the combination that led to it.
+#[derive(Debug, Clone)]
 struct Numbered {
     number: u64,
     outcome: Outcome,
+}
+
+/// The memory of so many outcomes is kept; few states have more.
+const RECYCLED: usize = 16;
+
+/// Memory of outcomes, which is reused.
+#[derive(Debug, Clone, Default)]
+pub struct OutcomeMemory {
+    numbered: Vec<Numbered>,
+    outcomes: Vec<Outcome>,
+    lists: Vec<OutcomeLists>,
+    at_zero: Vec<(usize, Inequality)>,
+}
+
+/// The lists of an outcome.
+#[derive(Debug, Clone, Default)]
+pub struct OutcomeLists {
+    pub modes: Vec<Mode>,
+    pub motion: Motion,
+    pub friction_needed: Vec<Option<f64>>,
+}
+
+impl OutcomeMemory {
+    /// Takes the memory of outcomes that are no longer needed.
+    pub fn recycle(&mut self, mut outcomes: Vec<Outcome>) {
+        let room = RECYCLED.saturating_sub(self.lists.len());
+        self.lists.extend(outcomes.drain(..).take(room).map(|own| {
+            let motion = Motion { impulse: own.impulse, velocity_after: own.velocity_after };
+            OutcomeLists { modes: own.modes, motion, friction_needed: own.friction_needed }
+        }));
+        self.outcomes = outcomes;
+    }
 }
 
 /// The families of a problem, each with its dimension and its corners by their place in `corners`.
@@ -116,7 +148,7 @@ pub struct Collected<'a> {
     pub effort: Effort,
     /// Combinations that no precision decided.
     pub undecided: u64,
-    outcomes: Vec<Numbered>,
+    memory: &'a mut OutcomeMemory,
     /// Combinations whose velocities form a set.
     pub pending_families: Vec<Pending>,
     /// Corners are still in the order in which they were found.
@@ -131,7 +163,9 @@ impl<'a> Collected<'a> {
         scale: &'a Scale,
         options: AnalysisOptions<'a>,
         name: &'a dyn Fn(usize) -> String,
+        memory: &'a mut OutcomeMemory,
     ) -> Self {
+        memory.numbered.clear();
         Self {
             problem,
             scale,
@@ -140,7 +174,7 @@ impl<'a> Collected<'a> {
             total: 0,
             effort: Effort::default(),
             undecided: 0,
-            outcomes: Vec::new(),
+            memory,
             pending_families: Vec::new(),
             families: Vec::new(),
             rejected: Vec::new(),
@@ -152,7 +186,9 @@ impl<'a> Collected<'a> {
     pub fn add(&mut self, pending: &Pending, solved: Solved) {
         let &Pending { number, ref modes } = pending;
         match solved {
-            Solved::Regular { reading, index, numbers } => self.add_regular(number, modes, reading, index, numbers),
+            Solved::Regular { reading, index, numbers } => {
+                self.add_regular(number, modes.clone(), reading, index, numbers);
+            }
             Solved::Rejected(rejection) | Solved::Singular(SingularCase::Rejected(rejection)) => {
                 self.reject(number, modes, || rejection);
             }
@@ -164,23 +200,35 @@ impl<'a> Collected<'a> {
         }
     }
 
+    /// Memory for what is at zero in a reading.
+    pub fn at_zero(&mut self) -> Vec<(usize, Inequality)> {
+        std::mem::take(&mut self.memory.at_zero)
+    }
+
+    /// Memory for an outcome.
+    pub fn lists(&mut self) -> OutcomeLists {
+        self.memory.lists.pop().unwrap_or_default()
+    }
+
     /// Adds an outcome whose equations have one solution.
     pub fn add_regular(
         &mut self,
         number: u64,
-        modes: &[Mode],
-        reading: CombinationReading,
+        modes: Vec<Mode>,
+        mut reading: CombinationReading,
         index: i8,
         numbers: Numbers,
     ) {
-        let mut outcome = self.outcome(modes.to_vec(), numbers, &reading.at_zero);
+        let mut outcome = self.outcome(modes, numbers, &reading.at_zero);
         outcome.index = reading.at_zero.is_empty().then_some(index);
         outcome.margin = reading.margin.map(|margin| margin + 0.0);
         self.push(number, outcome);
+        reading.at_zero.clear();
+        self.memory.at_zero = reading.at_zero;
     }
 
     fn push(&mut self, number: u64, outcome: Outcome) {
-        self.outcomes.push(Numbered { number, outcome });
+        self.memory.numbered.push(Numbered { number, outcome });
     }
 
     /// Counts a combination that no precision decided, and lists one of the first with zeros for the impulses that are
@@ -192,7 +240,7 @@ impl<'a> Collected<'a> {
         }
         let velocity_after = self.problem.velocity_free().to_vec();
         let motion = Motion { impulse: vec![[0.0; 2]; modes.len()], velocity_after };
-        let numbers = Numbers::of_motion(motion, &modes, self.problem);
+        let numbers = Numbers::of_motion(motion, &modes, self.problem, Vec::new());
         let outcome = Outcome { decided: false, proven: false, ..self.outcome(modes, numbers, &[]) };
         self.push(number, outcome);
     }
@@ -201,15 +249,15 @@ impl<'a> Collected<'a> {
     pub fn reject(&mut self, number: u64, modes: &[Mode], rejection: impl FnOnce() -> Rejection) {
         if self.options.rejections.contain(modes) {
             let mut rejection = rejection();
-            rejection.margin = rejection.margin.filter(|margin| margin.is_finite());
-            rejection.motion = rejection.motion.filter(Motion::is_finite);
+            rejection.margin = rejection.margin.filter(|margin| margin.is_finite()).map(|margin| margin + 0.0);
+            rejection.motion = rejection.motion.filter(Motion::is_finite).map(Motion::unsigned);
             self.rejected.push((number, rejection));
         }
     }
 
     /// The place of the decided outcome with these modes.
     pub fn place_of(&self, modes: &[Mode]) -> Option<usize> {
-        self.outcomes.iter().position(|own| own.outcome.decided && own.outcome.modes == modes)
+        self.memory.numbered.iter().position(|own| own.outcome.decided && own.outcome.modes == modes)
     }
 
     /// Adds families and their corners, once all other outcomes are known.
@@ -221,10 +269,10 @@ impl<'a> Collected<'a> {
                 Corner::OfFamily(number, own) => {
                     let outcome = self.singular_outcome(own);
                     self.push(number, outcome);
-                    self.outcomes.len() - 1
+                    self.memory.numbered.len() - 1
                 }
             };
-            let outcome = &mut self.outcomes[place].outcome;
+            let outcome = &mut self.memory.numbered[place].outcome;
             (outcome.family, outcome.index) = (true, None);
             places.push(place);
         }
@@ -240,8 +288,9 @@ impl<'a> Collected<'a> {
     pub fn finish(mut self) -> Findings {
         self.effort.bound = self.total - self.effort.ball - self.effort.double_double - self.effort.precise;
         if !self.families.is_empty() {
-            let mut order: Vec<usize> = (0..self.outcomes.len()).collect();
-            order.sort_by_key(|&found| self.outcomes[found].number);
+            let numbered = &self.memory.numbered;
+            let mut order: Vec<usize> = (0..numbered.len()).collect();
+            order.sort_by_key(|&found| numbered[found].number);
             let mut places = vec![0; order.len()];
             for (place, found) in order.into_iter().enumerate() {
                 places[found] = place;
@@ -252,10 +301,13 @@ impl<'a> Collected<'a> {
             }
             self.families.sort_by_key(|(number, _)| *number);
         }
-        self.outcomes.sort_by_key(|own| own.number);
+        let OutcomeMemory { numbered, outcomes, .. } = self.memory;
+        numbered.sort_by_key(|own| own.number);
+        let mut outcomes = std::mem::take(outcomes);
+        outcomes.extend(numbered.drain(..).map(|own| own.outcome));
         self.rejected.sort_by_key(|(number, _)| *number);
         Findings {
-            outcomes: self.outcomes.into_iter().map(|own| own.outcome).collect(),
+            outcomes,
             families: self.families.into_iter().map(|(_, family)| family).collect(),
             rejected: self.rejected.into_iter().map(|(_, rejection)| rejection).collect(),
             unlisted: self.unlisted,
@@ -282,12 +334,11 @@ impl<'a> Collected<'a> {
             true => None,
             false => border(&modes, self.problem.laws(), at_zero, &motion, self.name),
         };
-        // Adding zero turns a negative zero into the one that people expect to read.
-        let unsigned = |list: Vec<Pair<f64>>| list.into_iter().map(|pair| pair.map(|entry| entry + 0.0)).collect();
+        let Motion { impulse, velocity_after } = motion.unsigned();
         Outcome {
             modes,
-            impulse: unsigned(motion.impulse),
-            velocity_after: unsigned(motion.velocity_after),
+            impulse,
+            velocity_after,
             base_velocity_after: None,
             joint_velocity_after: None,
             loop_impulse: None,

@@ -85,7 +85,7 @@ impl<'e, T: Ordered> CombinationSolver<'e, T> {
                 return Err(Unsettled);
             }
             if reading.sign == Sign::Negative {
-                let motion = || motion(&leaf, modes, exact, T::to_f64);
+                let motion = || motion(&leaf, modes, exact, T::to_f64, Motion::default());
                 return Ok(Solved::Rejected(Rejection::read(modes, reading, motion)));
             }
             let [impulse, velocity]: [Vec<Pair<T>>; 2] = [

@@ -80,11 +80,12 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Those of f64, of which [`f64_serves`] says whether they are sharp.
-    pub fn of_motion(motion: Motion, modes: &[Mode], problem: &ContactProblem) -> Self {
+    /// Those of f64, of which [`f64_serves`] says whether they are sharp; `friction` is memory.
+    pub fn of_motion(motion: Motion, modes: &[Mode], problem: &ContactProblem, mut friction: Vec<Option<f64>>) -> Self {
         let energy_loss = energy_loss(problem.velocity_before(), &motion.impulse, &motion.velocity_after);
-        let friction_needed = friction_needed(modes, problem.laws(), &motion.impulse);
-        Self { motion, energy_loss, friction_needed, are_sharp: true }
+        friction.clear();
+        friction.extend(friction_needed(modes, problem.laws(), &motion.impulse));
+        Self { motion, energy_loss, friction_needed: friction, are_sharp: true }
     }
 
     /// Those of a combination solved in numbers that know their own errors: impulses, and velocities `[c_t, xi_n]`.
@@ -109,7 +110,7 @@ impl Numbers {
         Self {
             are_sharp: is_known(energy, 0.0) && (0..modes.len()).all(of_contact),
             energy_loss: energy.to_f64(),
-            friction_needed: friction_needed(modes, laws, &motion.impulse),
+            friction_needed: friction_needed(modes, laws, &motion.impulse).collect(),
             motion,
         }
     }
@@ -178,11 +179,11 @@ fn energy_loss<T: Real>(before: &[Pair<T>], impulse: &[Pair<T>], after: &[Pair<T
 }
 
 /// |L_t| / L_n of each sticking contact that is pressed on the ground, whose cone was shown to hold.
-fn friction_needed(modes: &[Mode], laws: &[Law], impulse: &[Pair<f64>]) -> Vec<Option<f64>> {
+fn friction_needed(modes: &[Mode], laws: &[Law], impulse: &[Pair<f64>]) -> impl Iterator<Item = Option<f64>> {
     let needed = |((&mode, law), l): ((&Mode, &Law), &Pair<f64>)| {
         (mode == Mode::Stick && l[1] > 0.0).then(|| at_most(law, l[0].abs() / l[1]))
     };
-    modes.iter().zip(laws).zip(impulse).map(needed).collect()
+    modes.iter().zip(laws).zip(impulse).map(needed)
 }
 
 /// A ratio that rounding may have lifted beyond the friction.
@@ -204,8 +205,13 @@ pub fn f64_serves(
 ) -> bool {
     let candidate = Candidate { leaf, modes, problem, scale, motion, margin: margin.unwrap_or(0.0).max(1.0) };
     let error = bound.likely_error(scale) * scale.speed;
-    let by_row = |row: usize| [error * scale.mobility[row], error / scale.mobility[row]];
-    candidate.serves(by_row, |_, size| error / size) || candidate.serves_by_sensitivity()
+    let is_still = |row: usize| bound.still >> row & 1 == 1;
+    let by_row = |row: usize| match is_still(row) {
+        true => [0.0; 2],
+        false => [error * scale.mobility[row], error / scale.mobility[row]],
+    };
+    let by_ray = |contact: usize, size| if is_still(2 * contact + 1) { 0.0 } else { error / size };
+    candidate.serves(by_row, by_ray) || candidate.serves_by_sensitivity()
 }
 
 /// An outcome in f64.

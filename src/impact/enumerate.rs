@@ -76,8 +76,9 @@ impl<T: Real> Tableau<T> {
         let width = 2 * n + 1;
         self.contacts = n;
         problem.laws().clone_into(&mut self.laws);
-        self.depths.resize_with(n + 1, Vec::new);
-        for depth in &mut self.depths {
+        // Those of more contacts are kept.
+        self.depths.resize_with(self.depths.len().max(n + 1), Vec::new);
+        for depth in &mut self.depths[..=n] {
             depth.resize(2 * n * width, T::zero());
         }
         self.modes.clear();

@@ -171,7 +171,7 @@ impl Outcome {
 }
 
 /// Impulses and velocities of a combination, [tangential, normal] per contact.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Motion {
     /// Contact impulses \[N s\].
     pub impulse: Vec<Pair<f64>>,
@@ -180,6 +180,14 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Without negative zeros, which nobody expects to read.
+    pub(super) fn unsigned(mut self) -> Self {
+        let entries = self.impulse.iter_mut().chain(&mut self.velocity_after).flatten();
+        // The sum of both zeros is the positive one.
+        entries.for_each(|entry| *entry += 0.0);
+        self
+    }
+
     /// Whether every number is one.
     pub(super) fn is_finite(&self) -> bool {
         self.impulse.iter().chain(&self.velocity_after).flatten().all(|entry| entry.is_finite())

@@ -1,7 +1,7 @@
 //! The passes over all combinations: first in f64, then with more digits those that need them.
 
 use super::bound::LeafBounds;
-use super::collected::{Collected, Pending};
+use super::collected::{Collected, OutcomeLists, Pending};
 use super::combination::{CombinationSolver, Solved};
 use super::digits::{Numbers, f64_serves};
 use super::enumerate::{Labels, Leaf, Tableau, Visitor};
@@ -54,20 +54,23 @@ impl Visitor<f64> for F64Pass<'_, '_> {
                 return;
             }
             let number = modes.iter().fold(0, |number, &mode| 4 * number + mode as u64);
-            let reading = reader.read(leaf, modes);
-            let motion = || motion(leaf, modes, problem, |number| number);
-            let outcome = (reading.sign == Sign::Positive).then(motion);
-            let serves = |motion: &Motion| f64_serves(leaf, modes, (problem, scale), bound, (motion, reading.margin));
-            match outcome.filter(serves) {
-                _ if reading.sign == Sign::Negative => {
-                    collected.reject(number, modes, || Rejection::read(modes, reading, motion));
-                }
-                Some(motion) => {
-                    let index = leaf.pivots.iter().fold(1, |sign, &pivot| if pivot < 0.0 { -sign } else { sign });
-                    collected.add_regular(number, modes, reading, index, Numbers::of_motion(motion, modes, problem));
-                }
-                None => undecided.push(Pending { number, modes: modes.to_vec() }),
+            let reading = reader.read(leaf, modes, collected.at_zero());
+            let motion = |memory| motion(leaf, modes, problem, |number| number, memory);
+            if reading.sign == Sign::Negative {
+                return collected
+                    .reject(number, modes, || Rejection::read(modes, reading, || motion(Motion::default())));
             }
+            if reading.sign == Sign::Positive {
+                let OutcomeLists { modes: mut own_modes, motion: memory, friction_needed } = collected.lists();
+                let motion = motion(memory);
+                if f64_serves(leaf, modes, (problem, scale), bound, (&motion, reading.margin)) {
+                    let index = leaf.pivots.iter().fold(1, |sign, &pivot| if pivot < 0.0 { -sign } else { sign });
+                    modes.clone_into(&mut own_modes);
+                    let numbers = Numbers::of_motion(motion, modes, problem, friction_needed);
+                    return collected.add_regular(number, own_modes, reading, index, numbers);
+                }
+            }
+            undecided.push(Pending { number, modes: modes.to_vec() });
         });
     }
 }

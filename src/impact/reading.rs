@@ -37,11 +37,14 @@ pub struct F64Reader<'a> {
     /// What scaled velocities and impulses may be off by.
     velocity: f64,
     impulse: f64,
+    /// Bits of the numbers that are exactly zero, two of each contact.
+    still: u32,
 }
 
 impl<'a> F64Reader<'a> {
     pub fn new(problem: &'a ContactProblem, scale: &'a Scale, bound: &Bound) -> Self {
-        Self { problem, scale, velocity: bound.velocity_error(), impulse: bound.impulse_error() }
+        let [velocity, impulse] = [bound.velocity_error(), bound.impulse_error()];
+        Self { problem, scale, velocity, impulse, still: bound.still }
     }
 
     /// Whether the first wrong sign is found, with which most combinations are done.
@@ -63,19 +66,31 @@ impl<'a> F64Reader<'a> {
         })
     }
 
-    pub fn read(&self, leaf: &Leaf<'_, f64>, modes: &[Mode]) -> CombinationReading {
+    /// The reading of a leaf as `modes`; `at_zero` is empty memory.
+    pub fn read(&self, leaf: &Leaf<'_, f64>, modes: &[Mode], at_zero: Vec<(usize, Inequality)>) -> CombinationReading {
         let speed = |contact: usize, c_t: f64| self.speed(contact, c_t);
-        read(leaf, modes, self.problem.laws(), speed, |slack| self.sign(slack))
+        read(leaf, modes, self.problem.laws(), at_zero, speed, |slack| self.sign(slack))
     }
 
     #[inline]
     fn speed(&self, contact: usize, c_t: f64) -> Sign {
+        if self.is_still(contact, 0b01) {
+            return Sign::Zero;
+        }
         Sign::within(c_t / self.scale.speed / self.scale.mobility[2 * contact], self.velocity)
+    }
+
+    fn is_still(&self, contact: usize, numbers: u32) -> bool {
+        let numbers = numbers << (2 * contact);
+        self.still & numbers == numbers
     }
 
     /// The sign and the value of a slack, free of units.
     #[inline]
     fn sign(&self, slack: &Slack<f64>) -> (Sign, f64) {
+        if self.is_still(slack.contact, slack.condition.function.numbers()) {
+            return (Sign::Zero, 0.0);
+        }
         let scaled = self.scale.scaled(slack, slack.number);
         (
             Sign::within(scaled, if slack.condition.inequality.is_strict() { self.velocity } else { self.impulse }),
@@ -87,7 +102,7 @@ impl<'a> F64Reader<'a> {
 /// Reads a leaf whose numbers know their own sign.
 pub fn read_signed<T: Ordered>(leaf: &Leaf<'_, T>, modes: &[Mode], laws: &[Law], scale: &Scale) -> CombinationReading {
     let scaled = |slack: &Slack<T>| scale.scaled(slack, slack.number.to_f64());
-    read(leaf, modes, laws, |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
+    read(leaf, modes, laws, Vec::new(), |_, c_t| c_t.sign(), |slack| (slack.number.sign(), scaled(slack)))
 }
 
 /// The signs of all slacks, and of the frictionless contacts' equality c_t = 0, as one.
@@ -95,15 +110,12 @@ fn read<T: Real>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
     laws: &[Law],
+    at_zero: Vec<(usize, Inequality)>,
     speed: impl Fn(usize, T) -> Sign,
     slack: impl Fn(&Slack<T>) -> (Sign, f64),
 ) -> CombinationReading {
-    let mut reading = CombinationReading {
-        sign: Sign::Positive,
-        because: RejectionReason::NoSolution,
-        margin: None,
-        at_zero: Vec::new(),
-    };
+    let mut reading =
+        CombinationReading { sign: Sign::Positive, because: RejectionReason::NoSolution, margin: None, at_zero };
     for (contact, (&mode, law)) in modes.iter().zip(laws).enumerate() {
         if law.is_unheld(mode) {
             match speed(contact, leaf.numbers(contact)[0]) {
@@ -144,17 +156,19 @@ fn read<T: Real>(
     reading
 }
 
-/// Impulses and velocities of a leaf.
+/// Impulses and velocities of a leaf, in the memory of others.
 pub fn motion<T: Real>(
     leaf: &Leaf<'_, T>,
     modes: &[Mode],
     problem: &ContactProblem<T>,
     nearest: impl Fn(T) -> f64,
+    Motion { mut impulse, mut velocity_after }: Motion,
 ) -> Motion {
     let contacts = 0..problem.contacts();
+    impulse.clear();
+    impulse.extend(contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)));
     let velocity = |contact: usize| after(leaf.velocity(contact), contact, modes, problem).map(&nearest);
-    Motion {
-        impulse: contacts.clone().map(|contact| leaf.impulse(contact).map(&nearest)).collect(),
-        velocity_after: contacts.map(velocity).collect(),
-    }
+    velocity_after.clear();
+    velocity_after.extend(contacts.map(velocity));
+    Motion { impulse, velocity_after }
 }

@@ -38,6 +38,8 @@ pub struct Scale {
     cone: Vec<f64>,
     /// What the scaled velocities of the f64 problem may be off by.
     pub noise: f64,
+    /// Bits of the rows whose velocity without impulses is exactly zero.
+    pub still: u32,
     /// What they are likely to be off by.
     pub likely_noise: f64,
     /// What the scaled entries of G are likely to be off by.
@@ -80,6 +82,13 @@ impl Scale {
             self.speed = if at_rest { 1.0 } else { f64::MIN_POSITIVE };
         }
         let noise = errors.velocity.unwrap_or_default().iter().flatten().zip(&self.mobility);
+        let is_still = |row: &usize| {
+            let [contact, axis] = [row / 2, row % 2];
+            let error = errors.velocity.map_or(0.0, |errors| errors[contact][axis]);
+            error == 0.0 && problem.velocity_free()[contact][axis] == 0.0 && problem.free_row(*row) == 0.0
+        };
+        let still = (0..rows.min(u32::BITS as usize)).filter(is_still);
+        self.still = if errors.delassus.is_finite() { still.fold(0, |bits, row| bits | 1 << row) } else { 0 };
         self.noise = noise.map(|(noise, mobility)| noise / (mobility * self.speed)).fold(0.0, f64::max);
         let [of_delassus, of_velocity] = errors.likely;
         (self.likely_noise, self.likely_rounding) = (of_velocity * self.noise, of_delassus * errors.delassus);

@@ -232,16 +232,14 @@ impl<T: Real> Assembly<T> {
         self.push(by, PointImpulse { body: point.body, arm, vector }, velocity);
     }
 
-    /// What the applied impulses change in v, by themselves.
-    pub fn applied(&mut self, robot: &Robot, scene: &Scene, coordinates: usize) -> Vec<T> {
-        let mut change = vec![T::zero(); coordinates];
+    /// Adds to a `change` of v, by coordinate, what the applied impulses change in it by themselves.
+    pub fn apply(&mut self, robot: &Robot, scene: &Scene, change: &mut [T]) {
         for applied in &scene.impulses {
             let link = &robot.links[applied.link];
             let arm = self.workspace.rotation[link.body].apply(link.point(applied.offset));
             let impulse = PointImpulse { body: link.body, arm, vector: applied.vector.map(T::from_f64) };
-            self.push(self.elimination, impulse, &mut change);
+            self.push(self.elimination, impulse, change);
         }
-        change
     }
 
     /// c with a `change` of velocity. Only the change goes through J: without an impulse a contact at rest stays so.

@@ -112,7 +112,8 @@ impl ExactState<'_> {
 
     /// What the applied impulses change in v, by coordinate, once M^-1 is prepared.
     pub fn change<T: Real>(&self, assembly: &mut Assembly<T>) -> Vec<T> {
-        let mut change = assembly.applied(self.robot, self.scene, self.position.len());
+        let mut change = vec![T::zero(); self.position.len()];
+        assembly.apply(self.robot, self.scene, &mut change);
         assembly.answer(&mut change);
         change
     }
@@ -174,7 +175,8 @@ impl ExactState<'_> {
                 vec![with(acceleration, loops)]
             }
             Asked::Impact | Asked::Shock(_) => {
-                let mut change = assembly.applied(self.robot, self.scene, velocity.len());
+                let mut change = rest.clone();
+                assembly.apply(self.robot, self.scene, &mut change);
                 let loops = assembly.answer(&mut change);
                 let still = vec![Vector::zero(); loops.len()];
                 vec![with(velocity, still), with(change, loops)]

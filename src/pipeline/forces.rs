@@ -135,7 +135,7 @@ impl Pipeline<'_> {
             analysis,
             notes: std::mem::take(&mut prepared.notes),
             sustained: Some(sustained),
-            ..Impact::of(prepared)
+            ..self.unanswered(prepared)
         })
     }
 
@@ -320,7 +320,8 @@ impl Pipeline<'_> {
             self.assembly.contact_jacobian(velocity, *stance);
             self.assembly.workspace.contact_velocity = known;
             self.assembly.delassus();
-            prepared.problem = self.problem(&state.scene, &prepared.contacts, &prepared.change)?;
+            prepared.problem =
+                self.problem(&state.scene, &prepared.contacts, &prepared.change, ContactProblem::default())?;
         }
         Ok(())
     }
@@ -392,7 +393,8 @@ impl Pipeline<'_> {
         slips: &[Ordering],
         asked: AnalysisOptions<'_>,
     ) -> Option<Vec<Outcome>> {
-        let struck = self.problem(&state.scene, &prepared.contacts, &prepared.change).ok()?;
+        let struck =
+            self.problem(&state.scene, &prepared.contacts, &prepared.change, ContactProblem::default()).ok()?;
         let exact = prepared.exact(self.robot, state, &self.assembly, Errors::UNKNOWN);
         let (laws, restitution) = (struck.laws(), struck.restitution());
         let source = ExactState { asked: Asked::Shock(slips), laws, restitution, ..exact };

@@ -139,27 +139,6 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// What is known of a state before its analysis.
-    fn of(prepared: Prepared) -> Self {
-        Self {
-            velocity_before: prepared.problem.velocity_before().to_vec(),
-            placement: prepared.placement,
-            contacts: prepared.contacts,
-            nearest: prepared.nearest,
-            kinetic_energy: prepared.kinetic_energy,
-            problem: prepared.problem,
-            resting: prepared.resting,
-            stance: prepared.stance,
-            analysis: None,
-            friction_needed: None,
-            sustained: None,
-            holds: None,
-            matrices: None,
-            left_out: Vec::new(),
-            notes: prepared.notes,
-        }
-    }
-
     /// Every outcome and the verdict.
     ///
     /// # Errors
@@ -251,6 +230,8 @@ pub struct Pipeline<'r> {
     /// The magnitudes of what the accelerations of a state are computed from.
     stretched: Assembly<Magnitude>,
     scratch: Scratch,
+    /// Memory of the next state.
+    spare: Prepared,
 }
 
 impl<'r> Pipeline<'r> {
@@ -271,6 +252,7 @@ impl<'r> Pipeline<'r> {
             bounds: RoundingBounds::default(),
             stretched: Assembly::new(Plan::new(robot, &[], &[])),
             scratch: Scratch::default(),
+            spare: Prepared::default(),
         }
     }
 
@@ -321,9 +303,8 @@ impl<'r> Pipeline<'r> {
     fn strike(&mut self, state: &State, chosen: Option<&[Vec<Mode>]>) -> Result<Answer> {
         let scene = &state.scene;
         let mut prepared = self.prepare(state)?;
-        let Prepared { velocity, applied, change, contacts, problem, .. } = &prepared;
-        let free: Vec<f64> = velocity.iter().zip(change).map(|(before, change)| before + change).collect();
-        for &entry in &free {
+        let Prepared { velocity, applied, free, contacts, problem, .. } = &prepared;
+        for &entry in free {
             finite(entry, || "a velocity after the applied impulses".into())?;
         }
         let RoundingBounds { delassus, velocity: of_velocity, likely, .. } = &self.bounds;
@@ -348,7 +329,7 @@ impl<'r> Pipeline<'r> {
             friction_needed = self.scratch.friction_without_slip(&rough, &source, asked);
         }
         if let Some(analysis) = analysis.as_mut().filter(|_| !brief || next) {
-            let unstruck = Unstruck { before: velocity, applied, free: &free, errors: &[], closed: Closed::Change };
+            let unstruck = Unstruck { before: velocity, applied, free, errors: &[], closed: Closed::Change };
             self.respond(&mut analysis.outcomes, (state, &prepared, Asked::Impact), unstruck);
             analysis.proven &= analysis.outcomes.iter().all(|outcome| outcome.proven);
         }
@@ -359,8 +340,42 @@ impl<'r> Pipeline<'r> {
         let followed = analysis.as_mut().filter(|_| next).map(|analysis| self.follow(state, &prepared, analysis));
         prepared.notes.extend(followed.into_iter().flatten());
         let foot = prepared.foot.take();
-        let impact = Impact { left_out, matrices, analysis, friction_needed, ..Impact::of(prepared) };
+        let impact = Impact { left_out, matrices, analysis, friction_needed, ..self.unanswered(prepared) };
         Ok(Answer { impact, foot, rows: self.assembly.rows.clone() })
+    }
+
+    /// What is known of a state before its analysis.
+    fn unanswered(&mut self, prepared: Prepared) -> Impact {
+        let Prepared { placement, contacts, nearest, problem, resting, stance, kinetic_energy, notes, .. } = prepared;
+        let Prepared { velocity, applied, change, free, mut velocity_before, .. } = prepared;
+        problem.velocity_before().clone_into(&mut velocity_before);
+        self.spare = Prepared { velocity, applied, change, free, ..Prepared::default() };
+        Impact {
+            placement,
+            contacts,
+            nearest,
+            velocity_before,
+            kinetic_energy,
+            problem,
+            resting,
+            stance,
+            analysis: None,
+            friction_needed: None,
+            sustained: None,
+            holds: None,
+            matrices: None,
+            left_out: Vec::new(),
+            notes,
+        }
+    }
+
+    /// Takes the memory of an answer that is no longer needed. With it the answer to a state of up to three contacts, of
+    /// which f64 decides all, takes no new memory in brief.
+    pub fn recycle(&mut self, impact: Impact) {
+        let Impact { placement, contacts, problem, resting, velocity_before, analysis, .. } = impact;
+        let spare = std::mem::take(&mut self.spare);
+        self.spare = Prepared { placement, contacts, problem, resting, velocity_before, ..spare };
+        self.scratch.recycle(analysis.map_or(Vec::new(), |analysis| analysis.outcomes));
     }
 
     /// The contact problem of contacts given by hand, in a configuration whose cosines and sines the caller knows

@@ -41,7 +41,7 @@ pub struct NearestFoot {
 }
 
 /// A state that is ready to be analyzed.
-#[derive(Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Prepared {
     pub placement: Placement,
     /// v just before the impact, with the stance and the loops kept \[m/s, rad/s\].
@@ -64,7 +64,11 @@ pub struct Prepared {
     /// What the applied impulses change in v, without and with what the loops answer.
     pub applied: Vec<f64>,
     pub change: Vec<f64>,
+    /// v with that change.
+    pub free: Vec<f64>,
     pub problem: ContactProblem,
+    /// Memory of the answer.
+    pub velocity_before: Vec<Pair<f64>>,
     pub notes: Vec<String>,
 }
 
@@ -145,12 +149,15 @@ impl Pipeline<'_> {
         let mut notes = odd.clone();
         self.note_unused_laws(scene, &mut notes);
         let surface = Surface::new(&scene.ground);
-        let (base, mut velocity, foot) = self.stand(state, &surface)?;
+        let spare = std::mem::take(&mut self.spare);
+        let Prepared { mut velocity, mut resting, mut applied, mut change, mut free, .. } = spare;
+        state.velocity.clone_into(&mut velocity);
+        let (base, foot) = self.stand(state, &surface, &mut velocity)?;
         self.close_loops(&scene.loops, &state.position, foot.as_ref(), &mut velocity, &mut notes)?;
-        let placement = Placement::new(&self.assembly.plan, &self.assembly.workspace, base);
+        let placement = spare.placement.moved(&self.assembly.plan, &self.assembly.workspace, base);
         let footing = self.footing(scene, &placement, &surface);
         let Detected { contacts, merged, out_of_reach } = self
-            .contacts(&footing, foot.as_ref(), &mut notes)
+            .contacts(&footing, foot.as_ref(), spare.contacts, &mut notes)
             .map_err(|error| self.sunk(error, scene, self.open_foot(&footing, &[], &velocity), odd.first()))?;
         let nearest = if self.options.brief { None } else { self.open_foot(&footing, &contacts, &velocity) };
         if scene.contacts.is_none() && !self.options.brief {
@@ -165,7 +172,7 @@ impl Pipeline<'_> {
         // Who names a point means it where it is.
         let levels = if scene.contacts.is_none() { level(&contacts, &placement, stance) } else { Vec::new() };
         self.bound_velocities(&contacts, &levels, &velocity, standing);
-        let resting = self.take_as_resting(state, &velocity, &contacts, standing, &mut notes);
+        self.take_as_resting(state, &velocity, &contacts, standing, (&mut resting, &mut notes));
         self.assembly.delassus();
         let kinetic_energy = self.energy_in_range(&state.velocity, &velocity)?;
         self.bound_delassus();
@@ -175,10 +182,14 @@ impl Pipeline<'_> {
             self.bounds.velocity.fill([f64::INFINITY; 2]);
         }
 
-        let applied = self.assembly.applied(self.robot, scene, self.robot.dofs());
-        let mut change = applied.clone();
+        applied.clear();
+        applied.resize(self.robot.dofs(), 0.0);
+        self.assembly.apply(self.robot, scene, &mut applied);
+        change.clone_from(&applied);
         self.assembly.answer(&mut change);
-        let problem = self.problem(scene, &contacts, &change)?;
+        free.clear();
+        free.extend(velocity.iter().zip(&change).map(|(before, change)| before + change));
+        let problem = self.problem(scene, &contacts, &change, spare.problem)?;
         Ok(Prepared {
             placement,
             velocity,
@@ -193,7 +204,9 @@ impl Pipeline<'_> {
             kinetic_energy,
             applied,
             change,
+            free,
             problem,
+            velocity_before: spare.velocity_before,
             notes,
         })
     }
@@ -325,38 +338,43 @@ impl Pipeline<'_> {
         self.options.contact_tolerance.unwrap_or(CONTACT_TOLERANCE * self.feet.size())
     }
 
-    /// The root's origin and the velocity by coordinate, with a stance such that its foot stands, and that foot.
-    fn stand(&self, state: &State, surface: &Surface) -> Result<(Vector<f64>, Vec<f64>, Option<Contact>)> {
-        let mut velocity = state.velocity.clone();
+    /// The root's origin and the foot of a stance; the `velocity` by coordinate becomes one with which that stands.
+    fn stand(&self, state: &State, surface: &Surface, velocity: &mut [f64]) -> Result<(Vector<f64>, Option<Contact>)> {
         if !self.assembly.plan.floating {
-            return Ok((Vector::zero(), velocity, None));
+            return Ok((Vector::zero(), None));
         }
         let Some(link) = state.scene.stance else {
             let base = Vector::new(state.position[0], state.position[1]);
             if !state.scene.place_lowest {
-                return Ok((base, velocity, None));
+                return Ok((base, None));
             }
             let placement = &Placement::new(&self.assembly.plan, &self.assembly.workspace, base);
             let rise = self.footing(&state.scene, placement, surface).rise()?;
-            return Ok((base + Vector::new(0.0, rise), velocity, None));
+            return Ok((base + Vector::new(0.0, rise), None));
         };
         let placement = &Placement::new(&self.assembly.plan, &self.assembly.workspace, Vector::zero());
         let footing = self.footing(&state.scene, placement, surface);
         // Within a tolerance that was given for a recording a foot may be tilted: then it stands on its lower end.
         let flat = self.options.contact_tolerance.map_or(f64::INFINITY, |_| CONTACT_TOLERANCE * self.feet.size());
         let stance = footing.stance(link, self.tolerance(), flat)?;
-        self.assembly.rest(&stance.foot.point_of(), &mut velocity);
-        Ok((stance.base, velocity, Some(stance.foot)))
+        self.assembly.rest(&stance.foot.point_of(), velocity);
+        Ok((stance.base, Some(stance.foot)))
     }
 
     fn footing<'a>(&'a self, scene: &'a Scene, placement: &'a Placement, surface: &'a Surface) -> Footing<'a> {
         Footing { robot: self.robot, feet: &self.feet, scene, placement, surface }
     }
 
-    /// The closed contacts.
-    fn contacts(&self, footing: &Footing, standing: Option<&Contact>, notes: &mut Vec<String>) -> Result<Detected> {
+    /// The closed contacts; `memory` is that of others.
+    fn contacts(
+        &self,
+        footing: &Footing,
+        standing: Option<&Contact>,
+        memory: Vec<Contact>,
+        notes: &mut Vec<String>,
+    ) -> Result<Detected> {
         let tolerance = self.tolerance();
-        let (contacts, merged) = footing.contacts(tolerance, self.options.reductions.merge, standing)?;
+        let (contacts, merged) = footing.contacts(tolerance, self.options.reductions.merge, standing, memory)?;
         let is_named = footing.scene.contacts.is_some();
         for contact in &contacts {
             finite(contact.gap, || format!("the height of {}", contact.name))?;
@@ -468,9 +486,17 @@ impl Pipeline<'_> {
         }
     }
 
-    pub(super) fn problem(&self, scene: &Scene, contacts: &[Contact], change: &[f64]) -> Result<ContactProblem> {
-        let friction = contacts.iter().map(|contact| {
-            scene.friction.of(contact.link).ok_or_else(|| {
+    /// The contact problem, in the memory of another one.
+    pub(super) fn problem(
+        &self,
+        scene: &Scene,
+        contacts: &[Contact],
+        change: &[f64],
+        memory: ContactProblem,
+    ) -> Result<ContactProblem> {
+        let laws = contacts.iter().map(|contact| {
+            let restitution = scene.restitution.of(contact.link).unwrap_or(0.0);
+            scene.friction.of(contact.link).map(|friction| (friction, restitution)).ok_or_else(|| {
                 let name = &self.robot.links[contact.link].name;
                 let reason = format!("the friction of link \"{name}\", which touches the ground,");
                 let error = Error::new(Reason::Missing(reason)).at("friction");
@@ -485,11 +511,9 @@ impl Pipeline<'_> {
                 }
             })
         });
-        let friction = friction.collect::<Result<Vec<_>>>()?;
-        let restitution = contacts.iter().map(|contact| scene.restitution.of(contact.link).unwrap_or(0.0)).collect();
-        let before = self.assembly.workspace.contact_velocity.clone();
-        let free = if scene.impulses.is_empty() { before.clone() } else { self.assembly.free(&before, change) };
-        ContactProblem::checked(self.assembly.workspace.delassus.clone(), before, free, friction, restitution)
+        let Workspace { contact_velocity: before, delassus, .. } = &self.assembly.workspace;
+        let pushed = (!scene.impulses.is_empty()).then(|| self.assembly.free(before, change));
+        memory.renewed(delassus, before, pushed.as_ref().unwrap_or(before), laws)
     }
 }
 

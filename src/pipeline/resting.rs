@@ -44,17 +44,18 @@ enum Because {
 }
 
 impl Pipeline<'_> {
-    /// Takes contacts that rest as exactly at rest, and notes them unless in brief; gives which. `velocity` is dq/dt; the contacts'
-    /// velocities and their bounds must be known.
+    /// Takes contacts that rest as exactly at rest, and notes them unless in brief; says which in `resting`. `velocity` is
+    /// dq/dt; the contacts' velocities and their bounds must be known.
     pub(super) fn take_as_resting(
         &mut self,
         state: &State,
         velocity: &[f64],
         contacts: &[Contact],
         Standing { foot, place }: Standing,
-        notes: &mut Vec<String>,
-    ) -> Vec<bool> {
-        let mut resting = vec![false; contacts.len()];
+        (resting, notes): (&mut Vec<bool>, &mut Vec<String>),
+    ) {
+        resting.clear();
+        resting.resize(contacts.len(), false);
         for (index, contact) in contacts.iter().enumerate() {
             let [slow, bound] =
                 [self.assembly.workspace.contact_velocity[index], self.bounds.velocity[index]].map(length);
@@ -80,7 +81,6 @@ impl Pipeline<'_> {
                 ));
             }
         }
-        resting
     }
 
     /// Why a contact is taken as resting whose speed, or one component of it, is `slow`, rounded by up to `bound`; `None`

@@ -123,7 +123,7 @@ impl Arrays {
     fn answered(&mut self, impact: &Impact) -> Result<()> {
         let analysis = impact.analyzed()?;
         let columns = self.contacts.len();
-        let place = |name: &String| self.contacts.iter().position(|known| known == name).ok_or_else(|| no_column(name));
+        let place = |name: &str| self.contacts.iter().position(|known| known == name).ok_or_else(|| no_column(name));
         let mut places = [0; CONTACT_LIMIT];
         for (place_of, contact) in places.iter_mut().zip(&impact.contacts) {
             *place_of = place(&contact.name)?;

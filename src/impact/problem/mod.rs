@@ -28,7 +28,7 @@ use crate::scalar::{Ordered, Real, Sign};
 ///
 /// It runs on any [`Real`]; [`ContactProblem::map`] makes one in another number. [`Analysis`](crate::Analysis) has an
 /// example.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ContactProblem<T = f64> {
     /// G, 2n x 2n by rows \[1/kg\].
     delassus: Vec<T>,
@@ -44,8 +44,9 @@ pub struct ContactProblem<T = f64> {
 }
 
 /// What the numbers of a problem that is its own source come from.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 enum Origin {
+    #[default]
     Given,
     /// G and c- were computed from M, J and v.
     Dynamics(Box<Dynamics>),
@@ -209,13 +210,38 @@ impl ContactProblem {
                     .hint("give one number for all contacts or a list with one entry per contact"));
             }
         }
-        let approach = velocity_before.iter().map(|c| c[1].min(0.0)).collect();
         let laws = friction.into_iter().map(Into::into).collect();
-        let problem =
-            Self { delassus, velocity_before, velocity_free, approach, laws, restitution, origin: Origin::Given };
-        problem.check_contacts()?;
-        problem.check_range()?;
-        Ok(problem)
+        let (approach, origin) = (Vec::new(), Origin::Given);
+        Self { delassus, velocity_before, velocity_free, approach, laws, restitution, origin }.completed()
+    }
+
+    /// As [`ContactProblem::checked`], in the memory of another problem, with the friction and restitution of each contact.
+    pub(crate) fn renewed(
+        mut self,
+        delassus: &[f64],
+        velocity_before: &[Pair<f64>],
+        velocity_free: &[Pair<f64>],
+        contacts: impl Iterator<Item = Result<(Friction, f64)>>,
+    ) -> Result<Self> {
+        delassus.clone_into(&mut self.delassus);
+        velocity_before.clone_into(&mut self.velocity_before);
+        velocity_free.clone_into(&mut self.velocity_free);
+        self.laws.clear();
+        self.restitution.clear();
+        for contact in contacts {
+            let (friction, restitution) = contact?;
+            self.laws.push(friction.into());
+            self.restitution.push(restitution);
+        }
+        Self { origin: Origin::Given, ..self }.completed()
+    }
+
+    fn completed(mut self) -> Result<Self> {
+        self.approach.clear();
+        self.approach.extend(self.velocity_before.iter().map(|c| c[1].min(0.0)));
+        self.check_contacts()?;
+        self.check_range()?;
+        Ok(self)
     }
 }
 
