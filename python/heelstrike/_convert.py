@@ -149,7 +149,8 @@ class Layout:
 def _refuse(what: str, sizes: Array, unit: str, tolerance: float) -> None:
     worst = int(np.argmax(sizes)) if len(sizes) else 0
     if len(sizes) and not sizes[worst] <= tolerance:
-        raise ValueError(f"{what} by {sizes[worst]:.3e} {unit} in row {worst}, more than the tolerance of {tolerance:.3e}")
+        size = f"{sizes[worst]:.3e} {unit} in row {worst}"
+        raise ValueError(f"{what} by {size}, more than the tolerance of {tolerance:.3e}")
 
 
 def from_pinocchio(model: Any) -> Layout:

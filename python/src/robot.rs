@@ -200,7 +200,8 @@ impl Robot {
         reduction.hold.iter().map(|&(joint, value)| (&*description.joints[joint].name, value)).collect()
     }
 
-    /// What was read: plane, masses [kg], links, joints, feet, what was left out; as `heelstrike inspect --format json`.
+    /// What was read: plane, masses [kg], links, joints, feet, what was left out; as `heelstrike inspect --format
+    /// json`.
     fn inspect<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut out = Vec::new();
         append_line(&mut out, &Inspection::new(&self.model.robot, &self.model.options.feet));
@@ -209,10 +210,10 @@ impl Robot {
 
     /// Every outcome of the impact of one state.
     ///
-    /// `state` is a dictionary, a JSON text or a path of a JSON file, as the command `heelstrike impact` reads it; lengths in
-    /// m, angles in rad. `friction` is for links to which it gives none: a number from 0 on, or "infinite". Returns the
-    /// result as the command writes it; with `explain` also why every other combination fails, with `matrices` M, J and G,
-    /// with `next` the forces just after each outcome. Raises Refused.
+    /// `state` is a dictionary, a JSON text or a path of a JSON file, as the command `heelstrike impact` reads it;
+    /// lengths in m, angles in rad. `friction` is for links to which it gives none: a number from 0 on, or "infinite".
+    /// Returns the result as the command writes it; with `explain` also why every other combination fails, with
+    /// `matrices` M, J and G, with `next` the forces just after each outcome. Raises Refused.
     #[pyo3(signature = (state, *, friction = None, explain = false, matrices = false, next = false))]
     fn impact<'py>(
         slf: &Bound<'py, Self>,
@@ -227,12 +228,12 @@ impl Robot {
 
     /// Every outcome of the impacts of many states.
     ///
-    /// `q` and `v` are (n, nq) arrays of float64 in C order, in the order of `coordinates` [m, rad; m/s, rad/s], v = dq/dt in
-    /// the world's frame; other real numbers and other orders are converted. `friction` (0 to inf) and `restitution` (0 to 1)
-    /// are one number for all, an (n,) array, or a dictionary by link. `contacts` lists contacts as a state does, else they
-    /// are detected. Further fields of a state hold for all rows, as `place="lowest"` or `ground={"slope": 0.1}`. `threads`
-    /// is 0 or None for all cores. A row that is refused has the verdict REFUSED and its reason in `error`; nothing raises
-    /// for it.
+    /// `q` and `v` are (n, nq) arrays of float64 in C order, in the order of `coordinates` [m, rad; m/s, rad/s], v =
+    /// dq/dt in the world's frame; other real numbers and other orders are converted. `friction` (0 to inf) and
+    /// `restitution` (0 to 1) are one number for all, an (n,) array, or a dictionary by link. `contacts` lists contacts
+    /// as a state does, else they are detected. Further fields of a state hold for all rows, as `place="lowest"` or
+    /// `ground={"slope": 0.1}`. `threads` is 0 or None for all cores. A row that is refused has the verdict REFUSED and
+    /// its reason in `error`; nothing raises for it.
     #[pyo3(signature = (q, v, *, friction = None, restitution = None, contacts = None, threads = None, **scene))]
     fn impacts<'py>(
         slf: &Bound<'py, Self>,
@@ -272,8 +273,9 @@ impl Robot {
 
     /// Outcomes against one or two parameters: regions, borders and samples.
     ///
-    /// `study` is a dictionary, a JSON text or a path of a JSON file, as `heelstrike sweep` reads it. Returns the result as
-    /// the command writes it. The work may take `budget` seconds of processor time; None for no end. Raises Refused.
+    /// `study` is a dictionary, a JSON text or a path of a JSON file, as `heelstrike sweep` reads it. Returns the
+    /// result as the command writes it. The work may take `budget` seconds of processor time; None for no end. Raises
+    /// Refused.
     #[pyo3(signature = (study, *, friction = None, threads = None, budget = Some(60.0)))]
     fn sweep<'py>(
         slf: &Bound<'py, Self>,
@@ -287,11 +289,13 @@ impl Robot {
 
     /// The impacts at the touchdowns of a recording, as `heelstrike batch --touchdowns` writes them.
     ///
-    /// `table` is a path of a CSV file, a data frame, an Arrow table or a dictionary of columns: `time` [s], `q_base_x`,
-    /// `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity` is "central" or
-    /// "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT; `simulated` takes z = 0
-    /// as the ground. Raises Refused for the table; a refused touchdown has an `error`.
-    #[pyo3(signature = (table, *, friction = None, velocity = None, at = "crossing", touching = None, simulated = false))]
+    /// `table` is a path of a CSV file, a data frame, an Arrow table or a dictionary of columns: `time` [s],
+    /// `q_base_x`, `q_base_z`, `q_base_pitch`, `q_<joint>` [m, rad], and rates likewise with `v_` unless `velocity` is
+    /// "central" or "backward". `at` is "crossing" or "row", `touching` strike, slow:SPEED,HEIGHT or near:HEIGHT;
+    /// `simulated` takes z = 0 as the ground. Raises Refused for the table; a refused touchdown has an `error`.
+    #[pyo3(signature = (
+        table, *, friction = None, velocity = None, at = "crossing", touching = None, simulated = false
+    ))]
     fn touchdowns<'py>(
         slf: &Bound<'py, Self>,
         table: &Bound<'py, PyAny>,

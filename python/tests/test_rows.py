@@ -58,7 +58,8 @@ def test_numbers_are_those_of_the_command(ramone, walk, aspect):
             assert (answers.modes[row] == Mode.OPEN).sum() == len(answers.contacts) - len(places)
             assert numbers[0][row, places].tolist() == outcome["force" if forces else "impulse"]
             assert numbers[1][row].tolist() == [entry for part in after for entry in outcome[part].values()]
-            assert answers.margin[row] == outcome["margin"] or (outcome["margin"] is None and np.isnan(answers.margin[row]))
+            margin = answers.margin[row]
+            assert (None if np.isnan(margin) else margin) == outcome["margin"]
             assert answers.index[row] == (outcome["index"] or 0)
             assert answers.proven[row] == outcome["proven"]
             assert answers.family[row] == outcome.get("family", False)

@@ -13,13 +13,15 @@ use std::sync::Arc;
 pub struct Arrays {
     /// The contacts of a matrix's columns.
     contacts: Arc<[String]>,
-    /// Per state: the verdict as a number, in the order of [`Verdict`](crate::Verdict); [`Arrays::REFUSED`] of a refused state.
+    /// Per state: the verdict as a number, in the order of [`Verdict`](crate::Verdict); [`Arrays::REFUSED`] of a
+    /// refused state.
     pub verdict: Vec<u8>,
     /// Per state: whether every combination is decided by an error bound.
     pub all_proven: Vec<bool>,
     /// Where the outcomes of each state begin, and where those of the last one end.
     pub offsets: Vec<i64>,
-    /// Per outcome and contact: the mode as a number, in the order of [`Mode`](crate::Mode); [`Arrays::OPEN`] without contact.
+    /// Per outcome and contact: the mode as a number, in the order of [`Mode`](crate::Mode); [`Arrays::OPEN`] without
+    /// contact.
     pub modes: Vec<i8>,
     /// Per outcome and contact: [tangential, normal] \[N s, of forces N\]; NaN without contact.
     pub impulse: Vec<f64>,
