@@ -122,6 +122,30 @@ pub fn add_articulated_impulse<T: Real>(
     }
 }
 
+/// Takes joint forces by column (nv; N, N m) in `column` to the accelerations that they and the bodies' demands give,
+/// after [`demands`](super::demands): M^-1 (tau - b), without the sums b.
+pub fn articulated_acceleration<T: Real>(
+    plan: &Plan<T>,
+    workspace: &mut Workspace<T>,
+    column: &mut [T],
+    motions: &mut Vec<Motion<T>>,
+) {
+    let mut demand = std::mem::take(&mut workspace.demand);
+    for (index, body) in plan.bodies.iter().enumerate().rev() {
+        let Wrench { moment, linear } = demand[index];
+        let force = Wrench { moment: -moment, linear: -linear };
+        let tau = body.column.map(|own| column[own]);
+        let Wrench { moment, linear } =
+            through_joint(plan, workspace, index, force, tau, |own, _, by_d| column[own] = by_d);
+        if let Some(parent) = body.parent {
+            let passed = Wrench { moment: -moment, linear: -linear };
+            demand[parent] = demand[parent].with(passed.seen_from(workspace.arm[index]));
+        }
+    }
+    workspace.demand = demand;
+    set_in_motion(plan, workspace, column, motions);
+}
+
 /// Takes D^-1 y in `rates` to the rates that an impulse gives, and collects each body's motion.
 pub(super) fn set_in_motion<T: Real>(
     plan: &Plan<T>,
@@ -178,40 +202,59 @@ fn to_root<T: Real>(
     mut force: Wrench<T>,
     mut visit: impl FnMut(usize, T, T),
 ) {
-    for (at, &PlanBody { motion, column, parent, rotor, .. }) in plan.way_to_root(body) {
-        let own = &workspace.articulated[at];
-        match (motion, column) {
-            (JointMotion::Root, Some(column)) => {
-                let pitch = force.moment / workspace.pivots[column];
-                visit(column, force.moment, pitch);
-                let Vector { x, z } = force.linear - own.coupling * pitch;
-                let [_, xz, _] = own.without_turn(T::zero(), own.moment).linear;
-                let up = z / workspace.pivots[1];
-                visit(1, z, up);
-                let rest = x - xz * up;
-                visit(0, rest, rest / workspace.pivots[0]);
-            }
-            (JointMotion::Fixed, _) | (_, None) => {}
-            (JointMotion::Revolute { sign, .. }, Some(column)) => {
-                let rate = force.moment / workspace.pivots[column];
-                visit(column, sign * force.moment, sign * rate);
-                // n - A_nn n / D without the cancellation: nothing at all is passed on where there is no rotor.
-                force.moment = rotor * rate;
-                force.linear = force.linear - own.coupling * rate;
-            }
-            (JointMotion::Prismatic { .. }, Some(column)) => {
-                let along = workspace.direction[at];
-                let push = along.dot(force.linear);
-                let rate = push / workspace.pivots[column];
-                visit(column, push, rate);
-                force.moment = force.moment - along.dot(own.coupling) * rate;
-                force.linear = force.linear - own.stretch(along) * rate;
-            }
-        }
-        if parent.is_some() {
+    for (at, body) in plan.way_to_root(body) {
+        force = through_joint(plan, workspace, at, force, None, &mut visit);
+        if body.parent.is_some() {
             force = force.seen_from(workspace.arm[at]);
         }
     }
+}
+
+/// Passes a force on body `at`, on whose joint `tau` acts, through that joint; reports y and y/D of its column.
+#[inline]
+fn through_joint<T: Real>(
+    plan: &Plan<T>,
+    workspace: &Workspace<T>,
+    at: usize,
+    mut force: Wrench<T>,
+    tau: Option<T>,
+    mut visit: impl FnMut(usize, T, T),
+) -> Wrench<T> {
+    let PlanBody { motion, column, rotor, .. } = plan.bodies[at];
+    let own = &workspace.articulated[at];
+    let driven = |y: T| tau.map_or(y, |tau| tau + y);
+    match (motion, column) {
+        // No joint drives the base.
+        (JointMotion::Root, Some(column)) => {
+            let pitch = force.moment / workspace.pivots[column];
+            visit(column, force.moment, pitch);
+            let Vector { x, z } = force.linear - own.coupling * pitch;
+            let [_, xz, _] = own.without_turn(T::zero(), own.moment).linear;
+            let up = z / workspace.pivots[1];
+            visit(1, z, up);
+            let rest = x - xz * up;
+            visit(0, rest, rest / workspace.pivots[0]);
+        }
+        (JointMotion::Fixed, _) | (_, None) => {}
+        (JointMotion::Revolute { sign, .. }, Some(column)) => {
+            let y = driven(sign * force.moment);
+            let rate = y / workspace.pivots[column];
+            visit(column, y, rate);
+            // n - A_nn y / D without the cancellation: without a rotor only what holds the joint is passed on.
+            let passed = rotor * rate;
+            force.moment = sign * tau.map_or(passed, |tau| passed - tau);
+            force.linear = force.linear - own.coupling * (sign * rate);
+        }
+        (JointMotion::Prismatic { .. }, Some(column)) => {
+            let along = workspace.direction[at];
+            let push = driven(along.dot(force.linear));
+            let rate = push / workspace.pivots[column];
+            visit(column, push, rate);
+            force.moment = force.moment - along.dot(own.coupling) * rate;
+            force.linear = force.linear - own.stretch(along) * rate;
+        }
+    }
+    force
 }
 
 /// The columns that move both bodies, from the outermost inward.

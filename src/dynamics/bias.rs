@@ -20,10 +20,10 @@ use crate::dynamics::plan::{JointMotion, Plan};
 use crate::planar::Vector;
 use crate::scalar::Real;
 
-/// Computes b (nv, columns of the plan; N, N m) and every body's motion while no coordinate accelerates, from the
-/// kinematics, for `velocity` (dq/dt, braked joints included) and `gravity` along -z of the world \[m/s^2\].
-pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut Workspace<T>) {
-    let Workspace { rotation, arm, direction, spin, drift, bias, .. } = workspace;
+/// Computes every body's motion while no coordinate accelerates and what it demands, from the kinematics, for `velocity`
+/// (dq/dt, braked joints included) and `gravity` along -z of the world \[m/s^2\].
+pub fn demands<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut Workspace<T>) {
+    let Workspace { rotation, arm, direction, spin, drift, demand, .. } = workspace;
     spin.clear();
     drift.clear();
     for (index, body) in plan.bodies.iter().enumerate() {
@@ -46,21 +46,28 @@ pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut
     }
 
     let weight = Vector { x: T::zero(), z: gravity };
-    let mut wrenches: Vec<Wrench<T>> = (plan.bodies.iter().zip(&*rotation).zip(spin.iter().zip(&*drift)))
-        .map(|((body, turn), (&spin, &drift))| {
+    demand.clear();
+    demand.extend(plan.bodies.iter().zip(&*rotation).zip(spin.iter().zip(&*drift)).map(
+        |((body, turn), (&spin, &drift))| {
             let (first, lifted) = (turn.apply(body.inertia.first), drift + weight);
             Wrench {
                 linear: lifted * body.inertia.mass - first * (spin * spin),
                 moment: first.perpendicular().dot(lifted),
             }
-        })
-        .collect();
+        },
+    ));
+}
+
+/// Computes b (nv, columns of the plan; N, N m), as [`demands`] what each body demands.
+pub fn bias<T: Real>(plan: &Plan<T>, velocity: &[T], gravity: T, workspace: &mut Workspace<T>) {
+    demands(plan, velocity, gravity, workspace);
+    let Workspace { arm, direction, demand, bias, .. } = workspace;
     bias.clear();
     bias.resize(plan.columns(), T::zero());
     for (index, body) in plan.bodies.iter().enumerate().rev() {
-        let own = wrenches[index];
+        let own = demand[index];
         if let Some(parent) = body.parent {
-            wrenches[parent] = wrenches[parent].with(own.seen_from(arm[index]));
+            demand[parent] = demand[parent].with(own.seen_from(arm[index]));
         }
         let Some(column) = body.column else { continue };
         let part = match body.motion {

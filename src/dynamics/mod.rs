@@ -27,10 +27,10 @@ mod bias;
 mod springs;
 mod loops;
 
-pub use articulated::{add_articulated_impulse, articulated_delassus, articulated_inertias};
+pub use articulated::{add_articulated_impulse, articulated_acceleration, articulated_delassus, articulated_inertias};
 pub use articulated_inertia::ArticulatedInertia;
 pub use balance::has_balance;
-pub use bias::bias;
+pub use bias::{bias, demands};
 pub use bounds::{Reach, RoundingBounds};
 pub use crba::{factorize, mass_diagonal, mass_matrix};
 pub use delassus::{PointImpulse, add_impulse, delassus};

@@ -1,6 +1,6 @@
 //! Memory of the dynamics, reused from state to state.
 
-use super::articulated_inertia::ArticulatedInertia;
+use super::articulated_inertia::{ArticulatedInertia, Wrench};
 use super::ltl::LtlFactor;
 use crate::planar::{Inertia, Pair, Rotation, Vector};
 
@@ -43,11 +43,15 @@ pub struct Workspace<T = f64> {
     /// Contact velocities c = J v, braked joints' rates included \[m/s\]. n
     pub contact_velocity: Vec<Pair<T>>,
 
-    // Computed by `bias`.
+    // Computed by `demands`.
     /// Rate of turn of each body \[rad/s\]. nb
     pub spin: Vec<T>,
     /// Acceleration of each body's origin while no coordinate accelerates, in the world's axes \[m/s^2\]. nb
     pub drift: Vec<Vector<T>>,
+    /// What each body demands for that, against gravity as well, about its origin; spent by what sums it up. nb
+    pub(super) demand: Vec<Wrench<T>>,
+
+    // Computed by `bias`.
     /// Forces that keep the coordinates from accelerating, against gravity as well \[N, N m\]. nv
     pub bias: Vec<T>,
 

@@ -12,8 +12,9 @@
 use crate::dynamics::plan::{Configuration, Plan};
 use crate::dynamics::{
     Closed, Constraints, ContactPoint, Loop, Motion, PointImpulse, Spring, SpringLoad, SpringPoint, Workspace,
-    add_articulated_impulse, add_impulse, articulated_delassus, articulated_inertias, bias, close, contact_jacobian,
-    delassus, eliminate_loops, factorize, kinematics, loop_impulse, mass_matrix, orthogonalize, point_velocity,
+    add_articulated_impulse, add_impulse, articulated_acceleration, articulated_delassus, articulated_inertias, bias,
+    close, contact_jacobian, delassus, demands, eliminate_loops, factorize, kinematics, loop_impulse, mass_matrix,
+    orthogonalize, point_velocity,
 };
 use crate::planar::{Pair, Vector};
 use crate::robot::Robot;
@@ -144,25 +145,40 @@ impl<T: Real> Assembly<T> {
 
     /// h = tau - b by column \[N, N m\], after the kinematics.
     pub fn load(&mut self, velocity: &[T], loads: Loads<'_>) -> &[T] {
-        let springs = self.springs(velocity, loads);
+        self.drive(velocity, loads);
         let Self { plan, workspace, column, .. } = self;
         bias(plan, velocity, T::from_f64(loads.scene.gravity()), workspace);
-        column.clear();
-        column.extend(plan.coordinates.iter().zip(&workspace.bias).map(|(&coordinate, &bias)| {
-            let Some(joint) = coordinate.checked_sub(loads.robot.base_dofs()) else { return -bias };
-            let given = loads.scene.torque.get(joint).map_or(T::zero(), |&torque| T::from_f64(torque));
-            springs.iter().fold(given, |sum, own| sum + own.generalized[coordinate]) - bias
-        }));
+        column.iter_mut().zip(&workspace.bias).for_each(|(entry, &bias)| *entry = *entry - bias);
         column
+    }
+
+    /// tau by column.
+    fn drive(&mut self, velocity: &[T], loads: Loads<'_>) {
+        let springs = self.springs(velocity, loads);
+        self.column.clear();
+        self.column.extend(self.plan.coordinates.iter().map(|&coordinate| {
+            let Some(joint) = coordinate.checked_sub(loads.robot.base_dofs()) else { return T::zero() };
+            let given = loads.scene.torque.get(joint).map_or(T::zero(), |&torque| T::from_f64(torque));
+            springs.iter().fold(given, |sum, own| sum + own.generalized[coordinate])
+        }));
     }
 
     /// The acceleration by coordinate \[m/s^2, rad/s^2\] that the loads alone give, without contacts and constraints,
     /// and kappa of each loop.
     pub fn acceleration(&mut self, velocity: &[T], loads: Loads<'_>) -> (Vec<T>, Vec<Vector<T>>) {
-        self.take_mass_matrix();
-        self.load(velocity, loads);
+        match self.elimination {
+            Elimination::Ltl => {
+                self.load(velocity, loads);
+                self.workspace.factor.solve(&self.plan, &mut self.column);
+            }
+            Elimination::ArticulatedBodies => {
+                self.drive(velocity, loads);
+                let Self { plan, workspace, column, motions, .. } = self;
+                demands(plan, velocity, T::from_f64(loads.scene.gravity()), workspace);
+                articulated_acceleration(plan, workspace, column, motions);
+            }
+        }
         let Self { plan, workspace, column, loops, .. } = self;
-        workspace.factor.solve(plan, column);
         let mut acceleration = vec![T::zero(); velocity.len()];
         for (&coordinate, &own) in plan.coordinates.iter().zip(column.iter()) {
             acceleration[coordinate] = own;

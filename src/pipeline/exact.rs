@@ -196,7 +196,7 @@ impl ExactState<'_> {
         let Inputs { configuration, mut velocity, plan } = inputs;
         let mut assembly = self.assembly(plan);
         assembly.configuration = configuration;
-        if assembly.has_articulated_bodies() && !matches!(self.asked, Asked::Forces(_)) {
+        if assembly.has_articulated_bodies() {
             assembly.elimination = Elimination::ArticulatedBodies;
         }
         self.place(&mut assembly);
