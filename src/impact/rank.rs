@@ -77,13 +77,14 @@ impl PrecisionTask for Inverse {
             (0..count).map(row).collect()
         };
         let Ok(Some(kernel)) = solve(count, equations(None)) else { return false };
-        self.rank = Some(count - kernel.directions.len());
-        if self.rank == Some(count) {
+        let rank = count - kernel.directions.len();
+        if rank == count {
             let columns = (0..count).map(|column| Some(solve(count, equations(Some(column))).ok()??.origin));
             let Some(columns) = columns.collect::<Option<Vec<Vec<T>>>>() else { return false };
             let entry = |i: usize, j: usize| columns[j][i].to_f64() * self.mobility[i] * self.mobility[j];
             self.rows = (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect();
         }
+        self.rank = Some(rank);
         true
     }
 }

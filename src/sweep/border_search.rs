@@ -232,13 +232,17 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             let least = here.abs() <= before.abs() && here.abs() <= after.abs() && here.abs() <= near_zero;
             let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
             // An end on a border is a zero itself, and hides none.
-            let rise = match k {
-                0 => slope(*values),
-                FINE => slope([values[4], values[3], values[2], values[1], values[0]]),
-                _ => 0.0,
+            let inward = match k {
+                0 => *values,
+                FINE => [values[4], values[3], values[2], values[1], values[0]],
+                _ => [0.0; NODES],
             };
+            let rise = slope(inward);
             let rises = (rise < 0.0) == (here < 0.0) && rise.abs() > room;
-            let on_border = rises && here.abs() * (place(1.0) - place(0.0)) <= 2.0 * resolution * rise.abs();
+            let straight = |part: &f64| quartic(&inward, *part * node(1)) / (rise * part * node(1)) > 0.5;
+            let on_border = rises
+                && here.abs() * (place(1.0) - place(0.0)) <= 2.0 * resolution * rise.abs()
+                && [1.0 / 3.0, 2.0 / 3.0, 1.0].iter().all(straight);
             if least && same && !on_border && !quantity.is_excluded(nodes, [node(last), node(next)]) {
                 let sign = if here < 0.0 { -1.0 } else { 1.0 };
                 let ends = [(at(last), sign * before), (at(next), sign * after)];

@@ -114,15 +114,11 @@ pub(super) fn bisect(line: &mut impl Landscape, a: &Probe, b: &Probe, resolution
         return;
     }
     let zero = decisive_zero(&mut |x| line.watched(x), a.at, b.at, resolution).unwrap_or(f64::NAN);
-    let mut reach = BESIDE * resolution;
+    // Numbers far from zero may be farther apart than the resolution.
+    let mut reach = (BESIDE * resolution).max(f64::EPSILON * zero.abs());
     while above.at - below.at > resolution {
-        let at = if below.at < zero - reach {
-            zero - reach
-        } else if zero + reach < above.at {
-            zero + reach
-        } else {
-            0.5 * (below.at + above.at)
-        };
+        let beside = [zero - reach, zero + reach].into_iter().find(|&at| below.at < at && at < above.at);
+        let at = beside.unwrap_or(0.5 * (below.at + above.at));
         if at <= below.at || at >= above.at {
             break;
         }
@@ -243,6 +239,27 @@ mod tests {
         // A single place is no region.
         check(|x| vec![(x - 0.3).abs()], &[]);
         check(|x| vec![x], &[]);
+    }
+
+    #[test]
+    fn borders_far_from_zero_are_found() {
+        for offset in [1e4, 1e7, -1e10] {
+            let regime = |at: f64| Some(if at < offset + 0.45 { Mode::Stick } else { Mode::SlidePlus });
+            let mut line = Made(regime, |at: f64| (false, vec![offset + 0.45 - at], Vec::new()));
+            let ends = [0.4, 0.5].map(|at| Probe { at: offset + at, regime: line.regime(offset + at) });
+            let found = brackets(&mut line, &ends[0], &ends[1], 1e-13);
+            let [border] = &found[..] else { panic!("{found:?}") };
+            assert!((border.at() - offset - 0.45).abs() < 4.0 * f64::EPSILON * f64::abs(offset), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn zeros_close_to_the_end_of_a_wide_interval_are_found() {
+        let cubic = |x: f64| (x - 0.55) * (x - 0.556) * (x - 0.561);
+        let sticks = |at: f64| if cubic(at) > 0.0 { Mode::Stick } else { Mode::SlidePlus };
+        let mut line = Made(|at: f64| Some(sticks(at)), |at: f64| (false, vec![cubic(at)], Vec::new()));
+        let ends = [0.5, 1.0].map(|at| Probe { at, regime: line.regime(at) });
+        near(&brackets(&mut line, &ends[0], &ends[1], RESOLUTION), &[0.55, 0.556, 0.561]);
     }
 
     #[test]
