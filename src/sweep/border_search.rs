@@ -18,8 +18,11 @@ use std::sync::Arc;
 /// Points at which quantities are computed in an interval: its ends and three between them.
 const NODES: usize = 5;
 
-/// Intervals at whose ends the quartic through them is evaluated.
-const FINE: usize = 32;
+/// How far beside a zero or a turn of the quartic the quantity itself is asked, in steps between the points.
+const STEP: f64 = 0.125;
+
+/// To what zeros and turns of the quartic are found, in these steps.
+const NODE_RESOLUTION: f64 = 1e-9;
 
 /// An interval is halved while fourth differences are greater than this part of the numbers, so many times at most.
 const SMOOTH: f64 = 0.05;
@@ -88,7 +91,8 @@ impl Tracked {
         let sign = |quantity: Self| {
             let values = quantity.values(nodes);
             let room = 2.0 * fourth_difference(&values).abs() + ROUNDING * largest(&values);
-            let [a, b] = places.map(|place| quartic(&values, place));
+            let curve = Quartic::through(&values);
+            let [a, b] = places.map(|place| curve.at(place));
             i32::from(a > room && b > room) - i32::from(a < -room && b < -room)
         };
         let determinant = sign(Self::Determinant(combination));
@@ -214,44 +218,37 @@ impl<W: FnMut(f64) -> Option<Arc<Watched>>> Search<'_, W> {
             let watched = (self.watch)(x).filter(|watched| quantity.is_in(watched, &nodes[0]));
             watched.map_or(f64::NAN, |watched| quantity.value(&watched))
         };
-        let node = |k: usize| k as f64 * (NODES - 1) as f64 / FINE as f64;
-        let at = |k: usize| place(node(k));
-        let fine: Vec<f64> = (0..=FINE).map(|k| quartic(values, node(k))).collect();
-        for k in 0..FINE {
-            let passes = (fine[k] < 0.0) != (fine[k + 1] < 0.0);
-            if passes && !quantity.is_excluded(nodes, [node(k), node(k + 1)]) {
-                crossed.push(zero(&mut real, at(k), at(k + 1), resolution));
+        let curve = Quartic::through(values);
+        let turns = curve.turns();
+        let near_zero = NEAR * largest(values) + 2.0 * fourth_difference(values).abs();
+        let ends = [(0.0, values[0]), ((NODES - 1) as f64, values[NODES - 1])];
+        let mut breaks = vec![ends[0]];
+        breaks.extend(turns.iter().map(|&turn| (turn, curve.at(turn))));
+        breaks.push(ends[1]);
+        // A step aside, within a piece of the curve.
+        let beside = |x: f64, [from, to]: [f64; 2]| [(x - STEP).max(from), (x + STEP).min(to)];
+        for pair in breaks.windows(2) {
+            let [(from, first), (to, last)] = [pair[0], pair[1]];
+            if (first < 0.0) != (last < 0.0) {
+                let window = beside(zero(&mut |x| curve.at(x), from, to, NODE_RESOLUTION), [from, to]);
+                if !quantity.is_excluded(nodes, window) {
+                    crossed.push(zero(&mut real, place(window[0]), place(window[1]), resolution));
+                }
             }
         }
-        let near_zero = NEAR * largest(values) + 2.0 * fourth_difference(values).abs();
-        let room = ROUNDING * largest(values);
-        for k in 0..=FINE {
-            // Also at an end, near which rounding may hide that a zero has just been passed.
-            let [last, next] = [k.saturating_sub(1), (k + 1).min(FINE)];
-            let [before, here, after] = [fine[last], fine[k], fine[next]];
-            let least = here.abs() <= before.abs() && here.abs() <= after.abs() && here.abs() <= near_zero;
-            let same = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
-            // An end on a border is a zero itself, and hides none.
-            let inward = match k {
-                0 => *values,
-                FINE => [values[4], values[3], values[2], values[1], values[0]],
-                _ => [0.0; NODES],
-            };
-            let rise = slope(inward);
-            let rises = (rise < 0.0) == (here < 0.0) && rise.abs() > room;
-            let straight = |part: &f64| quartic(&inward, *part * node(1)) / (rise * part * node(1)) > 0.5;
-            let on_border = rises
-                && here.abs() * (place(1.0) - place(0.0)) <= 2.0 * resolution * rise.abs()
-                && [1.0 / 3.0, 2.0 / 3.0, 1.0].iter().all(straight);
-            if least && same && !on_border && !quantity.is_excluded(nodes, [node(last), node(next)]) {
-                let sign = if here < 0.0 { -1.0 } else { 1.0 };
-                let ends = [(at(last), sign * before), (at(next), sign * after)];
-                let Some(bottom) = least_place(&mut |x| sign * real(x), ends, resolution) else { continue };
-                touched.push(bottom);
-                if sign * real(bottom) < 0.0 {
-                    crossed.push(zero(&mut real, at(last), bottom, resolution));
-                    crossed.push(zero(&mut real, bottom, at(next), resolution));
-                }
+        for three in breaks.windows(3) {
+            let [before, (turn, here), after] = [three[0], three[1], three[2]];
+            let sign = if here < 0.0 { -1.0 } else { 1.0 };
+            let least = sign * before.1 > sign * here && sign * after.1 > sign * here;
+            let window = beside(turn, [before.0, after.0]);
+            if !least || here.abs() > near_zero || quantity.is_excluded(nodes, window) {
+                continue;
+            }
+            let ends = window.map(|x| (place(x), sign * curve.at(x)));
+            let Some(bottom) = least_place(&mut |x| sign * real(x), ends, resolution) else { continue };
+            touched.push(bottom);
+            if sign * real(bottom) < 0.0 {
+                crossed.extend(window.map(|x| zero(&mut real, bottom.min(place(x)), bottom.max(place(x)), resolution)));
             }
         }
     }
@@ -293,25 +290,57 @@ fn fourth_difference([a, b, c, d, e]: &[f64; NODES]) -> f64 {
     a - 4.0 * b + 6.0 * c - 4.0 * d + e
 }
 
-/// The polynomial through the values at 0, 1, 2, 3, 4 (Newton's forward differences).
-fn quartic(values: &[f64; NODES], x: f64) -> f64 {
-    let mut differences = *values;
-    for order in 1..NODES {
-        for k in (order..NODES).rev() {
-            differences[k] -= differences[k - 1];
+/// A polynomial of fourth degree, by ascending powers.
+struct Quartic([f64; NODES]);
+
+impl Quartic {
+    /// Through the values at 0, 1, 2, 3, 4, by Newton's forward differences.
+    fn through(values: &[f64; NODES]) -> Self {
+        let mut differences = *values;
+        for order in 1..NODES {
+            for k in (order..NODES).rev() {
+                differences[k] -= differences[k - 1];
+            }
         }
+        let [value, first, second, third, fourth] = differences;
+        Self([
+            value,
+            first - second / 2.0 + third / 3.0 - fourth / 4.0,
+            (second - third) / 2.0 + 11.0 * fourth / 24.0,
+            third / 6.0 - fourth / 4.0,
+            fourth / 24.0,
+        ])
     }
-    let (mut sum, mut factor) = (0.0, 1.0);
-    for (k, difference) in differences.iter().enumerate() {
-        sum += factor * difference;
-        factor *= (x - k as f64) / (k + 1) as f64;
+
+    fn at(&self, x: f64) -> f64 {
+        horner(&self.0, x)
     }
-    sum
+
+    /// Where it turns between 0 and 4.
+    fn turns(&self) -> Vec<f64> {
+        sign_changes(&slope(&self.0))
+    }
 }
 
-/// The slope of that polynomial at 0.
-fn slope([a, b, c, d, e]: [f64; NODES]) -> f64 {
-    (48.0 * b - 25.0 * a - 36.0 * c + 16.0 * d - 3.0 * e) / 12.0
+fn horner(polynomial: &[f64], x: f64) -> f64 {
+    polynomial.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
+}
+
+fn slope(polynomial: &[f64]) -> Vec<f64> {
+    polynomial.iter().enumerate().skip(1).map(|(power, coefficient)| power as f64 * coefficient).collect()
+}
+
+/// Where a polynomial changes its sign between 0 and 4, in ascending order: once at most between two turns.
+fn sign_changes(polynomial: &[f64]) -> Vec<f64> {
+    if polynomial.len() < 2 {
+        return Vec::new();
+    }
+    let mut breaks = vec![0.0];
+    breaks.extend(sign_changes(&slope(polynomial)));
+    breaks.push((NODES - 1) as f64);
+    let value = |x: f64| horner(polynomial, x);
+    let differ = |pair: &&[f64]| (value(pair[0]) < 0.0) != (value(pair[1]) < 0.0);
+    breaks.windows(2).filter(differ).map(|pair| zero(&mut |x| value(x), pair[0], pair[1], NODE_RESOLUTION)).collect()
 }
 
 /// A zero of `f` between `a` and `b`, if its signs there differ, else the middle; or a place where it is not a number.
@@ -395,9 +424,17 @@ mod tests {
         let polynomial = |x: f64| 2.0 - x + 0.5 * x * x * x - 0.25 * x * x * x * x;
         let values = std::array::from_fn(|k| polynomial(k as f64));
         for x in [0.3, 1.0, 2.7, 3.9] {
-            assert!((quartic(&values, x) - polynomial(x)).abs() < 1e-12);
+            assert!((Quartic::through(&values).at(x) - polynomial(x)).abs() < 1e-12);
         }
-        assert!((slope(values) + 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_turn_of_a_quartic_is_found() {
+        // Its slope is (x - 0.001) (x - 0.003) (x - 3.999).
+        let [a, b, c] = [0.001, 0.003, 3.999];
+        let powers = [0.5, -a * b * c, (a * b + b * c + c * a) / 2.0, -(a + b + c) / 3.0, 0.25];
+        let turns = Quartic(powers).turns();
+        assert!(turns.len() == 3 && turns.iter().zip([a, b, c]).all(|(x, y)| (x - y).abs() < 1e-8), "{turns:?}");
     }
 
     #[test]
