@@ -4,7 +4,7 @@
 //! ```text
 //!     point of the parameters --[model]--> Robot, State --[pipeline]--> Impact --[regime]--> which outcomes are valid
 //!     inequalities of all combinations --[border_search]--> where they may change
-//!     samples --[line]--> borders, bisected to 1e-12 of the range --[transition]--> which inequality is zero there
+//!     samples --[line]--> borders, found to 1e-12 of the range --[transition]--> which inequality is zero there
 //!     one parameter --[survey]--> Survey --[curves]--> RegionCurves
 //!     two parameters --[edge, cell]--> pieces of borders --[polyline, interior, map]--> Map
 //! ```
