@@ -1,5 +1,7 @@
 """What the tests have in common."""
 
+import importlib
+import os
 import pathlib
 import sys
 
@@ -10,6 +12,13 @@ import heelstrike
 
 ROOT = pathlib.Path(__file__).parents[2]
 COMMAND = [sys.executable, "-c", "import sys; from heelstrike._command import main; sys.exit(main())"]
+
+
+def peer(name):
+    """Another package of robots; without it a test is skipped, and fails where all of them are required."""
+    if os.environ.get("HEELSTRIKE_REQUIRE_PEERS"):
+        return importlib.import_module(name)
+    return pytest.importorskip(name)
 
 
 @pytest.fixture(scope="session")

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, peer
 
 BLOCK = re.compile(r"(?:<!-- needs: (\w+) -->\n)?```python\n(.*?)```", re.DOTALL)
 known: dict[str, object] = {}
@@ -19,5 +19,5 @@ def test_example_runs(number, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     needs, code = blocks[number]
     if needs:
-        pytest.importorskip(needs)
+        peer(needs)
     exec(code, known)
